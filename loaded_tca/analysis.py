@@ -16,7 +16,7 @@ from loaded_tca.compliance import RootStress, default_density, model_of, require
 from loaded_tca.compliance.body import body_torsion
 from loaded_tca.contact.adaptive import MOST_CELLS
 from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
-from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require
+from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.rounded_edges import pressures_at_rounded_edges
 from loaded_tca.loaded.tooth_contact import GridChoice
@@ -28,13 +28,17 @@ from loaded_tca.scene import Scene
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded import trace_contact, trace_teeth
 
-SECONDS_PER_CONTACT, SECONDS_PER_CELL = 0.01, 4e-6
-"""Of a contact between half-spaces, measured on the example scenes on one thread of a desktop machine."""
-BENDING, FREE_EDGES = 2.0, 1.3
-"""Factors of that time where teeth bend and where edges are free; measured."""
-TEETH_SECONDS, TEETH_BYTES = 3.0, 400e6
-"""Of the finite element models of both gears; measured."""
-ROOT_SECONDS, ROOT_BYTES = 0.5, 75e6
+START_SECONDS, STATE_SECONDS, SHARED_SECONDS, SHARED_EXPONENT = 0.4, 0.015, 2.2e-3, 3.2
+"""Of the first analysis of a process; of each position under each torque where teeth bend, and how that grows with the
+tooth pairs in contact. These and what follows: processor time on one thread of a server's core, of the scenes of
+``validation.loaded.user_scenes``."""
+FLANKS_ALONE, FREE_EDGES, CAPPED, ROUNDED, ALL_ROUNDED = 0.5, 1.15, 1.5, 2.2, 3.5
+"""Factors of the time of a state: where teeth do not bend, edges are free, pressure is capped, edges are rounded."""
+USUAL_CELLS, OF_ACCURACY = 4400.0, 0.35
+"""Cells that take as long as what does not depend on them, and the exponent of 1e-2 over an accuracy."""
+TEETH_SECONDS, TEETH_EXPONENT, TEETH_BYTES = 7.5e-3, 1.5, 400e6
+"""Of the finite element models of both gears: the time for the layers of elements across both faces."""
+ROOT_SECONDS, ROOT_BYTES = 0.23, 75e6
 """Of a model of root stress for each layer of elements across the face, of which wide faces have more; measured with 6
 to 24 layers: the memory is within a quarter of what the model itself tells, the time within a factor of two."""
 PROGRAMME_BYTES, KEPT_BYTES_PER_CELL = 150e6, 150.0
@@ -100,8 +104,10 @@ def rounded(value: float) -> str:
 def expected_effort(scene: Scene) -> Effort:
     """Estimate what an analysis takes from the number of its contacts and their cells.
 
-    Where ``analysis.cells`` is given, the time is right within a factor of about three, the memory within one and a
-    half. An accuracy may need several times as many cells as assumed, or fewer.
+    Nothing is computed but the gears. The time is that of one processor without kept models of teeth, within a factor
+    of one and a half of that of the scenes of ``docs/studies/how_long.md``; contacts that end at reliefs or lie askew
+    may need many more cells for an accuracy beyond 1e-2 than assumed. The memory is right within one and a half where
+    ``analysis.cells`` is given.
 
     Parameters
     ----------
@@ -112,22 +118,50 @@ def expected_effort(scene: Scene) -> Effort:
     Effort
     """
     wanted = scene.analysis
-    contacts = wanted.positions * len(scene.torques) * (2 if wanted.load_sharing else 1)
+    states = wanted.positions * len(scene.torques)
+    contacts = states * (2 if wanted.load_sharing else 1)
+    pairs = scene.pairs_in_contact if wanted.load_sharing else 1.0
+    seconds = states * (STATE_SECONDS + SHARED_SECONDS * pairs**SHARED_EXPONENT) * _factor(scene)
     if wanted.cells is None:
         cells = round(min(max(CELLS_TIMES_ACCURACY / wanted.accuracy, FEWEST_CELLS), MOST_CELLS**2))
+        seconds *= max(1.0, 1e-2 / wanted.accuracy) ** OF_ACCURACY
     else:
         cells = math.prod(wanted.cells)
-    seconds = contacts * (SECONDS_PER_CONTACT + SECONDS_PER_CELL * cells)
+        seconds *= 0.7 + cells / USUAL_CELLS
+    seconds += START_SECONDS
     memory = PROGRAMME_BYTES + cells * (BYTES_PER_CELL + contacts * KEPT_BYTES_PER_CELL)
-    if wanted.free_edges:
-        seconds *= FREE_EDGES
-    if wanted.compliance != "contact":
-        seconds, memory = BENDING * seconds + TEETH_SECONDS, memory + TEETH_BYTES
-    if wanted.root_stress:
-        pair = scene.pair()
-        layers = [default_density(gear).lengthwise for gear in (pair.pinion, pair.wheel)]
-        seconds, memory = seconds + ROOT_SECONDS * sum(layers), memory + ROOT_BYTES * max(layers)  # one after the other
+    if wanted.root_stress or wanted.compliance != "contact":
+        layers = _layers(scene)
+        if wanted.compliance != "contact":
+            seconds, memory = seconds + TEETH_SECONDS * sum(layers) ** TEETH_EXPONENT, memory + TEETH_BYTES
+        if wanted.root_stress:
+            seconds, memory = seconds + ROOT_SECONDS * sum(layers), memory + ROOT_BYTES * max(layers)  # one by one
     return Effort(contacts, cells, seconds, memory, certain=wanted.cells is not None)
+
+
+def _layers(scene: Scene) -> list[int]:
+    """Layers of elements across the faces of pinion and wheel; one of a gear without whole teeth, which is refused."""
+    pair, layers = scene.pair(), []
+    for gear in (pair.pinion, pair.wheel):
+        try:
+            layers.append(default_density(gear).lengthwise)
+        except (InputError, GeometryError):
+            layers.append(1)
+    return layers
+
+
+def _factor(scene: Scene) -> float:
+    """Time of a state over that of sharp edges that are not free, of elastic flanks and of teeth that bend."""
+    wanted, factor = scene.analysis, 1.0
+    if wanted.compliance == "contact":
+        factor *= FLANKS_ALONE
+    if wanted.free_edges:
+        factor *= FREE_EDGES
+    if any(one.max_pressure_MPa is not None for one in scene.materials):
+        factor *= CAPPED
+    if any(one.tip_rounding_mm or one.side_rounding_mm for one in (scene.pinion, scene.wheel)):
+        factor *= ALL_ROUNDED if wanted.edge_pressures == "all" else ROUNDED
+    return factor
 
 
 THICKEST_LAYER = 1.2

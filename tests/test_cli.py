@@ -419,7 +419,7 @@ def test_estimate_is_told_on_a_terminal_and_where_an_analysis_is_long(run, monke
     assert run("run", scene(), "--out", "out")[2] == []
     monkeypatch.setattr(cli.terminal, "WORTH_TELLING", 0.0)
     (told,) = run("run", scene(), "--out", "out")[2]
-    assert told.startswith("loaded-tca: 3 contacts of 256 cells: roughly 0.03")
+    assert told.startswith("loaded-tca: 3 contacts of 256 cells: roughly 0.4")
     monkeypatch.setattr(cli.terminal, "WORTH_TELLING", math.inf)
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)

@@ -52,7 +52,7 @@ class GridChoice:
     """
 
     cells: tuple[int, int] | None = None
-    accuracy: float = 1e-3
+    accuracy: float = 1e-2
     tolerance: float = 1e-6
     free_edges: bool = False
     agreement: float | None = None

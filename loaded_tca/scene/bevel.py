@@ -161,6 +161,11 @@ class BevelScene(SpiralScene, BlankScene):
         """Sides in contact of pinion and wheel: "concave" or "convex", "straight" without a spiral."""
         return self.sides(self.sense) if self.geometry.spiral_angle_deg else ("straight", "straight")
 
+    @property
+    def pairs_in_contact(self) -> float:
+        """The transverse contact ratio."""
+        return self.mesh().transverse_contact_ratio
+
     def mesh(self) -> BevelMesh:
         """Return the macro geometry: cones, cone distances, contact ratios."""
         normal = self.geometry.normal_pressure_angle_deg

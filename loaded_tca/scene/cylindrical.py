@@ -177,6 +177,11 @@ class CylindricalScene(BlankScene):
         return mesh.pinion_active_profile.start_roll_length, mesh.wheel_active_profile.start_roll_length
 
     @property
+    def pairs_in_contact(self) -> float:
+        """The total contact ratio."""
+        return self.mesh().total_contact_ratio
+
+    @property
     def path_points(self) -> Mapping[str, float]:
         """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion: from T1 on [mm]."""
         path = self.mesh().path_of_contact

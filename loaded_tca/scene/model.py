@@ -175,6 +175,11 @@ class Scene(Section, ABC):
         """Return the rows of the geometry table: of the mesh, then of pinion and wheel."""
 
     @property
+    def pairs_in_contact(self) -> float:
+        """Tooth pairs that are in contact on the mean, roughly."""
+        return 3.0  # of face-milled teeth, whose contact ratio is not known before their contact
+
+    @property
     def path_points(self) -> Mapping[str, float]:
         """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion; none of bevel gears."""
         return {}

@@ -216,7 +216,7 @@ class Analysis(Section):
         Whole(1, 10000), "mesh positions over one pitch, both ends included; 1 = the pitch point alone", 21
     )
     accuracy: float = key(
-        Number(1e-6, 0.5), "wanted relative error of the peak pressure; chooses the grid unless cells do", 1e-3
+        Number(1e-6, 0.5), "wanted relative error of the peak pressure; chooses the grid unless cells do", 1e-2
     )
     cells: tuple[int, int] | None = key(
         List(Whole(4, 1000000), 2, 2),

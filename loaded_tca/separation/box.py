@@ -239,7 +239,8 @@ class _Probes:
         if not rows.size:
             return ends
         lines = np.linspace(-1.0, 1.0, PROBE[1 - axis])
-        gap = self.gap.of(rows)
+        # arcs of rounded edges, on which normals take more steps to the flank, end at the same edges
+        gap = NormalGap(self.pair.sharp, self.contacts, self.axes).of(rows)
 
         def room_at(of: Indices, places: Array) -> Array:
             """Largest distance to the edges (of, places) at places along the axis."""

@@ -54,7 +54,7 @@ def test_memory_holds_at_least_the_maps_of_the_result():
     ],
 )
 def test_more_work_is_a_larger_estimate(more):
-    assert effort_of(**more).seconds > 1.2 * effort_of().seconds
+    assert effort_of(**more).seconds > 1.03 * effort_of().seconds
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_root_stress_takes_longer_the_wider_the_face():
         faces = dict.fromkeys(("pinion.face_width_mm", "wheel.face_width_mm"), width)
         return expected_effort(scene("mesh_cycle_helical", **more).with_changes(faces)).seconds
 
-    assert seconds(6.0) == seconds(60.0)
+    assert seconds(6.0) == seconds(60.0), "flanks alone, one pair"
     assert seconds(60.0, root_stress=True) - seconds(60.0) > 2.0 * (seconds(6.0, root_stress=True) - seconds(6.0))
 
 
@@ -106,4 +106,18 @@ def test_analysis_beyond_the_memory_is_refused_before_it_starts(monkeypatch):
 
 def test_estimate_says_what_it_is_of():
     text = str(effort_of(positions=1, cells=(10, 10), accuracy=None))
-    assert text.startswith("1 contact of 100 cells: roughly 0.01 s, 0.14 GiB")
+    assert text.startswith("1 contact of 100 cells: roughly 0.41 s, 0.14 GiB")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"pinion.tip_rounding_mm": 0.2},
+        {"pinion.tip_rounding_mm": 0.2, "analysis.edge_pressures": "all"},
+        {"material.max_pressure_MPa": 1500.0},
+        dict.fromkeys(("pinion.face_width_mm", "wheel.face_width_mm"), 60.0),
+    ],
+)
+def test_what_makes_a_state_longer_is_in_the_estimate(changes):
+    asked = scene("mesh_cycle_helical", load_sharing=True, compliance="contact+tooth")
+    assert expected_effort(asked.with_changes(changes)).seconds > 1.3 * expected_effort(asked).seconds

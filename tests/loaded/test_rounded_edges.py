@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.analysis import analyse
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import RoundedEdge, edge_pressures, solve_contact
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
@@ -130,7 +131,7 @@ def test_peak_does_not_depend_on_the_grid():
     assert_allclose([one.pressure for one in peaks], peaks[-1].pressure, rtol=0.02)
 
 
-class Tilting:
+class Tilting(BendingModel):
     """Teeth that bend most under their load, and tilt their neighbours along the face."""
 
     neighbours = 1

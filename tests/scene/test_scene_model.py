@@ -104,7 +104,7 @@ def test_defaults_are_those_of_the_documentation(scene):
     assert scene.mounting == MountingErrors()
     assert scene.analysis == Analysis(
         positions=21,
-        accuracy=1e-3,
+        accuracy=1e-2,
         cells=None,
         tolerance=1e-6,
         load_sharing=True,
