@@ -30,8 +30,9 @@ from loaded_tca.tooth.families import ToothGeometry
 LAYERS_PER_HEIGHT = 2.5
 """Layers of elements across a face as wide as the teeth are high; between the two numbers below."""
 FEWEST_LAYERS, MOST_LAYERS = 6, 24
-NEWTON_STEPS = 2
-"""From the tangent plane to the flank, a fiftieth of the distance along it: the second leaves 1e-6 of that."""
+NEWTON_STEPS, NO_FURTHER = 2, 1e-3
+"""From the tangent plane to the flank, a fiftieth of the distance along it: the second leaves 1e-6 of that. A step of
+so much of the module is the last one, as of helical teeth, whose contact lines are straight."""
 CHECKED = Resolution(flank=9, fillet=5, land=3, lengthwise=5)
 """Points of a tooth that is built to see whether it exists."""
 
@@ -174,7 +175,7 @@ def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLi
         In the angles of its own tooth: as if it were pair 0.
     """
     points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
-    points = _on_flank(sharp(pair.pinion.flank), points, grid.axes[2], grid.origin)
+    points = _on_flank(pair.pinion.nominal_flank, points, grid.axes[2], grid.origin, NO_FURTHER * pair.module)
     radius, _, axial = pair.to_wheel(points)
     tooth = pair.sense * number
     on_pinion = FlankLine(-tooth, np.hypot(points[:, 0], points[:, 1]), points[:, 2])
@@ -186,7 +187,7 @@ def _section(points: Array) -> tuple[Array, Array]:
     return np.hypot(points[:, 0], points[:, 1]), points[:, 2]
 
 
-def _on_flank(flank: Flank, points: Array, normal: Array, origin: Array) -> Array:
+def _on_flank(flank: Flank, points: Array, normal: Array, origin: Array, enough: float) -> Array:
     """Points (n, 3) moved along a normal onto a flank through an origin; where there is none they stay."""
     turned = math.atan2(origin[1], origin[0]) - float(np.ravel(flank.theta(*_section(origin[None])).value)[0])
     moved = points
@@ -199,7 +200,10 @@ def _on_flank(flank: Flank, points: Array, normal: Array, origin: Array) -> Arra
         steep = (
             (moved[:, 0] * normal[1] - moved[:, 1] * normal[0]) / rho**2 - theta.rho * outwards - theta.z * normal[2]
         )
-        moved = moved - (off / steep)[:, None] * normal
+        step = off / steep
+        moved = moved - step[:, None] * normal
+        if not (np.abs(step) > enough).any():
+            break
     return np.where(np.isfinite(moved).all(axis=1, keepdims=True), moved, points)
 
 
