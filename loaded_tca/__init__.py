@@ -20,8 +20,18 @@ if TYPE_CHECKING:
     from loaded_tca.scene import Scene, parse_scene, read_scene
     from loaded_tca.separation import sample_separation
     from loaded_tca.unloaded import trace_contact
+
+    __version__: str
 else:
-    __getattr__, __dir__ = lazy_names(__name__)
+    _load, __dir__ = lazy_names(__name__)
+
+    def __getattr__(name: str) -> object:
+        if name == "__version__":
+            from importlib.metadata import version
+
+            return version("loaded_tca")
+        return _load(name)
+
 
 __all__ = [
     "AccuracyWarning",

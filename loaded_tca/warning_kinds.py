@@ -188,6 +188,21 @@ UNIT = Kind(
     "modifications are some hundredths of a millimetre",
     "the amount in the unit of its key: um in scenes, mm in Python",
 )
+ODD_INPUT = Kind(
+    "{key}: {value:g} {unit} is {what}; is its unit right?",
+    "the number is taken as it stands, in the unit of its key",
+    "moduli of steel are 2.06e5 MPa, of plastics some 1e3; torques are in N m",
+)
+CLEARANCE = Kind(
+    "the tip of the mating gear comes within {clearance:.3g} mm of the root of the {gear}, less than {least:g} modules",
+    "rolling flanks do not touch there, but tips and roots of gears with tolerances may",
+    "a smaller tip diameter of the mating gear, or a deeper dedendum",
+)
+BEYOND_YIELD = Kind(
+    "the pressure is above {most:g} MPa, which no gear steel carries without yielding",
+    "the contact is elastic: real flanks yield below their surface, and carry the load on a wider contact",
+    "`max_pressure_MPa`, less torque, or another unit of what was given",
+)
 UNMODIFIED_TOOTH = Kind(
     "{gear}, with its modifications: {fault}; it bends like the tooth without them",
     "the modified tooth cannot be meshed, for instance where it is pointed; its contact has the modifications, its "

@@ -19,6 +19,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.results.numbers import CycleNumbers
+from loaded_tca.results.quantities import GEARS
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded.tooth_cycle import REACH
 
@@ -27,6 +28,13 @@ THICKEST_CONTACT = 0.25
 
 ROUNDING = 1e-9
 """Relative, of an estimated error: four cells beside a crossing leave 3 % exactly."""
+SOFTEST_METAL, STIFFEST, LARGEST_TORQUE_Nm = 1e4, 1e6, 1e6
+"""Moduli [MPa] of gear materials, plastics left out, and a torque [N m] beyond which a question is asked."""
+LEAST_CLEARANCE = 0.1
+"""Tip clearance over the module below which a warning says so: basic racks have 0.17 to 0.4 (ISO 53)."""
+HARDEST_MPa, OVER_MEAN = 4000.0, 4.0 / math.pi
+"""Contact pressure that no gear steel carries (endurance limits of ISO 6336-5 end at 1650 MPa), and the largest pressure
+of a line contact over the mean, which sharp edges do not move."""
 MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
 
@@ -117,7 +125,7 @@ def warn_of_gears(scene: Scene, pair: GearPair) -> None:
     InputError, GeometryError
         If nothing can turn, or gear bodies that the scene asks for cannot be built.
     """
-    for sentence in scene.interferences():
+    for sentence in [*scene.interferences(), *_odd_inputs(scene), *_small_clearances(scene, pair)]:
         give_accuracy_warning(sentence, stacklevel=3)
     if scene.analysis.without_bodies:
         require_teeth(pair, scene.analysis.without_bodies)
@@ -126,6 +134,30 @@ def warn_of_gears(scene: Scene, pair: GearPair) -> None:
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         if scene.analysis.root_stress and (rim := gear.rim_over_height) < THIN_RIM:
             give_accuracy_warning(kinds.THIN_RIM.sentence(gear=name, rim=rim, least=THIN_RIM), stacklevel=3)
+
+
+def _odd_inputs(scene: Scene) -> list[str]:
+    """Questions about numbers that look like those of another unit."""
+    sentences = []
+    for modulus in dict.fromkeys(material.youngs_modulus_MPa for material in scene.materials):
+        what = "less than that of any metal" if modulus < SOFTEST_METAL else "more than that of any material of gears"
+        if not SOFTEST_METAL <= modulus <= STIFFEST:
+            key = "material.youngs_modulus_MPa"
+            sentences.append(kinds.ODD_INPUT.sentence(key=key, value=modulus, unit="MPa", what=what))
+    largest = 1e-3 * max(scene.torques)
+    if largest > LARGEST_TORQUE_Nm:
+        what = "more than that of any pinion on land"
+        sentences.append(kinds.ODD_INPUT.sentence(key="load.pinion_torque_Nm", value=largest, unit="N m", what=what))
+    return sentences
+
+
+def _small_clearances(scene: Scene, pair: GearPair) -> list[str]:
+    """Sentences on tips that come near to roots without reaching them: where they do, whole gears jam."""
+    return [
+        kinds.CLEARANCE.sentence(clearance=clearance, gear=gear, least=LEAST_CLEARANCE)
+        for gear, clearance in zip(GEARS, scene.tip_clearances, strict=False)
+        if 0.0 < clearance < LEAST_CLEARANCE * pair.module * (1.0 - ROUNDING)
+    ]
 
 
 def without_place(sentence: str) -> str:
@@ -151,6 +183,8 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
         reasons.append(kinds.BOX.sentence())
     if solution.load > 0.0 and solution.cells_across[0] < 8:
         reasons.append(kinds.FEW_CELLS.sentence())
+    if pair.max_pressure is None and OVER_MEAN * solution.load > HARDEST_MPa * solution.contact_area:
+        reasons.append(kinds.BEYOND_YIELD.sentence(most=HARDEST_MPa))
     if 0.5 * loaded.extent[0] > THICKEST_CONTACT * pair.module:
         reasons.append(kinds.WIDE.sentence())
     return reasons

@@ -10,7 +10,7 @@ from typing import ClassVar, Literal
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences
+from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
@@ -60,6 +60,13 @@ class Geometry(Pair):
 class GearSection(BlankGearSection):
     """[pinion], [wheel] of cylindrical gears."""
 
+    profile_shift: float | None = key(  # type: ignore[assignment]
+        Number(-5.0, 5.0),
+        "profile shift coefficient x; of one gear where the centre distance is given: the other has what leaves no "
+        "backlash",
+        None,
+        "0, or what leaves no backlash",
+    )
     tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a", None, "d + 2 m_n (1 + x)")
 
     rules: ClassVar[tuple[Rule, ...]] = (
@@ -131,13 +138,20 @@ class CylindricalScene(BlankScene):
     def mesh(self) -> CylindricalMesh:
         """Return the macro geometry: diameters, contact ratios, path of contact."""
 
-        def gear(own: GearSection, sign: int, name: str) -> CylindricalGear:
+        def gear(own: GearSection, sign: int, name: str, shift: float | None) -> CylindricalGear:
             values = parameters_of(CylindricalGear, self.geometry, own)
             values["helix_angle"] *= sign
+            values["profile_shift"] = shift or 0.0
             return CylindricalGear(**values, name=name)
 
-        pinion, wheel = map(gear, (self.pinion, self.wheel), self.hand_signs, ("pinion", "wheel"))
-        return CylindricalMesh(pinion, wheel, centre_distance=self.geometry.centre_distance_mm)
+        sections, names, distance = (self.pinion, self.wheel), ("pinion", "wheel"), self.geometry.centre_distance_mm
+        shifts = [own.profile_shift for own in sections]
+        pinion, wheel = map(gear, sections, self.hand_signs, names, shifts)
+        if distance is not None and shifts.count(None) == 1:
+            rest = profile_shift_sum(pinion, wheel, distance) - sum(shift for shift in shifts if shift is not None)
+            shifts = [rest if shift is None else shift for shift in shifts]
+            pinion, wheel = map(gear, sections, self.hand_signs, names, shifts)
+        return CylindricalMesh(pinion, wheel, centre_distance=distance)
 
     @property
     def sense(self) -> Sense:
@@ -175,6 +189,13 @@ class CylindricalScene(BlankScene):
         """Return the roll lengths at which the active profiles of pinion and wheel start [mm]."""
         mesh = self.mesh()
         return mesh.pinion_active_profile.start_roll_length, mesh.wheel_active_profile.start_roll_length
+
+    @property
+    def tip_clearances(self) -> tuple[float, float]:
+        """Clearances c of both roots and the mating gear's tip, the error of the centre distance included."""
+        error = self.mounting.centre_distance_error_mm
+        pinion, wheel = (clearance + error for clearance in self.mesh().tip_clearances)
+        return pinion, wheel
 
     @property
     def pairs_in_contact(self) -> float:
@@ -250,6 +271,7 @@ class CylindricalScene(BlankScene):
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
             *_diameter_rows(mesh),
+            ("tip clearance of the mating gear c [mm]", *(f"{clearance:.4f}" for clearance in mesh.tip_clearances)),
         ]
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:

@@ -175,6 +175,11 @@ class Scene(Section, ABC):
         """Return the rows of the geometry table: of the mesh, then of pinion and wheel."""
 
     @property
+    def tip_clearances(self) -> tuple[float, ...]:
+        """Clearances c of both roots and the mating gear's tip [mm]; none of bevel gears, whose blanks have them."""
+        return ()
+
+    @property
     def pairs_in_contact(self) -> float:
         """Tooth pairs that are in contact on the mean, roughly."""
         return 3.0  # of face-milled teeth, whose contact ratio is not known before their contact

@@ -110,7 +110,8 @@ def test_mounting_without_a_mesh_is_refused(error, words):
 
 
 def test_tip_below_the_form_circle_of_the_mate_is_warned_of():
-    (sentence,) = sentences(spur(**PLAIN, **{"wheel.tip_diameter_mm": 178.0, "pinion.teeth": 20}))
+    sentence, clearance = sentences(spur(**PLAIN, **{"wheel.tip_diameter_mm": 178.0, "pinion.teeth": 20}))
+    assert "within 0.25 mm of the root of the pinion" in clearance
     assert sentence.startswith("fillet interference: the tip of the wheel reaches below the form circle of the pinion")
 
 
@@ -147,3 +148,40 @@ def test_rim_is_what_a_bore_leaves_of_the_body_and_none_of_a_solid_gear(name):
     )
     assert 0.0 < thin.rim_over_height < thick.rim_over_height < math.inf
     assert scene.with_changes({"pinion.bore_diameter_mm": 0.0}).pair().pinion.rim_over_height == math.inf
+
+
+@pytest.mark.parametrize(
+    ("changes", "question"),
+    [
+        ({"material.youngs_modulus_MPa": 206.0}, "material.youngs_modulus_MPa: 206 MPa is less than that of any metal"),
+        ({"material.youngs_modulus_MPa": 206e4}, "material.youngs_modulus_MPa: 2.06e+06 MPa is more than"),
+        ({"analysis.torques_Nm": (2e6,)}, "load.pinion_torque_Nm: 2e+06 N m is more than that of any pinion on land"),
+    ],
+)
+def test_numbers_of_another_unit_are_asked_about(changes, question):
+    (sentence,) = sentences(spur(**changes))
+    assert sentence.startswith(question)
+    assert sentence.endswith("; is its unit right?")
+
+
+def test_tip_that_comes_near_to_a_root_is_warned_of():
+    """Tips of the wheel 0.6 mm higher leave 0.75 - 0.6 mm of the clearance of the basic rack, 0.25 modules."""
+    scene = spur(**PLAIN)
+    height = 2.0 * (scene.mesh().wheel.tip_radius + 0.6)
+    near = scene.with_changes({"wheel.tip_diameter_mm": height})
+    assert near.tip_clearances[0] == pytest.approx(0.15)
+    found = [sentence for sentence in sentences(near) if "of the root of the pinion" in sentence]
+    assert found == ["the tip of the mating gear comes within 0.15 mm of the root of the pinion, less than 0.1 modules"]
+    assert any("0.1500" in line for line in describe_scene(near).splitlines() if "tip clearance" in line)
+
+
+def test_pressure_that_no_steel_carries_is_warned_of_unless_it_is_capped():
+    def found(**changes):
+        with noted_accuracy_warnings(given=False) as warned:
+            analyse(spur(**{"analysis.load_sharing": False}, **changes))
+        return [sentence for sentence in warned if "no gear steel carries" in sentence]
+
+    assert found(**{"analysis.torques_Nm": (100.0,)}) == []
+    (sentence,) = found(**{"analysis.torques_Nm": (20e3,)})
+    assert "above 4000 MPa" in sentence
+    assert found(**{"analysis.torques_Nm": (20e3,), "material.max_pressure_MPa": 6000.0}) == []
