@@ -33,7 +33,7 @@ SOFTEST_METAL, STIFFEST, LARGEST_TORQUE_Nm = 1e4, 1e6, 1e6
 LEAST_CLEARANCE = 0.1
 """Tip clearance over the module below which a warning says so: basic racks have 0.17 to 0.4 (ISO 53)."""
 HARDEST_MPa, OVER_MEAN = 4000.0, 4.0 / math.pi
-"""Contact pressure that no gear steel carries (endurance limits of ISO 6336-5 end at 1650 MPa), and the largest pressure
+"""Contact pressure that no gear steel carries (endurance limits of ISO 6336-5 end at 1650 MPa), and the largest one
 of a line contact over the mean, which sharp edges do not move."""
 MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
