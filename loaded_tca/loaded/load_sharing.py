@@ -62,10 +62,9 @@ AGREEMENT_ON_CELLS = 1e-5
 """The same where the cells are given."""
 SETTLED = 10.0
 """Change of how the slices of a pair are displaced, over its deflection, in agreements: it only moves force about."""
-LINE_ERROR, LINE_STAYS = 1e-3, 1e-4
+LINE_ERROR = 1e-3
 """Distance over the module from the centres of the pressure to where its forces bend the teeth, the mean over the
-force: 2 um on module 2, less than 1 nm of transmission error. Forces that swing keep their places, and those
-that are as near as the second."""
+force: 2 um on module 2, less than 1 nm of transmission error. Forces that swing keep their places."""
 SAME_BOX = (0.75, 1.25)
 """Loads over the one a box was made for, between which the contact still fills it well, if it does not reach it."""
 SLENDER, LINE_EXPONENT = 4.0, 0.9
@@ -313,7 +312,7 @@ class _Balance:
             if before is not None and not before.solution.reaches_border:
                 least, most = (factor * before.solution.load for factor in SAME_BOX)
                 if least <= force <= most:
-                    if self.bending is not None and not self.lines_held and self._lines_moved(before, LINE_STAYS):
+                    if self.bending is not None and not self.lines_held:
                         before = before.bent_by(self.bending, tooth_pair.pair, self.pair.module)
                     loaded = yield from before.under(force, coupling(before.separation))
             if loaded is None or loaded.solution.reaches_border:
@@ -440,13 +439,9 @@ class _Balance:
                 moved = (now - loaded.coupling_deflection)[loaded.slice_force > 0.0]
                 if np.ptp(moved) > SETTLED * allowed[index]:
                     return False
-                if not self.lines_held and self._lines_moved(loaded, LINE_ERROR):
+                if not self.lines_held and loaded.line_error(self.pair.module) > LINE_ERROR * self.pair.module:
                     return False
         return True
-
-    def _lines_moved(self, loaded: LoadedContact, by: float) -> bool:
-        """Whether the forces that bend the teeth left the centres of the pressure by more than a part of the module."""
-        return loaded.line_error(self.pair.module) > by * self.pair.module
 
     def _shared(self, forces: Array, count: int) -> SharedLoad:
         carrying = np.array([index for index, _ in self._loaded() if forces[index] > 0.0])
