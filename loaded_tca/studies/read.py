@@ -9,6 +9,8 @@ import io
 import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +21,7 @@ from loaded_tca.input_files import read_text
 from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest, shown, shown_key
 from loaded_tca.scene.parse import LARGEST_FILE, toml_table
+from loaded_tca.scene.section import values_of
 from loaded_tca.studies.study import MOST_VARIANTS, Distribution, Study, is_finite
 
 WORDS = ("scene", "changes", "factors", "distributions", "samples", "seed", "table")
@@ -28,6 +31,8 @@ SPAN = {"from", "to", "count"}
 """Words of evenly spaced values."""
 DISTRIBUTION = "distribution"
 """Word for the name of a distribution; its parameters stand beside it."""
+ABOUT, NOMINAL = "about", "nominal"
+"""Word for what a distribution lies about, and the one answer: the value that the scene has."""
 
 
 def read_study(path: str | os.PathLike[str]) -> Study:
@@ -86,7 +91,8 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
         (given, "scene", _scene, (table, Path(folder))),
         (given, "table", _table, (table.get("table"), Path(folder))),
     ]
-    for word, read, words in (("factors", _values, SPAN), ("distributions", _distribution, {DISTRIBUTION})):
+    of_scene = partial(_distribution, given)
+    for word, read, words in (("factors", _values, SPAN), ("distributions", of_scene, {DISTRIBUTION})):
         section = table.get(word, {})
         if isinstance(section, dict):
             given[word] = {}
@@ -140,8 +146,11 @@ def _values(key: str, value: Any) -> list[Any]:
     return values
 
 
-def _distribution(key: str, value: Any) -> Distribution:
+def _distribution(study: Mapping[str, Any], place: str, value: Any) -> Distribution:
+    """Distribution at a place of a study file, about the value of the scene in ``study`` where it says so."""
     from scipy import stats
+
+    key = place.removeprefix("distributions.")
 
     name = value.get(DISTRIBUTION) if isinstance(value, dict) else None
     known = getattr(stats, name, None) if isinstance(name, str) else None
@@ -152,9 +161,22 @@ def _distribution(key: str, value: Any) -> Distribution:
         hint = did_you_mean(nearest(name, names)) if isinstance(name, str) else ""
         value_given = (shown(value) if name is None else shown(name)) + hint
         raise InputError(
-            f'{key}: found {value_given}; allowed {{ {DISTRIBUTION} = "norm", scale = 5.0 }}, names of scipy.stats'
+            f'{place}: found {value_given}; allowed {{ {DISTRIBUTION} = "norm", scale = 5.0 }}, names of scipy.stats'
         )
-    parameters = {word: number for word, number in value.items() if word != DISTRIBUTION}
+    parameters = {word: number for word, number in value.items() if word not in (DISTRIBUTION, ABOUT)}
+    nominal = values_of(study["scene"]).get(key) if "scene" in study else None
+    is_number = isinstance(nominal, Real) and not isinstance(nominal, bool)
+    if (about := value.get(ABOUT)) is not None:
+        if about != NOMINAL:
+            raise InputError(f'{place}.{ABOUT}: found {shown(about)}; allowed "{NOMINAL}"')
+        if "scene" in study and not is_number:
+            raise InputError(f"{place}.{ABOUT}: the scene has no number there, but {shown(nominal)}")
+        parameters["loc"] = parameters.get("loc", 0.0) + (nominal if is_number else 0.0)
+    elif "loc" not in parameters and is_number and nominal:
+        raise InputError(
+            f'{place}: the scene has {shown(nominal)} there; allowed {ABOUT} = "{NOMINAL}", which scatters about that, '
+            "or loc, with which the distribution takes its place"
+        )
     try:
         frozen: Distribution = known(**parameters)
     except (TypeError, ValueError):
@@ -164,7 +186,7 @@ def _distribution(key: str, value: Any) -> Distribution:
             *["scale"] * isinstance(known, stats.rv_continuous),
         ]
         given = ", ".join(parameters) or "none"
-        raise InputError(f"{key}: {name} has the parameters {', '.join(takes)}; found {given}") from None
+        raise InputError(f"{place}: {name} has the parameters {', '.join(takes)}; found {given}") from None
     return frozen
 
 

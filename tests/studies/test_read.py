@@ -3,6 +3,7 @@
 import bz2
 import gzip
 import lzma
+import re
 
 import numpy as np
 import pytest
@@ -125,3 +126,48 @@ test_read_refuses = refused_calls(
         ("^scenes:", "^scene:", r"^factors\.a:", r"^distributions\.b:"),
     ),
 )
+
+
+SLOPE, TILTED = "pinion.modifications.helix_slope_um", "mounting.out_of_plane_deg"
+
+
+def scattered(tmp_path, text):
+    (tmp_path / "study.toml").write_text(
+        f'scene = "{HELICAL}"\nsamples = 64\n[changes]\n{SLOPE} = 4.0\n[distributions]\n{text}\n'
+    )
+    return read_study(tmp_path / "study.toml").distributions
+
+
+def test_distribution_about_the_nominal_lies_about_the_value_of_the_scene(tmp_path):
+    found = scattered(
+        tmp_path,
+        f'{SLOPE} = {{ distribution = "norm", about = "nominal", scale = 2.0 }}\n'
+        f'{TILTED} = {{ distribution = "uniform", about = "nominal", loc = -0.1, scale = 0.2 }}',
+    )
+    assert found[SLOPE].mean() == 4.0
+    assert found[SLOPE].std() == 2.0
+    assert found[TILTED].support() == pytest.approx((-0.1, 0.1))
+
+
+def test_distribution_that_takes_the_place_of_a_nominal_value_says_so(tmp_path):
+    assert scattered(tmp_path, f'{SLOPE} = {{ distribution = "norm", loc = 0.0, scale = 2.0 }}')[SLOPE].mean() == 0.0
+    assert scattered(tmp_path, f'{TILTED} = {{ distribution = "norm", scale = 2.0 }}')[TILTED].mean() == 0.0
+    with pytest.raises(
+        InputError, match=rf'^distributions.{SLOPE}: the scene has 4.0 there; allowed about = "nominal"'
+    ):
+        scattered(tmp_path, f'{SLOPE} = {{ distribution = "norm", scale = 2.0 }}')
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (f'{SLOPE} = {{ distribution = "norm", about = "mean" }}', f'{SLOPE}.about: found "mean"; allowed "nominal"'),
+        (
+            'wheel.modifications.tip_relief_form = { distribution = "norm", about = "nominal" }',
+            'tip_relief_form.about: the scene has no number there, but "parabolic"',
+        ),
+    ],
+)
+def test_what_a_distribution_cannot_lie_about_is_told(tmp_path, text, told):
+    with pytest.raises(InputError, match=re.escape(told)):
+        scattered(tmp_path, text)
