@@ -38,7 +38,7 @@ _OF_ONE_END = tuple(f"end_relief_{end}{what}" for end in ("lower", "upper") for 
 NO_POLYNOMIAL = (0.0,) * 6
 """a1 to a6 of no correction."""
 
-LARGEST_AMOUNT = 0.3
+LARGEST_AMOUNT = 1.0
 """Amount [mm] beyond which a warning says so: gears have some hundredths of a millimetre."""
 
 MOST = 2.0

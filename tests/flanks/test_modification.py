@@ -57,7 +57,7 @@ def radius_at(share):
 
 
 @pytest.mark.parametrize("form", ["parabolic", "circular", "logarithmic"])
-@pytest.mark.parametrize("amount", [AMOUNT, -AMOUNT, 0.3])
+@pytest.mark.parametrize("amount", [AMOUNT, -AMOUNT, 1.0])
 def test_lead_crowning_is_nothing_in_the_middle_and_its_amount_at_the_ends(form, amount):
     flank = modified(lead_crowning=amount, lead_crowning_form=form)
     for radius in (WORKING, TIP):
@@ -501,13 +501,13 @@ def test_more_than_twice_the_longer_side_of_the_flank_is_no_modification(amounts
 
 
 @pytest.mark.parametrize(
-    ("name", "amount"), [("lead_crowning", 5.0), ("helix_slope", -0.301), ("twist", 0.301), ("end_relief_upper", 1.5)]
+    ("name", "amount"), [("lead_crowning", 5.0), ("helix_slope", -1.001), ("twist", 1.001), ("end_relief_upper", 1.5)]
 )
 def test_micrometres_given_as_millimetres_are_doubted(name, amount):
-    told = rf"^pinion.{name}: {amount:g} mm is more than 0.3 mm; is its unit right\?$"
+    told = rf"^pinion.{name}: {amount:g} mm is more than 1 mm; is its unit right\?$"
     with pytest.warns(AccuracyWarning, match=told):
         modified(**{name: amount}, end_relief_length=5.0)
-    assert modified(**{name: 0.299}, end_relief_length=5.0).terms  # and no warning
+    assert modified(**{name: 0.999}, end_relief_length=5.0).terms  # and no warning
 
 
 def test_gear_pair_of_the_helpers_has_the_modified_flank_on_the_gear_asked_for():

@@ -29,6 +29,7 @@ def iso_tr_6336_30(**changes):
         "pinion.teeth": 17,
         "wheel.teeth": 103,
         "pinion.profile_shift": 0.145,
+        "wheel.profile_shift": 0.0,
         "pinion.tip_diameter_mm": 159.66,
         "wheel.tip_diameter_mm": 872.35,
         "pinion.face_width_mm": 100.0,
