@@ -258,6 +258,7 @@ def gear_body(nodes: BodyNodes, material: Material, largest_error: float = 0.0) 
         else:
             if error_of_displacements(mesh, factor, matrices) <= largest_error:
                 return mesh, factor
+            del factor, matrices  # memory is told for one of them
     return mesh, factorised(mesh, material, held, blocks)[0]
 
 
