@@ -21,11 +21,10 @@ from loaded_tca.results.dynamics import dynamics_of
 from loaded_tca.results.figures import key_figures
 from loaded_tca.results.files import Buffer, FilePath, arrays_of, netcdf_of, read_dataset, replacing, variables_of
 from loaded_tca.results.numbers import CycleNumbers, dataset_of
-from loaded_tca.results.pressure_map import arc_cells, maps_from, stacked_maps
+from loaded_tca.results.pressure_map import arc_cells, arrays_of_maps, maps_from
 from loaded_tca.results.quantities import (
     ABOUT,
     IN_FILES,
-    MAP_PARTS,
     PAIRS,
     PATH_PARTS,
     QUANTITIES,
@@ -192,7 +191,7 @@ class MeshCycle(CycleNumbers):
             raise not_asked("scene")
         paths = (self.path, *self.paths)
         arrays = {f"path_{name}": np.stack([getattr(one, name) for one in paths]) for name in PATH_PARTS}
-        arrays |= {f"map_{name}": stack for name, stack in stacked_maps(self.maps).items()}
+        arrays |= arrays_of_maps(self.maps)
         whole = self.dataset.assign(variables_of(IN_FILES, arrays))
         return netcdf_of(whole.assign_attrs(title=self.scene.title, scene_toml=self.scene.to_toml()))
 
@@ -220,6 +219,7 @@ class MeshCycle(CycleNumbers):
             checks = [(name, file.sizes[name] == size, f"{size}") for name, size in expected.items()]
             checks += [(name, file.sizes[name] > 0, "at least 1") for name in PAIRS]
             require(*((holds, f"{name}: {file.sizes[name]} long, expected {size}") for name, holds, size in checks))
+            maps = maps_from(arrays)
         except InputError as error:
             raise InputError([f"{path}: not the result of a mesh cycle", *error.problems]) from None
         about = {"version": "", **{name: str(file.attrs[name]) for name in ABOUT if name in file.attrs}}
@@ -233,7 +233,7 @@ class MeshCycle(CycleNumbers):
             dataset=dataset_of(arrays, **about).assign(added),
             path=leading,
             paths=tuple(paths),
-            maps=maps_from({name: arrays[f"map_{name}"] for name in MAP_PARTS}),
+            maps=maps,
         )
 
 
