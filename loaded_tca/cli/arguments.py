@@ -35,6 +35,15 @@ Pictures are those of one torque; docs/guide/comparing.md says more."""
 EASE_OFF = """files in DIR:
   ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
                             corners, and its angles, crownings and twist"""
+VH = """V and H are mounting errors: of bevel and face-milled gears the offset and the axial displacement of the pinion
+[mm], of cylindrical ones the errors of the axes in their plane and out of it [deg].
+
+files in DIR:
+  vh_check.png              contact patterns by a marking compound, V upwards, H to the right
+  vh_check.csv              centre of each pattern, its shift, part of the pitch with edge contact
+and with --loaded instead
+  vh_under_load.png         highest pressure at each place of the flank
+  vh_study.nc, vh_study_maps/  the study behind it; the same command goes on from there"""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
   subsurface.csv            the same over the depth, below the highest pressure
@@ -113,6 +122,8 @@ def _add_analyses(command: Command) -> None:
     run = command("run", run_by.run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
     _add_scene(run)
     run.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
+    text = "analyse the coast side too, and compare: directories drive and coast in DIR, comparison.* beside them"
+    run.add_argument("--coast", action="store_true", help=text)
 
 
 def _add_readers(command: Command) -> None:
@@ -170,7 +181,20 @@ def _add_tables_and_maps(command: Command) -> None:
     ease_off = command("ease-off", run_by.ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     _add_scene(ease_off)
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
-    ease_off.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion")
+    vh = command("vh", run_by.vh, "draw contact patterns over two mounting errors (V-H check)", VH)
+    _add_scene(vh)
+    vh.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
+    for name, what in (("v", "V, upwards"), ("h", "H, to the right")):
+        text = f"values of {what}; default: three that move the contact by parts of a module"
+        vh.add_argument(f"--{name}", metavar=name.upper(), nargs="+", type=float, help=text)
+    for reader in (ease_off, vh):
+        reader.add_argument(
+            "--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion"
+        )
+    vh.add_argument(
+        "--loaded", action="store_true", help="under the torques of the scene, with all its analysis asks for"
+    )
+    _add_engine(vh)
 
 
 def _add_studies(command: Command) -> None:
@@ -180,9 +204,7 @@ def _add_studies(command: Command) -> None:
     )
     study.add_argument("study", metavar="STUDY.toml", help="study file")
     study.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
-    engine = study.add_mutually_exclusive_group()
-    engine.add_argument("--workers", metavar="N", type=int, help="processes on this machine; default: this one alone")
-    engine.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://host:8786")
+    _add_engine(study)
     study.add_argument("--rank-by", metavar="FIGURE", help="figure of study.csv, the least is best; default: TE span")
     study.add_argument(
         "--keep-maps",
@@ -196,6 +218,13 @@ def _add_studies(command: Command) -> None:
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
     report.add_argument("--rank-by", metavar="FIGURE", help="of a study, the least is best; default: TE span")
+
+
+def _add_engine(parser: argparse.ArgumentParser) -> None:
+    """Add who analyses the variants of a study."""
+    engine = parser.add_mutually_exclusive_group()
+    engine.add_argument("--workers", metavar="N", type=int, help="processes on this machine; default: this one alone")
+    engine.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://host:8786")
 
 
 class _Parser(argparse.ArgumentParser):

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
-from loaded_tca.pairs.gear_pair import GearPair, Sense
+from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
 from loaded_tca.scene.build import build_rounding, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key, literal
 from loaded_tca.scene.section import (
@@ -122,6 +122,41 @@ class Scene(Section, ABC):
         sign = 1 if self.hands[0] == "right" else -1
         return sign, -sign
 
+    @property
+    def driving(self) -> Driving:
+        """The gear that drives."""
+        wanted: Any = self.geometry
+        driving: Driving = wanted.driving
+        return driving
+
+    def coast_side(self) -> Scene:
+        """Return the scene with the other gear driving in the same sense of rotation: the other flanks carry the load.
+
+        Torques of the pinion are the same; the flanks in contact have the same modifications.
+
+        Raises
+        ------
+        InputError
+            If a flank is measured: the scene has no measurement of the other side of its teeth.
+
+        Examples
+        --------
+        >>> from loaded_tca import parse_scene
+        >>> from loaded_tca.cli import DEMO_SCENE
+        >>> parse_scene(DEMO_SCENE.read_text()).coast_side().driving
+        'wheel'
+        """
+        gears = {"pinion": self.pinion, "wheel": self.wheel}
+        measured = [name for name, gear in gears.items() if gear.flank.form == "measured"]
+        require(
+            *((False, f'{name}.flank.form: "measured" is one side of the teeth; allowed others') for name in measured)
+        )
+        changes: dict[str, Any] = {"pair.driving": "wheel" if self.driving == "pinion" else "pinion"}
+        changes["pair.sense"] = self.sense
+        if hasattr(self.geometry, "pinion_flank"):
+            changes["pair.pinion_flank"] = None
+        return self.with_changes(changes)
+
     @abstractmethod
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two flanks in space by their equations, modifications included."""
@@ -157,6 +192,17 @@ class Scene(Section, ABC):
             wheel=described_gear(pair.wheel, self.wheel.flank, "wheel", side),
         )
         return described.rounded(build_rounding(self.pinion), build_rounding(self.wheel))
+
+    def vh_steps(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """Return three values of each key of ``vh_keys`` for a V-H check: none, and small errors of both signs.
+
+        A hundredth of the module, and for angles that over the face width, to one digit: it moves the contact of
+        crowned flanks by parts of a module.
+        """
+        pair = self.pair()
+        sizes = {"mm": 0.01 * pair.module, "deg": math.degrees(0.01 * pair.module / pair.face_width)}
+        first, second = (float(f"{sizes[key.rpartition('_')[2]]:.0e}") for key in self.vh_keys)
+        return (-first, 0.0, first), (-second, 0.0, second)
 
     @property
     def rigid_bores(self) -> tuple[float, float] | None:
