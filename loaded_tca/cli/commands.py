@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, progress_bar
+from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, progress_bar, say_cost
 from loaded_tca.errors import InputError, named, reason_of, require
 
 if TYPE_CHECKING:
@@ -378,6 +378,7 @@ def vh(options: argparse.Namespace) -> None:
     v, h = (given or steps for given, steps in zip((options.v, options.h), scene.vh_steps(), strict=True))
     if options.loaded:
         study = vh_study(scene, v, h)
+        say_cost(study, options.workers or 1)
         with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
             rows = run_study(study, executor, directory / "vh_study.nc", show, keep_maps=range(len(study)))
         figure = plot_loaded_vh_check(rows, directory / "vh_study_maps", gear=options.gear)
@@ -406,6 +407,7 @@ def study(options: argparse.Namespace) -> None:
 
     study, directory = read_study(options.study), options.out
     check_place(directory)
+    say_cost(study, options.workers or 1)
     with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
         rows = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
     rank_by = options.rank_by if options.rank_by in rows else None  # another one is told once all is written

@@ -29,7 +29,7 @@ from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.stress_below import StressBelow
 from loaded_tca.results.summary import shown
 from loaded_tca.results.tolerances import key_figure_slopes
-from loaded_tca.studies.ranking import main_figures, rank_variants, varied_keys
+from loaded_tca.studies.ranking import main_figures, ranking, varied_keys
 from loaded_tca.units import unit_of
 
 if TYPE_CHECKING:
@@ -354,8 +354,8 @@ def write_study(
         If they cannot be written, or the study has figures, but not ``rank_by``.
     """
     by = rank_by if main_figures(study) else None  # where all variants were refused there is nothing to rank by
-    ranking = rank_variants(study, by, largest_is_best=largest_is_best).to_csv(index=False)
-    contents = {STUDY: study_csv(study).encode(), RANKING: ranking.encode(), **more}
+    ranked = ranking(study, by, largest_is_best=largest_is_best).to_csv(index=False)
+    contents = {STUDY: study_csv(study).encode(), RANKING: ranked.encode(), **more}
     old = {path.name for path in Path(directory).glob(PICTURES)} - {*contents}
     return replace_together(directory, contents, old)
 
