@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -44,8 +45,7 @@ WHAT_LETTERS_ARE = {
     "D": "a pitch from A",
     "C": "pitch point",
 }
-LONGEST_LINE = 88
-"""Characters below an axis."""
+AT_EDGE: dict[str, Any] = {"marker": "o", "markersize": 8.0, "fillstyle": "none", "linestyle": ""}
 OVER_THE_PATH = "pinion angle from the pitch point of the tooth pair"
 NEAR_LETTERS = 0.03
 """Part of the axis below which two letters stand to either side of their lines."""
@@ -300,16 +300,22 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     """
     pair, pressure = result.gear_pair, result.peak_pressure
     figure, axes = style.one_panel(6.0 if result.scene.path_points else 5.0)
-    drawn = False
+    drawn, at_edges = False, False
     for torque, label, colour, marker in torque_styles(result):
-        places, curve, hertz = over_the_path(result, pressure[torque], result.hertz_pressure[torque])
+        of_torque = pressure[torque], result.hertz_pressure[torque], result.on_edge[torque].astype(float)
+        places, curve, hertz, on_edge = over_the_path(result, *of_torque)
         places, known = np.degrees(places), np.isfinite(curve)
         axes.plot(places[known], curve[known], color=colour, marker=marker, markersize=4.0, label=label)
+        cut = known & (on_edge > 0.0)
+        axes.plot(places[cut], curve[cut], color=colour, **AT_EDGE)
+        at_edges |= bool(cut.any())
         stretches = style.over_a_stretch(hertz)
         axes.plot(places, stretches, color=colour, **HERTZ)
         drawn |= bool(np.isfinite(stretches).any())
     if drawn:
-        axes.plot([], [], color="black", label="after Hertz", **HERTZ)
+        axes.plot([], [], color="black", label="after Hertz, where it holds", **HERTZ)
+    if at_edges:
+        axes.plot([], [], color="black", label="contact reaches an edge; the pressure there is left out", **AT_EDGE)
     axes.set_ylabel("peak pressure [MPa]")
     style.from_zero(axes)
     if not (pressure > 0.0).any():
@@ -318,13 +324,13 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     at_root, at_tip = (math.nan if one is None else float(one.pinion_angle) for one in ends)
     marked = {"C": 0.0, **path_letters(at_root, at_tip, pair.driving * pair.pitch)}
     _mark_points(axes, marked)
-    letters = "; ".join(f"{letter}: {what}" for letter, what in WHAT_LETTERS_ARE.items() if letter in marked)
-    lines = style.parts_of(f"of the unloaded contact {letters}", LONGEST_LINE)
-    axes.set_xlabel("\n".join([f"{OVER_THE_PATH} [deg]", *lines]))
+    letters = ", ".join(f"{letter}: {what}" for letter, what in WHAT_LETTERS_ARE.items() if letter in marked)
+    axes.set_xlabel(f"{OVER_THE_PATH} [deg]")
     if result.scene.path_points:
         points = {"C": result.scene.path_points["C"], **roll_lengths_of_flanks(pair, *ends)}
         _draw_table(figure, axes, points, result.scene.path_points, pair.base_radii[0])
-    return style.finished(figure, axes, result, f"pressure over the path of contact, {loads(result)}")
+    what = f"pressure over the path of contact, {loads(result)}"
+    return style.finished(figure, axes, result, what, f"unloaded contact point at {letters}")
 
 
 def over_the_path(result: MeshCycle, *numbers: Array) -> Iterator[Array]:
@@ -365,7 +371,7 @@ def _draw_table(
     axes.set_subplotspec(grid[0])
     below = figure.add_subplot(grid[1])
     below.set_axis_off()
-    below.set_title("on the pinion: these flanks, unloaded (ISO 21771)", fontsize="small")
+    below.set_title("on the pinion: unloaded contact point of the flanks (ISO 21771)", fontsize="small")
     table = below.table(cells, rowLabels=list(quantities), colLabels=list(nominal), loc="center", cellLoc="center")
     table.auto_set_font_size(False)
     table.set_fontsize(8.0)
