@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import enum
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Self
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 
@@ -15,6 +17,9 @@ from loaded_tca.contact import patch
 from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem, GradedProblem, HalfSpaces, Spacing
 from loaded_tca.errors import ConvergenceError
+
+if TYPE_CHECKING:
+    from loaded_tca.reference.hertz import PointContact
 
 # Fewer cells than this across a contact leave errors above 1 % in its pressure.
 FEWEST_CELLS = 8
@@ -212,6 +217,11 @@ class ContactSolution(Solution):
 
     problem: ContactProblem
     coarser: CoarserGrid | None = None
+
+    def plot(self, hertz: PointContact | None = None) -> Any:
+        """Draw the pressure over the grid and along both axes; see :func:`loaded_tca.plots.plot_solution`."""
+        draw: Callable[..., Any] = import_module("loaded_tca.plots").plot_solution  # numerics know no plotting
+        return draw(self, hertz)
 
     @cached_property
     def peak_pressure(self) -> float:

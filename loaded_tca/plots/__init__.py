@@ -36,6 +36,7 @@ from loaded_tca.plots.sharing import (
     plot_mesh_stiffness,
     plot_path_pressure,
 )
+from loaded_tca.plots.solution import plot_solution
 from loaded_tca.plots.study import (
     plot_study,
     plot_study_heat_map,
@@ -80,6 +81,7 @@ __all__ = [
     "plot_root_stress_cycle",
     "plot_root_stress_over_torque",
     "plot_sensitivity_curves",
+    "plot_solution",
     "plot_stress_below",
     "plot_study",
     "plot_study_heat_map",
