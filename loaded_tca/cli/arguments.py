@@ -142,6 +142,7 @@ def _add_readers(command: Command) -> None:
         reader.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {BESIDE}")
         reader.add_argument("--torque", metavar="NM", type=float, help=f"{of_torque}; default: largest")
         reader.add_argument("--position", metavar="N", type=int, help=f"position of {of_position}, from 1; {peak}")
+    plot.add_argument("--pdf", action="store_true", help="write at_a_glance.pdf too, a sheet of A4")
     plot.add_argument("--all", action="store_true", help="draw contact_patterns.png and full_mesh.png too")
     tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
     tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")

@@ -243,10 +243,14 @@ def _run_scene(scene: Scene, directory: Path) -> None:
 
 def plot(options: argparse.Namespace) -> None:
     """Draw the pictures of a result again."""
-    from loaded_tca.plots import plot_all
+    from loaded_tca.plots import plot_all, plot_at_a_glance
+    from loaded_tca.plots.style import pdf_of
+    from loaded_tca.results.files import replace_together
 
     result, directory, torque, position = result_of(options)
-    print_files(plot_all(result, directory, torque=torque, position=position, more=options.all))
+    sheet = {"at_a_glance.pdf": pdf_of(plot_at_a_glance(result, torque))} if options.pdf else {}
+    drawn = plot_all(result, directory, torque=torque, position=position, more=options.all)
+    print_files([*drawn, *replace_together(directory, sheet)])
 
 
 def tooth(options: argparse.Namespace) -> None:

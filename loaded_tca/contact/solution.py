@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 
@@ -17,9 +17,6 @@ from loaded_tca.contact import patch
 from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem, GradedProblem, HalfSpaces, Spacing
 from loaded_tca.errors import ConvergenceError
-
-if TYPE_CHECKING:
-    from loaded_tca.reference.hertz import PointContact
 
 # Fewer cells than this across a contact leave errors above 1 % in its pressure.
 FEWEST_CELLS = 8
@@ -218,8 +215,8 @@ class ContactSolution(Solution):
     problem: ContactProblem
     coarser: CoarserGrid | None = None
 
-    def plot(self, hertz: PointContact | None = None) -> Any:
-        """Draw the pressure over the grid and along both axes; see :func:`loaded_tca.plots.plot_solution`."""
+    def plot(self, hertz: Any = None) -> Any:
+        """Draw the pressure, beside Hertz (a PointContact) if given; see :func:`loaded_tca.plots.plot_solution`."""
         draw: Callable[..., Any] = import_module("loaded_tca.plots").plot_solution  # numerics know no plotting
         return draw(self, hertz)
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
+from loaded_tca.plots.at_a_glance import plot_at_a_glance
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
@@ -55,6 +56,7 @@ __all__ = [
     "PICTURES",
     "draw_teeth",
     "plot_all",
+    "plot_at_a_glance",
     "plot_before_and_after",
     "plot_compared_maps",
     "plot_comparison",
@@ -193,6 +195,11 @@ ALWAYS = {
     ),
 }
 SHARED = {
+    "at_a_glance": Picture(
+        "pressure, load over the face, transmission error, orders, stress or shares on one sheet, largest torque",
+        "What the other pictures show in full, under one torque.",
+        lambda one: plot_at_a_glance(one.result, one.torque),
+    ),
     "load_share": Picture(
         "of each tooth pair, all torques",
         "Share of each tooth pair in the torque, and how many pairs carry load.",
@@ -331,9 +338,9 @@ def result_figures(
         ``contact_path``, ``transmission_error``, ``peak_pressure``; if anything is in contact,
         ``pressure_map`` of the peak pressure; if a higher one lies at an edge or a relief start in another
         position, ``pressure_map_edge``; if Hertz holds in other positions only, ``pressure_map_hertz`` of the
-        highest pressure where it holds. Where tooth pairs share the load: ``load_share``, ``harmonics``,
-        ``mesh_stiffness``, ``line_load``, ``line_load_distribution``, ``face_load``, ``pressure_envelope``,
-        ``path_pressure``. With root stress: ``root_stress``; of several positions ``root_stress_cycle``; of
+        highest pressure where it holds. Where tooth pairs share the load: ``at_a_glance``, ``load_share``,
+        ``harmonics``, ``mesh_stiffness``, ``line_load``, ``line_load_distribution``, ``face_load``,
+        ``pressure_envelope``, ``path_pressure``. With root stress: ``root_stress``; of several positions ``root_stress_cycle``; of
         several torques ``root_stress_over_torque``. With ``more``: under several torques
         ``contact_patterns``, and ``full_mesh``.
 

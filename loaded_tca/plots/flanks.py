@@ -240,13 +240,31 @@ def both_flanks(
     described = zip(panels.T, scene.flank_names, scene.active_starts(), sides, strict=True)
     for column, name, start, (flank, to_picture) in described:
         for axes, draw_on in zip(column, draw, strict=True):
-            outline = _draw_flank(axes, name, flank, start)
-            for drawn in draw_on(axes, to_picture):
-                drawn.set_clip_path(outline)
+            _draw_on_flank(axes, draw_on, to_picture, name, flank, start)
         for above, below in pairwise(column):
             above.set_xlabel("")
             below.set_title("")
     return figure, panels.ravel().tolist()
+
+
+def draw_on_pinion(axes: Axes, result: CycleNumbers, draw: Callable[[Axes, ToPicture], Sequence[Artist]]) -> None:
+    """The pinion's flank alone, with what is drawn on it; see :func:`both_flanks`."""
+    pair, scene = result.gear_pair, result.scene
+    about = scene.flank_names[0], pair.pinion.flank, scene.active_starts()[0]
+    _draw_on_flank(axes, draw, picture_of(pair, "pinion"), *about)
+
+
+def _draw_on_flank(
+    axes: Axes,
+    draw: Callable[[Axes, ToPicture], Sequence[Artist]],
+    to_picture: ToPicture,
+    name: str,
+    flank: Flank,
+    start: float,
+) -> None:
+    outline = _draw_flank(axes, name, flank, start)
+    for drawn in draw(axes, to_picture):
+        drawn.set_clip_path(outline)
 
 
 def picture_of(pair: GearPair, gear: GearName) -> ToPicture:

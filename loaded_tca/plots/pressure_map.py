@@ -346,15 +346,16 @@ def _envelopes(result: MeshCycle, torques: list[int]) -> tuple[Figure, list[Axes
     """Both flanks with their pressure envelope in a row for each torque, without a title."""
     maps = [one for torque in torques for one in loaded_maps(result, torque)]
     scale, extend = colour_scale(result, maps)
-
-    def draw(torque: int, axes: Axes, to_picture: ToPicture) -> list[Artist]:
-        low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
-        borders, seen = pressure_seen(result, torque, to_picture, low, high)
-        return [axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True)]
-
-    figure, panels = both_flanks(result, *(partial(draw, torque) for torque in torques))
+    figure, panels = both_flanks(result, *(partial(draw_envelope, result, torque, scale) for torque in torques))
     figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="highest contact pressure [MPa]", extend=extend)
     return figure, panels
+
+
+def draw_envelope(result: MeshCycle, torque: int, scale: Normalize, axes: Axes, to_picture: ToPicture) -> list[Artist]:
+    """Draw the highest pressure that each place of a flank sees under a torque."""
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    borders, seen = pressure_seen(result, torque, to_picture, low, high)
+    return [axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True)]
 
 
 def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array) -> Iterator[tuple[Array, Array]]:

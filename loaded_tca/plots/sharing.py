@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -169,9 +169,16 @@ def plot_face_load(result: MeshCycle) -> Figure:
     """
     require((len(result.path) > 1, "face load: a mean over a pitch; found 1 position, allowed 2 or more"))
     figure, axes = style.one_panel()
+    draw_face_load(axes, result, torque_styles(result))
+    about = f"load over the face width, {loads(result)}", "mean over a pitch", range_of_positions(result)
+    return style.finished(figure, axes, result, *about, columns=2)
+
+
+def draw_face_load(axes: Axes, result: MeshCycle, styles: Iterable[tuple[int, str, str, str]]) -> None:
+    """Draw the load over the face width under torques, given by index, label, colour and marker, with their K_Hbeta."""
     pair, frame = result.gear_pair, result.gear_pair.pinion.flank.frame
     borders = strip_borders(pair, result.path)
-    for torque, label, colour, _ in torque_styles(result):
+    for torque, label, colour, _ in styles:
         maps = [one for row in result.maps[torque][:-1] for one in row if one is not None]
         forces = np.sum([np.zeros(len(borders) - 1), *(strip_forces(pair, one, borders)[0] for one in maps)], axis=0)
         factor = result.face_load_factor[torque]
@@ -179,8 +186,6 @@ def plot_face_load(result: MeshCycle) -> Figure:
         axes.stairs(forces / (len(result.path) - 1) / np.diff(borders), borders, color=colour, label=text)
     axes.set(xlabel=frame.labels[0], ylabel="normal force per face width [N/mm]")
     axes.set_ylim(bottom=0.0)
-    about = f"load over the face width, {loads(result)}", "mean over a pitch", range_of_positions(result)
-    return style.finished(figure, axes, result, *about, columns=2)
 
 
 def plot_harmonics(result: MeshCycle) -> Figure:

@@ -32,6 +32,8 @@ def result_content(result: MeshCycle) -> dict[str, Any]:
     result : MeshCycle
     """
     figures = result.key_figures()
+    pictures = result_figures(result, more=True)
+    glance = {name: pictures.pop(name) for name in ("at_a_glance",) if name in pictures}
     return {
         "title": result.scene.title or "Loaded tooth contact",
         "analysed_by": result.version,
@@ -42,7 +44,8 @@ def result_content(result: MeshCycle) -> dict[str, Any]:
         "limits": [*limits_of(figures)],
         "accuracy": [_accuracy(result, part, figures) for part in parts_of(figures, MOST_TORQUES)],
         "warnings": None if result.warnings is None else explained(result.warnings),
-        "pictures": pictures_of(result_figures(result, more=True), CAPTIONS, result.scene.title),
+        "glance": pictures_of(glance, CAPTIONS, result.scene.title),
+        "pictures": pictures_of(pictures, CAPTIONS, result.scene.title),
     }
 
 
