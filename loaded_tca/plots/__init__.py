@@ -340,8 +340,8 @@ def result_figures(
         position, ``pressure_map_edge``; if Hertz holds in other positions only, ``pressure_map_hertz`` of the
         highest pressure where it holds. Where tooth pairs share the load: ``at_a_glance``, ``load_share``,
         ``harmonics``, ``mesh_stiffness``, ``line_load``, ``line_load_distribution``, ``face_load``,
-        ``pressure_envelope``, ``path_pressure``. With root stress: ``root_stress``; of several positions ``root_stress_cycle``; of
-        several torques ``root_stress_over_torque``. With ``more``: under several torques
+        ``pressure_envelope``, ``path_pressure``. With root stress: ``root_stress``; of several positions
+        ``root_stress_cycle``; of several torques ``root_stress_over_torque``. With ``more``: under several torques
         ``contact_patterns``, and ``full_mesh``.
 
     Raises

@@ -30,7 +30,7 @@ def test_sheet_shows_root_stress_where_there_is_any():
     cycle = root_stress.result()
     stress = plot_at_a_glance(cycle).axes[5]
     assert stress.get_ylabel() == "largest root stress [MPa]"
-    assert_allclose(stress.lines[0].get_ydata(), cycle.root_tension[0, :, 0])
+    assert_allclose(stress.lines[0].get_ydata(), cycle.root_tension[1, :, 0])
     assert np.all(stress.lines[1].get_ydata() <= 0.0)
 
 
