@@ -11,8 +11,10 @@ from typing import Any, ClassVar, Literal, TypeVar
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
-from loaded_tca.scene.build import build_rounding, described_gear, in_base_units
+from loaded_tca.pairs.tooth_deviations import ToothDeviations
+from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key, literal
+from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.section import (
     Rule,
     Section,
@@ -52,6 +54,8 @@ class Scene(Section, ABC):
         Of both gears; ``materials`` tells what holds for each.
     load : Load
     analysis : Analysis
+    revolution : Revolution or None
+        Of whole revolutions; None: a turn of the wheel.
     """
 
     title: str = key(Line(), "stands over reports and plots", "")
@@ -64,6 +68,9 @@ class Scene(Section, ABC):
     )
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
+    revolution: Revolution | None = subsection(
+        Revolution, "which pitches a whole revolution has", optional=True
+    )
 
     vh_keys: ClassVar[tuple[str, str]]
     """Keys of the two mounting errors that a V-H check varies."""
@@ -92,6 +99,7 @@ class Scene(Section, ABC):
             )
             for place in ("material", "pinion.material", "wheel.material")
         ),
+        *REVOLUTION_RULES,
     )
 
     @abstractmethod
@@ -192,6 +200,30 @@ class Scene(Section, ABC):
             wheel=described_gear(pair.wheel, self.wheel.flank, "wheel", side),
         )
         return described.rounded(build_rounding(self.pinion), build_rounding(self.wheel))
+
+    @property
+    def has_pitch_deviations(self) -> bool:
+        """Whether a gear has pitch deviations or runout."""
+        return any(gear.pitch is not None and gear.pitch.is_given for gear in (self.pinion, self.wheel))
+
+    def tooth_deviations(self, pair: GearPair) -> tuple[ToothDeviations, ToothDeviations]:
+        """Return index deviations and eccentricity of the teeth of pinion and wheel.
+
+        Parameters
+        ----------
+        pair : GearPair
+            Of the scene.
+
+        Raises
+        ------
+        InputError
+            If an index deviation is larger than 0.05 modules.
+        """
+        pinion, wheel = (
+            build_tooth_deviations(gear.pitch, gear.teeth, name, pair.module)
+            for name, gear in (("pinion", self.pinion), ("wheel", self.wheel))
+        )
+        return pinion, wheel
 
     def vh_steps(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Return three values of each key of ``vh_keys`` for a V-H check: none, and small errors of both signs.
