@@ -172,7 +172,7 @@ class _Numbers:
         """Take what a part of the positions has of each contact, and let the contacts go."""
         begin, shape = part.positions.start, (len(self.torques), len(part.positions), len(self.path.pairs))
         rows = slice(begin, part.positions.stop)
-        contacts: dict[Place, LoadedContact | None] = dict.fromkeys(np.ndindex(shape))  # type: ignore[arg-type]
+        contacts: dict[Place, LoadedContact | None] = dict.fromkeys(np.ndindex(shape))
         columns = {number: column for column, number in enumerate(self.path.pairs.tolist())}
         for (t, n), shared in part.shared.items():
             self.arrays["rotation"][t, begin + n] = shared.rotation

@@ -131,7 +131,9 @@ def carried_by_all(
     """
     angles, shape = mesh.pinion_angle, (len(torques), len(mesh))
     tooth_pairs = [tooth_pairs_at(mesh, n) for n in range(len(mesh))]
-    shared = torques_shared(pair, list(zip(angles.tolist(), tooth_pairs, strict=True)), torques, grid, bending, progress)
+    shared = torques_shared(
+        pair, list(zip(angles.tolist(), tooth_pairs, strict=True)), torques, grid, bending, progress
+    )
     carrying = {0} | {share.tooth_pair.pair for one in shared.values() for share in one.shares}
     columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
     pairs = mesh.pairs[columns].tolist()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
@@ -11,7 +12,6 @@ from loaded_tca.loaded.cycle import Progress, torques_shared
 from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair
 from loaded_tca.loaded.sensitivity import LoadedGrid, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.revolution import RevolutionPath
 
 STATES_AT_A_TIME = 256
@@ -65,18 +65,16 @@ def carried_over_revolution(
     for first in range(0, len(path), count):
         positions = range(first, min(first + count, len(path)))
         before = first * len(torques)
-        report: Progress | None = None
-        if progress is not None:
-            told = progress
-
-            def report(done: int, _: int, before: int = before) -> None:
-                told(before + done, whole)
-
+        report = None if progress is None else partial(_report, progress, before, whole)
         at = [(float(path.pinion_angle[n]), tooth_pairs_of(path, n)) for n in positions]
         shared = torques_shared(pair, at, torques, grid, bending, report)
         states = [[LoadedGrid.of(one.tooth_pair.pair, one.loaded) for one in each.shares] for each in shared.values()]
         stiffness = loaded_states(states, bending).stiffness.reshape(len(torques), len(positions))
         yield CarriedPart(positions, shared, stiffness)
+
+
+def _report(progress: Progress, before: int, whole: int, done: int, _: int) -> None:
+    progress(before + done, whole)
 
 
 def tooth_pairs_of(path: RevolutionPath, position: int) -> tuple[ToothPair, ...]:
@@ -86,4 +84,6 @@ def tooth_pairs_of(path: RevolutionPath, position: int) -> tuple[ToothPair, ...]
 
 def pitches_apart(path: RevolutionPath) -> int:
     """How many pitches two tooth pairs that can be in contact at the same position are apart."""
-    return max(max(numbers) - min(numbers) for n in range(len(path)) if (numbers := [one[0] for one in path.pairs_at(n)]))
+    return max(
+        max(numbers) - min(numbers) for n in range(len(path)) if (numbers := [one[0] for one in path.pairs_at(n)])
+    )

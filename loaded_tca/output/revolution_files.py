@@ -37,7 +37,12 @@ def write_revolution(revolution: Revolution, directory: FilePath, more: Mapping[
     InputError
         If they cannot be written.
     """
-    texts = (revolution_json(revolution), csv_table(revolution.to_table()), teeth_csv(revolution), orders_csv(revolution))
+    texts = (
+        revolution_json(revolution),
+        csv_table(revolution.to_table()),
+        teeth_csv(revolution),
+        orders_csv(revolution),
+    )
     contents = [revolution.to_netcdf(), *(text.encode() for text in texts)]
     return replace_together(directory, {**dict(zip(FILES, contents, strict=True)), **more})
 
@@ -55,8 +60,7 @@ def revolution_json(revolution: Revolution) -> str:
 def teeth_csv(revolution: Revolution) -> str:
     """Return a row for each torque, gear and tooth: the largest share, force and pressure of the tooth."""
     columns: dict[str, list[object]] = {
-        name: []
-        for name in ("pinion_torque_Nm", "gear", "tooth", "load_share", "normal_force_N", "peak_pressure_MPa")
+        name: [] for name in ("pinion_torque_Nm", "gear", "tooth", "load_share", "normal_force_N", "peak_pressure_MPa")
     }
     for t, torque in enumerate(revolution.torque):
         for gear in GEARS:

@@ -62,7 +62,9 @@ def plot_revolution_error(revolution: Revolution) -> Figure:
         style.widen(axes, 0.02)
         axes.grid(alpha=0.3)
         axes.margins(x=0.0)
-    handles, labels = (one + two for one, two in zip(*(a.get_legend_handles_labels() for a in (rigid, loaded)), strict=True))
+    handles, labels = (
+        one + two for one, two in zip(*(a.get_legend_handles_labels() for a in (rigid, loaded)), strict=True)
+    )
     figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize="small")
     spans = f"F_i' {revolution.total_deviation():.3g} µm rigid"
     style.write_title(
@@ -103,8 +105,14 @@ def plot_revolution_spectrum(revolution: Revolution, torque: int | None = None) 
         if rows.any():
             wide = 3.0 if group == "mesh" else 1.2
             axes.vlines(order[rows], LEAST_SHOWN, np.maximum(amplitude[rows], LEAST_SHOWN), colour, linewidth=wide)
-            axes.plot(order[rows], np.maximum(amplitude[rows], LEAST_SHOWN), "os^."[list(KINDS).index(group)],
-                      color=colour, markersize=4.0, label=labels[group])
+            axes.plot(
+                order[rows],
+                np.maximum(amplitude[rows], LEAST_SHOWN),
+                "os^."[list(KINDS).index(group)],
+                color=colour,
+                markersize=4.0,
+                label=labels[group],
+            )
     rigid = revolution.spectrum(rigid=True).amplitude[shown]
     axes.plot(order, np.maximum(rigid, LEAST_SHOWN), "_", color="black", markersize=5.0, label="without load")
     axes.set_yscale("log")
@@ -174,7 +182,9 @@ def _draw_teeth(axes: Axes, revolution: Revolution, torque: int) -> None:
     """Highest pressure of each tooth of both gears."""
     for gear, colour, marker in zip(GEARS, ("#009e73", "#d55e00"), "so", strict=True):
         highest = revolution.by_tooth(gear)["peak_pressure"].values[torque]
-        axes.plot(np.arange(len(highest)), highest, marker + "-", color=colour, markersize=4.0, linewidth=0.8, label=gear)
+        axes.plot(
+            np.arange(len(highest)), highest, marker + "-", color=colour, markersize=4.0, linewidth=0.8, label=gear
+        )
     axes.set_xlabel("tooth, from 0")
     axes.set_ylabel("highest peak pressure [MPa]")
 
@@ -205,7 +215,9 @@ def plot_revolution_waterfall(revolution: Revolution) -> Figure:
     axes.set_ylabel("pinion torque [N m]")
     bar = figure.colorbar(mesh, ax=axes)
     bar.set_label("log10 of the amplitude in µm")
-    style.write_title(figure, revolution.scene.title, "orders of the transmission error over the torque", _scope(revolution))
+    style.write_title(
+        figure, revolution.scene.title, "orders of the transmission error over the torque", _scope(revolution)
+    )
     return figure
 
 

@@ -20,7 +20,7 @@ from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import InputError, require
 from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.quantities import CYCLE, PAIRS, QUANTITIES
+from loaded_tca.results.quantities import CYCLE, GEARS, OVER_CYCLE, QUANTITIES, ROOT_QUANTITIES
 from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     import xarray
 
 KIND = "revolution"
-GEARS = "pinion", "wheel"
 SIDEBANDS = 5
 """Orders of a gear beside a mesh order that are named its sidebands."""
 UM = 1e3
@@ -50,10 +49,9 @@ REVOLUTION_QUANTITIES: dict[str, Part] = {
 }
 """Name in ``Revolution.dataset`` -> dimensions, unit, long name."""
 ROOTS: dict[str, Part] = {
-    name: ((*CYCLE, "gear"), "MPa", f"{what} stress at the roots of all teeth of pinion and wheel, on both sides")
-    for name, what in (("root_tension", "largest"), ("root_compression", "smallest"))
-} | {
-    "root_tension_tooth": ((*CYCLE, "gear"), "1", "tooth of the pinion and of the wheel that has it, from 0"),
+    "root_tension": ROOT_QUANTITIES["root_tension"],
+    "root_compression": ROOT_QUANTITIES["root_compression"],
+    "root_tension_tooth": (OVER_CYCLE, "1", "tooth of the pinion and of the wheel that has the tension, from 0"),
 }
 """Those of scenes that ask for root stress."""
 COORDINATES = "torque", "pinion_angle", "pair"
@@ -319,7 +317,7 @@ class Revolution:
         return int(np.abs(self.dataset["pair"].values).argmin())
 
     def to_dynamics(self) -> xarray.Dataset:
-        """Return curves over the revolution in SI units, for models of gear dynamics; as those of ``MeshCycle.to_dynamics``.
+        """Return curves over the revolution in SI units, for models of gear dynamics, as ``MeshCycle.to_dynamics``.
 
         Every name ends in its unit.
 

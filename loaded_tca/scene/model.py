@@ -68,9 +68,7 @@ class Scene(Section, ABC):
     )
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
-    revolution: Revolution | None = subsection(
-        Revolution, "which pitches a whole revolution has", optional=True
-    )
+    revolution: Revolution | None = subsection(Revolution, "which pitches a whole revolution has", optional=True)
 
     vh_keys: ClassVar[tuple[str, str]]
     """Keys of the two mounting errors that a V-H check varies."""

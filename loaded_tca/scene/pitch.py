@@ -15,8 +15,6 @@ from loaded_tca.input_files import read_text
 from loaded_tca.scene.keys import Choice, Either, Line, List, Number, Whole, key, shown
 from loaded_tca.scene.section import Rule, Section
 
-# ruff: noqa: N815  -- names are the keys of the file, units included
-
 LARGEST_FILE = 2**20
 """Bytes of a file of pitch deviations: ten thousand teeth have a fifth of that."""
 CLOSED_um = 1e-3
@@ -37,7 +35,9 @@ def _one_source(*given: object) -> str | None:
 def _closed(single: tuple[float, ...] | None) -> str | None:
     if single is None or abs(sum(single)) <= CLOSED_um:
         return None
-    return f"the single pitch deviations add up to {sum(single):.4g} um; allowed 0, since the last tooth meets the first"
+    return (
+        f"the single pitch deviations add up to {sum(single):.4g} um; allowed 0, since the last tooth meets the first"
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,7 +119,9 @@ def read_deviations(file: str) -> tuple[str, tuple[float, ...]]:
     columns = [name.strip() for name in rows.fieldnames or ()]
     names = [name for name in COLUMNS if name in columns]
     if len(names) != 1:
-        raise InputError(f"{file}: found the columns {', '.join(columns) or 'none'}; allowed one of index_um, single_um")
+        raise InputError(
+            f"{file}: found the columns {', '.join(columns) or 'none'}; allowed one of index_um, single_um"
+        )
     rows.fieldnames = columns
     values: list[float] = []
     for number, row in enumerate(rows, 1):
@@ -148,8 +150,8 @@ class Revolution(Section):
     positions_per_pitch: int = key(Whole(1, 10000), "positions that divide each pitch evenly", 8)
     first_pair: int | tuple[int, int] = key(
         Either((Whole(0, 10**8), List(Whole(0, 10000), 2, 2))),
-        "tooth pair in contact at the pitch point at the first position: its number, so that its teeth are those of this "
-        "number modulo the numbers of teeth; or its teeth of pinion and wheel, from 0",
+        "tooth pair at the pitch point at the first position: its number, which modulo the numbers of teeth is that of "
+        "its teeth; or its teeth of pinion and wheel, from 0",
         0,
     )
 
