@@ -10,7 +10,8 @@ import numpy as np
 
 from loaded_tca.output.result_files import csv_table, known
 from loaded_tca.results.files import Buffer, FilePath, replace_together
-from loaded_tca.results.revolution import GEARS, Revolution
+from loaded_tca.results.quantities import GEARS
+from loaded_tca.results.revolution import Revolution
 
 FILES = "revolution.nc", "revolution.json", "revolution.csv", "teeth.csv", "orders.csv"
 """Names of the files."""

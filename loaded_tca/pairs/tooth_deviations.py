@@ -10,10 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from loaded_tca.arrays import Array
 from loaded_tca.pairs.gear_pair import GearPair
 
+LONG_WAVES = (1.0, 0.35, 0.2)
+"""Amplitudes of the first orders of a turn in random deviations: clamping and indexing leave mostly the first one."""
 PARALLEL = 0.9
 """Cosine of the angle between the axes of external cylindrical pairs, mounting errors included, at the least."""
 
@@ -94,3 +97,60 @@ def eccentric_separation(
     of_wheel = wheel.eccentricity * (np.cos(azimuth[1]) * x + np.sin(azimuth[1]) * y)
     of_pinion = pinion.eccentricity * (np.cos(azimuth[0]) * direction[0] + np.sin(azimuth[0]) * direction[1])
     return of_wheel - of_pinion
+
+
+def random_index(teeth: int, single: float, cumulative: float, seed: int) -> Array:
+    r"""Random index deviations that fill a single and a cumulative pitch tolerance.
+
+    .. math:: i_j = a\,w_j + b\,n_j
+
+    with w a sum of the first orders of a turn of random phases, n normally distributed. The amounts a and b >= 0 are
+    such that the largest step from tooth to tooth is the single pitch tolerance, and the range of all the cumulative
+    one, where both can be.
+
+    Parameters
+    ----------
+    teeth : int
+    single, cumulative : float
+        Tolerances, in one unit.
+    seed : int
+        Of the random numbers.
+
+    Returns
+    -------
+    (teeth,) array
+        In that unit, with the mean 0.
+
+    Examples
+    --------
+    >>> index = random_index(40, 9.0, 29.0, seed=1)
+    >>> round(float(np.ptp(index)), 6), round(float(np.abs(index - np.roll(index, 1)).max()), 6)
+    (29.0, 9.0)
+    """
+    generator = np.random.default_rng(seed)
+    turn = 2.0 * np.pi * np.arange(teeth) / teeth
+    phases = generator.uniform(0.0, 2.0 * np.pi, len(LONG_WAVES))
+    waves = np.array([size * np.cos(n * turn + phases[n - 1]) for n, size in enumerate(LONG_WAVES, 1)]).sum(axis=0)
+    noise = generator.standard_normal(teeth)
+
+    def step(index: Array) -> float:
+        return float(np.abs(index - np.roll(index, 1)).max())
+
+    def with_noise(amount: float) -> Array:
+        """Waves of an amount, with so much noise that the largest step is the single pitch tolerance."""
+        index = amount * waves
+        missing = single - step(index)
+        if missing <= 0.0:
+            return index
+        most = 2.0 * (single + step(index)) / step(noise)
+        return index + noise * brentq(lambda share: step(index + share * noise) - single, 0.0, most, xtol=1e-14 * most)
+
+    most = min(cumulative / float(np.ptp(waves)), single / step(waves))
+    excess = [float(np.ptp(with_noise(amount))) - cumulative for amount in (0.0, most)]
+    if excess[0] >= 0.0:  # so few teeth that noise alone fills the cumulative tolerance
+        index = noise * (cumulative / float(np.ptp(noise)))
+    elif excess[1] <= 0.0:
+        index = with_noise(most)
+    else:
+        index = with_noise(brentq(lambda amount: float(np.ptp(with_noise(amount))) - cumulative, 0.0, most))
+    return index - index.mean()

@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from loaded_tca.arrays import index_checks
 from loaded_tca.errors import require
 from loaded_tca.plots import style
-from loaded_tca.results.revolution import GEARS, Revolution
+from loaded_tca.results.quantities import GEARS
+from loaded_tca.results.revolution import Revolution
 from loaded_tca.results.summary import shown_torque
 
 RIGID = "0.35"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -66,11 +67,17 @@ def build_materials(materials: tuple[ElasticMaterial, ElasticMaterial]) -> tuple
     return Material(**in_base_units(materials[0])), Material(**in_base_units(materials[1]))
 
 
-def build_tooth_deviations(pitch: Pitch | None, teeth: int, owner: str, module: float) -> ToothDeviations:
-    """Return the deviations of the teeth of a gear; InputError if one is larger than 0.05 modules."""
+def build_tooth_deviations(
+    pitch: Pitch | None, teeth: int, owner: str, module: float, tolerances: Callable[[int], tuple[float, float]]
+) -> ToothDeviations:
+    """Return the deviations of the teeth of a gear; InputError if one is larger than 0.05 modules.
+
+    ``tolerances`` has the single and the cumulative pitch tolerance [um] of a class.
+    """
     if pitch is None:
         return ToothDeviations(np.zeros(teeth))
-    index = UNITS["um"].factor * pitch.index(teeth)
+    with named(f"{owner}.pitch"):
+        index = UNITS["um"].factor * pitch.index(teeth, tolerances)
     worst = int(np.abs(index).argmax())
     limit = LARGEST_INDEX * module
     require(

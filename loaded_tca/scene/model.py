@@ -6,6 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError, require
@@ -215,13 +216,32 @@ class Scene(Section, ABC):
         Raises
         ------
         InputError
-            If an index deviation is larger than 0.05 modules.
+            If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
         """
         pinion, wheel = (
-            build_tooth_deviations(gear.pitch, gear.teeth, name, pair.module)
-            for name, gear in (("pinion", self.pinion), ("wheel", self.wheel))
+            build_tooth_deviations(gear.pitch, gear.teeth, name, pair.module, partial(self.pitch_tolerances, number))
+            for number, (name, gear) in enumerate((("pinion", self.pinion), ("wheel", self.wheel)))
         )
         return pinion, wheel
+
+    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:
+        """Return the single and the cumulative pitch tolerance of a gear [um], along the transverse line of action.
+
+        Parameters
+        ----------
+        gear : int
+            0 the pinion, 1 the wheel.
+        tolerance_class : int
+            Of ISO 1328-1:2013.
+
+        Raises
+        ------
+        InputError
+            Where the standard has none, as for bevel gears.
+        """
+        raise InputError(
+            f"tolerance_class: found {tolerance_class}; ISO 1328-1 has classes of cylindrical gears alone; give index_um"
+        )
 
     def vh_steps(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Return three values of each key of ``vh_keys`` for a V-H check: none, and small errors of both signs.

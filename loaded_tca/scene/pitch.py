@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -12,6 +13,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.input_files import read_text
+from loaded_tca.pairs.tooth_deviations import random_index
 from loaded_tca.scene.keys import Choice, Either, Line, List, Number, Whole, key, shown
 from loaded_tca.scene.section import Rule, Section
 
@@ -24,7 +26,7 @@ LARGEST_INDEX = 0.05
 DEVIATION_um = Number(-10000.0, 10000.0)
 DEVIATIONS_um = List(DEVIATION_um, 3, 10000)
 COLUMNS = "index_um", "single_um"
-SOURCES = "index_um", "single_um", "file"
+SOURCES = "index_um", "single_um", "file", "tolerance_class"
 
 
 def _one_source(*given: object) -> str | None:
@@ -68,6 +70,14 @@ class Pitch(Section):
         None,
         "as `index_um`",
     )
+    tolerance_class: int | None = key(
+        Whole(1, 11),
+        "or the flank tolerance class of ISO 1328-1:2013 whose single and cumulative pitch tolerances random deviations "
+        "fill; of cylindrical gears",
+        None,
+        "as `index_um`",
+    )
+    seed: int = key(Whole(0, 2**31 - 1), "of these random deviations: the same ones for the same number", 0)
     runout_um: float = key(Number(0.0, 10000.0), "runout, twice the eccentricity of the teeth", 0.0)
     runout_phase_deg: float = key(
         Number(-360.0, 360.0),
@@ -90,7 +100,7 @@ class Pitch(Section):
     @property
     def is_given(self) -> bool:
         """Whether a tooth stands elsewhere than at its nominal place."""
-        return self.runout_um > 0.0 or any(self.index_um or self.single_um or ())
+        return self.runout_um > 0.0 or self.tolerance_class is not None or any(self.index_um or self.single_um or ())
 
     @property
     def count(self) -> int | None:
@@ -98,8 +108,17 @@ class Pitch(Section):
         values = self.index_um or self.single_um
         return None if values is None else len(values)
 
-    def index(self, teeth: int) -> Array:
-        """Index deviations (teeth,) [um]; zeros without any."""
+    def index(self, teeth: int, tolerances: Callable[[int], tuple[float, float]]) -> Array:
+        """Index deviations (teeth,) [um]; zeros without any.
+
+        Parameters
+        ----------
+        teeth : int
+        tolerances : callable
+            Single and cumulative pitch tolerance [um] of a class, along the transverse line of action.
+        """
+        if self.tolerance_class is not None:
+            return random_index(teeth, *tolerances(self.tolerance_class), self.seed)
         if self.index_um is not None:
             return np.array(self.index_um)
         return np.zeros(teeth) if self.single_um is None else np.cumsum(self.single_um)
