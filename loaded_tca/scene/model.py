@@ -240,7 +240,8 @@ class Scene(Section, ABC):
             Where the standard has none, as for bevel gears.
         """
         raise InputError(
-            f"tolerance_class: found {tolerance_class}; ISO 1328-1 has classes of cylindrical gears alone; give index_um"
+            f"tolerance_class: found {tolerance_class} of gear {gear + 1}, but ISO 1328-1 has classes of cylindrical gears "
+            "alone; give index_um"
         )
 
     def vh_steps(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:

@@ -72,8 +72,8 @@ class Pitch(Section):
     )
     tolerance_class: int | None = key(
         Whole(1, 11),
-        "or the flank tolerance class of ISO 1328-1:2013 whose single and cumulative pitch tolerances random deviations "
-        "fill; of cylindrical gears",
+        "or the flank tolerance class of ISO 1328-1:2013, whose single and cumulative pitch tolerances "
+        "random deviations fill; of cylindrical gears alone",
         None,
         "as `index_um`",
     )
