@@ -224,7 +224,7 @@ class Scene(Section, ABC):
         )
         return pinion, wheel
 
-    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:
+    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:  # noqa: ARG002
         """Return the single and the cumulative pitch tolerance of a gear [um], along the transverse line of action.
 
         Parameters
@@ -240,7 +240,7 @@ class Scene(Section, ABC):
             Where the standard has none, as for bevel gears.
         """
         raise InputError(
-            f"tolerance_class: found {tolerance_class} of gear {gear + 1}, but ISO 1328-1 has classes of cylindrical gears "
+            f"tolerance_class: found {tolerance_class}; ISO 1328-1 has classes of cylindrical gears "
             "alone; give index_um"
         )
 
