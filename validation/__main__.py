@@ -41,6 +41,7 @@ CASES = (
     "face_milled.duplex_paper",
     "cylindrical.iso_tr_6336_30",
     "loaded.limits",
+    "loaded.revolution",
     "loaded.cut_contacts",
     "loaded.mesh_stiffness",
     "loaded.local_term",

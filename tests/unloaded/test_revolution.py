@@ -8,12 +8,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.flanks.base import Jet
 from loaded_tca.pairs.tooth_deviations import ToothDeviations, random_index
 from loaded_tca.scene import read_scene
 from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.revolution import trace_revolution
 from tests.samples.gear_pairs import gear_pair
+from validation.loaded.revolution import error_of_turned_flanks
 
 ROUNDING = 1e-12
 """Asked for [mm]: the rigid transmission error is that of flanks that are really turned."""
@@ -31,18 +31,6 @@ def pair_of(kind, driving="pinion", sense="positive"):
     return gear_pair(RELIEF, RELIEF, teeth=(17, 24), helix_deg=helix, driving=driving, sense=sense)
 
 
-def turned(flank, angle):
-    """The flank turned by an angle about the axis of its gear [rad]."""
-
-    def theta(self, rho, z, beyond=None):
-        jet = type(flank).theta(self, rho, z, beyond)
-        return Jet(jet.value + angle, jet.rho, jet.z, lambda: jet.bends)
-
-    one = copy.copy(flank)
-    one.__class__ = type("Turned", (type(flank),), {"theta": theta})
-    return one
-
-
 def none(teeth):
     return ToothDeviations(np.zeros(teeth))
 
@@ -53,23 +41,6 @@ def deviations_of(pair, seed, eccentricity=(0.0, 0.0)):
         ToothDeviations(generator.normal(0.0, 0.004, teeth), offset, 0.7)
         for teeth, offset in zip(pair.teeth, eccentricity, strict=True)
     )
-
-
-def error_of_turned_flanks(pair, deviations, position, path):
-    """Envelope of the transmission errors [mm] of flanks that are turned one by one, at r_b2."""
-    pinion, wheel = deviations
-    side, heights = pair.sense * pair.driving, []
-    for column, number in enumerate(path.pairs.tolist()):
-        turn = position // 4
-        one = pair.with_flanks(
-            turned(pair.pinion.flank, -side * pinion.index[path.pinion_tooth[position, column]] / pair.base_radii[0]),
-            turned(pair.wheel.flank, -side * wheel.index[path.wheel_tooth[position, column]] / pair.base_radii[1]),
-        )
-        own = path.pinion_angle[position] - (turn + number) * pair.pitch
-        contact = trace_contact(one, [own, 0.0], warn=False)[0]
-        if contact.in_contact:
-            heights.append(pair.driving * contact.transmission_error)
-    return pair.driving * max(heights) * pair.base_radii[1]
 
 
 @pytest.mark.parametrize(
@@ -87,7 +58,7 @@ def test_rigid_transmission_error_is_that_of_flanks_really_turned(kind, driving,
     pair = pair_of(kind, driving, sense)
     deviations = deviations_of(pair, 3)
     path = trace_revolution(pair, deviations, pitches=3, per_pitch=4, first_teeth=(5, 2))
-    expected = [error_of_turned_flanks(pair, deviations, n, path) for n in range(len(path))]
+    expected = [error_of_turned_flanks(pair, deviations, path, n, n // 4) for n in range(len(path))]
     assert_allclose(path.transmission_error * pair.base_radii[1], expected, atol=ROUNDING)
 
 
