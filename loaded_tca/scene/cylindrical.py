@@ -11,12 +11,13 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
+from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
-from loaded_tca.scene.keys import Choice, Number, above_zero, key
+from loaded_tca.scene.keys import Choice, Number, Whole, above_zero, key
 from loaded_tca.scene.model import Row, family
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import (
@@ -56,6 +57,33 @@ class Geometry(Pair):
     root_radius_coefficient: float = key(Number(0.0, 1.0), "root radius of the basic rack in modules, rho_fP/m_n", 0.38)
 
 
+def _one_thickness(allowance: float | None, span: float | None, balls: float | None) -> str | None:
+    """What is wrong where more than one key gives the tooth thickness."""
+    keys = {"thickness_allowance_um": allowance, "span_measurement_mm": span, "ball_measurement_mm": balls}
+    given = [f"{name} = {value:g}" for name, value in keys.items() if value is not None]
+    return f"found {' beside '.join(given)}; give one of them" if len(given) > 1 else None
+
+
+def _needs(key: str, other: str, *, back: bool = False) -> Rule:
+    """Rule: a key has a meaning beside another one only; ``back``: and the other one beside it."""
+
+    def complain(value: float | None, partner: float | None) -> str | None:
+        if value is not None and partner is None:
+            return f"found {value:g}; it needs {other}"
+        if back and value is None and partner is not None:
+            return f"missing; {other} = {partner:g} needs it"
+        return None
+
+    return Rule((key, other), complain)
+
+
+def _one_tip(alteration: float | None, diameter: float | None) -> str | None:
+    """What is wrong where the tip is given twice."""
+    if alteration is None or diameter is None:
+        return None
+    return f"found {alteration:g} beside tip_diameter_mm = {diameter:g}; give one of them"
+
+
 @dataclass(frozen=True, kw_only=True)
 class GearSection(BlankGearSection):
     """[pinion], [wheel] of cylindrical gears."""
@@ -67,10 +95,33 @@ class GearSection(BlankGearSection):
         None,
         "0, or what leaves no backlash",
     )
-    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a", None, "d + 2 m_n (1 + x)")
+    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a", None, "d + 2 m_n (1 + x + k)")
+    tip_alteration_coefficient: float | None = key(
+        Number(-2.0, 1.0),
+        "tip alteration coefficient k, negative for a shortened tip, instead of `tip_diameter_mm`",
+        None,
+        "0",
+    )
+    thickness_allowance_um: float | None = key(
+        SLOPE_um,
+        "allowance A_sn of the tooth thickness in the normal section at the reference circle, negative for thinner "
+        "teeth, up to half a module: flanks and root are cut with x_E",
+        None,
+        "0",
+    )
+    span_measurement_mm: float | None = key(DIAMETER_mm, "or span W_k of these teeth", None, "not measured")
+    span_teeth: int | None = key(
+        Whole(1, 10000), "number of teeth k of the span", None, "touches nearest to d + 2 x m_n"
+    )
+    ball_measurement_mm: float | None = key(DIAMETER_mm, "or measure M_dK over two balls", None, "not measured")
+    ball_diameter_mm: float | None = key(DIAMETER_mm, "diameter D_M of the balls", None, "of `ball_measurement_mm`")
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankGearSection.rules,
+        Rule(("tip_alteration_coefficient", "tip_diameter_mm"), _one_tip),
+        Rule(("thickness_allowance_um", "span_measurement_mm", "ball_measurement_mm"), _one_thickness),
+        _needs("span_teeth", "span_measurement_mm"),
+        _needs("ball_diameter_mm", "ball_measurement_mm", back=True),
         below("bore_diameter_mm", "tip_diameter_mm"),
         below("modifications.tip_relief_start_mm", "tip_diameter_mm"),
         below("modifications.root_relief_start_mm", "tip_diameter_mm"),
@@ -142,7 +193,7 @@ class CylindricalScene(BlankScene):
             values = parameters_of(CylindricalGear, self.geometry, own)
             values["helix_angle"] *= sign
             values["profile_shift"] = shift or 0.0
-            return CylindricalGear(**values, name=name)
+            return _as_measured(CylindricalGear(**values, name=name), own)
 
         sections, names, distance = (self.pinion, self.wheel), ("pinion", "wheel"), self.geometry.centre_distance_mm
         shifts = [own.profile_shift for own in sections]
@@ -256,12 +307,14 @@ class CylindricalScene(BlankScene):
         """Return centre distance, contact ratios and diameters."""
         mesh = self.mesh()
         path = mesh.path_of_contact
+        backlash, normal_backlash = _backlashes(mesh)
         return [
             ("working centre distance a_w [mm]", f"{mesh.working_centre_distance:.4f}"),
             ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
             ("base helix angle beta_b [deg]", f"{abs(math.degrees(mesh.pinion.base_helix_angle)):.4f}"),
             ("profile shift sum: given, without backlash", *(f"{value:.4f}" for value in _profile_shift_sums(mesh))),
-            ("backlash j_wt at the working circles [mm]", f"{_backlash(mesh):.4f}"),
+            ("backlash j_wt at the working circles [mm]", f"{backlash:.4f}"),
+            ("normal backlash j_bn [mm]", f"{normal_backlash:.4f}"),
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
@@ -271,6 +324,7 @@ class CylindricalScene(BlankScene):
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
             *_diameter_rows(mesh),
+            *_thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
             ("tip clearance of the mating gear c [mm]", *(f"{clearance:.4f}" for clearance in mesh.tip_clearances)),
         ]
 
@@ -305,12 +359,27 @@ class CylindricalScene(BlankScene):
         return interferences(mounted.room, module, place, nominal=nominal)
 
 
+def _as_measured(gear: CylindricalGear, own: GearSection) -> CylindricalGear:
+    """Gear with the thickness of its teeth that a span or balls tell, if they do."""
+    if own.span_measurement_mm is not None:
+        teeth = own.span_teeth or gear.span_teeth
+        measured = replace(gear, thickness_allowance=allowance_of_span(gear, own.span_measurement_mm, teeth))
+        measured.span_measurement(teeth)  # refuses a span that touches no flank
+        return measured
+    if own.ball_measurement_mm is not None and own.ball_diameter_mm is not None:
+        allowance = allowance_of_balls(gear, own.ball_measurement_mm, own.ball_diameter_mm)
+        measured = replace(gear, thickness_allowance=allowance)
+        measured.ball_measurement(own.ball_diameter_mm)
+        return measured
+    return gear
+
+
 def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, float, float]:
     """Y_F, Y_S, Y_beta of a gear after ISO 6336-3; NaN without a critical section."""
     try:
         section = iso6336_3.root_section(
             gear.teeth,
-            gear.profile_shift,
+            gear.generating_profile_shift,
             2.0 * gear.tip_radius / gear.normal_module,
             mesh.transverse_contact_ratio,
             helix_angle=gear.helix_angle,
@@ -324,15 +393,44 @@ def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, 
     return section.form_factor, section.stress_correction_factor, helix
 
 
-def _backlash(mesh: CylindricalMesh) -> float:
-    """Backlash [mm], zero where it is rounding."""
-    return mesh.backlash if abs(mesh.backlash) > 1e-9 * mesh.pinion.normal_module else 0.0
+def _backlashes(mesh: CylindricalMesh) -> tuple[float, float]:
+    """Backlash j_wt and j_bn [mm], zero where they are rounding."""
+    rounding = abs(mesh.backlash) <= 1e-9 * mesh.pinion.normal_module
+    return (0.0, 0.0) if rounding else (mesh.backlash, mesh.normal_backlash)
 
 
 def _profile_shift_sums(mesh: CylindricalMesh) -> tuple[float, float]:
     """x1 + x2 as given, and what the centre distance needs for no backlash; no minus before a zero."""
     given = mesh.pinion.profile_shift + mesh.wheel.profile_shift
     return round(given, 4) + 0.0, round(mesh.profile_shift_sum_without_backlash, 4) + 0.0
+
+
+def _thickness_rows(mesh: CylindricalMesh, balls: Sequence[float | None]) -> list[Row]:
+    """Tooth thickness of both gears and how it is measured; "-" where a span touches no flank."""
+    gears = mesh.pinion, mesh.wheel
+    rows = [
+        ("tip alteration coefficient k", *(f"{gear.tip_alteration / gear.normal_module + 0.0:.4f}" for gear in gears)),
+        ("tooth thickness s_n [mm]", *(f"{gear.normal_tooth_thickness:.4f}" for gear in gears)),
+        ("span W_k over k teeth [mm]", *map(_span, gears)),
+    ]
+    if any(gear.thickness_allowance for gear in gears):
+        rows[1:1] = [
+            ("thickness allowance A_sn [um]", *(f"{1e3 * gear.thickness_allowance + 0.0:.1f}" for gear in gears)),
+            ("generating profile shift x_E", *(f"{gear.generating_profile_shift:.4f}" for gear in gears)),
+        ]
+    if any(balls):
+        measures = (f"{g.ball_measurement(size):.4f}" if size else "-" for g, size in zip(gears, balls, strict=True))
+        rows.append(("measure over balls M_dK [mm]", *measures))
+    return rows
+
+
+def _span(gear: CylindricalGear) -> str:
+    """Span over the usual number of teeth, and that number."""
+    teeth = gear.span_teeth
+    try:
+        return f"{gear.span_measurement(teeth):.4f} ({teeth})"
+    except InputError:
+        return "-"
 
 
 def _diameter_rows(mesh: CylindricalMesh) -> list[Row]:
