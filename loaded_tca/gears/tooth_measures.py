@@ -193,11 +193,11 @@ def _touches(gear: CylindricalGear, radius: float, what: str) -> tuple[bool, str
 
 def _allowance(gear: CylindricalGear, allowance: float, what: str, nominal: float) -> float:
     """Return an allowance that can be one."""
-    largest = LARGEST_ALLOWANCE * gear.normal_module
+    largest, sense = LARGEST_ALLOWANCE * gear.normal_module, "thicker" if allowance > 0.0 else "thinner"
     require(
         (
             abs(allowance) <= largest,
-            f"{what} makes the teeth {allowance:+.4g} mm thicker than nominal, where the measure is {nominal:.6g} mm; "
+            f"{what} makes the teeth {abs(allowance):.4g} mm {sense} than nominal, where it is {nominal:.6g} mm; "
             f"allowed up to half a module, {largest:.6g} mm",
         ),
         owner=gear.name,

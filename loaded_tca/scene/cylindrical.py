@@ -11,7 +11,6 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
-from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
@@ -32,6 +31,8 @@ from loaded_tca.scene.sections import (
     below,
     contact_standard,
 )
+from loaded_tca.scene.thickness import as_measured, needs, one_thickness, one_tip, thickness_rows
+from loaded_tca.scene.tolerance_class import slope_tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,33 +56,6 @@ class Geometry(Pair):
         above_zero(5.0), "dedendum of the basic rack (ISO 53 profile A) in modules, h_fP/m_n", 1.25
     )
     root_radius_coefficient: float = key(Number(0.0, 1.0), "root radius of the basic rack in modules, rho_fP/m_n", 0.38)
-
-
-def _one_thickness(allowance: float | None, span: float | None, balls: float | None) -> str | None:
-    """What is wrong where more than one key gives the tooth thickness."""
-    keys = {"thickness_allowance_um": allowance, "span_measurement_mm": span, "ball_measurement_mm": balls}
-    given = [f"{name} = {value:g}" for name, value in keys.items() if value is not None]
-    return f"found {' beside '.join(given)}; give one of them" if len(given) > 1 else None
-
-
-def _needs(key: str, other: str, *, back: bool = False) -> Rule:
-    """Rule: a key has a meaning beside another one only; ``back``: and the other one beside it."""
-
-    def complain(value: float | None, partner: float | None) -> str | None:
-        if value is not None and partner is None:
-            return f"found {value:g}; it needs {other}"
-        if back and value is None and partner is not None:
-            return f"missing; {other} = {partner:g} needs it"
-        return None
-
-    return Rule((key, other), complain)
-
-
-def _one_tip(alteration: float | None, diameter: float | None) -> str | None:
-    """What is wrong where the tip is given twice."""
-    if alteration is None or diameter is None:
-        return None
-    return f"found {alteration:g} beside tip_diameter_mm = {diameter:g}; give one of them"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,10 +92,10 @@ class GearSection(BlankGearSection):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankGearSection.rules,
-        Rule(("tip_alteration_coefficient", "tip_diameter_mm"), _one_tip),
-        Rule(("thickness_allowance_um", "span_measurement_mm", "ball_measurement_mm"), _one_thickness),
-        _needs("span_teeth", "span_measurement_mm"),
-        _needs("ball_diameter_mm", "ball_measurement_mm", back=True),
+        Rule(("tip_alteration_coefficient", "tip_diameter_mm"), one_tip),
+        Rule(("thickness_allowance_um", "span_measurement_mm", "ball_measurement_mm"), one_thickness),
+        needs("span_teeth", "span_measurement_mm"),
+        needs("ball_diameter_mm", "ball_measurement_mm", back=True),
         below("bore_diameter_mm", "tip_diameter_mm"),
         below("modifications.tip_relief_start_mm", "tip_diameter_mm"),
         below("modifications.root_relief_start_mm", "tip_diameter_mm"),
@@ -193,7 +167,7 @@ class CylindricalScene(BlankScene):
             values = parameters_of(CylindricalGear, self.geometry, own)
             values["helix_angle"] *= sign
             values["profile_shift"] = shift or 0.0
-            return _as_measured(CylindricalGear(**values, name=name), own)
+            return as_measured(CylindricalGear(**values, name=name), own)
 
         sections, names, distance = (self.pinion, self.wheel), ("pinion", "wheel"), self.geometry.centre_distance_mm
         shifts = [own.profile_shift for own in sections]
@@ -279,6 +253,10 @@ class CylindricalScene(BlankScene):
         width = common_face_width(mesh, self.mounting.axial_offset_mm)
         return contact_standard(mesh, width, build_materials(self.materials))
 
+    def slope_tolerances(self, tolerance_class: int) -> Mapping[str, float]:
+        """Return the tolerances of the helix and profile slopes of both gears after ISO 1328-1 [um]."""
+        return slope_tolerances(self.mesh(), tolerance_class)
+
     @property
     def nominal_root_stress(self) -> tuple[float, float]:
         """Nominal root stress sigma_F0 after ISO 6336-3, method B, over the common face, per torque [MPa/(N mm)].
@@ -324,7 +302,7 @@ class CylindricalScene(BlankScene):
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
             *_diameter_rows(mesh),
-            *_thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
+            *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
             ("tip clearance of the mating gear c [mm]", *(f"{clearance:.4f}" for clearance in mesh.tip_clearances)),
         ]
 
@@ -359,21 +337,6 @@ class CylindricalScene(BlankScene):
         return interferences(mounted.room, module, place, nominal=nominal)
 
 
-def _as_measured(gear: CylindricalGear, own: GearSection) -> CylindricalGear:
-    """Gear with the thickness of its teeth that a span or balls tell, if they do."""
-    if own.span_measurement_mm is not None:
-        teeth = own.span_teeth or gear.span_teeth
-        measured = replace(gear, thickness_allowance=allowance_of_span(gear, own.span_measurement_mm, teeth))
-        measured.span_measurement(teeth)  # refuses a span that touches no flank
-        return measured
-    if own.ball_measurement_mm is not None and own.ball_diameter_mm is not None:
-        allowance = allowance_of_balls(gear, own.ball_measurement_mm, own.ball_diameter_mm)
-        measured = replace(gear, thickness_allowance=allowance)
-        measured.ball_measurement(own.ball_diameter_mm)
-        return measured
-    return gear
-
-
 def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, float, float]:
     """Y_F, Y_S, Y_beta of a gear after ISO 6336-3; NaN without a critical section."""
     try:
@@ -403,34 +366,6 @@ def _profile_shift_sums(mesh: CylindricalMesh) -> tuple[float, float]:
     """x1 + x2 as given, and what the centre distance needs for no backlash; no minus before a zero."""
     given = mesh.pinion.profile_shift + mesh.wheel.profile_shift
     return round(given, 4) + 0.0, round(mesh.profile_shift_sum_without_backlash, 4) + 0.0
-
-
-def _thickness_rows(mesh: CylindricalMesh, balls: Sequence[float | None]) -> list[Row]:
-    """Tooth thickness of both gears and how it is measured; "-" where a span touches no flank."""
-    gears = mesh.pinion, mesh.wheel
-    rows = [
-        ("tip alteration coefficient k", *(f"{gear.tip_alteration / gear.normal_module + 0.0:.4f}" for gear in gears)),
-        ("tooth thickness s_n [mm]", *(f"{gear.normal_tooth_thickness:.4f}" for gear in gears)),
-        ("span W_k over k teeth [mm]", *map(_span, gears)),
-    ]
-    if any(gear.thickness_allowance for gear in gears):
-        rows[1:1] = [
-            ("thickness allowance A_sn [um]", *(f"{1e3 * gear.thickness_allowance + 0.0:.1f}" for gear in gears)),
-            ("generating profile shift x_E", *(f"{gear.generating_profile_shift:.4f}" for gear in gears)),
-        ]
-    if any(balls):
-        measures = (f"{g.ball_measurement(size):.4f}" if size else "-" for g, size in zip(gears, balls, strict=True))
-        rows.append(("measure over balls M_dK [mm]", *measures))
-    return rows
-
-
-def _span(gear: CylindricalGear) -> str:
-    """Span over the usual number of teeth, and that number."""
-    teeth = gear.span_teeth
-    try:
-        return f"{gear.span_measurement(teeth):.4f} ({teeth})"
-    except InputError:
-        return "-"
 
 
 def _diameter_rows(mesh: CylindricalMesh) -> list[Row]:
