@@ -10,9 +10,8 @@ from tempfile import TemporaryDirectory
 from scipy.stats import norm
 
 import loaded_tca.plots as plots
-from loaded_tca import analyse, read_scene, solve_contact
+from loaded_tca import analyse, read_scene
 from loaded_tca.flank_maps import ease_off_map, vh_check
-from loaded_tca.reference import hertz
 from loaded_tca.results import stress_below
 from loaded_tca.studies import DesignModel, Study, optimise, robustness, run_study, vh_study
 
@@ -40,8 +39,6 @@ def main() -> None:
     with TemporaryDirectory() as folder:
         loaded = run_study(study, out=Path(folder, "vh.nc"), keep_maps=range(len(study)))
         drawn["loaded_vh_check"] = plots.plot_loaded_vh_check(loaded, Path(folder, "vh_maps"))
-    gap, spacing = hertz.point_contact_gap((10.0, 20.0), (0.6, 0.8), (32, 32))
-    drawn["solution"] = plots.plot_solution(solve_contact(gap, spacing, 115385.0, load=100.0))
     few = HELICAL.with_changes(FEW)
     sampled, found = run_study(Study(few, {}, SCATTER, 8)), result.sensitivities(list(SCATTER))
     for kind in ("tornado", "sensitivity_curves", "transmission_error_band", "removal_weights"):

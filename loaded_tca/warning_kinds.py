@@ -203,6 +203,11 @@ BEYOND_YIELD = Kind(
     "the contact is elastic: real flanks yield below their surface, and carry the load on a wider contact",
     "`max_pressure_MPa`, less torque, or another unit of what was given",
 )
+ROOT_BEYOND_YIELD = Kind(
+    "root stress of the {gear} is up to {stress:.4g} MPa, above {most:g}, which no gear steel carries without yielding",
+    "stress is elastic: real roots yield, and the stress range of the next turns is another",
+    "less torque, a larger module or fillet, or another unit of what was given",
+)
 UNMODIFIED_TOOTH = Kind(
     "{gear}, with its modifications: {fault}; it bends like the tooth without them",
     "the modified tooth cannot be meshed, for instance where it is pointed; its contact has the modifications, its "

@@ -41,7 +41,7 @@ def result_content(result: MeshCycle) -> dict[str, Any]:
         **scene_content(result.scene),
         "load_cases": _load_cases(result, figures),
         "key_figures": [_key_figures(result, part, figures[part]) for part in parts_of(figures, MOST_TORQUES)],
-        "limits": [*limits_of(figures)],
+        "limits": [*limits_of(figures), *result.findings()],
         "accuracy": [_accuracy(result, part, figures) for part in parts_of(figures, MOST_TORQUES)],
         "warnings": None if result.warnings is None else explained(result.warnings),
         "glance": pictures_of(glance, CAPTIONS, result.scene.title),

@@ -22,6 +22,7 @@ from loaded_tca.results.numbers import dataset_of
 from loaded_tca.results.pressure_map import PressureMap, place_on_material, sharp_edge_cell
 from loaded_tca.results.root_stress import root_stress_arrays
 from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
+from loaded_tca.results.warnings import warn_of_root_stress
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
 
@@ -90,6 +91,7 @@ def mesh_cycle(
     if roots:
         in_contact = ~np.isnan(arrays["normal_force"]).all(axis=-1)
         arrays |= root_stress_arrays(pair, roots, arrays["pair"].tolist(), in_contact, stacked)
+        warn_of_root_stress(arrays["root_tension"], arrays["root_compression"])
     return MeshCycle(
         scene=scene,
         dataset=dataset_of(

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.arrays import Mask
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
 from loaded_tca.errors import give_accuracy_warning
@@ -35,6 +35,8 @@ LEAST_CLEARANCE = 0.1
 HARDEST_MPa, OVER_MEAN = 4000.0, 4.0 / math.pi
 """Contact pressure that no gear steel carries (endurance limits of ISO 6336-5 end at 1650 MPa), and the largest one
 of a line contact over the mean, which sharp edges do not move."""
+HARDEST_ROOT_MPa = 1500.0
+"""Root stress that no gear steel carries: nominal strengths sigma_FE of ISO 6336-5 end at 1050 MPa."""
 MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
 
@@ -158,6 +160,15 @@ def _small_clearances(scene: Scene, pair: GearPair) -> list[str]:
         for gear, clearance in zip(GEARS, scene.tip_clearances, strict=False)
         if 0.0 < clearance < LEAST_CLEARANCE * pair.module * (1.0 - ROUNDING)
     ]
+
+
+def warn_of_root_stress(tension: Array, compression: Array) -> None:
+    """Give an AccuracyWarning for each gear with root stress (torque, position, gear) [MPa] beyond yield."""
+    for gear, name in enumerate(GEARS):
+        stress = float(np.nanmax(np.abs([tension[..., gear], compression[..., gear]]), initial=0.0))
+        if stress > HARDEST_ROOT_MPa:
+            sentence = kinds.ROOT_BEYOND_YIELD.sentence(gear=name, stress=stress, most=HARDEST_ROOT_MPa)
+            give_accuracy_warning(sentence, stacklevel=4)
 
 
 def without_place(sentence: str) -> str:

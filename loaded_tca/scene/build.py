@@ -11,7 +11,7 @@ from loaded_tca.errors import named
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
-from loaded_tca.flanks.spline import DEFAULT_POINTS, fitted, measured
+from loaded_tca.flanks.spline import DEFAULT_POINTS, fitted, measured, smoothing_coefficients
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
@@ -122,7 +122,8 @@ class DescribedTooth(ToothGeometry):
                 return fitted(flank, wanted.points or DEFAULT_POINTS, wanted.degree or FITTED_DEGREE)
             if wanted.measurement is not None and flank.side == self.measured_side:
                 data = build_topography(wanted.measurement)
-                return measured(flank, data, degree=wanted.degree, coefficients=wanted.coefficients)
+                counts = wanted.coefficients or smoothing_coefficients(data.radius.shape[:2], wanted.degree)
+                return measured(flank, data, degree=wanted.degree, coefficients=counts)
         return flank
 
 

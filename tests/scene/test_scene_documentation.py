@@ -15,9 +15,11 @@ PAGE = (ROOT / "docs" / "guide" / "scene_files.md").read_text(encoding="utf-8")
 
 
 def test_shortest_scenes_are_scenes():
-    cylindrical, bevel, face_milled = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    cylindrical, bevel, blank, face_milled = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     assert parse_scene(cylindrical).hands[0] == "right"
     assert parse_scene(bevel).contact_sides == ("concave", "convex")
+    rest = "[pinion]" + bevel.partition("[pinion]")[2]
+    assert parse_scene(blank + rest.replace("20.0", "25.4")).blanks().has_constant_slots
     assert parse_scene(face_milled).pair().teeth == (19, 62)
 
 
