@@ -40,6 +40,8 @@ CASES = (
     "face_milled.swept_cutter",
     "face_milled.duplex_paper",
     "cylindrical.iso_tr_6336_30",
+    "cylindrical.nrel_5mw_stage_3",
+    "cylindrical.metric_gear_technology",
     "loaded.limits",
     "loaded.revolution",
     "loaded.cut_contacts",

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.errors import GeometryError
-from loaded_tca.gears.cylindrical import involute
+from loaded_tca.gears.involute import involute
 
 Triple = tuple[float, float, float]
 

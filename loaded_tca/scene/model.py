@@ -29,6 +29,7 @@ from loaded_tca.scene.section import (
     subsection,
 )
 from loaded_tca.scene.sections import Analysis, ContactStandard, ElasticMaterial, GearSection, Load, Pair
+from loaded_tca.scene.tolerance_class import scatter_of_class
 
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
@@ -333,6 +334,48 @@ class Scene(Section, ABC):
         GeometryError
             If nothing can turn.
         """
+
+    def slope_tolerances(self, tolerance_class: int) -> Mapping[str, float]:
+        """Return the tolerances of slopes of both gears of a class, by their keys [um].
+
+        Raises
+        ------
+        InputError
+            If there is no standard for gears of this kind, or it has no such class.
+        """
+        raise InputError(f"tolerance_class: {tolerance_class}; ISO 1328-1 holds for cylindrical gears alone")
+
+    def scatter_of_class(self, tolerance_class: int, *, deviations: bool = False) -> Mapping[str, Any]:
+        """Return how helix and profile slopes of both gears scatter that are of a tolerance class of ISO 1328-1:2013.
+
+        Each slope is normal about its value in the scene, with three standard deviations to its tolerance f_HbetaT or
+        f_HalphaT to either side, and independent of the others.
+
+        Parameters
+        ----------
+        tolerance_class : int
+            From 1 to 11.
+        deviations : bool
+            About zero instead, as the scatter of ``DesignModel`` counts it.
+
+        Returns
+        -------
+        mapping of str to frozen distribution of ``scipy.stats``
+            Key -> its distribution [um], as ``Study`` takes it.
+
+        Raises
+        ------
+        InputError
+            If the gears are not cylindrical, or outside the classes and ranges of the standard.
+
+        Examples
+        --------
+        >>> from loaded_tca import read_scene
+        >>> scatter = read_scene("examples/scenes/helical.toml").scatter_of_class(6)
+        >>> round(float(scatter["wheel.modifications.helix_slope_um"].std()), 3)
+        3.0
+        """
+        return scatter_of_class(self, tolerance_class, deviations=deviations)
 
     @property
     def flank_names(self) -> tuple[str, str]:

@@ -36,7 +36,7 @@ def test_every_kind_of_default_is_described():
     text = describe_keys()
     assert "| `teeth` | a whole number from 3 to 10000 | **required** | number of teeth z |" in text
     assert "| `profile_shift` | a number from -5 to 5 | `0.0` | profile shift coefficient x |" in text
-    assert "| `tip_diameter_mm` | a number above 0, up to 100000 | d + 2 m_n (1 + x) | tip diameter d_a |" in text
+    assert "| `tip_diameter_mm` | a number above 0, up to 100000 | d + 2 m_n (1 + x + k) | tip diameter d_a |" in text
 
 
 def test_scene_made_without_a_file_is_one():
