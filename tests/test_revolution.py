@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import InputError, Revolution, analyse, analyse_revolution, load_result, read_scene
 from loaded_tca.revolution import expected_revolution_effort
+from loaded_tca.studies import Study, revolution_figures, run_study
 from tests.refusals import refused_calls
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
@@ -228,6 +229,17 @@ def test_effort_grows_with_the_states():
     seconds = [effort.seconds for effort in efforts]
     assert seconds[2] - seconds[1] == pytest.approx((408 - 48) / 24 * (seconds[1] - seconds[0]), rel=1e-9)
     assert efforts[0].memory <= efforts[2].memory < 1.5 * efforts[0].memory
+
+
+def test_study_of_a_class_scatters_over_its_seeds_within_its_tolerance():
+    """Rigid, without modifications: the total deviation is that of the class, but for where two pairs overlap."""
+    bare = {"pinion.modifications.lead_crowning_um": 0.0, "pinion.modifications.profile_crowning_um": 0.0}
+    scene = helical().with_changes(bare | {"analysis.torques_Nm": [0.0], "revolution.positions_per_pitch": 2})
+    study = Study(scene, {"wheel.pitch.tolerance_class": [4, 6], "wheel.pitch.seed": [0, 1]})
+    found = run_study(study, figures=revolution_figures)
+    total = found["rigid_total_single_flank_deviation_um"].values[:, 0]
+    assert_allclose(total[2:], 2.0 * total[:2], rtol=0.05)  # two classes: twice the tolerances, but for their rounding
+    assert len(set(total.tolist())) == 4
 
 
 def asked(changes):
