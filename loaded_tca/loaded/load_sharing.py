@@ -297,9 +297,7 @@ class _Balance:
         lines: list[tuple[int, Separation]] = []
         shares: list[Array] = []
         for number, law, tooth_pair in zip(numbers, self.laws, self.tooth_pairs, strict=True):
-            separation: Separation = yield Gap(
-                tooth_pair.contact, FIRST_CELLS, load=law.load, gears=tooth_pair.gears
-            )
+            separation: Separation = yield Gap(tooth_pair.contact, FIRST_CELLS, load=law.load, gears=tooth_pair.gears)
             force = expected_pressure(separation).sum(axis=0)
             lines.append((number, separation))
             shares.append(force / force.sum())
