@@ -35,6 +35,9 @@ Pictures are those of one torque; docs/guide/comparing.md says more."""
 EASE_OFF = """files in DIR:
   ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
                             corners, and its angles, crownings and twist"""
+SETTINGS = """SCENE has bevel gears with a section [pair.blank] and the radius of its cutter. FILE is a scene of type
+face_milled with the same blanks, and with machine settings and cutters in closed form: a start to be mended by what its
+contact shows ('loaded-tca run', 'vh', 'ease-off')."""
 VH = """V and H are mounting errors: of bevel and face-milled gears the offset and the axial displacement of the pinion
 [mm], of cylindrical ones the errors of the axes in their plane and out of it [deg].
 
@@ -182,6 +185,12 @@ def _add_tables_and_maps(command: Command) -> None:
     ease_off = command("ease-off", run_by.ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     _add_scene(ease_off)
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
+    cut = command("settings", run_by.settings, "write the face-milled scene of a bevel blank", SETTINGS)
+    _add_scene(cut)
+    cut.add_argument("--out", metavar="FILE", required=True, type=_path, help="scene file to write")
+    methods = "duplex_spread_blade", "spread_blade"
+    text = f"how both gears are cut; default: {methods[0]}"
+    cut.add_argument("--method", choices=methods, default=methods[0], help=text)
     vh = command("vh", run_by.vh, "draw contact patterns over two mounting errors (V-H check)", VH)
     _add_scene(vh)
     vh.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")

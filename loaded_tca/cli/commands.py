@@ -368,6 +368,22 @@ def ease_off(options: argparse.Namespace) -> None:
     print_files(replace_together(options.out, {"ease_off.png": picture}))
 
 
+def settings(options: argparse.Namespace) -> None:
+    """Write the face-milled scene of a bevel blank, with its basic machine settings."""
+    from loaded_tca.results.files import replacing
+    from loaded_tca.scene.bevel import BevelScene
+
+    scene = scene_of(options)
+    kind = f"{options.scene}: pair.type: allowed straight_bevel or spiral_bevel, with [pair.blank]"
+    require((isinstance(scene, BevelScene), kind))
+    assert isinstance(scene, BevelScene)
+    check_files([options.out], Path(options.scene))
+    text = scene.face_milled(options.method).to_toml()
+    with replacing(options.out) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    print_files([options.out])
+
+
 def vh(options: argparse.Namespace) -> None:
     """Draw the contact pattern over two mounting errors, without load or under the scene's torque."""
     from loaded_tca.flank_maps import vh_check

@@ -6,8 +6,10 @@ import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan, cos, degrees, radians, sin, tan
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, get_args
 
+from loaded_tca.errors import require
+from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.checks import LARGEST_PRESSURE_ANGLE
@@ -15,12 +17,12 @@ from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import spiral
-from loaded_tca.scene.bevel_blank import Blank, blank_rows
+from loaded_tca.scene.bevel_blank import Blank, blank_rows, settings_table
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
-from loaded_tca.scene.model import Row, family
-from loaded_tca.scene.section import Rule, rule, subsection
+from loaded_tca.scene.model import Row, Scene, family, scene_from_table
+from loaded_tca.scene.section import Rule, as_table, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, ERROR_mm, Pair
 from loaded_tca.scene.spiral import MountingErrors, SpiralScene
 
@@ -30,6 +32,17 @@ PRESSURE_deg = Number(1.0, 44.0)
 USUAL_PRESSURE_deg = 20.0
 OF_BLANK = "face_angle", "root_angle", "face_apex", "root_apex", "mean_normal_thickness"
 """What a gear takes from its blank."""
+OF_EQUATIONS = (
+    "face_width_mm",
+    "hand",
+    "profile_shift",
+    "face_angle_deg",
+    "root_angle_deg",
+    "face_apex_mm",
+    "root_apex_mm",
+)
+"""Keys of a gear that a face-milled one has in its blank, or not."""
+Method = Literal["duplex_spread_blade", "spread_blade"]
 ROUNDING = 1e-9
 """Cone angles closer than this [rad] are the same."""
 
@@ -254,6 +267,52 @@ class BevelScene(SpiralScene, BlankScene):
             pressure_angle=self.normal_pressure_angle,
             outer_module=self.outer_module,
         )
+
+    def face_milled(self, method: Method = "duplex_spread_blade") -> Scene:
+        """Return the face-milled scene of the blanks, with basic machine settings and cutters in closed form.
+
+        Modifications, mounting errors, material, load and analysis are those of this scene.
+
+        Parameters
+        ----------
+        method : {"duplex_spread_blade", "spread_blade"}
+            See :mod:`loaded_tca.gears.basic_settings`.
+
+        Raises
+        ------
+        InputError
+            If the scene has no [pair.blank] with a cutter radius, or the method is neither of the two.
+        GeometryError
+            If the gears cannot exist.
+
+        Examples
+        --------
+        >>> from loaded_tca import read_scene
+        >>> read_scene("examples/scenes/spiral_bevel_blank.toml").face_milled().pair()
+        GearPair(14/39, module 3.20333 mm, face 25.4 mm)
+        """
+        blanks = self.blanks()
+        require(
+            (method in get_args(Method), f"method: {method!r} is not one of {', '.join(get_args(Method))}"),
+            (
+                blanks is not None and blanks.cutter_radius is not None,
+                "pair.blank.cutter_radius_mm: missing; machine settings follow from blanks and their cutter",
+            ),
+        )
+        assert blanks is not None
+        settings = {"spread_blade": spread_blade, "duplex_spread_blade": duplex_spread_blade}[method]
+        gears = settings(blanks, self.hands[0])
+        table = {name: value for name, value in as_table(self).items() if name not in ("pair", "pinion", "wheel")}
+        table["pair"] = {
+            "type": "face_milled",
+            "shaft_angle_deg": self.geometry.shaft_angle_deg,
+            "driving": self.geometry.driving,
+            "sense": self.sense,
+        }
+        for name, own, gear in zip(("pinion", "wheel"), (self.pinion, self.wheel), gears, strict=True):
+            kept = {key: value for key, value in as_table(own).items() if key not in OF_EQUATIONS}
+            table[name] = kept | settings_table(gear)
+        return scene_from_table(table)
 
     def mesh(self) -> BevelMesh:
         """Return the macro geometry: cones, cone distances, contact ratios."""

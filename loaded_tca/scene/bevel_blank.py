@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal
 from loaded_tca.errors import InputError
 from loaded_tca.gears.bevel_blank import BacklashKind, BevelBlank, Taper, crown_gear_factors, usual_factors
 from loaded_tca.gears.blank_gear import SECTIONS
+from loaded_tca.gears.face_milled import FaceMilledGear
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.section import Rule, Section, rule
@@ -205,6 +206,38 @@ def blank_rows(blanks: BevelBlank, section: Blank | None) -> list[Row]:
         for place, pinion, wheel in zip(SECTIONS, first, second, strict=True):
             rows.append((f"{label}, {place} [mm]", *_numbers(pinion, wheel)))
     return rows
+
+
+def settings_table(gear: FaceMilledGear) -> dict[str, Any]:
+    """Return blank, machine settings and cutter of a gear as the sections of a scene file have them."""
+    blank, machine, cutter = gear.blank, gear.machine, gear.cutter
+    lengths = {
+        "blank": {"outer_cone_distance": blank.outer_cone_distance, "face_width": blank.face_width}
+        | {name: getattr(blank, name) for name in ("face_apex", "root_apex")},
+        "machine": {name: getattr(machine, name) for name in ("radial", "sliding_base")},
+    }
+    angles = {
+        "blank": {name: getattr(blank, name) for name in ("pitch_angle", "face_angle", "root_angle")},
+        "machine": {name: getattr(machine, name) for name in ("cradle_angle", "root_angle")},
+    }
+    table: dict[str, Any] = {
+        name: {f"{key}_mm": value for key, value in lengths[name].items()}
+        | {f"{key}_deg": degrees(value) for key, value in angles[name].items()}
+        for name in lengths
+    }
+    table["blank"]["hand"] = blank.hand
+    table["machine"]["ratio_of_roll"] = machine.ratio_of_roll
+    blades = {"concave": cutter.concave, "convex": cutter.convex}
+    table["cutter"] = {"number": cutter.number} | {
+        flank: {
+            "point_radius_mm": blade.point_radius,
+            "blade_angle_deg": degrees(blade.blade_angle),
+            "edge_radius_mm": blade.edge_radius,
+        }
+        for flank, blade in blades.items()
+        if blade is not None
+    }
+    return table
 
 
 def _numbers(*values: float) -> tuple[str, ...]:

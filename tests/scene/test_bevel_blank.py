@@ -7,10 +7,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
 from loaded_tca.gears.bevel_blank import usual_factors
 from loaded_tca.pairs import mating_teeth
-from loaded_tca.scene import parse_scene
+from loaded_tca.pairs.bevel import face_milled_pair
+from loaded_tca.scene import parse_scene, read_scene
 from loaded_tca.unloaded import trace_contact
+from tests.samples.results import SCENES
 
 F2 = """
 title = "annex F.2"
@@ -111,6 +114,42 @@ def test_clearance_is_the_same_along_the_face(taper):
         assert_allclose(gear.root_angle + mating.face_angle, math.radians(90.0), atol=1e-12)
         gap = -gear.root_apex * math.sin(gear.root_angle) - mating.face_apex * math.sin(mating.face_angle)
         assert_allclose(gap, blanks.clearance, rtol=1e-9)
+
+
+@pytest.mark.parametrize("method", [spread_blade, duplex_spread_blade])
+def test_face_milled_scene_of_a_blank_is_the_pair_of_its_settings(method):
+    """Angles go through degrees and back: rounding times the cone distance."""
+    scene = annex_f2(**{"pinion.modifications.lead_crowning_um": 5.0})
+    cut = scene.face_milled(method.__name__)
+    assert (cut.hands, cut.sense, cut.driving) == (scene.hands, scene.sense, scene.driving)
+    assert cut.pinion.modifications.lead_crowning_um == 5.0
+    by_hand = face_milled_pair(
+        *method(scene.blanks(), "left"), pinion_flank=cut.contact_sides[0], exact=False, driving="pinion"
+    )
+    plain = cut.with_changes({"pinion.modifications.lead_crowning_um": 0.0}).pair()
+    for one, other in ((plain.pinion.flank, by_hand.pinion.flank), (plain.wheel.flank, by_hand.wheel.flank)):
+        rho, z = other.grid(5, 5)
+        assert_allclose(rho * one.theta(rho, z).value, rho * other.theta(rho, z).value, rtol=0.0, atol=1e-9)
+    path = trace_contact(cut.pair(), [0.0])
+    assert path.in_contact.all()
+
+
+def test_face_milled_scene_needs_a_cutter_and_a_known_method():
+    with pytest.raises(InputError, match=r"pair\.blank\.cutter_radius_mm: missing; machine settings follow"):
+        annex_f2(**{"pair.blank.cutter_radius_mm": None, "pair.blank.taper": "standard"}).face_milled()
+    with pytest.raises(InputError, match="method: 'formate' is not one of duplex_spread_blade, spread_blade"):
+        annex_f2().face_milled("formate")
+
+
+def test_command_writes_the_face_milled_scene(run, tmp_path):
+    (tmp_path / "blank.toml").write_text(F2, encoding="utf-8")
+    code, out, _ = run("settings", tmp_path / "blank.toml", "--out", tmp_path / "cut.toml")
+    assert code == 0
+    assert "cut.toml" in out
+    assert read_scene(tmp_path / "cut.toml") == annex_f2().face_milled()
+    code, _, errors = run("settings", SCENES / "spur.toml", "--out", tmp_path / "other.toml")
+    assert code == 2
+    assert "pair.type: allowed straight_bevel or spiral_bevel, with [pair.blank]" in errors[0]
 
 
 def test_flanks_of_a_blank_are_conjugate():
