@@ -43,6 +43,7 @@ CASES = (
     "cylindrical.nrel_5mw_stage_3",
     "cylindrical.metric_gear_technology",
     "loaded.limits",
+    "loaded.revolution",
     "loaded.cut_contacts",
     "loaded.mesh_stiffness",
     "loaded.local_term",

@@ -80,6 +80,18 @@ STUDY = """files in DIR:
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
 pictures, accuracy warnings with what to do, and the scene file; of a study what varies, the ranking, best and worst
 variant; of a design start and optimum. It prints on A4. Needs the package jinja2."""
+REVOLUTION = """files in DIR:
+  revolution.nc             everything, to be read by loaded_tca.Revolution.load or xarray
+  revolution.json           the key figures: single-flank deviations, orders, worst teeth
+  revolution.csv            one row per torque and position
+  teeth.csv                 the largest share, force and pressure of every tooth of both gears
+  orders.csv                amplitudes of all orders, mesh orders and sidebands named
+  revolution_error.png      transmission error over the revolution, rigid and under each torque
+  revolution_spectrum.png   its orders under the largest torque
+  revolution_shares.png     share of every tooth as a band, highest pressure of every tooth
+  revolution_waterfall.png  orders over the torque
+[pinion.pitch], [wheel.pitch] and [revolution] of the scene say where the teeth stand and which pitches follow each
+other; docs/guide/whole_revolutions.md says more."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -127,6 +139,10 @@ def _add_analyses(command: Command) -> None:
     run.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     text = "analyse the coast side too, and compare: directories drive and coast in DIR, comparison.* beside them"
     run.add_argument("--coast", action="store_true", help=text)
+    text = "analyse a whole revolution, each tooth at its own place"
+    revolution = command("revolution", run_by.revolution, text, REVOLUTION)
+    _add_scene(revolution)
+    revolution.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
 
 
 def _add_readers(command: Command) -> None:

@@ -224,11 +224,13 @@ def run(options: argparse.Namespace) -> None:
 
 def _run_scene(scene: Scene, directory: Path) -> None:
     """Analyse a scene, write everything into a directory, and show the summary."""
-    from loaded_tca.analysis import analyse
+    from loaded_tca.analysis import analyse, expected_effort
     from loaded_tca.output.result_files import write_report
     from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
 
-    with progress_bar(scene) as progress:
+    torques, positions = len(scene.torques), scene.analysis.positions
+    count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
+    with progress_bar(expected_effort(scene), count, torques * positions) as progress:
         result = analyse(scene, progress=progress)
     report = write_report(result, directory, outdated=[f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)])
     try:
@@ -239,6 +241,23 @@ def _run_scene(scene: Scene, directory: Path) -> None:
         raise
     print(result.summary(), end="\n\n")
     print_files([*report, *pictures])
+
+
+def revolution(options: argparse.Namespace) -> None:
+    """Analyse a whole revolution, write everything into a directory, and show the summary."""
+    from loaded_tca.output.revolution_files import write_revolution
+    from loaded_tca.plots import REVOLUTION_PICTURES, png_of
+    from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
+
+    scene, directory = scene_of(options), options.out
+    check_place(directory)
+    effort = expected_revolution_effort(scene)
+    with progress_bar(effort, "states", effort.contacts // 2) as progress:
+        result = analyse_revolution(scene, progress=progress)
+    pictures = {f"{name}.png": png_of(draw(result)) for name, draw in REVOLUTION_PICTURES.items()}
+    written = write_revolution(result, directory, pictures)
+    print(result.summary(), end="\n\n")
+    print_files(written)
 
 
 def plot(options: argparse.Namespace) -> None:

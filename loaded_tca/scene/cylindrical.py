@@ -14,6 +14,7 @@ from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, pro
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
+from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, Whole, above_zero, key
@@ -209,6 +210,14 @@ class CylindricalScene(BlankScene):
             )
         )
         return Mounting(**errors)
+
+    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:
+        """Return f_pT and F_pT [um] times cos(alpha_t): from the reference circle to the line of action."""
+        mesh = self.mesh()
+        one = (mesh.pinion, mesh.wheel)[gear]
+        values = one.teeth, one.normal_module, one.face_width, tolerance_class, one.helix_angle
+        tolerances, factor = flank_tolerances(*values), one.base_radius / one.reference_radius
+        return factor * tolerances.single_pitch, factor * tolerances.cumulative_pitch
 
     def active_starts(self) -> tuple[float, float]:
         """Return the roll lengths at which the active profiles of pinion and wheel start [mm]."""

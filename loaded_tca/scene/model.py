@@ -6,13 +6,16 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
-from loaded_tca.scene.build import build_rounding, described_gear, in_base_units
+from loaded_tca.pairs.tooth_deviations import ToothDeviations
+from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key, literal
+from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.section import (
     Rule,
     Section,
@@ -53,6 +56,8 @@ class Scene(Section, ABC):
         Of both gears; ``materials`` tells what holds for each.
     load : Load
     analysis : Analysis
+    revolution : Revolution or None
+        Of whole revolutions; None: a turn of the wheel.
     """
 
     title: str = key(Line(), "stands over reports and plots", "")
@@ -65,6 +70,7 @@ class Scene(Section, ABC):
     )
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
+    revolution: Revolution | None = subsection(Revolution, "which pitches a whole revolution has", optional=True)
 
     vh_keys: ClassVar[tuple[str, str]]
     """Keys of the two mounting errors that a V-H check varies."""
@@ -93,6 +99,7 @@ class Scene(Section, ABC):
             )
             for place in ("material", "pinion.material", "wheel.material")
         ),
+        *REVOLUTION_RULES,
     )
 
     @abstractmethod
@@ -193,6 +200,50 @@ class Scene(Section, ABC):
             wheel=described_gear(pair.wheel, self.wheel.flank, "wheel", side),
         )
         return described.rounded(build_rounding(self.pinion), build_rounding(self.wheel))
+
+    @property
+    def has_pitch_deviations(self) -> bool:
+        """Whether a gear has pitch deviations or runout."""
+        return any(gear.pitch is not None and gear.pitch.is_given for gear in (self.pinion, self.wheel))
+
+    def tooth_deviations(self, pair: GearPair) -> tuple[ToothDeviations, ToothDeviations]:
+        """Return index deviations and eccentricity of the teeth of pinion and wheel.
+
+        Parameters
+        ----------
+        pair : GearPair
+            Of the scene.
+
+        Raises
+        ------
+        InputError
+            If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
+        """
+        pinion, wheel = (
+            build_tooth_deviations(gear.pitch, gear.teeth, name, pair.module, partial(self.pitch_tolerances, number))
+            for number, (name, gear) in enumerate((("pinion", self.pinion), ("wheel", self.wheel)))
+        )
+        return pinion, wheel
+
+    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:  # noqa: ARG002
+        """Return the single and the cumulative pitch tolerance of a gear [um], along the transverse line of action.
+
+        Parameters
+        ----------
+        gear : int
+            0 the pinion, 1 the wheel.
+        tolerance_class : int
+            Of ISO 1328-1:2013.
+
+        Raises
+        ------
+        InputError
+            Where the standard has none, as for bevel gears.
+        """
+        raise InputError(
+            f"tolerance_class: found {tolerance_class}; ISO 1328-1 has classes of cylindrical gears "
+            "alone; give index_um"
+        )
 
     def vh_steps(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Return three values of each key of ``vh_keys`` for a V-H check: none, and small errors of both signs.
