@@ -221,8 +221,8 @@ FACE_ELEMENTS = Kind(
     "read root stress under a contact of the whole face; a contact that covers a part of it has more",
 )
 PITCH_DEVIATIONS = Kind(
-    "the gears have pitch deviations or runout, which an analysis of one pitch leaves out: all teeth count as alike",
-    "deviations of single teeth and of the axis repeat with a turn of their gear, not with every pitch",
+    "the gears have runout or teeth that differ, which an analysis of one pitch leaves out: all teeth count as alike",
+    "pitch deviations, flanks of single teeth and eccentricity repeat with a turn of their gear, not with every pitch",
     "`loaded-tca revolution`, or `analyse_revolution`",
 )
 OPEN_REVOLUTION = Kind(

@@ -183,7 +183,8 @@ def torques_shared(
     dict
         By the indices of torque and position, torque by torque.
     """
-    relative_curvatures(pair, [one.contact for _, all_at in positions for one in all_at])  # kept for all torques
+    alike = [one.contact for _, all_at in positions for one in all_at if one.gears is None]
+    relative_curvatures(pair, alike)  # kept for all torques
 
     def steps(t: int, n: int) -> Steps[SharedLoad]:
         angle, tooth_pairs = positions[n]

@@ -7,12 +7,13 @@ all of its teeth together, so that it changes no share of the load.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.pairs.gear_pair import GearPair
 
 LONG_WAVES = (1.0, 0.35, 0.2)
@@ -45,6 +46,22 @@ class ToothDeviations:
     def are_none(self) -> bool:
         """Whether all teeth stand at their nominal places."""
         return not self.index.any() and self.eccentricity == 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class ToothFlanks:
+    """Flanks that differ tooth by tooth: kinds of teeth of each gear, and the gears of each pairing of them.
+
+    Attributes
+    ----------
+    kinds : (array, array)
+        Kind of every tooth of pinion (z1,) and wheel (z2,), whole numbers; 0: the common flanks.
+    gears : mapping of (int, int) to GearPair
+        With the flanks of a kind of pinion tooth and a kind of wheel tooth.
+    """
+
+    kinds: tuple[Indices, Indices]
+    gears: Mapping[tuple[int, int], GearPair]
 
 
 def transverse_line_of_action(pair: GearPair, contact_normal: Array, wheel_lever: float) -> Array:

@@ -399,4 +399,4 @@ def revolution_dataset(arrays: Mapping[str, Any], **about: str) -> xarray.Datase
 def open_turns(scene: Scene, pitches: int) -> list[str]:
     """Gears with deviations of which so many pitches are no whole turn."""
     gears = zip(GEARS, (scene.pinion, scene.wheel), strict=True)
-    return [name for name, gear in gears if gear.pitch is not None and gear.pitch.is_given and pitches % gear.teeth]
+    return [name for name, gear in gears if gear.teeth_differ and pitches % gear.teeth]

@@ -7,12 +7,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
-from loaded_tca.pairs.tooth_deviations import ToothDeviations
+from loaded_tca.pairs.tooth_deviations import ToothDeviations, ToothFlanks
 from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key, literal
 from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
@@ -25,6 +26,7 @@ from loaded_tca.scene.section import (
     contents,
     entries,
     made,
+    plain,
     rule,
     subsection,
 )
@@ -203,8 +205,28 @@ class Scene(Section, ABC):
 
     @property
     def has_pitch_deviations(self) -> bool:
-        """Whether a gear has pitch deviations or runout."""
-        return any(gear.pitch is not None and gear.pitch.is_given for gear in (self.pinion, self.wheel))
+        """Whether the teeth of a gear stand beside their places, or have flanks of their own."""
+        return any(gear.teeth_differ for gear in (self.pinion, self.wheel))
+
+    def tooth_flanks(self) -> ToothFlanks | None:
+        """Return which teeth have flanks of their own, and the gears with them; None if all are alike.
+
+        Raises
+        ------
+        InputError, GeometryError
+            As of :meth:`pair`, where flanks of single teeth cannot be made.
+        """
+        if not (self.pinion.tooth or self.wheel.tooth):
+            return None
+        numbered = [gear.kinds_of_teeth() for gear in (self.pinion, self.wheel)]
+        common = {"pinion.tooth": None, "wheel.tooth": None}
+        gears = {}
+        for (a, first), (b, second) in product(*(enumerate(changes) for _, changes in numbered)):
+            if (a, b) != (0, 0):
+                changes = {f"pinion.{name}": value for name, value in first.items()}
+                changes |= {f"wheel.{name}": value for name, value in second.items()}
+                gears[a, b] = self.with_changes(common | changes).pair()
+        return ToothFlanks((numbered[0][0], numbered[1][0]), gears)
 
     def tooth_deviations(self, pair: GearPair) -> tuple[ToothDeviations, ToothDeviations]:
         """Return index deviations and eccentricity of the teeth of pinion and wheel.
@@ -492,5 +514,5 @@ def _lines(section: Section, path: str) -> list[str]:
         elif value is None:
             keys.append(f"# {name} is not given: {entry.absent}")
         else:
-            keys.append(f"{name} = {literal(value)}")
+            keys.append(f"{name} = {literal(plain(value))}")
     return keys + sections

@@ -76,7 +76,7 @@ def test_unloaded_contacts_of_one_pitch_serve_all_pitches():
     deviations = none(17), deviations_of(pair, 1)[1]
     path = trace_revolution(pair, deviations, pitches=24, per_pitch=4)
     assert len(path.contacts) <= 4 * len(path.pairs) + 4
-    points = [point for n in (1, 5) for number, point, _ in path.pairs_at(n) if number == 0]
+    points = [point for n in (1, 5) for number, point, *_ in path.pairs_at(n) if number == 0]
     assert points[0] is points[1]
 
 
