@@ -174,6 +174,26 @@ class Choice:
 
 
 @dataclass(frozen=True)
+class WordOrNumber:
+    """One of a few words, or a number."""
+
+    words: Choice
+    number: Number
+
+    @property
+    def allowed(self) -> str:
+        """The choice in words."""
+        return f"{self.words.allowed}, or {self.number.allowed}"
+
+    def read(self, value: Any) -> str | int | float:
+        """Take a word, and what the number takes."""
+        try:
+            return self.words.read(value) if isinstance(value, str) else self.number.read(value)
+        except ValueError:
+            raise _refusal(self, value) from None
+
+
+@dataclass(frozen=True)
 class Line:
     """One line of text."""
 

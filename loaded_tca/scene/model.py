@@ -25,7 +25,16 @@ from loaded_tca.scene.section import (
     rule,
     subsection,
 )
-from loaded_tca.scene.sections import Analysis, ContactStandard, ElasticMaterial, GearSection, Load, Pair
+from loaded_tca.scene.sections import (
+    Analysis,
+    ContactStandard,
+    ElasticMaterial,
+    GearSection,
+    Load,
+    LubricantSection,
+    Operation,
+    Pair,
+)
 
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
@@ -52,6 +61,8 @@ class Scene(Section, ABC):
         Of both gears; ``materials`` tells what holds for each.
     load : Load
     analysis : Analysis
+    operation : Operation or None
+    lubricant : LubricantSection or None
     """
 
     title: str = key(Line(), "stands over reports and plots", "")
@@ -64,6 +75,8 @@ class Scene(Section, ABC):
     )
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
+    operation: Operation | None = subsection(Operation, "speed and factors, for tribology", optional=True)
+    lubricant: LubricantSection | None = subsection(LubricantSection, "the oil, for tribology", optional=True)
 
     vh_keys: ClassVar[tuple[str, str]]
     """Keys of the two mounting errors that a V-H check varies."""
