@@ -246,6 +246,16 @@ PITCH_VELOCITY = Kind(
     "coefficients of friction of the standards were fitted within",
     "a number for `friction`, from a test",
 )
+PITCH_DEVIATIONS = Kind(
+    "the gears have pitch deviations or runout, which an analysis of one pitch leaves out: all teeth count as alike",
+    "deviations of single teeth and of the axis repeat with a turn of their gear, not with every pitch",
+    "`loaded-tca revolution`, or `analyse_revolution`",
+)
+OPEN_REVOLUTION = Kind(
+    "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: the ends of the curve do not meet",
+    "amplitudes of a curve that is not closed leak into neighbouring orders; spans hold for the part that is there",
+    '`pitches = "hunting"`, or a multiple of the number of teeth of the {gear}',
+)
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))
 """Of every accuracy warning of an analysis, of derivatives of its result, and of its tribology."""

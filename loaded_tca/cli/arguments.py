@@ -35,6 +35,9 @@ Pictures are those of one torque; docs/guide/comparing.md says more."""
 EASE_OFF = """files in DIR:
   ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
                             corners, and its angles, crownings and twist"""
+SETTINGS = """SCENE has bevel gears with a section [pair.blank] and the radius of its cutter. FILE is a scene of type
+face_milled with the same blanks, and with machine settings and cutters in closed form: a start to be mended by what its
+contact shows ('loaded-tca run', 'vh', 'ease-off')."""
 VH = """V and H are mounting errors: of bevel and face-milled gears the offset and the axial displacement of the pinion
 [mm], of cylindrical ones the errors of the axes in their plane and out of it [deg].
 
@@ -77,6 +80,18 @@ STUDY = """files in DIR:
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
 pictures, accuracy warnings with what to do, and the scene file; of a study what varies, the ranking, best and worst
 variant; of a design start and optimum. It prints on A4. Needs the package jinja2."""
+REVOLUTION = """files in DIR:
+  revolution.nc             everything, to be read by loaded_tca.Revolution.load or xarray
+  revolution.json           the key figures: single-flank deviations, orders, worst teeth
+  revolution.csv            one row per torque and position
+  teeth.csv                 the largest share, force and pressure of every tooth of both gears
+  orders.csv                amplitudes of all orders, mesh orders and sidebands named
+  revolution_error.png      transmission error over the revolution, rigid and under each torque
+  revolution_spectrum.png   its orders under the largest torque
+  revolution_shares.png     share of every tooth as a band, highest pressure of every tooth
+  revolution_waterfall.png  orders over the torque
+[pinion.pitch], [wheel.pitch] and [revolution] of the scene say where the teeth stand and which pitches follow each
+other; docs/guide/whole_revolutions.md says more."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -124,6 +139,10 @@ def _add_analyses(command: Command) -> None:
     run.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     text = "analyse the coast side too, and compare: directories drive and coast in DIR, comparison.* beside them"
     run.add_argument("--coast", action="store_true", help=text)
+    text = "analyse a whole revolution, each tooth at its own place"
+    revolution = command("revolution", run_by.revolution, text, REVOLUTION)
+    _add_scene(revolution)
+    revolution.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
 
 
 def _add_readers(command: Command) -> None:
@@ -182,6 +201,12 @@ def _add_tables_and_maps(command: Command) -> None:
     ease_off = command("ease-off", run_by.ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     _add_scene(ease_off)
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
+    cut = command("settings", run_by.settings, "write the face-milled scene of a bevel blank", SETTINGS)
+    _add_scene(cut)
+    cut.add_argument("--out", metavar="FILE", required=True, type=_path, help="scene file to write")
+    methods = "duplex_spread_blade", "spread_blade"
+    text = f"how both gears are cut; default: {methods[0]}"
+    cut.add_argument("--method", choices=methods, default=methods[0], help=text)
     vh = command("vh", run_by.vh, "draw contact patterns over two mounting errors (V-H check)", VH)
     _add_scene(vh)
     vh.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")

@@ -224,11 +224,13 @@ def run(options: argparse.Namespace) -> None:
 
 def _run_scene(scene: Scene, directory: Path) -> None:
     """Analyse a scene, write everything into a directory, and show the summary."""
-    from loaded_tca.analysis import analyse
+    from loaded_tca.analysis import analyse, expected_effort
     from loaded_tca.output.result_files import write_report
     from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
 
-    with progress_bar(scene) as progress:
+    torques, positions = len(scene.torques), scene.analysis.positions
+    count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
+    with progress_bar(expected_effort(scene), count, torques * positions) as progress:
         result = analyse(scene, progress=progress)
     report = write_report(result, directory, outdated=[f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)])
     try:
@@ -239,6 +241,23 @@ def _run_scene(scene: Scene, directory: Path) -> None:
         raise
     print(result.summary(), end="\n\n")
     print_files([*report, *pictures])
+
+
+def revolution(options: argparse.Namespace) -> None:
+    """Analyse a whole revolution, write everything into a directory, and show the summary."""
+    from loaded_tca.output.revolution_files import write_revolution
+    from loaded_tca.plots import REVOLUTION_PICTURES, png_of
+    from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
+
+    scene, directory = scene_of(options), options.out
+    check_place(directory)
+    effort = expected_revolution_effort(scene)
+    with progress_bar(effort, "states", effort.contacts // 2) as progress:
+        result = analyse_revolution(scene, progress=progress)
+    pictures = {f"{name}.png": png_of(draw(result)) for name, draw in REVOLUTION_PICTURES.items()}
+    written = write_revolution(result, directory, pictures)
+    print(result.summary(), end="\n\n")
+    print_files(written)
 
 
 def plot(options: argparse.Namespace) -> None:
@@ -366,6 +385,22 @@ def ease_off(options: argparse.Namespace) -> None:
     ease_off = ease_off_map(scene.pair(), options.gear)
     picture = png_of(plot_ease_off(ease_off, scene.title))
     print_files(replace_together(options.out, {"ease_off.png": picture}))
+
+
+def settings(options: argparse.Namespace) -> None:
+    """Write the face-milled scene of a bevel blank, with its basic machine settings."""
+    from loaded_tca.results.files import replacing
+    from loaded_tca.scene.bevel import BevelScene
+
+    scene = scene_of(options)
+    kind = f"{options.scene}: pair.type: allowed straight_bevel or spiral_bevel, with [pair.blank]"
+    require((isinstance(scene, BevelScene), kind))
+    assert isinstance(scene, BevelScene)
+    check_files([options.out], Path(options.scene))
+    text = scene.face_milled(options.method).to_toml()
+    with replacing(options.out) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    print_files([options.out])
 
 
 def vh(options: argparse.Namespace) -> None:

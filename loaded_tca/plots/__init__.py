@@ -21,6 +21,13 @@ from loaded_tca.plots.pressure_map import (
     plot_stress_below,
     plot_subsurface,
 )
+from loaded_tca.plots.revolution import (
+    REVOLUTION_PICTURES,
+    plot_revolution_error,
+    plot_revolution_shares,
+    plot_revolution_spectrum,
+    plot_revolution_waterfall,
+)
 from loaded_tca.plots.root_stress import plot_root_stress, plot_root_stress_cycle, plot_root_stress_over_torque
 from loaded_tca.plots.sensitivities import (
     plot_removal_weights,
@@ -54,6 +61,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 __all__ = [
     "MORE_PICTURES",
     "PICTURES",
+    "REVOLUTION_PICTURES",
     "draw_teeth",
     "plot_all",
     "plot_at_a_glance",
@@ -78,6 +86,10 @@ __all__ = [
     "plot_pressure_envelope",
     "plot_pressure_map",
     "plot_removal_weights",
+    "plot_revolution_error",
+    "plot_revolution_shares",
+    "plot_revolution_spectrum",
+    "plot_revolution_waterfall",
     "plot_robustness",
     "plot_root_stress",
     "plot_root_stress_cycle",

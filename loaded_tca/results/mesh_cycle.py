@@ -291,6 +291,10 @@ class MeshCycle(CycleNumbers):
         """
         file = read_dataset(path)
         kind = file.attrs.get("kind")
+        if kind == "revolution":
+            raise InputError(
+                f"{path}: a whole revolution, not the result of a mesh cycle; read it with Revolution.load"
+            )
         if kind in ("study", "design"):
             reader = f"loaded_tca.studies.load_{kind}"
             raise InputError(f"{path}: a {kind}, not the result of a mesh cycle; read it with {reader}")

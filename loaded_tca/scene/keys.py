@@ -174,26 +174,6 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class WordOrNumber:
-    """One of a few words, or a number."""
-
-    words: Choice
-    number: Number
-
-    @property
-    def allowed(self) -> str:
-        """The choice in words."""
-        return f"{self.words.allowed}, or {self.number.allowed}"
-
-    def read(self, value: Any) -> str | int | float:
-        """Take a word, and what the number takes."""
-        try:
-            return self.words.read(value) if isinstance(value, str) else self.number.read(value)
-        except ValueError:
-            raise _refusal(self, value) from None
-
-
-@dataclass(frozen=True)
 class Line:
     """One line of text."""
 
@@ -235,6 +215,33 @@ class List:
             return tuple(self.kind.read(entry) for entry in value)
         except ValueError as refused:
             raise _refusal(self, value, f" ({refused})") from None
+
+
+@dataclass(frozen=True)
+class Either:
+    """A value of one of several kinds.
+
+    Examples
+    --------
+    >>> Either((Choice(("wheel",)), Whole(1, 9))).read(3)
+    3
+    """
+
+    kinds: tuple[Kind, ...]
+
+    @property
+    def allowed(self) -> str:
+        """All of them in words."""
+        return ", or ".join(kind.allowed for kind in self.kinds)
+
+    def read(self, value: Any) -> Any:
+        """Take what the first of them takes that does not refuse it."""
+        for kind in self.kinds:
+            try:
+                return kind.read(value)
+            except ValueError:
+                continue
+        raise _refusal(self, value)
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,17 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
-from loaded_tca.scene.build import build_rounding, described_gear, in_base_units
+from loaded_tca.pairs.tooth_deviations import ToothDeviations
+from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key, literal
+from loaded_tca.scene.lubrication import LubricantSection, Operation
+from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.section import (
     Rule,
     Section,
@@ -31,10 +35,9 @@ from loaded_tca.scene.sections import (
     ElasticMaterial,
     GearSection,
     Load,
-    LubricantSection,
-    Operation,
     Pair,
 )
+from loaded_tca.scene.tolerance_class import scatter_of_class
 
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
@@ -63,6 +66,8 @@ class Scene(Section, ABC):
     analysis : Analysis
     operation : Operation or None
     lubricant : LubricantSection or None
+    revolution : Revolution or None
+        Of whole revolutions; None: a turn of the wheel.
     """
 
     title: str = key(Line(), "stands over reports and plots", "")
@@ -77,6 +82,7 @@ class Scene(Section, ABC):
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
     operation: Operation | None = subsection(Operation, "speed and factors, for tribology", optional=True)
     lubricant: LubricantSection | None = subsection(LubricantSection, "the oil, for tribology", optional=True)
+    revolution: Revolution | None = subsection(Revolution, "which pitches a whole revolution has", optional=True)
 
     vh_keys: ClassVar[tuple[str, str]]
     """Keys of the two mounting errors that a V-H check varies."""
@@ -105,6 +111,7 @@ class Scene(Section, ABC):
             )
             for place in ("material", "pinion.material", "wheel.material")
         ),
+        *REVOLUTION_RULES,
     )
 
     @abstractmethod
@@ -206,6 +213,50 @@ class Scene(Section, ABC):
         )
         return described.rounded(build_rounding(self.pinion), build_rounding(self.wheel))
 
+    @property
+    def has_pitch_deviations(self) -> bool:
+        """Whether a gear has pitch deviations or runout."""
+        return any(gear.pitch is not None and gear.pitch.is_given for gear in (self.pinion, self.wheel))
+
+    def tooth_deviations(self, pair: GearPair) -> tuple[ToothDeviations, ToothDeviations]:
+        """Return index deviations and eccentricity of the teeth of pinion and wheel.
+
+        Parameters
+        ----------
+        pair : GearPair
+            Of the scene.
+
+        Raises
+        ------
+        InputError
+            If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
+        """
+        pinion, wheel = (
+            build_tooth_deviations(gear.pitch, gear.teeth, name, pair.module, partial(self.pitch_tolerances, number))
+            for number, (name, gear) in enumerate((("pinion", self.pinion), ("wheel", self.wheel)))
+        )
+        return pinion, wheel
+
+    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:  # noqa: ARG002
+        """Return the single and the cumulative pitch tolerance of a gear [um], along the transverse line of action.
+
+        Parameters
+        ----------
+        gear : int
+            0 the pinion, 1 the wheel.
+        tolerance_class : int
+            Of ISO 1328-1:2013.
+
+        Raises
+        ------
+        InputError
+            Where the standard has none, as for bevel gears.
+        """
+        raise InputError(
+            f"tolerance_class: found {tolerance_class}; ISO 1328-1 has classes of cylindrical gears "
+            "alone; give index_um"
+        )
+
     def vh_steps(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Return three values of each key of ``vh_keys`` for a V-H check: none, and small errors of both signs.
 
@@ -295,6 +346,48 @@ class Scene(Section, ABC):
         GeometryError
             If nothing can turn.
         """
+
+    def slope_tolerances(self, tolerance_class: int) -> Mapping[str, float]:
+        """Return the tolerances of slopes of both gears of a class, by their keys [um].
+
+        Raises
+        ------
+        InputError
+            If there is no standard for gears of this kind, or it has no such class.
+        """
+        raise InputError(f"tolerance_class: {tolerance_class}; ISO 1328-1 holds for cylindrical gears alone")
+
+    def scatter_of_class(self, tolerance_class: int, *, deviations: bool = False) -> Mapping[str, Any]:
+        """Return how helix and profile slopes of both gears scatter that are of a tolerance class of ISO 1328-1:2013.
+
+        Each slope is normal about its value in the scene, with three standard deviations to its tolerance f_HbetaT or
+        f_HalphaT to either side, and independent of the others.
+
+        Parameters
+        ----------
+        tolerance_class : int
+            From 1 to 11.
+        deviations : bool
+            About zero instead, as the scatter of ``DesignModel`` counts it.
+
+        Returns
+        -------
+        mapping of str to frozen distribution of ``scipy.stats``
+            Key -> its distribution [um], as ``Study`` takes it.
+
+        Raises
+        ------
+        InputError
+            If the gears are not cylindrical, or outside the classes and ranges of the standard.
+
+        Examples
+        --------
+        >>> from loaded_tca import read_scene
+        >>> scatter = read_scene("examples/scenes/helical.toml").scatter_of_class(6)
+        >>> round(float(scatter["wheel.modifications.helix_slope_um"].std()), 3)
+        3.0
+        """
+        return scatter_of_class(self, tolerance_class, deviations=deviations)
 
     @property
     def flank_names(self) -> tuple[str, str]:

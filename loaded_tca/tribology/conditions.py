@@ -15,7 +15,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.reference.iso6336_20 import LOAD_STAGES
 from loaded_tca.reference.iso6336_22 import SUPPLY_FACTORS
 from loaded_tca.scene import Scene
-from loaded_tca.scene.sections import LubricantSection
+from loaded_tca.scene.lubrication import LubricantSection
 from loaded_tca.tribology.lubricant import Lubricant
 
 MEAN, LOCAL, XU_KAHRAMAN = "ISO/TS 6336-22", "local", "Xu-Kahraman"
