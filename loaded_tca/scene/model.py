@@ -16,6 +16,7 @@ from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
 from loaded_tca.pairs.tooth_deviations import ToothDeviations, ToothFlanks
 from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key, literal
+from loaded_tca.scene.lubrication import LubricantSection, Operation
 from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.section import (
     Rule,
@@ -30,7 +31,14 @@ from loaded_tca.scene.section import (
     rule,
     subsection,
 )
-from loaded_tca.scene.sections import Analysis, ContactStandard, ElasticMaterial, GearSection, Load, Pair
+from loaded_tca.scene.sections import (
+    Analysis,
+    ContactStandard,
+    ElasticMaterial,
+    GearSection,
+    Load,
+    Pair,
+)
 from loaded_tca.scene.tolerance_class import scatter_of_class
 
 Hand = Literal["right", "left"]
@@ -58,6 +66,8 @@ class Scene(Section, ABC):
         Of both gears; ``materials`` tells what holds for each.
     load : Load
     analysis : Analysis
+    operation : Operation or None
+    lubricant : LubricantSection or None
     revolution : Revolution or None
         Of whole revolutions; None: a turn of the wheel.
     """
@@ -72,6 +82,8 @@ class Scene(Section, ABC):
     )
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
+    operation: Operation | None = subsection(Operation, "speed and factors, for tribology", optional=True)
+    lubricant: LubricantSection | None = subsection(LubricantSection, "the oil, for tribology", optional=True)
     revolution: Revolution | None = subsection(Revolution, "which pitches a whole revolution has", optional=True)
 
     vh_keys: ClassVar[tuple[str, str]]

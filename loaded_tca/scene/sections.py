@@ -179,6 +179,9 @@ class ElasticMaterial(Section):
     max_pressure_MPa: float | None = key(
         above_zero(1e7), "pressure at which the surface yields (plastic cap)", None, "elastic"
     )
+    conductivity_W_mK: float = key(above_zero(1000.0), "conductivity of heat, for flash temperatures", 50.0)
+    density_kg_m3: float = key(above_zero(30000.0), "density, likewise", 7850.0)
+    heat_capacity_J_kgK: float = key(above_zero(10000.0), "heat capacity, likewise", 484.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,6 +219,12 @@ class GearSection(Section):
     )
     side_rounding_mm: float = key(
         ROUNDING_mm, "radius of the edges at both ends of the face, up to 0.3 normal modules; 0: sharp", 0.0
+    )
+    roughness_Ra_um: float | None = key(
+        above_zero(10.0),
+        "arithmetic mean roughness Ra of the flanks, for tribology",
+        None,
+        "no film ratio, no friction",
     )
     modifications: Modifications = subsection(Modifications, "material removed from the flanks")
     flank: FlankForm = subsection(FlankForm, "how the flanks are described")
