@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
@@ -170,7 +170,7 @@ class CylindricalScene(BlankScene):
             sense=sense,
         )
 
-    def _mounting(self, mesh: CylindricalMesh) -> Mounting:
+    def _mounting(self, mesh: CylindricalMesh | InternalMesh) -> Mounting:
         """Mounting errors, the misalignment in the plane of action as the axis error that makes it."""
         errors = in_base_units(self.mounting)
         width = common_face_width(mesh, self.mounting.axial_offset_mm)
@@ -261,7 +261,7 @@ class CylindricalScene(BlankScene):
             ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
             ("base helix angle beta_b [deg]", f"{abs(math.degrees(mesh.pinion.base_helix_angle)):.4f}"),
             ("profile shift sum: given, without backlash", *(f"{value:.4f}" for value in _profile_shift_sums(mesh))),
-            ("backlash j_wt at the working circles [mm]", f"{_backlash(mesh):.4f}"),
+            backlash_row(mesh),
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
@@ -324,9 +324,10 @@ def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, 
     return section.form_factor, section.stress_correction_factor, helix
 
 
-def _backlash(mesh: CylindricalMesh) -> float:
+def backlash_row(mesh: CylindricalMesh | InternalMesh) -> Row:
     """Backlash [mm], zero where it is rounding."""
-    return mesh.backlash if abs(mesh.backlash) > 1e-9 * mesh.pinion.normal_module else 0.0
+    backlash = mesh.backlash if abs(mesh.backlash) > 1e-9 * mesh.pinion.normal_module else 0.0
+    return "backlash j_wt at the working circles [mm]", f"{backlash:.4f}"
 
 
 def _profile_shift_sums(mesh: CylindricalMesh) -> tuple[float, float]:

@@ -30,6 +30,8 @@ from loaded_tca.scene.sections import Analysis, ContactStandard, ElasticMaterial
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
 """Label and cells of a line of an overview."""
+_OF_FAMILIES = frozenset({"pair", "pair.type", "wheel", "wheel.teeth"})
+"""Keys whose change may make a scene one of another family or variant."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,6 +95,11 @@ class Scene(Section, ABC):
             for place in ("material", "pinion.material", "wheel.material")
         ),
     )
+
+    @classmethod
+    def describes(cls, table: Mapping[str, Any]) -> bool:  # noqa: ARG003 (of families without variants)
+        """Whether a table is one of this class; asked of the variants of a family alone."""
+        return True
 
     @abstractmethod
     def mesh(self) -> Any:
@@ -276,7 +283,7 @@ class Scene(Section, ABC):
             scene.with_changes({"analysis.cells": (32, 32)})
         """
         # Sections without a change stay what they are, since they are checked; another family may have others.
-        table = contents(self) if {"pair", "pair.type"}.isdisjoint(changes) else as_table(self)
+        table = contents(self) if _OF_FAMILIES.isdisjoint(changes) else as_table(self)
         for path, value in changes.items():
             *sections, name = path.split(".")
             place = table
@@ -295,6 +302,9 @@ class Scene(Section, ABC):
 FAMILIES: dict[str, type[Scene]] = {}
 """Type of a gear pair, as files call it -> the scenes of its family; filled by ``family``."""
 
+VARIANTS: dict[type[Scene], dict[type[Scene], str]] = {}
+"""Class of a family -> its variants, which scenes of other keys are, and of what; filled by ``variant``."""
+
 SceneType = TypeVar("SceneType", bound=type[Scene])
 
 
@@ -303,6 +313,16 @@ def family(*types: str) -> Callable[[SceneType], SceneType]:
 
     def known(scene: SceneType) -> SceneType:
         FAMILIES.update(dict.fromkeys(types, scene))
+        return scene
+
+    return known
+
+
+def variant(scenes: type[Scene], about: str) -> Callable[[SceneType], SceneType]:
+    """Make a class known as a variant of a family, for the tables that it :meth:`Scene.describes`; ``about`` is when."""
+
+    def known(scene: SceneType) -> SceneType:
+        VARIANTS.setdefault(scenes, {})[scene] = about
         return scene
 
     return known
@@ -323,6 +343,7 @@ def scene_from_table(table: Mapping[str, Any]) -> Scene:
         scenes = FAMILIES[Choice(tuple(FAMILIES)).read(kind)]  # type: ignore[index]
     except ValueError as refused:
         raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
+    scenes = next((one for one in VARIANTS.get(scenes, {}) if one.describes(table)), scenes)
     values, problems = check(scenes, table)
     if problems:
         raise InputError(problems)
