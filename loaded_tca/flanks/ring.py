@@ -37,6 +37,7 @@ class RingFrame(CylinderFrame):
     'diameter 102 mm, -3 mm from mid-face'
     """
 
+    upwards = -1
     labels = ("axial position from mid-face [mm]", "diameter [mm], of a ring with a minus")
 
     def to_picture(self, rho: Array, z: Array) -> tuple[Array, Array]:
