@@ -263,9 +263,7 @@ def gear_body(nodes: BodyNodes, material: Material, largest_error: float = 0.0) 
     return mesh, factorised(mesh, material, held, blocks)[0]
 
 
-def error_of_displacements(
-    mesh: Discretisation, factor: Factorisation, matrices: Array, outwards: int = 1
-) -> float:
+def error_of_displacements(mesh: Discretisation, factor: Factorisation, matrices: Array, outwards: int = 1) -> float:
     """Relative error of the displacements by a factor: the change by one step of refinement, in double precision.
 
     Under unit loads along all axes on the node at the farthest tip.

@@ -5,9 +5,9 @@ r"""Involute helicoid of a ring gear.
 
 The surface is that of an external tooth of the same base circle, seen from the other side of it: teeth of a ring grow
 thicker outwards. The tip lies inside, the root outside, and the roll length falls from the root to the tip; the
-coordinate of profile modifications is the roll length with a minus, which rises to the tip as on every flank. The z axis
-of a ring's own frame points against that of the pinion: its lengthwise coordinate is -z, so that the lower and the upper
-end of its face are those of the pinion.
+coordinate of profile modifications is the roll length with a minus, which rises to the tip as on every flank. The z
+axis of a ring's own frame points against that of the pinion: its lengthwise coordinate is -z, so that the lower and the
+upper end of its face are those of the pinion.
 
 References
 ----------
@@ -98,7 +98,9 @@ class RingFlank(InvoluteFlank):
         angle, steepness = roll / self.base_radius, roll / rho
         involute = angle - np.arctan(angle) - self._working_involute
         value = float(self.side) * involute + self._twist * z
-        return Jet(value, outward * steepness, self._twist, lambda: (outward * (1.0 / roll - steepness / rho), 0.0, 0.0))
+        return Jet(
+            value, outward * steepness, self._twist, lambda: (outward * (1.0 / roll - steepness / rho), 0.0, 0.0)
+        )
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Tip circle, root form circle, the two ends of the face, the lower one of the pinion's z first."""

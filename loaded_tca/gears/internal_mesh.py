@@ -119,7 +119,8 @@ class InternalMesh:
         ):
             raise GeometryError(
                 f"{pinion.name}: undercut up to diameter {2.0 * pinion.form_radius:.4f} mm, where the tip of the "
-                f"{ring.name} needs the flank; a profile_shift of at least {pinion.smallest_profile_shift:.4f} avoids it"
+                f"{ring.name} needs the flank; a profile_shift of at least "
+                f"{pinion.smallest_profile_shift:.4f} avoids it"
             )
         if path.AE <= 0.0:
             raise GeometryError(
@@ -233,7 +234,7 @@ class InternalMesh:
 
     @property
     def involute_interference(self) -> bool:
-        """Whether the tip of the ring reaches beyond the end T1 of the line of action, where the pinion has no flank."""
+        """Whether the tip of the ring reaches beyond the end T1 of the line of action, off the pinion's flank."""
         return self._ring_tip_roll < 0.0
 
     @property
@@ -259,11 +260,9 @@ class InternalMesh:
         if max(map(abs, cosines)) > 1.0:
             return inf
         working = involute(self.working_pressure_angle)
-        angles = [
-            acos(cosine) + _involute_at(gear, radius) - working
-            for cosine, gear, radius in zip(cosines, (pinion, ring), (first, second), strict=True)
-        ]
-        return second * (angles[0] / self.gear_ratio - angles[1])
+        of_pinion = acos(cosines[0]) + _involute_at(pinion, first) - working
+        of_ring = acos(cosines[1]) + _involute_at(ring, second) - working
+        return second * (of_pinion / self.gear_ratio - of_ring)
 
     @cached_property
     def radial_assembly_clearance(self) -> float:

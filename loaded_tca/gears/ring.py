@@ -337,7 +337,7 @@ class RingGear:
         return float(brentq(room, least, wanted))
 
     def _arc_centre(self, radius: float) -> tuple[float, float, float]:
-        """Centre of an arc that touches flank and root circle: radius, angle from the middle of the space, flank's roll.
+        """Centre of an arc that touches flank and root: radius, angle from the middle of the space, flank's roll.
 
         It lies on the normal of the flank, which touches the base circle: r_b^2 + (a - rho)^2 = (r_f - rho)^2.
         """
@@ -403,7 +403,7 @@ class RingGear:
         return centre + self.fillet_radius * normal, normal
 
     def _cut(self, cutter: PinionCutter, part: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """What the rounding of the cutter's tip cuts: the point of it on the line from the pitch point to its centre."""
+        """What the rounding of the cutter's tip cuts: its point on the line from the pitch point to its centre."""
         distance, start, roll = self._cutter_rounding_centre(self.fillet_radius)
         first = atan((roll - self.fillet_radius) / self._cutter_base_radius) - self._cutting_angle
         place = part * first

@@ -1,8 +1,8 @@
 """Pairs of a pinion and a ring gear.
 
-The frame of the ring without errors is that of the pinion turned by 180 degrees about the x axis and moved by the centre
-distance towards -x: origin (-a, 0, 0), axes (1, 0, 0), (0, -1, 0), (0, 0, -1). The ring turns with the pinion, about +z,
-which is -z of its own frame: so all that holds for the wheel of an external pair holds for it, word for word.
+The frame of the ring without errors is that of the pinion turned by 180 degrees about the x axis and moved by the
+centre distance towards -x: origin (-a, 0, 0), axes (1, 0, 0), (0, -1, 0), (0, 0, -1). The ring turns with the pinion,
+about +z, which is -z of its own frame: so all that holds for the wheel of an external pair holds for it, word for word.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ def internal_pair(
     modifications : (FlankModifications, FlankModifications)
         Of pinion and ring. Lower and upper ends of the face are those of the pinion, also of the ring.
     mounting : Mounting
-        Errors of the ring's position in the fixed frame. A positive ``centre_distance_error`` moves the ring towards +x,
-        teeth apart, and makes the centre distance smaller; where ``in_plane`` is positive the teeth part at z > 0.
+        Errors of the ring's position in the fixed frame. A positive ``centre_distance_error`` moves the ring towards
+        +x, teeth apart, and makes the centre distance smaller; where ``in_plane`` is positive the teeth part at z > 0.
     materials : (Material, Material)
         Of pinion and ring.
     driving : {"pinion", "wheel"}

@@ -15,7 +15,7 @@ from loaded_tca.pairs.cylindrical import common_face_width
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.pairs.internal import internal_pair
 from loaded_tca.scene.blank import BlankGearSection
-from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
+from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
 from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_row
 from loaded_tca.scene.keys import Choice, Number, Whole, key
 from loaded_tca.scene.model import Hand, Row, Scene, variant

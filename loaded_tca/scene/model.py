@@ -319,7 +319,7 @@ def family(*types: str) -> Callable[[SceneType], SceneType]:
 
 
 def variant(scenes: type[Scene], about: str) -> Callable[[SceneType], SceneType]:
-    """Make a class known as a variant of a family, for the tables that it :meth:`Scene.describes`; ``about`` is when."""
+    """Make a class known as a variant of a family, for the tables that it describes; ``about`` says when."""
 
     def known(scene: SceneType) -> SceneType:
         VARIANTS.setdefault(scenes, {})[scene] = about

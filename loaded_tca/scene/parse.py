@@ -197,9 +197,7 @@ Found = tuple[type[Section], str]
 """A section and what it is about."""
 
 
-def _sections(
-    section: type[Section], path: str, same_as: Mapping[str, str] = SAME_AS
-) -> Iterator[tuple[str, Found]]:
+def _sections(section: type[Section], path: str, same_as: Mapping[str, str] = SAME_AS) -> Iterator[tuple[str, Found]]:
     """Path of every section -> what it is, the whole scene first."""
     if not path:
         yield "", (section, "Above all sections")

@@ -65,7 +65,8 @@ class ToothForm:
         InputError
             If the radius is not positive and finite.
         """
-        return replace(self, fillet=self.fillet.as_arc(radius), largest_that_fits=False)
+        arc = replace(self.fillet, radius=radius) if isinstance(self.fillet, ArcFillet) else ArcFillet(radius)
+        return replace(self, fillet=arc, largest_that_fits=False)
 
 
 @dataclass(frozen=True)

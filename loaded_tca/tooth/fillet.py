@@ -152,16 +152,6 @@ class Fillet(ABC):
             If there is no such fillet.
         """
 
-    def as_arc(self, radius: float) -> ArcFillet:
-        """The arc of a radius [mm] in the gear that stands in the place of this fillet.
-
-        Raises
-        ------
-        InputError
-            If the radius is not positive and finite.
-        """
-        return ArcFillet(radius)
-
 
 @dataclass(frozen=True)
 class ArcFillet(Fillet):
@@ -198,10 +188,6 @@ class ArcFillet(Fillet):
         ]
         if problems:
             raise InputError(problems)
-
-    def as_arc(self, radius: float) -> ArcFillet:
-        """The same with another radius."""
-        return replace(self, radius=radius)
 
     def curve(self, profile: Profile, root_radius: Array, count: int) -> FilletCurve:
         """Line and arc, evenly divided."""

@@ -4,9 +4,10 @@ With the root radius c of the ring the image of a point at the radius rho has th
 
 .. math:: r = c^2/\rho .
 
-Angles are kept and circles stay circles: in the image a tooth of a ring grows from its root circle outwards to its tip,
-and the outside of the ring is a bore. Whatever is drawn in the images of sections, complete teeth, arcs and the nodes of
-finite elements, holds for rings so. The inversion mirrors: surfaces are turned inside out.
+Angles are kept and circles stay circles: in the image a tooth of a ring grows from its root circle outwards to its
+tip, and the outside of the ring is a bore. Whatever is drawn in the images of sections, complete teeth, arcs and the
+nodes of finite elements, holds for rings so. The inversion mirrors; sections that are counted along -z mirror back, and
+surfaces keep their outside.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from loaded_tca.flanks.ring import RingFlank
 from loaded_tca.gears.cylindrical_mesh import ActiveProfile
 from loaded_tca.gears.ring import RingGear
 from loaded_tca.tooth.families import RootCylinder, ToothForm, ToothGeometry
-from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, Profile, RackFillet
+from loaded_tca.tooth.fillet import Fillet, FilletCurve, Profile, RackFillet
 from loaded_tca.tooth.held import Held
 from loaded_tca.tooth.sections import Sections
 
@@ -76,8 +77,9 @@ class InvertedPlanes(Sections):
         return nought - (self.root_radius / radius) ** 2, nought
 
     def radius_beyond(self, radius: Array, coordinate: Array, distance: Array) -> Array:
-        """Return c^2/(c^2/r - distance)."""
-        return self.root_radius**2 / (self.root_radius**2 / radius - distance) + 0.0 * coordinate
+        """Return c^2/(c^2/r - distance), at most the image of a thousandth of the root radius."""
+        rho = np.maximum(self.root_radius**2 / radius - distance, self.root_radius / FARTHEST)
+        return self.root_radius**2 / rho + 0.0 * coordinate
 
     def in_true_size(self, radius: Array, coordinate: Array) -> Array:
         """Return c^2/r: a plane is its own section."""
@@ -120,13 +122,6 @@ class RingFillet(Fillet):
     def curve(self, profile: Profile, root_radius: Array, count: int) -> FilletCurve:
         """The image of the curve, turned to each section."""
         return RackFillet(_ImageOfRoot(self.gear)).curve(profile, root_radius, count)
-
-    def as_arc(self, radius: float) -> ArcFillet:
-        """The image of an arc of a radius that touches the root circle from within."""
-        root = self.gear.root_radius
-        if not 0.0 < radius < 0.5 * root:
-            raise InputError(f"fillet_radius: {radius} mm is not positive and below half of the root radius")
-        return ArcFillet(radius * root / (root - 2.0 * radius))
 
 
 @dataclass(frozen=True)
@@ -208,6 +203,4 @@ class RingTooth(ToothGeometry):
         half_angle = 0.5 * gear.tooth_thickness_at(self.working_radius) / self.working_radius
         root = gear.root_radius
         sections, held = InvertedPlanes(root), Outside(gear.outer_radius)
-        return ToothForm(
-            gear.tooth_count, half_angle, sections, RootCylinder(root), RingFillet(gear), held=held
-        )
+        return ToothForm(gear.tooth_count, half_angle, sections, RootCylinder(root), RingFillet(gear), held=held)

@@ -65,7 +65,7 @@ def test_pictures_have_the_tip_on_top_and_the_axis_of_the_pinion():
 
 @pytest.mark.parametrize("radii", [(87.0, 93.0), (93.0, 84.0)])
 def test_radii_in_the_wrong_order_are_refused(radii):
-    with pytest.raises(InputError, match="base 84.6 <= tip"):
+    with pytest.raises(InputError, match=r"base 84\.6 <= tip"):
         RingFlank(BASE, 0.0, 1, WORKING, radii, WIDTH)
 
 
@@ -79,7 +79,11 @@ def removed(modifications, rho, fixed_z):
 
 
 @pytest.mark.parametrize(
-    "start", [{"tip_relief_start": 180.0}, {"tip_relief_start_length": math.sqrt(90.0**2 - (90.0 * math.cos(math.radians(20))) ** 2)}]
+    "start",
+    [
+        {"tip_relief_start": 180.0},
+        {"tip_relief_start_length": math.sqrt(90.0**2 - (90.0 * math.cos(math.radians(20))) ** 2)},
+    ],
 )
 def test_tip_relief_grows_towards_the_smaller_diameter(start):
     relief = FlankModifications(tip_relief=0.02, **start)

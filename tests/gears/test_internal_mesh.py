@@ -65,7 +65,7 @@ def test_active_profile_of_the_ring_starts_at_the_larger_diameter():
 
 @pytest.mark.parametrize(("height", "clear"), [(1.0, False), (0.7, True)])
 def test_overlap_of_the_tips_is_that_of_brute_force(height, clear):
-    """Teeth 30/38 turned until the tip corner of the pinion crosses the tip circle of the ring: whose corner is ahead."""
+    """Teeth 30/38 turned until the pinion's tip corner crosses the ring's tip circle: the ring's must be ahead."""
     mesh = spur((30, 38), height)
     pinion, ring = mesh.pinion, mesh.ring
     turns = np.linspace(0.05, 1.2, 11501)

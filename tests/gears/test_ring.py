@@ -84,7 +84,7 @@ def test_cutter_of_two_gears_shapes_the_fillet_by_rolling():
     """No point of the rolling cutter's rounding reaches beyond the fillet: brute force over its turn."""
     gear = ring(cutter=CUTTER)
     radius, angle = gear.root_fillet(4000)
-    distance, start, roll = gear._cutter_rounding_centre(gear.fillet_radius)
+    distance, start, _ = gear._cutter_rounding_centre(gear.fillet_radius)
     apart = gear._cutting_distance
     turn = np.linspace(-0.25, 0.25, 801)[:, None]
     around = np.linspace(0.0, 2.0 * math.pi, 721)
