@@ -197,33 +197,32 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         at another limit.
     """
     # products of small matrices: on several threads of BLAS they take longer, and on some processors round otherwise
-    with one_blas_thread():
-        with noted_accuracy_warnings() as warned:
-            pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)
-            require((not effort.is_refused, f"analysis.cells: {wanted.cells}: {effort}"))
-            warn_of_gears(scene, pair)
-            count, torques = wanted.positions, np.asarray(scene.torques)
-            angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
-            grid = GridChoice(
-                cells=None if wanted.cells is None else (wanted.cells[0], wanted.cells[1]),
-                accuracy=wanted.accuracy,
-                tolerance=wanted.tolerance,
-                free_edges=wanted.free_edges,
-            )
-            roots = roots_of(scene, pair)
-            if wanted.load_sharing:
-                mesh = trace_teeth(pair, angles)
-                bending = model_of(scene, pair, farthest_apart(mesh))
-                carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
-            else:
-                path = trace_contact(pair, angles)
-                bending = model_of(scene, pair, 1)
-                carried = carried_by_one(pair, path, torques, grid, bending, progress)
-            torsion = 0.0 if bending is None else sum(body_torsion(pair))
-            at_edges = pressures_at_rounded_edges(
-                pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
-            )
-            warn_of_accuracy(pair, grid, carried, at_edges, load_sharing=wanted.load_sharing, body_torsion=torsion)
+    with one_blas_thread(), noted_accuracy_warnings() as warned:
+        pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)
+        require((not effort.is_refused, f"analysis.cells: {wanted.cells}: {effort}"))
+        warn_of_gears(scene, pair)
+        count, torques = wanted.positions, np.asarray(scene.torques)
+        angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
+        grid = GridChoice(
+            cells=None if wanted.cells is None else (wanted.cells[0], wanted.cells[1]),
+            accuracy=wanted.accuracy,
+            tolerance=wanted.tolerance,
+            free_edges=wanted.free_edges,
+        )
+        roots = roots_of(scene, pair)
+        if wanted.load_sharing:
+            mesh = trace_teeth(pair, angles)
+            bending = model_of(scene, pair, farthest_apart(mesh))
+            carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
+        else:
+            path = trace_contact(pair, angles)
+            bending = model_of(scene, pair, 1)
+            carried = carried_by_one(pair, path, torques, grid, bending, progress)
+        torsion = 0.0 if bending is None else sum(body_torsion(pair))
+        at_edges = pressures_at_rounded_edges(
+            pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
+        )
+        warn_of_accuracy(pair, grid, carried, at_edges, load_sharing=wanted.load_sharing, body_torsion=torsion)
         date = datetime.now(UTC).isoformat(timespec="seconds")
         return mesh_cycle(scene, pair, carried, at_edges, roots, warnings=warned, date=date)
 

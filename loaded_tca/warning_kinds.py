@@ -203,6 +203,11 @@ BEYOND_YIELD = Kind(
     "the contact is elastic: real flanks yield below their surface, and carry the load on a wider contact",
     "`max_pressure_MPa`, less torque, or another unit of what was given",
 )
+ROOT_BEYOND_YIELD = Kind(
+    "root stress of the {gear} is up to {stress:.4g} MPa, above {most:g}, which no gear steel carries without yielding",
+    "stress is elastic: real roots yield, and the stress range of the next turns is another",
+    "less torque, a larger module or fillet, or another unit of what was given",
+)
 UNMODIFIED_TOOTH = Kind(
     "{gear}, with its modifications: {fault}; it bends like the tooth without them",
     "the modified tooth cannot be meshed, for instance where it is pointed; its contact has the modifications, its "
@@ -214,6 +219,16 @@ FACE_ELEMENTS = Kind(
     "of the face alone, root stress is too low, by a tenth at 2 modules",
     "the face is so wide that few elements lie across it",
     "read root stress under a contact of the whole face; a contact that covers a part of it has more",
+)
+PITCH_DEVIATIONS = Kind(
+    "the gears have pitch deviations or runout, which an analysis of one pitch leaves out: all teeth count as alike",
+    "deviations of single teeth and of the axis repeat with a turn of their gear, not with every pitch",
+    "`loaded-tca revolution`, or `analyse_revolution`",
+)
+OPEN_REVOLUTION = Kind(
+    "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: the ends of the curve do not meet",
+    "amplitudes of a curve that is not closed leak into neighbouring orders; spans hold for the part that is there",
+    '`pitches = "hunting"`, or a multiple of the number of teeth of the {gear}',
 )
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))

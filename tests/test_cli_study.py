@@ -57,6 +57,17 @@ def test_study_writes_figures_table_and_summary(study, capsys):
 
 
 @pytest.mark.usefixtures("blank_pictures")
+def test_long_study_says_beforehand_what_its_variants_take(study, capsys, monkeypatch):
+    monkeypatch.setattr("loaded_tca.cli.terminal.WORTH_TELLING", 0.0)
+    assert cli.main(["study", study([2.0, 4.0]), "--out", "out"]) == 0
+    (line,) = [line for line in capsys.readouterr().err.splitlines() if "variants" in line]
+    each, whole = map(
+        float, re.fullmatch(r"loaded-tca: 2 variants, roughly (\S+) s each, (\S+) s together", line).groups()
+    )
+    assert whole == pytest.approx(2.0 * each, rel=0.05)  # two digits each
+
+
+@pytest.mark.usefixtures("blank_pictures")
 def test_workers_find_what_one_process_finds(study):
     name = study([2.0, 4.0, 6.0])
     assert cli.main(["study", name, "--out", "alone"]) == 0

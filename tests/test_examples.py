@@ -27,6 +27,7 @@ EXPECTED = {
     "plot_bevel_pressure": (1.0, 1e-2),  # peak over that of Hertz: the flanks bend a little over the ellipse
     "plot_transmission_error": (2.0 / 3.0, 5e-3),  # approach of a Hertz contact under growing load
     "plot_load_sharing": (1.0, 1e-3),  # half a pitch before and behind: the two pairs of one position
+    "plot_revolution": (1.0, 1e-4),  # an eccentric wheel turns as far as its axis is off, loaded as unloaded
     "plot_root_stress": (1.0, 1e-3),  # a pitch further the mesh is the same
     "plot_loaded_transmission_error": (1.0, 1e-3),  # a pitch further the mesh is the same
     "plot_comparison": (1.0, 5e-3),  # opposite errors mirror each other, on grids of 24 x 32 cells
@@ -105,7 +106,7 @@ def test_page_of_pictures_has_every_kind(tmp_path, monkeypatch):
     monkeypatch.setattr(example, "DesignModel", partial(example.DesignModel, cells=(8, 12)))
     example.main()
     drawn = {re.sub("^(study_.*?)_(peak_pressure|transmission_error).*", r"\1", path.stem) for path in Path().iterdir()}
-    several = {"all", "study", "subsurface"}  # the last one is stress_below, of arrays
+    several = {"all", "solution", "study", "subsurface"}  # of arrays: the bare solver, and stress_below
     kinds = {name.removeprefix("plot_") for name in plots.__all__ if name.startswith("plot_")} - several
     assert kinds - drawn == set()
 

@@ -35,6 +35,18 @@ Pictures are those of one torque; docs/guide/comparing.md says more."""
 EASE_OFF = """files in DIR:
   ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
                             corners, and its angles, crownings and twist"""
+SETTINGS = """SCENE has bevel gears with a section [pair.blank] and the radius of its cutter. FILE is a scene of type
+face_milled with the same blanks, and with machine settings and cutters in closed form: a start to be mended by what its
+contact shows ('loaded-tca run', 'vh', 'ease-off')."""
+VH = """V and H are mounting errors: of bevel and face-milled gears the offset and the axial displacement of the pinion
+[mm], of cylindrical ones the errors of the axes in their plane and out of it [deg].
+
+files in DIR:
+  vh_check.png              contact patterns by a marking compound, V upwards, H to the right
+  vh_check.csv              centre of each pattern, its shift, part of the pitch with edge contact
+and with --loaded instead
+  vh_under_load.png         highest pressure at each place of the flank
+  vh_study.nc, vh_study_maps/  the study behind it; the same command goes on from there"""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
   subsurface.csv            the same over the depth, below the highest pressure
@@ -68,6 +80,18 @@ STUDY = """files in DIR:
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
 pictures, accuracy warnings with what to do, and the scene file; of a study what varies, the ranking, best and worst
 variant; of a design start and optimum. It prints on A4. Needs the package jinja2."""
+REVOLUTION = """files in DIR:
+  revolution.nc             everything, to be read by loaded_tca.Revolution.load or xarray
+  revolution.json           the key figures: single-flank deviations, orders, worst teeth
+  revolution.csv            one row per torque and position
+  teeth.csv                 the largest share, force and pressure of every tooth of both gears
+  orders.csv                amplitudes of all orders, mesh orders and sidebands named
+  revolution_error.png      transmission error over the revolution, rigid and under each torque
+  revolution_spectrum.png   its orders under the largest torque
+  revolution_shares.png     share of every tooth as a band, highest pressure of every tooth
+  revolution_waterfall.png  orders over the torque
+[pinion.pitch], [wheel.pitch] and [revolution] of the scene say where the teeth stand and which pitches follow each
+other; docs/guide/whole_revolutions.md says more."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -113,6 +137,12 @@ def _add_analyses(command: Command) -> None:
     run = command("run", run_by.run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
     _add_scene(run)
     run.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
+    text = "analyse the coast side too, and compare: directories drive and coast in DIR, comparison.* beside them"
+    run.add_argument("--coast", action="store_true", help=text)
+    text = "analyse a whole revolution, each tooth at its own place"
+    revolution = command("revolution", run_by.revolution, text, REVOLUTION)
+    _add_scene(revolution)
+    revolution.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
 
 
 def _add_readers(command: Command) -> None:
@@ -131,6 +161,7 @@ def _add_readers(command: Command) -> None:
         reader.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {BESIDE}")
         reader.add_argument("--torque", metavar="NM", type=float, help=f"{of_torque}; default: largest")
         reader.add_argument("--position", metavar="N", type=int, help=f"position of {of_position}, from 1; {peak}")
+    plot.add_argument("--pdf", action="store_true", help="write at_a_glance.pdf too, a sheet of A4")
     plot.add_argument("--all", action="store_true", help="draw contact_patterns.png and full_mesh.png too")
     tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
     tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")
@@ -170,7 +201,26 @@ def _add_tables_and_maps(command: Command) -> None:
     ease_off = command("ease-off", run_by.ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     _add_scene(ease_off)
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
-    ease_off.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion")
+    cut = command("settings", run_by.settings, "write the face-milled scene of a bevel blank", SETTINGS)
+    _add_scene(cut)
+    cut.add_argument("--out", metavar="FILE", required=True, type=_path, help="scene file to write")
+    methods = "duplex_spread_blade", "spread_blade"
+    text = f"how both gears are cut; default: {methods[0]}"
+    cut.add_argument("--method", choices=methods, default=methods[0], help=text)
+    vh = command("vh", run_by.vh, "draw contact patterns over two mounting errors (V-H check)", VH)
+    _add_scene(vh)
+    vh.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
+    for name, what in (("v", "V, upwards"), ("h", "H, to the right")):
+        text = f"values of {what}; default: three that move the contact by parts of a module"
+        vh.add_argument(f"--{name}", metavar=name.upper(), nargs="+", type=float, help=text)
+    for reader in (ease_off, vh):
+        reader.add_argument(
+            "--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion"
+        )
+    vh.add_argument(
+        "--loaded", action="store_true", help="under the torques of the scene, with all its analysis asks for"
+    )
+    _add_engine(vh)
 
 
 def _add_studies(command: Command) -> None:
@@ -180,9 +230,7 @@ def _add_studies(command: Command) -> None:
     )
     study.add_argument("study", metavar="STUDY.toml", help="study file")
     study.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
-    engine = study.add_mutually_exclusive_group()
-    engine.add_argument("--workers", metavar="N", type=int, help="processes on this machine; default: this one alone")
-    engine.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://host:8786")
+    _add_engine(study)
     study.add_argument("--rank-by", metavar="FIGURE", help="figure of study.csv, the least is best; default: TE span")
     study.add_argument(
         "--keep-maps",
@@ -196,6 +244,13 @@ def _add_studies(command: Command) -> None:
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
     report.add_argument("--rank-by", metavar="FIGURE", help="of a study, the least is best; default: TE span")
+
+
+def _add_engine(parser: argparse.ArgumentParser) -> None:
+    """Add who analyses the variants of a study."""
+    engine = parser.add_mutually_exclusive_group()
+    engine.add_argument("--workers", metavar="N", type=int, help="processes on this machine; default: this one alone")
+    engine.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://host:8786")
 
 
 class _Parser(argparse.ArgumentParser):

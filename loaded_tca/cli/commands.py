@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, progress_bar
+from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, progress_bar, say_cost
 from loaded_tca.errors import InputError, named, reason_of, require
 
 if TYPE_CHECKING:
@@ -204,20 +204,33 @@ def demo(options: argparse.Namespace) -> None:
         again = f"'loaded-tca run {scene} --out {directory}'"
         raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
     replace_together(directory, {scene.name: content})
-    run(argparse.Namespace(scene=scene, set=[], out=directory))
+    run(argparse.Namespace(scene=scene, set=[], out=directory, coast=False))
     print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
     print(f"  loaded-tca run {scene} --out my-pair")
 
 
 def run(options: argparse.Namespace) -> None:
-    """Read, analyse, write everything, and show the summary."""
-    from loaded_tca.analysis import analyse
+    """Read, analyse, write everything, and show the summary; the coast side and its comparison too where asked."""
+    scene, directory = scene_of(options), options.out
+    check_place(directory)
+    if not options.coast:
+        _run_scene(scene, directory)
+        return
+    scenes = {"drive": scene, "coast": scene.coast_side()}
+    for name, side in scenes.items():
+        _run_scene(side, directory / name)
+    _compare(scenes, [directory / name for name in scenes], directory)
+
+
+def _run_scene(scene: Scene, directory: Path) -> None:
+    """Analyse a scene, write everything into a directory, and show the summary."""
+    from loaded_tca.analysis import analyse, expected_effort
     from loaded_tca.output.result_files import write_report
     from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
 
-    scene, directory = scene_of(options), options.out
-    check_place(directory)
-    with progress_bar(scene) as progress:
+    torques, positions = len(scene.torques), scene.analysis.positions
+    count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
+    with progress_bar(expected_effort(scene), count, torques * positions) as progress:
         result = analyse(scene, progress=progress)
     report = write_report(result, directory, outdated=[f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)])
     try:
@@ -230,12 +243,33 @@ def run(options: argparse.Namespace) -> None:
     print_files([*report, *pictures])
 
 
+def revolution(options: argparse.Namespace) -> None:
+    """Analyse a whole revolution, write everything into a directory, and show the summary."""
+    from loaded_tca.output.revolution_files import write_revolution
+    from loaded_tca.plots import REVOLUTION_PICTURES, png_of
+    from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
+
+    scene, directory = scene_of(options), options.out
+    check_place(directory)
+    effort = expected_revolution_effort(scene)
+    with progress_bar(effort, "states", effort.contacts // 2) as progress:
+        result = analyse_revolution(scene, progress=progress)
+    pictures = {f"{name}.png": png_of(draw(result)) for name, draw in REVOLUTION_PICTURES.items()}
+    written = write_revolution(result, directory, pictures)
+    print(result.summary(), end="\n\n")
+    print_files(written)
+
+
 def plot(options: argparse.Namespace) -> None:
     """Draw the pictures of a result again."""
-    from loaded_tca.plots import plot_all
+    from loaded_tca.plots import plot_all, plot_at_a_glance
+    from loaded_tca.plots.style import pdf_of
+    from loaded_tca.results.files import replace_together
 
     result, directory, torque, position = result_of(options)
-    print_files(plot_all(result, directory, torque=torque, position=position, more=options.all))
+    sheet = {"at_a_glance.pdf": pdf_of(plot_at_a_glance(result, torque))} if options.pdf else {}
+    drawn = plot_all(result, directory, torque=torque, position=position, more=options.all)
+    print_files([*drawn, *replace_together(directory, sheet)])
 
 
 def tooth(options: argparse.Namespace) -> None:
@@ -269,24 +303,36 @@ def subsurface(options: argparse.Namespace) -> None:
 
 def compare(options: argparse.Namespace) -> None:
     """Show what results differ in."""
+    check_place(options.out)
+    names = options.names or ends_that_differ([result_file(path) for path in options.results])
+    if len(names) != len(options.results) or len(set(names)) != len(names):
+        wanted = f"{len(options.results)} results need {len(options.results)} different names"
+        raise InputError(f"--names {' '.join(names)}: {wanted}")
+    _compare(names, options.results, options.out, options.torque, options.position)
+
+
+def _compare(
+    names: Iterable[str],
+    results: Sequence[Path],
+    directory: Path,
+    torque_Nm: float | None = None,
+    number: int | None = None,
+) -> None:
+    """Write the comparison of results under names, with pictures at a torque and position, and show it."""
     from loaded_tca.output.tables import write_comparison
     from loaded_tca.plots import plot_compared_maps, plot_comparison, png_of
     from loaded_tca.results import MeshCycle, compare_results
 
-    check_place(options.out)
-    paths = [result_file(path) for path in options.results]
-    names = options.names or ends_that_differ(paths)
-    if len(names) != len(paths) or len(set(names)) != len(names):
-        raise InputError(f"--names {' '.join(names)}: {len(paths)} results need {len(paths)} different names")
-    comparison = compare_results(dict(zip(names, map(MeshCycle.load, paths), strict=True)))
-    torque = None if options.torque is None else 1e3 * options.torque
-    position = index_of_position(options.position, comparison.results[names[0]])
+    loaded = [MeshCycle.load(result_file(path)) for path in results]
+    comparison = compare_results(dict(zip(names, loaded, strict=True)))
+    torque = None if torque_Nm is None else 1e3 * torque_Nm
+    position = index_of_position(number, loaded[0])
     summary = comparison.summary(torque)
     pictures = {
         "comparison.png": png_of(plot_comparison(comparison, torque)),
         "compared_maps.png": png_of(plot_compared_maps(comparison, torque, position)),
     }
-    written = write_comparison(comparison, options.out, pictures)
+    written = write_comparison(comparison, directory, pictures)
     print(summary, end="\n\n")
     print_files(written)
 
@@ -341,6 +387,57 @@ def ease_off(options: argparse.Namespace) -> None:
     print_files(replace_together(options.out, {"ease_off.png": picture}))
 
 
+def settings(options: argparse.Namespace) -> None:
+    """Write the face-milled scene of a bevel blank, with its basic machine settings."""
+    from loaded_tca.results.files import replacing
+    from loaded_tca.scene.bevel import BevelScene
+
+    scene = scene_of(options)
+    kind = f"{options.scene}: pair.type: allowed straight_bevel or spiral_bevel, with [pair.blank]"
+    require((isinstance(scene, BevelScene), kind))
+    assert isinstance(scene, BevelScene)
+    check_files([options.out], Path(options.scene))
+    text = scene.face_milled(options.method).to_toml()
+    with replacing(options.out) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    print_files([options.out])
+
+
+def vh(options: argparse.Namespace) -> None:
+    """Draw the contact pattern over two mounting errors, without load or under the scene's torque."""
+    from loaded_tca.flank_maps import vh_check
+    from loaded_tca.output.tables import vh_table
+    from loaded_tca.plots import plot_loaded_vh_check, plot_vh_check, png_of
+    from loaded_tca.plots.style import label_of
+    from loaded_tca.results.files import replace_together
+    from loaded_tca.studies import run_study, vh_study
+
+    scene, directory = scene_of(options), options.out
+    check_place(directory)
+    v, h = (given or steps for given, steps in zip((options.v, options.h), scene.vh_steps(), strict=True))
+    if options.loaded:
+        study = vh_study(scene, v, h)
+        say_cost(study, options.workers or 1)
+        with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
+            rows = run_study(study, executor, directory / "vh_study.nc", show, keep_maps=range(len(study)))
+        figure = plot_loaded_vh_check(rows, directory / "vh_study_maps", gear=options.gear)
+        print_files([directory / "vh_study.nc", *replace_together(directory, {"vh_under_load.png": png_of(figure)})])
+        return
+    keys = scene.vh_keys
+    patterns = vh_check(
+        lambda at_v, at_h: scene.with_changes(dict(zip(keys, (at_v, at_h), strict=True))).pair(),
+        v,
+        h,
+        gear=options.gear,
+    )
+    names = f"V: {label_of(keys[0])}", f"H: {label_of(keys[1])}"
+    contents = {
+        "vh_check.csv": vh_table(patterns, keys).encode(),
+        "vh_check.png": png_of(plot_vh_check(patterns, names, scene.title)),
+    }
+    print_files(replace_together(directory, contents))
+
+
 def study(options: argparse.Namespace) -> None:
     """Analyse what is missing of a study, write its tables and pictures, and show the summary."""
     from loaded_tca.output.tables import write_study
@@ -349,6 +446,7 @@ def study(options: argparse.Namespace) -> None:
 
     study, directory = read_study(options.study), options.out
     check_place(directory)
+    say_cost(study, options.workers or 1)
     with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
         rows = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
     rank_by = options.rank_by if options.rank_by in rows else None  # another one is told once all is written

@@ -13,10 +13,11 @@ from threading import Event, Thread
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
-    from loaded_tca.scene import Scene
+    from loaded_tca.analysis import Effort
+    from loaded_tca.studies import Study
 
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {elapsed} gone, {remaining} left"
-STUDY_BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {rate_fmt}, {elapsed} gone, {remaining} left"
+STUDY_BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {rate_inv_fmt}, {elapsed} gone, {remaining} left"
 NOT_BY_ITSELF = 1e-9
 """Delay [s] of a bar that does not draw itself while it is made."""
 TICK = 1.0
@@ -53,21 +54,40 @@ def print_files(paths: Sequence[Path]) -> None:
 
 
 @contextmanager
-def progress_bar(scene: Scene) -> Iterator[Callable[[int, int], None] | None]:
+def progress_bar(effort: Effort, count: str, whole: int) -> Iterator[Callable[[int, int], None] | None]:
     """An estimate of the analysis and, on a terminal, a bar with what is done, of how much, and the time left.
 
     In a file or a pipe there is no bar, and an estimate only of an analysis that is long or exceeds the memory. The bar
     is there from the start, before the first position teeth that bend are modelled, and shows the time all along.
-    """
-    from loaded_tca.analysis import expected_effort
 
-    effort, terminal = expected_effort(scene), sys.stderr is not None and sys.stderr.isatty()
+    Parameters
+    ----------
+    effort : Effort
+    count : str
+        What the bar counts.
+    whole : int
+        How many of them there are.
+    """
+    terminal = sys.stderr is not None and sys.stderr.isatty()
     if not effort.is_refused and (terminal or effort.seconds > WORTH_TELLING or not effort.fits):
         say(f"loaded-tca: {effort}")
-    torques, positions = len(scene.torques), scene.analysis.positions
-    count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
-    with bar_of(count, torques * positions, BAR) as show:
+    with bar_of(count, whole, BAR) as show:
         yield show
+
+
+def say_cost(study: Study, workers: int = 1) -> None:
+    """Print what the variants of a study take on a terminal, or where that is long.
+
+    Each as the scene they have in common, roughly: variants with other grids differ, models of teeth are made once.
+    """
+    from loaded_tca.analysis import expected_effort, rounded
+
+    each = expected_effort(study.scene).seconds
+    whole = len(study) * each / max(1, min(workers, len(study)))
+    if sys.stderr is not None and (sys.stderr.isatty() or whole > WORTH_TELLING):
+        minutes = f"{rounded(whole / 60.0)} min" if whole > 100.0 else f"{rounded(whole)} s"
+        by = f" by {workers} processes" if workers > 1 else ""
+        say(f"loaded-tca: {len(study)} variants, roughly {rounded(each)} s each, {minutes} together{by}")
 
 
 @contextmanager

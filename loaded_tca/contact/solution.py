@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import enum
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Self
+from importlib import import_module
+from typing import Any, Literal, Self
 
 import numpy as np
 
@@ -212,6 +214,11 @@ class ContactSolution(Solution):
 
     problem: ContactProblem
     coarser: CoarserGrid | None = None
+
+    def plot(self, hertz: Any = None) -> Any:
+        """Draw the pressure, beside Hertz (a PointContact) if given; see :func:`loaded_tca.plots.plot_solution`."""
+        draw: Callable[..., Any] = import_module("loaded_tca.plots").plot_solution  # numerics know no plotting
+        return draw(self, hertz)
 
     @cached_property
     def peak_pressure(self) -> float:

@@ -171,6 +171,8 @@ def face_cone_angles(face_cone: tuple[float, float], distance: Array) -> Array:
     return tip + np.arcsin(np.clip(apex * math.sin(tip) / distance, -1.0, 1.0))
 
 
+ROUNDING = 1e-12
+"""Of cone angles [rad]."""
 SMALLEST_Q = 3e-5
 """Q is kept above this: at the base cone itself the curvature is infinite, below it there is no involute. That
 concerns 1e-9 rad beside the base cone, where Theta is then off by less than 1e-13 rad."""
@@ -194,7 +196,7 @@ def _q(sine: Array, base_angle: float) -> Array:
 
 
 class SphericalInvoluteFlank(Flank):
-    """Unmodified flank of a bevel gear between root and face cone, toe and heel; all cones share the apex.
+    """Unmodified flank of a bevel gear between root and face cone, toe and heel.
 
     Parameters
     ----------
@@ -210,6 +212,8 @@ class SphericalInvoluteFlank(Flank):
         Root (form) cone, not below the base cone, and face cone.
     cone_distances : (float, float) [mm]
         Toe and heel.
+    apexes : (float, float) [mm]
+        How far the apexes of both cones lie beyond that of the pitch cone, away from the teeth.
 
     Raises
     ------
@@ -225,17 +229,23 @@ class SphericalInvoluteFlank(Flank):
         side: int,
         cone_angles: tuple[float, float],
         cone_distances: tuple[float, float],
+        apexes: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         base = math.asin(math.sin(pitch_angle) * math.cos(pressure_angle))
-        if not base <= cone_angles[0] < cone_angles[1] <= math.pi - base:
-            raise InputError(
-                f"cone_angles: base {base:.6g} <= root {cone_angles[0]:.6g} < face {cone_angles[1]:.6g} <= "
-                f"{math.pi - base:.6g} rad does not hold"
-            )
+        seen = [
+            [float(face_cone_angles(cone, np.array(distance))) if cone[1] else cone[0] for distance in cone_distances]
+            for cone in zip(cone_angles, apexes, strict=True)
+        ]
+        for root, face in zip(*seen, strict=True):
+            if not base - ROUNDING <= root < face <= math.pi - base:
+                raise InputError(
+                    f"cone_angles: base {base:.6g} <= root {root:.6g} < face {face:.6g} <= {math.pi - base:.6g} rad "
+                    "does not hold"
+                )
         if not 0.0 < cone_distances[0] < cone_distances[1]:
             raise InputError(f"cone_distances: 0 < toe {cone_distances[0]} < heel {cone_distances[1]} mm does not hold")
         self.base_angle, self.side = base, side
-        self.cone_angles, self.cone_distances = cone_angles, cone_distances
+        self.cone_angles, self.cone_distances, self.apexes = cone_angles, cone_distances, apexes
         self.mean_cone_distance = self.profile_unit = 0.5 * (cone_distances[0] + cone_distances[1])
         self.roll_unit = math.sin(base)
         self._spiral = math.tan(spiral_angle) / math.sin(pitch_angle)
@@ -266,23 +276,27 @@ class SphericalInvoluteFlank(Flank):
         return profile + logarithm * self._spiral
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
-        """Face cone, root cone (both R sin of the angle to the cone), toe and heel sphere."""
-        root, tip = self.cone_angles
+        """Face cone and root cone, along the normals of the cones, toe and heel sphere."""
+        (root, tip), (below, above) = self.cone_angles, self.apexes
         distance = self._cone_distance(rho, z)
         return (
-            Jet(z * math.sin(tip) - rho * math.cos(tip), rho=-math.cos(tip), z=math.sin(tip)),
-            Jet(rho * math.cos(root) - z * math.sin(root), rho=math.cos(root), z=-math.sin(root)),
+            Jet((z + above) * math.sin(tip) - rho * math.cos(tip), rho=-math.cos(tip), z=math.sin(tip)),
+            Jet(rho * math.cos(root) - (z + below) * math.sin(root), rho=math.cos(root), z=-math.sin(root)),
             distance + Jet(-self.cone_distances[0]),
             distance * -1.0 + Jet(self.cone_distances[1]),
         )
 
     def grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
         """Even grid in the unwound arc and the cone distance: near the base cone the profile bends most."""
-        start, end = unwound_arc(np.array(self.cone_angles), self.base_angle)
-        angle = np.arccos(math.cos(self.base_angle) * np.cos(np.linspace(start, end, profile)))
-        angle[[0, -1]] = self.cone_angles
         distance = np.linspace(*self.cone_distances, lengthwise)
-        return np.outer(np.sin(angle), distance), np.outer(np.cos(angle), distance)
+        cones = [
+            face_cone_angles(cone, distance) if cone[1] else np.full(lengthwise, cone[0])
+            for cone in zip(self.cone_angles, self.apexes, strict=True)
+        ]
+        start, end = unwound_arc(np.stack(cones), self.base_angle)
+        angle = np.arccos(math.cos(self.base_angle) * np.cos(np.linspace(start, end, profile)))
+        angle[[0, -1]] = cones
+        return np.sin(angle) * distance, np.cos(angle) * distance
 
     def profile_coordinate(self, rho: Array, z: Array) -> Jet:
         """Unwound arc w, cos u = cos(delta_b) cos(w)."""

@@ -305,6 +305,24 @@ def fitted(flank: Flank, points: tuple[int, int] = DEFAULT_POINTS, degree: int =
     return SplineFlank(region, spline, FitError.of(bare.distance_to(flank, rho, z)), check)
 
 
+def smoothing_coefficients(points: tuple[int, int], degree: int | None = None) -> tuple[int, int]:
+    """B-spline coefficients along the profile and lengthwise that smooth a measurement of so many points.
+
+    Half as many as points and two, but as many as the degree needs, and no more than there are points: what is left
+    follows crowning, slopes, twist and reliefs that several points see, and 0.6 of the noise.
+
+    Examples
+    --------
+    >>> smoothing_coefficients((9, 15)), smoothing_coefficients((5, 9), 3), smoothing_coefficients((4, 6))
+    ((6, 9), (4, 6), (4, 6))
+    """
+    first, second = (
+        min(count, max(count // 2 + 2, FEWEST_POINTS[degree or (5 if count >= FEWEST_POINTS[5] else 3)]))
+        for count in points
+    )
+    return first, second
+
+
 def measured(
     nominal: Flank,
     topography: Topography,

@@ -1,7 +1,8 @@
 """Straight and spiral bevel gears with spherical involute profiles: cones, cone distances, active profiles.
 
-Lengths are in mm, angles in rad. All cones share the apex. Profiles are described on the unit sphere about the apex,
-where a tooth is unwound from its base cone: the unwound arc w takes the place of the roll length.
+Lengths are in mm, angles in rad. Base and pitch cones share the apex; face and root cones may have their own. Profiles
+are described on the unit sphere about the apex, where a tooth is unwound from its base cone: the unwound arc w takes
+the place of the roll length.
 """
 
 from __future__ import annotations
@@ -72,6 +73,11 @@ class BevelGear:
         What messages call this gear.
     bore_diameter : float [mm], optional
         For the compliance of the body.
+    face_apex, root_apex : float [mm]
+        How far the apexes of face and root cone lie beyond that of the pitch cone, away from the teeth, as
+        ``BlankGear`` has them.
+    mean_normal_thickness : float [mm], optional
+        s_mn on the pitch cone at mid-face; None: as the profile shift makes it.
 
     Raises
     ------
@@ -102,6 +108,9 @@ class BevelGear:
     root_angle: float | None = None
     name: str = "gear"
     bore_diameter: float | None = None
+    face_apex: float = 0.0
+    root_apex: float = 0.0
+    mean_normal_thickness: float | None = None
 
     def __post_init__(self) -> None:
         require(
@@ -133,19 +142,21 @@ class BevelGear:
                 f"{self.name}: the root cone, {_degrees(self.root_cone_angle)}, reaches the axis; raise profile_shift"
                 " or teeth"
             )
-        largest = 2.0 * self.inner_cone_distance * sin(self.root_cone_angle)
+        largest = 2.0 * self.inner_cone_distance * sin(self.root_cone_angle_at(self.inner_cone_distance))
         if self.bore_diameter is not None and self.bore_diameter >= largest:
             raise InputError(
                 f"{self.name}: bore_diameter: {self.bore_diameter:.6g} mm is not below the root diameter at the toe, "
                 f"{largest:.6g} mm"
             )
-        face = f"{self.name}: the face cone, {_degrees(self.tip_angle)},"
-        if self.tip_angle >= pi - self.base_angle:
+        ends = (self.inner_cone_distance, self.mean_cone_distance, self.outer_cone_distance)
+        highest = max(self.tip_angle_at(distance) for distance in ends)
+        face = f"{self.name}: the face cone, {_degrees(highest)},"
+        if highest >= pi - self.base_angle:
             raise GeometryError(
                 f"{face} lies beyond the end of the spherical involute, {_degrees(pi - self.base_angle)}; reduce "
                 "face_angle or profile_shift"
             )
-        if self.half_thickness_angle_at(self.tip_angle) <= 0.0:
+        if self.half_thickness_angle_at(highest) <= 0.0:
             raise GeometryError(f"{face} cannot be reached: pointed tooth; reduce face_angle or profile_shift")
 
     @property
@@ -180,18 +191,51 @@ class BevelGear:
 
     @property
     def tip_angle(self) -> float:
-        """Face angle delta_a, as given or standard [rad]."""
-        if self.face_angle is not None:
-            return self.face_angle
-        return self.pitch_angle + atan((1.0 + self.profile_shift) * self.outer_module / self.outer_cone_distance)
+        """Face angle delta_a, as given or standard; of a cone with its own apex the angle seen at mid-face [rad]."""
+        return self.tip_angle_at(self.mean_cone_distance)
+
+    def tip_angle_at(self, cone_distance: float) -> float:
+        """Angle under which the face cone is seen from the apex at a cone distance [rad]."""
+        angle = self.face_angle
+        if angle is None:
+            angle = self.pitch_angle + atan((1.0 + self.profile_shift) * self.outer_module / self.outer_cone_distance)
+        return _seen_from_apex(angle, self.face_apex, cone_distance)
 
     @property
     def root_cone_angle(self) -> float:
-        """Root angle delta_f, as given or standard [rad]."""
-        if self.root_angle is not None:
-            return self.root_angle
-        depth = (_DEDENDUM - self.profile_shift) * self.outer_module
-        return self.pitch_angle - atan(depth / self.outer_cone_distance)
+        """Root angle delta_f, as given or standard; of a cone with its own apex the angle seen at mid-face [rad]."""
+        return self.root_cone_angle_at(self.mean_cone_distance)
+
+    def root_cone_angle_at(self, cone_distance: float) -> float:
+        """Angle under which the root cone is seen from the apex at a cone distance [rad]."""
+        angle = self.root_angle
+        if angle is None:
+            depth = (_DEDENDUM - self.profile_shift) * self.outer_module
+            angle = self.pitch_angle - atan(depth / self.outer_cone_distance)
+        return _seen_from_apex(angle, self.root_apex, cone_distance)
+
+    @property
+    def cones(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Form and face cone of the flank: angle [rad] and how far the apex lies beyond that of the pitch cone [mm].
+
+        The form cone is the root cone, or the base cone where that lies higher; where they cross along the face it is
+        the cone through the higher one at toe and heel.
+        """
+        face = self.tip_angle if self.face_angle is None else self.face_angle
+        root = self.root_cone_angle if self.root_angle is None else self.root_angle
+        ends = self.inner_cone_distance, self.outer_cone_distance
+        above = [self.root_cone_angle_at(distance) >= self.base_angle for distance in ends]
+        if all(above):
+            return (root, self.root_apex), (face, self.face_apex)
+        if not any(above):
+            return (self.base_angle, 0.0), (face, self.face_apex)
+        toe, heel = (
+            (distance * sin(angle), distance * cos(angle))
+            for distance in ends
+            for angle in [max(self.root_cone_angle_at(distance), self.base_angle)]
+        )
+        form = atan2(heel[0] - toe[0], heel[1] - toe[1])
+        return (form, toe[0] / tan(form) - toe[1]), (face, self.face_apex)
 
     @property
     def form_angle(self) -> float:
@@ -220,7 +264,10 @@ class BevelGear:
 
     @property
     def half_thickness_angle(self) -> float:
-        """Half tooth thickness angle on the pitch cone, (pi/2 + 2 x tan alpha)/z [rad]."""
+        """Half tooth thickness angle on the pitch cone, as given or (pi/2 + 2 x tan alpha)/z [rad]."""
+        if self.mean_normal_thickness is not None:
+            diameter = 2.0 * self.mean_cone_distance * sin(self.pitch_angle)
+            return self.mean_normal_thickness / (cos(self.spiral_angle) * diameter)
         return (0.5 * pi + 2.0 * self.profile_shift * tan(self.pressure_angle)) / self.teeth
 
     def half_thickness_angle_at(self, cone_angle: float) -> float:
@@ -251,6 +298,11 @@ class BevelGear:
         allowed = f"between 0 and {4.0 * self.mean_cone_distance:.6g} mm"
         require((0.0 <= sine <= 2.0, f"a diameter of {diameter:.6g} mm is not {allowed}"), owner=self.name)
         return asin(sine) if sine <= 1.0 else pi - asin(2.0 - sine)
+
+
+def _seen_from_apex(angle: float, apex: float, cone_distance: float) -> float:
+    """Angle from the apex of the pitch cone of a cone whose own apex lies beyond it [rad]."""
+    return angle + asin(apex * sin(angle) / cone_distance) if apex else angle
 
 
 def _degrees(angle: float) -> str:
@@ -344,15 +396,16 @@ class BevelMesh:
     def room(self) -> Room:
         """Room that the whole gears leave each other: at mid-face, above the roots at the toe."""
         pinion, wheel = (self.pinion.mean_cone_distance * (tip - form) for tip, form in self._tip_and_form_arcs)
-        return Room(self.backlash, (pinion, wheel), self._tip_clearances)
+        return Room(self.backlash, (pinion, wheel), self.tip_clearances)
 
     @property
-    def _tip_clearances(self) -> tuple[float, float]:
+    def tip_clearances(self) -> tuple[float, float]:
         """Clearance between the roots of both gears and the mating gear's tip at the toe, across the cones [mm]."""
         both_ways = (self.pinion, self.wheel), (self.wheel, self.pinion)
         pinion, wheel = (
-            gear.inner_cone_distance * (self.shaft_angle - gear.root_cone_angle - mating.tip_angle)
+            toe * (self.shaft_angle - gear.root_cone_angle_at(toe) - mating.tip_angle_at(toe))
             for gear, mating in both_ways
+            for toe in [gear.inner_cone_distance]
         )
         return pinion, wheel
 

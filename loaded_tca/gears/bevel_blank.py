@@ -7,9 +7,9 @@ face-milled pair is cut from: one :class:`BevelBlank` holds both, each gear's nu
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from math import asin, atan, cos, degrees, inf, pi, radians, sin, tan
+from math import asin, atan, copysign, cos, degrees, inf, isclose, pi, radians, sin, sqrt, tan
 from typing import Any, Literal, get_args
 
 from loaded_tca.errors import GeometryError, require
@@ -24,6 +24,8 @@ _MAX_DEPTH_ANGLE = radians(45)
 _TOOL_DEPTH = 1.1
 # "modified" taper: the most by which the dedendum angles may exceed the standard ones (ISO 23509, annex C.5).
 _LARGEST_TAPER = 1.3
+# Part of the face width that the overlap of ISO 10300-1 counts.
+_EFFECTIVE_WIDTH = 0.85
 
 
 def crown_gear_factors(
@@ -62,6 +64,44 @@ def crown_gear_factors(
         "dedendum_factor": depth * (clearance + 0.5),
         "thickness_modification": 0.5 * thickness,
     }
+
+
+def usual_factors(teeth: tuple[int, int], shaft_angle: float = 0.5 * pi) -> dict[str, float]:
+    r"""Mean addendum and thickness factor of data type II where a drawing has none.
+
+    .. math:: c_{ham} = 0.21 + 0.29/u_a^2, \quad
+              k_t = -0.088 + 0.092 u_a - 0.004 u_a^2 + 0.0016 (z_1 - 30)(u_a - 1), \quad
+              u_a = \sqrt{u \cos\delta_1 / \cos\delta_2}
+
+    Parameters
+    ----------
+    teeth : (int, int)
+    shaft_angle : float [rad]
+        Sigma; the equivalent ratio u_a is u = z2/z1 where it is 90 deg.
+
+    Returns
+    -------
+    dict
+        ``addendum_share`` and ``thickness``, as :func:`crown_gear_factors` takes them.
+
+    References
+    ----------
+    ISO 23509:2016, annex C; the numbers of annex F.2 follow from them.
+
+    Examples
+    --------
+    >>> {key: round(value, 4) for key, value in usual_factors((14, 39)).items()}
+    {'addendum_share': 0.2474, 'thickness': 0.0915}
+    """
+    first, second = pitch_angles(teeth, shaft_angle)
+    ratio = teeth[1] / teeth[0]
+    if cos(first) > 0.0 < cos(second):
+        ratio = sqrt(ratio * cos(first) / cos(second))
+    thickness = -0.088 + 0.092 * ratio - 0.004 * ratio**2 + 0.0016 * (teeth[0] - 30) * (ratio - 1.0)
+    return {"addendum_share": 0.21 + 0.29 / ratio**2, "thickness": thickness}
+
+
+BacklashKind = Literal["outer_normal", "outer_transverse", "mean_normal", "mean_transverse"]
 
 
 @dataclass(frozen=True)
@@ -156,6 +196,18 @@ class BevelBlank:
     ) -> BevelBlank:
         """Blanks from the wheel's outer pitch diameter d_e2 = z2 m_et [mm]; options: every other parameter."""
         return cls(teeth, wheel_diameter / max(teeth[1], 1), face_width, **options)
+
+    def with_backlash(self, backlash: float, kind: BacklashKind) -> BevelBlank:
+        """The same blanks with a backlash j_en, j_et2, j_mn or j_mt2 [mm] (ISO 23509:2016, formulas 201 to 204)."""
+        outer = cos(self.spiral_angle_at(self.cone_distances[2]))
+        from_mean = self.outer_cone_distance / self.mean_cone_distance
+        normal = {
+            "outer_normal": 1.0,
+            "outer_transverse": cos(self.pressure_angle) * outer,
+            "mean_normal": outer * from_mean / cos(self.spiral_angle),
+            "mean_transverse": cos(self.pressure_angle) * outer * from_mean,
+        }
+        return replace(self, outer_normal_backlash=backlash * normal[kind])
 
     def __post_init__(self) -> None:
         self._check_inputs()
@@ -309,6 +361,30 @@ class BevelBlank:
         return 0.5 * growth / tan(self.pressure_angle)
 
     @property
+    def virtual_contact_ratios(self) -> tuple[float, float]:
+        """Profile and overlap contact ratio of the virtual cylindrical gears at mid-face (ISO 10300-1:2014, annex A).
+
+        The overlap is that of 0.85 of the face width.
+        """
+        spiral, module = self.spiral_angle, self.mean_normal_module
+        pressure = atan(tan(self.pressure_angle) / cos(spiral))
+        length = 0.0
+        for member, pitch in enumerate(self.pitch_angles):
+            diameter = self.teeth[member] * self.mean_transverse_module / cos(pitch)
+            tip = diameter + 2.0 * self._mean_addenda[member]
+            base = diameter * cos(pressure)
+            length += 0.5 * (copysign(sqrt(max(tip**2 - base**2, 0.0)), diameter) - diameter * sin(pressure))
+        return (
+            length * cos(spiral) / (pi * module * cos(pressure)),
+            _EFFECTIVE_WIDTH * self.face_width * sin(spiral) / (pi * module),
+        )
+
+    @property
+    def has_constant_slots(self) -> bool:
+        """Whether the taper leaves slots of constant width for a circular cutter."""
+        return self.cutter_radius is not None and isclose(sum(self.dedendum_angles), self.constant_slot_taper)
+
+    @property
     def _mean_addenda(self) -> tuple[float, float]:
         """h_am1, h_am2 [mm]."""
         module, shift = self.mean_normal_module, self.profile_shift
@@ -373,6 +449,7 @@ class BevelBlank:
             smallest_profile_shift=self._smallest_profile_shift(member),
             face_apex=face_apex,
             root_apex=root_apex,
+            constant_slots=self.has_constant_slots,
         )
 
     @cached_property

@@ -1,7 +1,7 @@
 """One gear of a pair of bevel blanks: what follows from its cones, depths and thicknesses (ISO 23509).
 
 Lengths are in mm, angles in rad; arrays of three are values at toe, mid-face and heel. Along the face the depth follows
-straight cones and the tooth thickness the normal pitch.
+straight cones; the tooth thickness follows the normal pitch, or where slots are of constant width what these leave.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.errors import GeometryError
-from loaded_tca.gears.cylindrical import involute
+from loaded_tca.gears.involute import involute
 
 Triple = tuple[float, float, float]
 
@@ -72,6 +72,8 @@ class BlankGear:
         x_hm and the value below which the teeth are undercut (clause 8), in mean normal modules.
     face_apex, root_apex : float [mm]
         t_zF and t_zR: how far the apex of the cone lies beyond the crossing point of the axes, away from the teeth.
+    constant_slots : bool
+        Whether slots are of constant width, as one spread-blade cutter leaves them where the taper is duplex.
     """
 
     name: str
@@ -89,6 +91,7 @@ class BlankGear:
     smallest_profile_shift: float
     face_apex: float
     root_apex: float
+    constant_slots: bool = False
 
     @property
     def face_angle(self) -> float:
@@ -146,8 +149,17 @@ class BlankGear:
 
     @property
     def normal_thicknesses(self) -> NDArray[np.float64]:
-        """s_n on the pitch cone, in proportion to the normal pitch [mm]."""
-        return self.mean_normal_thickness / self.normal_pitches[1] * self.normal_pitches
+        """s_n on the pitch cone: what slots of constant width leave, else in proportion to the normal pitch [mm]."""
+        proportional = self.mean_normal_thickness / self.normal_pitches[1] * self.normal_pitches
+        if not self.constant_slots:
+            return proportional
+        slots = self.normal_pitches - 2.0 * tan(self.pressure_angle) * self.dedenda
+        return slots - (slots[1] - self.mean_normal_thickness)
+
+    @property
+    def mean_slot_width(self) -> float:
+        """W_m, width of the slot at its bottom at mid-face, the theoretical point width of a cutter [mm]."""
+        return float(self.slot_widths[1])
 
     @property
     def mean_transverse_thickness(self) -> float:

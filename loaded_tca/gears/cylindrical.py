@@ -14,40 +14,9 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from loaded_tca.errors import GeometryError, InputError, require
+from loaded_tca.gears import tooth_measures
 from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks
-
-
-def involute(angle: float) -> float:
-    """Involute function inv(alpha) = tan(alpha) - alpha [rad]."""
-    return tan(angle) - angle
-
-
-def inverse_involute(value: float) -> float:
-    r"""Angle whose involute function is the value given, to machine precision.
-
-    Newton on :math:`t - \arctan t = \mathrm{inv}\,\alpha` with t = tan(alpha): convex, and started above the
-    root, so that the iterates fall until rounding stops them.
-
-    Parameters
-    ----------
-    value : float [rad]
-        inv(alpha), not negative.
-
-    Examples
-    --------
-    >>> round(inverse_involute(involute(0.35)), 12)
-    0.35
-    """
-    if not 0.0 <= value < inf:
-        raise InputError(f"value: an involute function of {value} rad has no angle between 0 and 90 deg")
-    if value == 0.0:
-        return 0.0
-    tangent = inf
-    smaller = (3.0 * value) ** (1.0 / 3.0) + value
-    while smaller < tangent:
-        tangent = smaller
-        smaller = tangent - (tangent - atan(tangent) - value) * (1.0 + tangent**-2)
-    return atan(tangent)
+from loaded_tca.gears.involute import inverse_involute, involute
 
 
 @dataclass(frozen=True)
@@ -72,7 +41,7 @@ class CylindricalGear:
     profile_shift : float
         Coefficient x, in normal modules.
     tip_diameter : float [mm], optional
-        d_a; None: d + 2 m_n (1 + x), no tip alteration.
+        d_a; None: d + 2 m_n (1 + x + k).
     dedendum_coefficient : float
         h_fP/m_n of the basic rack.
     root_radius_coefficient : float
@@ -81,6 +50,11 @@ class CylindricalGear:
         For the compliance of the body.
     name : str
         What messages call this gear.
+    thickness_allowance : float [mm]
+        A_sn of the tooth thickness in the normal section at the reference cylinder, negative for thinner teeth, at most
+        half a module: the rack cuts with x_E (:attr:`generating_profile_shift`), and flanks and root follow it.
+    tip_alteration_coefficient : float
+        k, negative where the tip is shortened; 0 beside a tip diameter.
 
     Raises
     ------
@@ -112,17 +86,31 @@ class CylindricalGear:
     root_radius_coefficient: float = 0.38
     bore_diameter: float | None = None
     name: str = "gear"
+    thickness_allowance: float = 0.0
+    tip_alteration_coefficient: float = 0.0
 
     def __post_init__(self) -> None:
         positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient"
+        finite = "profile_shift", "thickness_allowance", "tip_alteration_coefficient"
         rounding = self.root_radius_coefficient
         require(
             *teeth_checks(self.teeth),
-            *input_checks(self, positive, finite=("profile_shift",)),
+            *input_checks(self, positive, finite),
             bore_check(self.bore_diameter),
             spiral_check("helix_angle", self.helix_angle),
             face_check(self.face_width, self.normal_module, "normal_module"),
             (0.0 <= rounding < inf, f"root_radius_coefficient: {rounding} is negative or not finite"),
+            owner=self.name,
+        )
+        allowance, alteration = self.thickness_allowance, self.tip_alteration_coefficient
+        largest = tooth_measures.LARGEST_ALLOWANCE * self.normal_module
+        require(
+            (abs(allowance) <= largest, f"thickness_allowance: {allowance:.6g} mm is not within {largest:.6g} mm"),
+            (
+                alteration == 0.0 or self.tip_diameter is None,
+                f"tip_alteration_coefficient: {alteration:g} beside a tip_diameter of {self.tip_diameter} mm; "
+                "give one of them",
+            ),
             owner=self.name,
         )
         dedendum, deepest = self.dedendum_coefficient, pi / 4.0 / tan(self.pressure_angle)
@@ -192,7 +180,7 @@ class CylindricalGear:
         """r_a = d_a/2 [mm]."""
         if self.tip_diameter is not None:
             return 0.5 * self.tip_diameter
-        return self.reference_radius + self.normal_module * (1.0 + self.profile_shift)
+        return self.reference_radius + self.normal_module * (1.0 + self.profile_shift + self.tip_alteration_coefficient)
 
     @property
     def tip_alteration(self) -> float:
@@ -200,9 +188,14 @@ class CylindricalGear:
         return self.tip_radius - self.reference_radius - self.normal_module * (1.0 + self.profile_shift)
 
     @property
+    def generating_profile_shift(self) -> float:
+        """x_E = x + A_sn/(2 m_n tan(alpha_n)), with which the rack cuts (ISO 21771, 7.4)."""
+        return self.profile_shift + 0.5 * self.thickness_allowance / (self.normal_module * tan(self.pressure_angle))
+
+    @property
     def root_radius(self) -> float:
-        """r_f = r - m_n (h_fP/m_n - x) [mm]."""
-        return self.reference_radius - self.normal_module * (self.dedendum_coefficient - self.profile_shift)
+        """r_f = r - m_n (h_fP/m_n - x_E) [mm]."""
+        return self.reference_radius - self.normal_module * (self.dedendum_coefficient - self.generating_profile_shift)
 
     @property
     def pointed_radius(self) -> float:
@@ -212,7 +205,7 @@ class CylindricalGear:
     @property
     def tooth_thickness(self) -> float:
         """Transverse tooth thickness s_t at the reference cylinder, an arc [mm]."""
-        return self.transverse_module * (0.5 * pi + 2.0 * self.profile_shift * tan(self.pressure_angle))
+        return self.transverse_module * (0.5 * pi + 2.0 * self.generating_profile_shift * tan(self.pressure_angle))
 
     @property
     def half_thickness_angle_at_base(self) -> float:
@@ -223,6 +216,38 @@ class CylindricalGear:
         """Transverse tooth thickness at a radius, an arc: 2 r (psi_b - inv(alpha_r)) [mm]."""
         tangent = self.roll_length(radius) / self.base_radius
         return 2.0 * radius * (self.half_thickness_angle_at_base - (tangent - atan(tangent)))
+
+    @property
+    def normal_tooth_thickness(self) -> float:
+        """s_n = s_t cos(beta) at the reference cylinder, an arc [mm]."""
+        return self.tooth_thickness * cos(self.helix_angle)
+
+    @property
+    def span_teeth(self) -> int:
+        """Number of teeth k that a span measurement is best taken over; it touches nearest to d + 2 x m_n."""
+        return tooth_measures.span_teeth(self)
+
+    def span_measurement(self, teeth: int | None = None) -> float:
+        """Span W_k over teeth, :attr:`span_teeth` by default [mm]; InputError where it touches no flank.
+
+        Examples
+        --------
+        >>> gear = CylindricalGear(teeth=25, normal_module=2.0, face_width=20.0)
+        >>> gear.span_teeth, round(gear.span_measurement(), 4)
+        (3, 15.4609)
+        """
+        return tooth_measures.span_measurement(self, self.span_teeth if teeth is None else teeth)
+
+    def ball_measurement(self, diameter: float) -> float:
+        """Measure M_dK over two balls of a diameter in opposite spaces [mm]; InputError where they touch no flank.
+
+        Examples
+        --------
+        >>> gear = CylindricalGear(teeth=20, normal_module=2.0, face_width=20.0)
+        >>> round(gear.ball_measurement(3.5), 4)
+        44.9293
+        """
+        return tooth_measures.ball_measurement(self, diameter)
 
     def roll_length(self, radius: float) -> float:
         """Roll length of the involute at a radius, sqrt(r^2 - r_b^2) [mm]; zero at the base circle."""
@@ -253,7 +278,7 @@ class CylindricalGear:
     @property
     def rack_form_roll_length(self) -> float:
         """Roll length where the straight part of the rack ends; negative if the rack undercuts [mm]."""
-        depth = self.rack_form_depth - self.normal_module * self.profile_shift
+        depth = self.rack_form_depth - self.normal_module * self.generating_profile_shift
         sine = sin(self.transverse_pressure_angle)
         return self.reference_radius * sine - depth / sine
 
@@ -264,9 +289,10 @@ class CylindricalGear:
 
     @property
     def smallest_profile_shift(self) -> float:
-        """Profile shift x below which the basic rack undercuts this gear."""
+        """Profile shift x below which the basic rack undercuts this gear, with its thickness allowance."""
         sine = sin(self.transverse_pressure_angle)
-        return (self.rack_form_depth - self.reference_radius * sine**2) / self.normal_module
+        generating = (self.rack_form_depth - self.reference_radius * sine**2) / self.normal_module
+        return generating - 0.5 * self.thickness_allowance / (self.normal_module * tan(self.pressure_angle))
 
     @cached_property
     def form_radius(self) -> float:
@@ -315,7 +341,7 @@ class CylindricalGear:
     def _offset_and_height(self, slope: Any) -> tuple[Any, Any]:
         """Where a point of the rack's rounding cuts: beside and above the pitch point [mm]."""
         above = (
-            self.normal_module * self.profile_shift
+            self.normal_module * self.generating_profile_shift
             - self.rack_form_depth
             - self.rack_tip_radius * (np.sin(slope) - sin(self.pressure_angle))
         )

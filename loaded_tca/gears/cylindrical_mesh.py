@@ -17,7 +17,8 @@ from typing import NamedTuple
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
-from loaded_tca.gears.cylindrical import CylindricalGear, inverse_involute, involute
+from loaded_tca.gears.cylindrical import CylindricalGear
+from loaded_tca.gears.involute import inverse_involute, involute
 
 # In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
 _NEGLIGIBLE_UNDERCUT = 1e-4
@@ -191,7 +192,7 @@ class CylindricalMesh:
 
     @cached_property
     def working_centre_distance(self) -> float:
-        """Centre distance as given, or without backlash from the profile shifts [mm]."""
+        """Centre distance as given, or the one at which teeth without thickness allowance have no backlash [mm]."""
         if self.centre_distance is not None:
             return self.centre_distance
         base = self.pinion.base_radius + self.wheel.base_radius
@@ -204,7 +205,7 @@ class CylindricalMesh:
 
     @property
     def profile_shift_sum_without_backlash(self) -> float:
-        """x1 + x2 that would leave no backlash at this centre distance."""
+        """x1 + x2 that would leave no backlash at this centre distance, without thickness allowances."""
         return profile_shift_sum(self.pinion, self.wheel, self.working_centre_distance)
 
     @property
@@ -228,6 +229,11 @@ class CylindricalMesh:
         pitch = 2.0 * pi * pinion_radius / self.pinion.teeth
         first = self.pinion.tooth_thickness_at(pinion_radius)
         return pitch - first - self.wheel.tooth_thickness_at(centre_distance - pinion_radius)
+
+    @property
+    def normal_backlash(self) -> float:
+        """Normal backlash j_bn = j_wt cos(alpha_wt) cos(beta_b): shortest way between the back flanks [mm]."""
+        return self.backlash * cos(self.working_pressure_angle) * cos(self.pinion.base_helix_angle)
 
     @property
     def room(self) -> Room:

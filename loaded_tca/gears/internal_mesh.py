@@ -15,8 +15,9 @@ from math import acos, atan, cos, degrees, inf, isclose, pi, sin, sqrt, tan
 import numpy as np
 
 from loaded_tca.errors import GeometryError, require
-from loaded_tca.gears.cylindrical import CylindricalGear, inverse_involute, involute
+from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, ActiveProfile, PathOfContact, Room, interferences
+from loaded_tca.gears.involute import inverse_involute, involute
 from loaded_tca.gears.ring import RingGear
 
 _EQUAL = 1e-12
@@ -212,6 +213,11 @@ class InternalMesh:
         ring_radius = pinion_radius * self.gear_ratio
         space = 2.0 * ring_radius * self.ring.space_angle_at(ring_radius)
         return space - self.pinion.tooth_thickness_at(pinion_radius)
+
+    @property
+    def normal_backlash(self) -> float:
+        """Normal backlash j_bn = j_wt cos(alpha_wt) cos(beta_b): shortest way between the back flanks [mm]."""
+        return self.backlash * cos(self.working_pressure_angle) * cos(self.pinion.base_helix_angle)
 
     @property
     def room(self) -> Room:

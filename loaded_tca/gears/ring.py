@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks
-from loaded_tca.gears.cylindrical import inverse_involute, involute
+from loaded_tca.gears.involute import inverse_involute, involute
 
 OUTSIDE_MODULES = 7.0
 """Depth of a ring between root and outside that has no outer diameter given, in normal modules."""

@@ -2,6 +2,7 @@
 
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.result_files import describe_results, write_report
+from loaded_tca.output.revolution_files import write_revolution
 from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
 from loaded_tca.output.tables import (
     sensitivities_text,
@@ -20,6 +21,7 @@ __all__ = [
     "write_comparison",
     "write_dynamics",
     "write_report",
+    "write_revolution",
     "write_sensitivities",
     "write_stl",
     "write_subsurface",

@@ -69,7 +69,7 @@ def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     yield "path of contact of the pinion", "from T1 [mm]", "roll [deg]", "diameter [mm]"
     own = roll_lengths_of_flanks(pair, *contact_span(pair))
     for letter, nominal in scene.path_points.items():
-        for whose, points in (("ISO 21771", {letter: nominal}), ("these flanks", own)):
+        for whose, points in (("ISO 21771", {letter: nominal}), ("unloaded contact point", own)):
             if letter in points:
                 length = points[letter]
                 roll, diameter = length / pair.base_radii[0], 2.0 * math.hypot(length, pair.base_radii[0])

@@ -94,6 +94,7 @@ def summary_json(result: MeshCycle) -> str:
         "mesh_stiffness_is": f"d(F_bt/b)/d(r_b2 TE); {result.bending}",
         "rigid_bore_diameters_mm": result.scene.rigid_bores,
         "accuracy_warnings": result.warnings,
+        "findings": result.findings(),
         "torques": [
             {
                 **{name: known(value, name) for name, value in figures.items()},

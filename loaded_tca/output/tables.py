@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from loaded_tca.flank_maps.vh_check import VHCheck
 from loaded_tca.output.result_files import cell, csv_table, known
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.comparison import Comparison
@@ -28,7 +29,7 @@ from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.stress_below import StressBelow
 from loaded_tca.results.summary import shown
 from loaded_tca.results.tolerances import key_figure_slopes
-from loaded_tca.studies.ranking import main_figures, rank_variants, varied_keys
+from loaded_tca.studies.ranking import main_figures, ranking, varied_keys
 from loaded_tca.units import unit_of
 
 if TYPE_CHECKING:
@@ -112,6 +113,35 @@ def _comparison_json(comparison: Comparison) -> str:
 
 DYNAMICS = "dynamics.csv"
 """Name of the first table, where none is given."""
+
+
+def vh_table(check: VHCheck, keys: tuple[str, str]) -> str:
+    """Table of a V-H check: a row for each pair of errors, as CSV; empty: the pattern passes between points.
+
+    Places are those of the picture: lengthwise, and the height on the profile or the diameter.
+
+    Parameters
+    ----------
+    check : VHCheck
+    keys : (str, str)
+        Names of the errors V and H, which end in their units.
+
+    Examples
+    --------
+    >>> from loaded_tca import parse_scene
+    >>> from loaded_tca.cli import DEMO_SCENE
+    >>> from loaded_tca.flank_maps import vh_check
+    >>> pair = parse_scene(DEMO_SCENE.read_text()).pair()
+    >>> check = vh_check(lambda v, h: pair, [0.0], [0.0], positions=3, grid=(9, 9))
+    >>> vh_table(check, ("v_deg", "h_deg")).splitlines()[0]
+    'v_deg,h_deg,centre_lengthwise_mm,centre_profile_mm,shift_lengthwise_mm,shift_profile_mm,edge_share'
+    """
+    v, h = np.meshgrid(check.v, check.h, indexing="ij")
+    columns = {keys[0]: v, keys[1]: h}
+    for name, values in (("centre", check.centre), ("shift", check.shift)):
+        columns |= {f"{name}_lengthwise_mm": values[..., 0], f"{name}_profile_mm": values[..., 1]}
+    columns["edge_share"] = check.edge_share
+    return csv_table({name: values.ravel().tolist() for name, values in columns.items()})
 
 
 def write_dynamics(result: MeshCycle, path: FilePath) -> tuple[Path, ...]:
@@ -324,8 +354,8 @@ def write_study(
         If they cannot be written, or the study has figures, but not ``rank_by``.
     """
     by = rank_by if main_figures(study) else None  # where all variants were refused there is nothing to rank by
-    ranking = rank_variants(study, by, largest_is_best=largest_is_best).to_csv(index=False)
-    contents = {STUDY: study_csv(study).encode(), RANKING: ranking.encode(), **more}
+    ranked = ranking(study, by, largest_is_best=largest_is_best).to_csv(index=False)
+    contents = {STUDY: study_csv(study).encode(), RANKING: ranked.encode(), **more}
     old = {path.name for path in Path(directory).glob(PICTURES)} - {*contents}
     return replace_together(directory, contents, old)
 

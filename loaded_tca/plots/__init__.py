@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
+from loaded_tca.plots.at_a_glance import plot_at_a_glance
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
@@ -19,6 +20,13 @@ from loaded_tca.plots.pressure_map import (
     plot_pressure_map,
     plot_stress_below,
     plot_subsurface,
+)
+from loaded_tca.plots.revolution import (
+    REVOLUTION_PICTURES,
+    plot_revolution_error,
+    plot_revolution_shares,
+    plot_revolution_spectrum,
+    plot_revolution_waterfall,
 )
 from loaded_tca.plots.root_stress import plot_root_stress, plot_root_stress_cycle, plot_root_stress_over_torque
 from loaded_tca.plots.sensitivities import (
@@ -36,6 +44,7 @@ from loaded_tca.plots.sharing import (
     plot_mesh_stiffness,
     plot_path_pressure,
 )
+from loaded_tca.plots.solution import plot_solution
 from loaded_tca.plots.study import (
     plot_study,
     plot_study_heat_map,
@@ -52,8 +61,10 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 __all__ = [
     "MORE_PICTURES",
     "PICTURES",
+    "REVOLUTION_PICTURES",
     "draw_teeth",
     "plot_all",
+    "plot_at_a_glance",
     "plot_before_and_after",
     "plot_compared_maps",
     "plot_comparison",
@@ -75,11 +86,16 @@ __all__ = [
     "plot_pressure_envelope",
     "plot_pressure_map",
     "plot_removal_weights",
+    "plot_revolution_error",
+    "plot_revolution_shares",
+    "plot_revolution_spectrum",
+    "plot_revolution_waterfall",
     "plot_robustness",
     "plot_root_stress",
     "plot_root_stress_cycle",
     "plot_root_stress_over_torque",
     "plot_sensitivity_curves",
+    "plot_solution",
     "plot_stress_below",
     "plot_study",
     "plot_study_heat_map",
@@ -191,6 +207,11 @@ ALWAYS = {
     ),
 }
 SHARED = {
+    "at_a_glance": Picture(
+        "pressure, load over the face, transmission error, orders, stress or shares on one sheet, largest torque",
+        "What the other pictures show in full, under one torque.",
+        lambda one: plot_at_a_glance(one.result, one.torque),
+    ),
     "load_share": Picture(
         "of each tooth pair, all torques",
         "Share of each tooth pair in the torque, and how many pairs carry load.",
@@ -329,10 +350,10 @@ def result_figures(
         ``contact_path``, ``transmission_error``, ``peak_pressure``; if anything is in contact,
         ``pressure_map`` of the peak pressure; if a higher one lies at an edge or a relief start in another
         position, ``pressure_map_edge``; if Hertz holds in other positions only, ``pressure_map_hertz`` of the
-        highest pressure where it holds. Where tooth pairs share the load: ``load_share``, ``harmonics``,
-        ``mesh_stiffness``, ``line_load``, ``line_load_distribution``, ``face_load``, ``pressure_envelope``,
-        ``path_pressure``. With root stress: ``root_stress``; of several positions ``root_stress_cycle``; of
-        several torques ``root_stress_over_torque``. With ``more``: under several torques
+        highest pressure where it holds. Where tooth pairs share the load: ``at_a_glance``, ``load_share``,
+        ``harmonics``, ``mesh_stiffness``, ``line_load``, ``line_load_distribution``, ``face_load``,
+        ``pressure_envelope``, ``path_pressure``. With root stress: ``root_stress``; of several positions
+        ``root_stress_cycle``; of several torques ``root_stress_over_torque``. With ``more``: under several torques
         ``contact_patterns``, and ``full_mesh``.
 
     Raises

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
@@ -41,6 +41,8 @@ ToPicture = Callable[[Array], Array]
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"
 BEGIN_OF_ARC: dict[str, Any] = {"color": "black", "linestyle": "--", "linewidth": 0.6}
 MOST_AREAS = 7
+PALE = ListedColormap(["#dfe3ee"])
+"""Of contacts whose pressure is not drawn."""
 CELLS_OF_SPIKES = 0.05
 """Part of the cells of a map under pressure that may lie beyond its scale of colours."""
 LEAST_SEEN = 0.01
@@ -52,7 +54,8 @@ FINENESS = (129, 33)
 def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     """Path of contact on both flanks, each as its frame shows it, with the pressure of some positions.
 
-    White is the part of a flank that the mating gear reaches at nominal mounting.
+    Pale are the contacts of the other positions. White is the part of a flank that the mating gear reaches at nominal
+    mounting.
 
     Parameters
     ----------
@@ -75,12 +78,14 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     positions = sorted({round(last * part / (MOST_AREAS - 1)) for part in range(MOST_AREAS)})
     drawn = [row for row in (loaded_maps(result, torque, [position]) for position in positions) if row]
     maps = [one for row in drawn for one in row]
+    others = loaded_maps(result, torque, [position for position in range(last + 1) if position not in positions])
     scale, extend = colour_scale(result, maps)
 
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
         for path in result.paths:
             axes.plot(*to_picture(path.point).T, ".", color=ACCENT, markersize=4.0)
-        return _draw_areas(axes, to_picture, maps, scale)
+        pale = [_draw_pale(axes, to_picture, one) for one in others]
+        return [*pale, *_draw_areas(axes, to_picture, maps, scale)]
 
     figure, panels = both_flanks(result, draw)
     if maps:
@@ -95,6 +100,7 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     if pair.sharp is not pair:
         handles.append(Line2D([], [], **BEGIN_OF_ARC, label="where the arc of a rounded edge begins"))
     pressure = f"pressure drawn at {len(drawn)} of {len(result.path)} positions"
+    pressure += ", contacts of the others pale" if others else ""
     figure.legend(
         handles=handles, title=pressure, loc="outside lower center", ncols=2, fontsize="small", title_fontsize="small"
     )
@@ -180,6 +186,13 @@ def _draw_areas(axes: Axes, to_picture: ToPicture, maps: Sequence[PressureMap], 
     return areas
 
 
+def _draw_pale(axes: Axes, to_picture: ToPicture, one: PressureMap) -> Artist:
+    """Cells under pressure where they lie on a flank, all in one pale colour."""
+    x, y = np.moveaxis(to_picture(one.corners), -1, 0)
+    loaded = np.where(one.pressure > 0.0, 0.0, np.nan)
+    return axes.pcolormesh(x, y, loaded, cmap=PALE, rasterized=True)
+
+
 def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None = None) -> list[PressureMap]:
     """Maps under pressure, of all pairs, at all positions or some."""
     rows = result.maps[torque] if positions is None else [result.maps[torque][position] for position in positions]
@@ -227,13 +240,31 @@ def both_flanks(
     described = zip(panels.T, scene.flank_names, scene.active_starts(), sides, strict=True)
     for column, name, start, (flank, to_picture) in described:
         for axes, draw_on in zip(column, draw, strict=True):
-            outline = _draw_flank(axes, name, flank, start)
-            for drawn in draw_on(axes, to_picture):
-                drawn.set_clip_path(outline)
+            _draw_on_flank(axes, draw_on, to_picture, name, flank, start)
         for above, below in pairwise(column):
             above.set_xlabel("")
             below.set_title("")
     return figure, panels.ravel().tolist()
+
+
+def draw_on_pinion(axes: Axes, result: CycleNumbers, draw: Callable[[Axes, ToPicture], Sequence[Artist]]) -> None:
+    """The pinion's flank alone, with what is drawn on it; see :func:`both_flanks`."""
+    pair, scene = result.gear_pair, result.scene
+    about = scene.flank_names[0], pair.pinion.flank, scene.active_starts()[0]
+    _draw_on_flank(axes, draw, picture_of(pair, "pinion"), *about)
+
+
+def _draw_on_flank(
+    axes: Axes,
+    draw: Callable[[Axes, ToPicture], Sequence[Artist]],
+    to_picture: ToPicture,
+    name: str,
+    flank: Flank,
+    start: float,
+) -> None:
+    outline = _draw_flank(axes, name, flank, start)
+    for drawn in draw(axes, to_picture):
+        drawn.set_clip_path(outline)
 
 
 def picture_of(pair: GearPair, gear: GearName) -> ToPicture:

@@ -26,6 +26,7 @@ from loaded_tca.arrays import Array, Mask, real
 from loaded_tca.contact import SubsurfaceStress
 from loaded_tca.errors import require
 from loaded_tca.flanks.base import FlankFrame
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks, colour_scale, highest_of_maps, loaded_maps
 from loaded_tca.plots.style import (
@@ -44,6 +45,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.stress_below import NAMES, Quantity, StressBelow, depth_of_largest
 from loaded_tca.separation import slice_middles
+from loaded_tca.unloaded.scan import edge_distances
 
 PRESSURE = "contact pressure [MPa]"
 TICKS = 5
@@ -138,7 +140,7 @@ def draw_map(
     """
     one = result.maps[torque][at[0]][at[1]]
     assert one is not None
-    _draw_pressure(axes, one, highest)
+    _draw_pressure(axes, result.gear_pair, one, highest)
     names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
     minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
     if math.isfinite(pressure):
@@ -167,8 +169,11 @@ def _label_axes(axes: Axes, one: PressureMap, scale: float, frame: FlankFrame) -
     )
 
 
-def _draw_pressure(axes: Axes, one: PressureMap, highest: float) -> None:
-    """Pressure of each cell, in colours up to the highest; white without pressure, grey without material."""
+def _draw_pressure(axes: Axes, pair: GearPair, one: PressureMap, highest: float) -> None:
+    """Pressure of each cell, in colours up to the highest; white without pressure, grey where there is no material.
+
+    Cells that an edge of a flank cuts are covered as far as it leaves no material.
+    """
     x, y = one.borders
     void = np.isinf(one.gap)
     ground = colormaps["Greys"].with_extremes(bad=NO_MATERIAL)
@@ -180,6 +185,10 @@ def _draw_pressure(axes: Axes, one: PressureMap, highest: float) -> None:
         return
     loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
     axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, highest), rasterized=True)
+    if void.any():
+        beyond = edge_distances(pair, one.corners).min(axis=-1)
+        if beyond.min() < 0.0:
+            axes.contourf(y, x, beyond, [beyond.min(), 0.0], colors=[NO_MATERIAL])
 
 
 def scale_factor(length: float, width: float) -> tuple[float, float]:
@@ -337,15 +346,16 @@ def _envelopes(result: MeshCycle, torques: list[int]) -> tuple[Figure, list[Axes
     """Both flanks with their pressure envelope in a row for each torque, without a title."""
     maps = [one for torque in torques for one in loaded_maps(result, torque)]
     scale, extend = colour_scale(result, maps)
-
-    def draw(torque: int, axes: Axes, to_picture: ToPicture) -> list[Artist]:
-        low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
-        borders, seen = pressure_seen(result, torque, to_picture, low, high)
-        return [axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True)]
-
-    figure, panels = both_flanks(result, *(partial(draw, torque) for torque in torques))
+    figure, panels = both_flanks(result, *(partial(draw_envelope, result, torque, scale) for torque in torques))
     figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="highest contact pressure [MPa]", extend=extend)
     return figure, panels
+
+
+def draw_envelope(result: MeshCycle, torque: int, scale: Normalize, axes: Axes, to_picture: ToPicture) -> list[Artist]:
+    """Draw the highest pressure that each place of a flank sees under a torque."""
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    borders, seen = pressure_seen(result, torque, to_picture, low, high)
+    return [axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True)]
 
 
 def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array) -> Iterator[tuple[Array, Array]]:
@@ -361,8 +371,12 @@ def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array
                 before = None
                 continue
             loaded = one.pressure > 0.0
-            cells = to_picture(points_of_cells(one, loaded, to_picture, field))
-            yield cells.reshape(-1, 2), np.repeat(one.pressure[loaded], cells.shape[1])
+            cells = points_of_cells(one, loaded, to_picture, field)
+            pressure = np.repeat(one.pressure[loaded], cells.shape[1]).reshape(cells.shape[:2])
+            if np.isinf(one.gap).any():  # cells that an edge cuts reach beyond the flanks
+                within = edge_distances(result.gear_pair, cells).min(axis=-1) >= 0.0
+                cells, pressure = cells[within], pressure[within]
+            yield to_picture(cells).reshape(-1, 2), pressure.ravel()
             points, height = _ridge(one)
             ridge = to_picture(points), height
             if before is not None:

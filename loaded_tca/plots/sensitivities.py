@@ -46,6 +46,7 @@ FIELDS = 160
 """Fields of the picture of a flank in each direction, each coloured by the mean over it."""
 FIELDS_OF_SPIKES = 0.005
 """Part of the fields that may lie beyond the scale of colours: single cells at edges count for much."""
+MEAN = "transmission_error_mean_um"
 LEAST_SHOWN = 0.02
 """Part of the scale of colours below which a field stays white."""
 BLUR = 1.0
@@ -187,6 +188,8 @@ def plot_tornado(
     tolerances: Mapping[str, float] | None = None,
     figures: Sequence[str] | None = None,
     torque: int | None = None,
+    *,
+    rigid_motions: bool = False,
 ) -> Figure:
     """Tornado chart: what each key does to key figures when it is raised, or lowered, by its tolerance.
 
@@ -202,6 +205,9 @@ def plot_tornado(
         Names of :func:`loaded_tca.results.key_figure_slopes`; default: all that are known.
     torque : int, optional
         Index of the torque; default: the largest one.
+    rigid_motions : bool
+        Whether the mean transmission error shows displacements of whole gears, too: they turn the wheel by a constant
+        that dwarfs all other bars and makes no noise.
 
     Returns
     -------
@@ -223,14 +229,20 @@ def plot_tornado(
         raise InputError(f"nothing is under load with {style.torque_label(result, torque)}: no derivatives")
     now = key_figures(result, torque)
     labels = [_with_tolerance(key, one) for key, one in zip(sensitivities.keys, spread.tolist(), strict=True)]
+    rigid = np.array([key.startswith("mounting.") and key.endswith("_mm") for key in sensitivities.keys])
+    left_out_of_mean = bool(rigid.any()) and not rigid_motions and not rigid.all() and MEAN in chosen
+    if left_out_of_mean:
+        changes[MEAN] = np.where(rigid, np.nan, changes[MEAN])
     bars = min(len(labels), MOST_BARS)
     drawing, panels = panels_of(len(chosen), (6.5, 1.0 + 0.3 * max(bars, 3)))
     for axes, name in zip(panels, chosen, strict=True):
         _draw_tornado(axes, changes[name], labels)
-        together = math.sqrt(float((changes[name] ** 2).sum()))
+        without = left_out_of_mean and name == MEAN
+        together = math.sqrt(float((changes[name][~rigid] ** 2).sum() if without else (changes[name] ** 2).sum()))
         label = label_of(name)
         unit = label.partition(" [")[2].rstrip("]")
-        title = f"now {shown(now[name], name)} {unit}, standard deviation by all keys {together:.3g} {unit}"
+        by = "keys but displacements" if without else "all keys"
+        title = f"now {shown(now[name], name)} {unit}, standard deviation by {by} {together:.3g} {unit}"
         axes.set_title(" ".join(title.split()).replace(" ,", ","), fontsize="small")
         axes.set_xlabel(f"change of the {label}")
     drawing.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize="small")

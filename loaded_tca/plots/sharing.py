@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -44,8 +45,7 @@ WHAT_LETTERS_ARE = {
     "D": "a pitch from A",
     "C": "pitch point",
 }
-LONGEST_LINE = 88
-"""Characters below an axis."""
+AT_EDGE: dict[str, Any] = {"marker": "o", "markersize": 8.0, "fillstyle": "none", "linestyle": ""}
 OVER_THE_PATH = "pinion angle from the pitch point of the tooth pair"
 NEAR_LETTERS = 0.03
 """Part of the axis below which two letters stand to either side of their lines."""
@@ -169,9 +169,16 @@ def plot_face_load(result: MeshCycle) -> Figure:
     """
     require((len(result.path) > 1, "face load: a mean over a pitch; found 1 position, allowed 2 or more"))
     figure, axes = style.one_panel()
+    draw_face_load(axes, result, torque_styles(result))
+    about = f"load over the face width, {loads(result)}", "mean over a pitch", range_of_positions(result)
+    return style.finished(figure, axes, result, *about, columns=2)
+
+
+def draw_face_load(axes: Axes, result: MeshCycle, styles: Iterable[tuple[int, str, str, str]]) -> None:
+    """Draw the load over the face width under torques, given by index, label, colour and marker, with their K_Hbeta."""
     pair, frame = result.gear_pair, result.gear_pair.pinion.flank.frame
     borders = strip_borders(pair, result.path)
-    for torque, label, colour, _ in torque_styles(result):
+    for torque, label, colour, _ in styles:
         maps = [one for row in result.maps[torque][:-1] for one in row if one is not None]
         forces = np.sum([np.zeros(len(borders) - 1), *(strip_forces(pair, one, borders)[0] for one in maps)], axis=0)
         factor = result.face_load_factor[torque]
@@ -179,8 +186,6 @@ def plot_face_load(result: MeshCycle) -> Figure:
         axes.stairs(forces / (len(result.path) - 1) / np.diff(borders), borders, color=colour, label=text)
     axes.set(xlabel=frame.labels[0], ylabel="normal force per face width [N/mm]")
     axes.set_ylim(bottom=0.0)
-    about = f"load over the face width, {loads(result)}", "mean over a pitch", range_of_positions(result)
-    return style.finished(figure, axes, result, *about, columns=2)
 
 
 def plot_harmonics(result: MeshCycle) -> Figure:
@@ -300,16 +305,22 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     """
     pair, pressure = result.gear_pair, result.peak_pressure
     figure, axes = style.one_panel(6.0 if result.scene.path_points else 5.0)
-    drawn = False
+    drawn, at_edges = False, False
     for torque, label, colour, marker in torque_styles(result):
-        places, curve, hertz = over_the_path(result, pressure[torque], result.hertz_pressure[torque])
+        of_torque = pressure[torque], result.hertz_pressure[torque], result.on_edge[torque].astype(float)
+        places, curve, hertz, on_edge = over_the_path(result, *of_torque)
         places, known = np.degrees(places), np.isfinite(curve)
         axes.plot(places[known], curve[known], color=colour, marker=marker, markersize=4.0, label=label)
+        cut = known & (on_edge > 0.0)
+        axes.plot(places[cut], curve[cut], color=colour, **AT_EDGE)
+        at_edges |= bool(cut.any())
         stretches = style.over_a_stretch(hertz)
         axes.plot(places, stretches, color=colour, **HERTZ)
         drawn |= bool(np.isfinite(stretches).any())
     if drawn:
-        axes.plot([], [], color="black", label="after Hertz", **HERTZ)
+        axes.plot([], [], color="black", label="after Hertz, where it holds", **HERTZ)
+    if at_edges:
+        axes.plot([], [], color="black", label="contact reaches an edge; the pressure there is left out", **AT_EDGE)
     axes.set_ylabel("peak pressure [MPa]")
     style.from_zero(axes)
     if not (pressure > 0.0).any():
@@ -318,13 +329,13 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     at_root, at_tip = (math.nan if one is None else float(one.pinion_angle) for one in ends)
     marked = {"C": 0.0, **path_letters(at_root, at_tip, pair.driving * pair.pitch)}
     _mark_points(axes, marked)
-    letters = "; ".join(f"{letter}: {what}" for letter, what in WHAT_LETTERS_ARE.items() if letter in marked)
-    lines = style.parts_of(f"of the unloaded contact {letters}", LONGEST_LINE)
-    axes.set_xlabel("\n".join([f"{OVER_THE_PATH} [deg]", *lines]))
+    letters = ", ".join(f"{letter}: {what}" for letter, what in WHAT_LETTERS_ARE.items() if letter in marked)
+    axes.set_xlabel(f"{OVER_THE_PATH} [deg]")
     if result.scene.path_points:
         points = {"C": result.scene.path_points["C"], **roll_lengths_of_flanks(pair, *ends)}
         _draw_table(figure, axes, points, result.scene.path_points, pair.base_radii[0])
-    return style.finished(figure, axes, result, f"pressure over the path of contact, {loads(result)}")
+    what = f"pressure over the path of contact, {loads(result)}"
+    return style.finished(figure, axes, result, what, f"unloaded contact point at {letters}")
 
 
 def over_the_path(result: MeshCycle, *numbers: Array) -> Iterator[Array]:
@@ -365,7 +376,7 @@ def _draw_table(
     axes.set_subplotspec(grid[0])
     below = figure.add_subplot(grid[1])
     below.set_axis_off()
-    below.set_title("on the pinion: these flanks, unloaded (ISO 21771)", fontsize="small")
+    below.set_title("on the pinion: unloaded contact point of the flanks (ISO 21771)", fontsize="small")
     table = below.table(cells, rowLabels=list(quantities), colLabels=list(nominal), loc="center", cellLoc="center")
     table.auto_set_font_size(False)
     table.set_fontsize(8.0)

@@ -229,11 +229,11 @@ def plot_study_heat_map(
     torques, labels = shown_torques(study), torque_labels(study)
     drawing, axes = panels_of(len(torques), (1.8 + min(7.0, 0.75 * len(x) + 1.5), 1.2 + min(6.0, 0.55 * len(y) + 1.0)))
     crossed = False
-    of_cell = [[(columns == j) & (rows == i) for j in range(len(x))] for i in range(len(y))]
+    of_cell = _samples_of_cells(rows, columns, (len(y), len(x)))
     for one, torque in zip(axes, torques, strict=True):
         cells = np.array([[percentiles_of(values[of, torque])[1] for of in line] for line in of_cell])
         _draw_cells(drawing, one, cells, label_of(figure), largest_is_best)
-        asked = np.array([[of.any() for of in line] for line in of_cell])
+        asked = np.array([[of.size > 0 for of in line] for line in of_cell])
         missing = asked & ~np.isfinite(cells)
         one.plot(*np.nonzero(missing)[::-1], "x", color=ACCENT, markersize=9.0)
         crossed |= bool(missing.any())
@@ -245,9 +245,17 @@ def plot_study_heat_map(
     best = Patch(fill=False, edgecolor=ACCENT, linewidth=2.5, label="largest" if largest_is_best else "least")
     handles = [best, Line2D([], [], color=ACCENT, marker="x", linestyle="", label=MISSING)][: 1 + crossed]
     drawing.legend(handles=handles, loc="outside lower center", ncols=2, fontsize="small")
-    median = [] if max(int(of.sum()) for line in of_cell for of in line) < 2 else ["medians over the other keys"]
+    median = [] if max(of.size for line in of_cell for of in line) < 2 else ["medians over the other keys"]
     set_study_title(drawing, study, values, f"{without_unit(label_of(figure))}{under_torques(study, torques)}", *median)
     return drawing
+
+
+def _samples_of_cells(rows: Array, columns: Array, shape: tuple[int, int]) -> list[list[Array]]:
+    """Numbers of the samples in each cell (rows, columns): each sample once, whatever the number of cells."""
+    cells = rows.astype(int) * shape[1] + columns.astype(int)
+    order = np.argsort(cells, kind="stable")
+    ends = np.searchsorted(cells[order], np.arange(math.prod(shape) + 1))
+    return [[order[ends[k] : ends[k + 1]] for k in range(i * shape[1], (i + 1) * shape[1])] for i in range(shape[0])]
 
 
 def _draw_cells(drawing: Figure, axes: Axes, cells: Array, label: str, largest_is_best: bool) -> None:

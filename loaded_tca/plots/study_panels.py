@@ -26,7 +26,15 @@ from loaded_tca.plots import style
 from loaded_tca.plots.style import ACCENT, COLOURS, MARKERS, MOST_LABELS, NOT_REACHED, label_of, wrapped_label_of
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.parse import parse_scene, toml_table
-from loaded_tca.studies.ranking import figure_values, main_figures, rank_variants, varied_keys
+from loaded_tca.studies.ranking import (
+    QUANTILE,
+    design_keys,
+    figure_values,
+    main_figures,
+    rank_variants,
+    ranking,
+    varied_keys,
+)
 
 if TYPE_CHECKING:
     import pandas
@@ -219,7 +227,7 @@ LINE = 0.26
 def plot_study_ranking(
     study: xarray.Dataset, by: str | None = None, *, torque: int | None = None, largest_is_best: bool = False
 ) -> Figure:
-    """Table of the best variants of :func:`loaded_tca.studies.rank_variants`.
+    """Table of the best variants of :func:`loaded_tca.studies.rank_variants`, with distributions of the best designs.
 
     Parameters
     ----------
@@ -231,9 +239,9 @@ def plot_study_ranking(
     -------
     matplotlib.figure.Figure
     """
-    ranking = rank_variants(study, by, torque, largest_is_best)
-    ranked = ranking[ranking["rank"].notna()]
-    columns = [name for name in ranking.columns if name not in ("status", "reason")]
+    order_of = ranking(study, by, torque, largest_is_best)
+    ranked = order_of[order_of["rank"].notna()]
+    columns = [name for name in order_of.columns if name not in ("status", "reason")]
     cells = [[_cell(value) for value in row] for row in ranked[columns].head(MOST_ROWS).to_numpy().tolist()]
     heads = [wrapped_label_of(name) for name in columns]
     highest = max(head.count("\n") for head in heads) + 1
@@ -251,21 +259,24 @@ def plot_study_ranking(
     else:
         style.tell(axes, NOTHING if main_figures(study) else "no variant has any figure")
     if not main_figures(study):
-        set_study_title(drawing, study, None, "no figures", *_why_unranked(ranking))
+        set_study_title(drawing, study, None, "no figures", *_why_unranked(rank_variants(study)))
         return drawing
     values = figure_values(study, by or main_figures(study)[0])
-    what = f"{len(cells)} best of {len(ranked)} variants" if len(cells) < len(ranked) else "variants"
+    kind = "designs" if design_keys(study) else "variants"
+    what = f"{len(cells)} best of {len(ranked)} {kind}" if len(cells) < len(ranked) else kind
     worst = "least" if largest_is_best else "largest"
+    lucky = 100.0 * (1.0 - QUANTILE if largest_is_best else QUANTILE)
+    quantile = [f"of each figure the {lucky:.0f} % quantile over the samples"] if design_keys(study) else []
     of = [f"of each figure the {worst} over the torques"] if torque is None and values.shape[1] > 1 else []
     order = "largest" if largest_is_best else "least"
     what = f"{what}, {order} {without_unit(label_of(by or main_figures(study)[0]))} first"
-    set_study_title(drawing, study, values, what, *of, *_why_unranked(ranking))
+    set_study_title(drawing, study, values, what, *of, *quantile, *_why_unranked(rank_variants(study, by, torque)))
     return drawing
 
 
-def _why_unranked(ranking: pandas.DataFrame) -> list[str]:
+def _why_unranked(variants: pandas.DataFrame) -> list[str]:
     """How many variants have no rank, and the most frequent reasons; nothing if all have one."""
-    status, reasons = (ranking.loc[ranking["rank"].isna(), name].tolist() for name in ("status", "reason"))
+    status, reasons = (variants.loc[variants["rank"].isna(), name].tolist() for name in ("status", "reason"))
     if not status:
         return []
     shown = [
@@ -276,7 +287,7 @@ def _why_unranked(ranking: pandas.DataFrame) -> list[str]:
     more = [f"and {len(counted) - MOST_REASONS} more reason{'s' * (len(counted) > MOST_REASONS + 1)}"] * (
         len(counted) > MOST_REASONS
     )
-    return [f"without a rank: {len(status)} of {len(ranking)} variants", *lines, *more]
+    return [f"without a rank: {len(status)} of {len(variants)} variants", *lines, *more]
 
 
 def _cell(value: object) -> str:

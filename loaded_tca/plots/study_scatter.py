@@ -37,8 +37,8 @@ from loaded_tca.plots.study_panels import (
     under_torques,
     without_unit,
 )
-from loaded_tca.plots.style import ACCENT, COLOURS, label_of, wrapped_label_of
-from loaded_tca.studies.ranking import figure_values, main_figures, nominal_variant, varied_keys
+from loaded_tca.plots.style import ACCENT, COLOURS, MOST_LABELS, label_of, wrapped_label_of
+from loaded_tca.studies.ranking import design_keys, figure_values, main_figures, nominal_variant, varied_keys
 
 if TYPE_CHECKING:
     import xarray
@@ -96,7 +96,10 @@ def plot_study_histogram(study: xarray.Dataset, figure: str, by: Sequence[str] =
 
 
 def plot_study_over_torque(study: xarray.Dataset, figure: str = TRANSMISSION_ERROR) -> Figure:
-    """Figure over the pinion torque: median and band (5 to 95 %) of the variants, and the nominal variant if there.
+    """Figure over the pinion torque: median and band (5 to 95 %) of each design, and the nominal variant if there.
+
+    A design is a combination of the given values of a study with distributions. Without them there is one band, and of
+    more than eight designs, too.
 
     Parameters
     ----------
@@ -116,18 +119,25 @@ def plot_study_over_torque(study: xarray.Dataset, figure: str = TRANSMISSION_ERR
     values, torques = figure_values(study, figure), figure_values(study, TORQUE)
     at = np.unique(torques[np.isfinite(torques)])
     drawing, (axes,) = panels_of(1, (7.5, 5.0))
-    if at.size:
-        low, middle, high = np.stack([percentiles_of(values[torques == torque]) for torque in at], axis=1)
-        axes.fill_between(at, low, high, color=to_hex(colormaps[COLOURS](0.3)), alpha=0.25, label=BAND)
-        axes.vlines(at, low, high, color="0.6", linewidth=1.0)
-        axes.plot(at, middle, "o-", color=to_hex(colormaps[COLOURS](0.3)), label="median")
+    keys = design_keys(study)
+    if len(groups_of(study, keys)) > MOST_LABELS:
+        keys = []
+    groups = groups_of(study, keys)
+    for (_, of), (label, colour, marker) in zip(groups, styles_of([label for label, _ in groups]), strict=True):
+        if at.size:
+            bands = [percentiles_of(values[of][torques[of] == torque]) for torque in at]
+            low, middle, high = np.stack(bands, axis=1)
+            axes.fill_between(at, low, high, color=colour, alpha=0.2, label=BAND if not keys else "_unlabelled")
+            axes.vlines(at, low, high, color=colour, alpha=0.5, linewidth=1.0)
+            axes.plot(at, middle, f"{marker}-", color=colour, label=label if keys else "median")
     nominal = nominal_variant(study)
     if nominal is not None:
         axes.plot(torques[nominal], values[nominal], "s--", color="black", label="nominal")
     axes.set(xlabel=label_of(TORQUE), ylabel=label_of(figure))
     finish_panel(axes, values, "")
-    legend_of(drawing, [axes], "")
-    set_study_title(drawing, study, values, f"{without_unit(label_of(figure))} over the torque")
+    legend_of(drawing, [axes], ", ".join(map(label_of, keys)))
+    told = [f"of each design median and band ({BAND}) of its samples"] if keys else []
+    set_study_title(drawing, study, values, f"{without_unit(label_of(figure))} over the torque", *told)
     return drawing
 
 

@@ -75,6 +75,13 @@ def png_of(figure: Figure) -> bytes:
     return content.getvalue()
 
 
+def pdf_of(figure: Figure) -> bytes:
+    """Return a figure as the content of a PDF file, the same bytes each time."""
+    content = io.BytesIO()
+    figure.savefig(content, format="pdf", metadata={"CreationDate": None})
+    return content.getvalue()
+
+
 def one_panel(height: float = 5.0) -> tuple[Figure, Axes]:
     """Return a figure of so many inches with one panel for curves over the pinion angle."""
     figure = Figure(figsize=(8.0, height), layout="constrained")

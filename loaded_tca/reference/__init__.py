@@ -1,12 +1,12 @@
-"""Closed forms that tests and users share: Hertz, punches, the wedge, ISO 6336, Weber and Banaschek."""
+"""Closed forms that tests and users share: Hertz, punches, the wedge, ISO 6336, ISO 1328, Weber and Banaschek."""
 
 from typing import TYPE_CHECKING
 
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.reference import hertz, iso6336, iso6336_3, punch, weber_banaschek, wedge
+    from loaded_tca.reference import hertz, iso1328, iso6336, iso6336_3, punch, weber_banaschek, wedge
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
-__all__ = ["hertz", "iso6336", "iso6336_3", "punch", "weber_banaschek", "wedge"]
+__all__ = ["hertz", "iso1328", "iso6336", "iso6336_3", "punch", "weber_banaschek", "wedge"]

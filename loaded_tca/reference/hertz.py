@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import elliprd, elliprf
 
-from loaded_tca.errors import require_positive
+from loaded_tca.errors import InputError, require_positive
 
 # The greatest shear below a line contact lies where z/sqrt(a^2 + z^2) is the golden section.
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
@@ -206,6 +206,56 @@ def point_contact(load: float, curvatures: tuple[float, float], contact_modulus:
     approach = 1.5 * load * float(elliprf(0.0, q * q, 1.0)) / (math.pi * contact_modulus * semi_major)
     max_pressure = 1.5 * load / (math.pi * semi_major * semi_major * q)
     return PointContact(load, contact_modulus, semi_major, q * semi_major, max_pressure, approach)
+
+
+def point_contact_gap(
+    radii: tuple[float, float], size: tuple[float, float], cells: tuple[int, int]
+) -> tuple[NDArray[np.float64], tuple[float, float]]:
+    """Gap of two surfaces that touch in the middle of a grid, as :func:`loaded_tca.solve_contact` takes it.
+
+    Parameters
+    ----------
+    radii : (float, float) [mm]
+        Relative principal radii along the two axes, 1/R = 1/R1 + 1/R2; infinite: straight.
+    size : (float, float) [mm]
+        Lengths of the grid; it needs some room around the contact, 1.3 times its axes for instance.
+    cells : (int, int)
+
+    Returns
+    -------
+    gap : (nx, ny) array [mm]
+        x^2/(2 Rx) + y^2/(2 Ry) in the middles of the cells.
+    spacing : (float, float) [mm]
+        Lengths of a cell.
+
+    Raises
+    ------
+    InputError
+        If a radius or length is not positive, or there is no cell along an axis.
+
+    Examples
+    --------
+    Hertz beside the solver:
+
+    >>> from loaded_tca import solve_contact
+    >>> point = point_contact(100.0, (1 / 10.0, 1 / 40.0), 115385.0)
+    >>> size = 2.6 * point.semi_minor, 2.6 * point.semi_major
+    >>> gap, spacing = point_contact_gap((10.0, 40.0), size, (64, 64))
+    >>> solution = solve_contact(gap, spacing, 115385.0, load=100.0)
+    >>> round(solution.peak_pressure / point.max_pressure, 3), round(solution.approach / point.approach, 3)
+    (1.0, 1.0)
+    """
+    problems = [f"cells: found {count!r}; allowed whole numbers from 1 on" for count in cells if not count >= 1]
+    if problems:
+        raise InputError(problems)
+    straight = [math.isinf(radius) and radius > 0.0 for radius in radii]
+    require_positive(
+        **{f"radii[{k}]": radius for k, radius in enumerate(radii) if not straight[k]},
+        **{f"size[{k}]": length for k, length in enumerate(size)},
+    )
+    spacing = size[0] / cells[0], size[1] / cells[1]
+    x, y = ((np.arange(count) - 0.5 * (count - 1)) * step for count, step in zip(cells, spacing, strict=True))
+    return x[:, None] ** 2 / (2.0 * radii[0]) + y**2 / (2.0 * radii[1]), spacing
 
 
 def line_contact(line_load: float, curvature: float, contact_modulus: float) -> LineContact:

@@ -32,6 +32,8 @@ def result_content(result: MeshCycle) -> dict[str, Any]:
     result : MeshCycle
     """
     figures = result.key_figures()
+    pictures = result_figures(result, more=True)
+    glance = {name: pictures.pop(name) for name in ("at_a_glance",) if name in pictures}
     return {
         "title": result.scene.title or "Loaded tooth contact",
         "analysed_by": result.version,
@@ -39,10 +41,11 @@ def result_content(result: MeshCycle) -> dict[str, Any]:
         **scene_content(result.scene),
         "load_cases": _load_cases(result, figures),
         "key_figures": [_key_figures(result, part, figures[part]) for part in parts_of(figures, MOST_TORQUES)],
-        "limits": [*limits_of(figures)],
+        "limits": [*limits_of(figures), *result.findings()],
         "accuracy": [_accuracy(result, part, figures) for part in parts_of(figures, MOST_TORQUES)],
         "warnings": None if result.warnings is None else explained(result.warnings),
-        "pictures": pictures_of(result_figures(result, more=True), CAPTIONS, result.scene.title),
+        "glance": pictures_of(glance, CAPTIONS, result.scene.title),
+        "pictures": pictures_of(pictures, CAPTIONS, result.scene.title),
     }
 
 

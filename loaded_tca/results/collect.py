@@ -22,6 +22,7 @@ from loaded_tca.results.numbers import dataset_of
 from loaded_tca.results.pressure_map import PressureMap, place_on_material, sharp_edge_cell
 from loaded_tca.results.root_stress import root_stress_arrays
 from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
+from loaded_tca.results.warnings import warn_of_root_stress
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
 
@@ -60,7 +61,7 @@ def mesh_cycle(
     share = carried.share[..., order]
     contacts = {(t, n, k): carried.contacts[t][n][order[k]] for t, n, k in np.ndindex(share.shape)}
     at_edges = {(t, n, k): at_rounded_edges.get((t, n, int(order[k]))) for t, n, k in contacts}
-    numbers, maps = _numbers_and_maps(pair, contacts, at_edges, share.shape)
+    numbers, maps = numbers_and_maps(pair, contacts, at_edges, share.shape)
     apart = np.isnan(numbers["contact_deformation"])
     numbers["normal_force"] = np.where(apart & ~np.isnan(share), 0.0, numbers["normal_force"])
     lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
@@ -90,6 +91,7 @@ def mesh_cycle(
     if roots:
         in_contact = ~np.isnan(arrays["normal_force"]).all(axis=-1)
         arrays |= root_stress_arrays(pair, roots, arrays["pair"].tolist(), in_contact, stacked)
+        warn_of_root_stress(arrays["root_tension"], arrays["root_compression"])
     return MeshCycle(
         scene=scene,
         dataset=dataset_of(
@@ -102,13 +104,24 @@ def mesh_cycle(
     )
 
 
-def _numbers_and_maps(
+def numbers_and_maps(
     pair: GearPair,
     contacts: Mapping[Place, LoadedContact | None],
     at_edges: Mapping[Place, PeakAtEdge | None],
     shape: tuple[int, ...],
 ) -> tuple[dict[str, Array], dict[Place, PressureMap | None]]:
-    """Arrays (torque, position, pair) of what a result has of each contact, by their names; its pressure maps."""
+    """Arrays (torque, position, pair) of what a result has of each contact, by their names; its pressure maps.
+
+    Parameters
+    ----------
+    pair : GearPair
+    contacts : mapping
+        Of each place; None where a pair carries nothing.
+    at_edges : mapping
+        Peaks at rounded edges of each place; None where none is known.
+    shape : tuple of int
+        Of the arrays.
+    """
     numbers: dict[str, Array] = {}
     maps: dict[Place, PressureMap | None] = dict.fromkeys(contacts)
     under_load = {place: one for place, one in contacts.items() if one is not None and one.solution.load > 0.0}

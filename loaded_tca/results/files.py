@@ -21,7 +21,7 @@ if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes
     import xarray
 
 FORMAT = "loaded_tca"
-FORMAT_VERSION = 6
+FORMAT_VERSION = 7
 """Raised whenever the code of one version cannot read the files of another."""
 DIGITS = 64
 DIGEST = b"\0\0\0\x06digest\0\0\0\0\0\x02" + DIGITS.to_bytes(4, "big")

@@ -21,11 +21,10 @@ from loaded_tca.results.dynamics import dynamics_of
 from loaded_tca.results.figures import key_figures
 from loaded_tca.results.files import Buffer, FilePath, arrays_of, netcdf_of, read_dataset, replacing, variables_of
 from loaded_tca.results.numbers import CycleNumbers, dataset_of
-from loaded_tca.results.pressure_map import arc_cells, maps_from, stacked_maps
+from loaded_tca.results.pressure_map import arc_cells, arrays_of_maps, maps_from
 from loaded_tca.results.quantities import (
     ABOUT,
     IN_FILES,
-    MAP_PARTS,
     PAIRS,
     PATH_PARTS,
     QUANTITIES,
@@ -156,7 +155,12 @@ class MeshCycle(CycleNumbers):
 
     def summary(self) -> str:
         """Return the key figures in the engineer's units, one column per torque, and the warnings of the analysis."""
-        return summary_text(self.scene.title, self.scope, self.key_figures(), self.warnings or ())
+        about = self.key_figures(), self.warnings or (), self.findings()
+        return summary_text(self.scene.title, self.scope, *about)
+
+    def findings(self) -> tuple[str, ...]:
+        """Return sentences on the pressure at edges: where it is largest, under what load, what would remove it."""
+        return edge_findings(self)
 
     @property
     def scope(self) -> str:
@@ -192,7 +196,7 @@ class MeshCycle(CycleNumbers):
             raise not_asked("scene")
         paths = (self.path, *self.paths)
         arrays = {f"path_{name}": np.stack([getattr(one, name) for one in paths]) for name in PATH_PARTS}
-        arrays |= {f"map_{name}": stack for name, stack in stacked_maps(self.maps).items()}
+        arrays |= arrays_of_maps(self.maps)
         whole = self.dataset.assign(variables_of(IN_FILES, arrays))
         return netcdf_of(whole.assign_attrs(title=self.scene.title, scene_toml=self.scene.to_toml()))
 
@@ -207,6 +211,10 @@ class MeshCycle(CycleNumbers):
         """
         file = read_dataset(path)
         kind = file.attrs.get("kind")
+        if kind == "revolution":
+            raise InputError(
+                f"{path}: a whole revolution, not the result of a mesh cycle; read it with Revolution.load"
+            )
         if kind in ("study", "design"):
             reader = f"loaded_tca.studies.load_{kind}"
             raise InputError(f"{path}: a {kind}, not the result of a mesh cycle; read it with {reader}")
@@ -220,6 +228,7 @@ class MeshCycle(CycleNumbers):
             checks = [(name, file.sizes[name] == size, f"{size}") for name, size in expected.items()]
             checks += [(name, file.sizes[name] > 0, "at least 1") for name in PAIRS]
             require(*((holds, f"{name}: {file.sizes[name]} long, expected {size}") for name, holds, size in checks))
+            maps = maps_from(arrays)
         except InputError as error:
             raise InputError([f"{path}: not the result of a mesh cycle", *error.problems]) from None
         about = {"version": "", **{name: str(file.attrs[name]) for name in ABOUT if name in file.attrs}}
@@ -233,7 +242,7 @@ class MeshCycle(CycleNumbers):
             dataset=dataset_of(arrays, **about).assign(added),
             path=leading,
             paths=tuple(paths),
-            maps=maps_from({name: arrays[f"map_{name}"] for name in MAP_PARTS}),
+            maps=maps,
         )
 
 
@@ -254,16 +263,62 @@ def reached_edges(result: MeshCycle) -> NDArray[np.bool_]:
         Over torques, positions, pairs, and ``NAMES``: those that hold the unloaded contact point of a pair under load,
         and those beyond which, or on whose arcs, the cells beside its pressure lie.
     """
-    pair = result.gear_pair
-    held = np.stack([path.edges for path in result.paths], axis=1)
-    reached = held & (result.normal_force > 0.0)[..., None]
-    for t, n, k in np.argwhere(result.on_edge):
-        one = result.maps[t][n][k]
-        if one is None:
-            continue
-        row, column = np.nonzero(binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
-        points = one.origin + one.x[row, None] * one.axes[0] + one.y[column, None] * one.axes[1]
-        reached[t, n, k] |= (edge_distances(pair, points) < 0.0).any(axis=0)
-        if pair.sharp is not pair:
-            reached[t, n, k] |= arc_cells(pair, one)[one.pressure > 0.0].any(axis=0)
+    reached = np.zeros((*result.load_share.shape, len(NAMES)), dtype=bool)
+    loaded = np.argwhere((result.normal_force > 0.0) | (result.on_edge > 0.0))
+    for t, n, k in loaded.tolist():
+        reached[t, n, k] = edges_of_contact(result, t, n, k)
     return reached
+
+
+def edges_of_contact(result: MeshCycle, torque: int, position: int, column: int) -> NDArray[np.bool_]:
+    """Edges (8,) that one contact of a result reaches, given by its indices; see :func:`reached_edges`."""
+    pair, path = result.gear_pair, result.paths[column]
+    reached = path.edges[position] & bool(result.normal_force[torque, position, column] > 0.0)
+    one = result.maps[torque][position][column]
+    if one is None or not result.on_edge[torque, position, column]:
+        return np.asarray(reached)
+    row, across = np.nonzero(binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
+    points = one.origin + one.x[row, None] * one.axes[0] + one.y[across, None] * one.axes[1]
+    reached = reached | (edge_distances(pair, points) < 0.0).any(axis=0)
+    if pair.sharp is not pair:
+        reached = reached | arc_cells(pair, one)[one.pressure > 0.0].any(axis=0)
+    return np.asarray(reached)
+
+
+def edge_findings(result: MeshCycle) -> tuple[str, ...]:
+    """Sentences on the largest pressure at an edge under each torque: where, under what load, what would remove it.
+
+    An edge carries no load where the flank lacks as much there as the pair deflects: its contact deformation and the
+    deflection of its teeth along the normal.
+    """
+    sentences = []
+    for t, torque in enumerate(result.torque.tolist()):
+        place = result.edge_contact(t)
+        if place is None:
+            continue
+        n, k = place
+        at = t, n, k
+        edges = [name for name, one in zip(NAMES, edges_of_contact(result, *at), strict=True) if one]
+        rounded = bool(result.edge_is_rounded[at])
+        error = float(result.edge_pressure_error[at])
+        accuracy = "mesh-dependent: theory has an infinite one at a sharp edge"
+        if rounded:
+            accuracy = f"of columns with an estimated error of {error:.1%}"
+        cap = float(result.max_pressure)
+        elastic = "elastic" if math.isnan(cap) else f"with the cap of {cap:.6g} MPa"
+        deflection = 1e3 * float(np.nansum([result.contact_deformation[at], result.tooth_deflection[at]]))
+        ends = any("side" in name for name in edges)
+        tips = sorted({f"{name.split()[0]}'s" for name in edges if "tip" in name})
+        reliefs = ["end relief"] * ends + [f"relief of the {' and '.join(tips)} tip"] * bool(tips)
+        remedy = " or ".join(reliefs) or "a relief"
+        amount = f"of up to {deflection:.2g} um, the pair's deflection, takes the load off it"
+        if result.paths[k].edges[n].any():
+            amount = f"of more than {deflection:.2g} um, the pair's deflection: unloaded, it touches on an edge, too"
+        more = "" if rounded else "; or round the edge (tip_rounding_mm, side_rounding_mm), which bounds it"
+        sentences.append(
+            f"edge pressure {result.edge_pressure[at]:.4g} MPa at {1e-3 * torque:g} N m on {' + '.join(edges)} (pinion "
+            f"diameter {2.0 * result.edge_radius[at]:.4g} mm, axial {result.edge_axial[at]:.4g} mm), where the pair "
+            f"carries {100.0 * result.load_share[at]:.2g} % of the torque; {elastic}, {accuracy}; "
+            f"{remedy} {amount}{more}"
+        )
+    return tuple(sentences)

@@ -15,8 +15,9 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from loaded_tca.arrays import Array, Mask
+from loaded_tca.errors import InputError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.quantities import MAP_PARTS, SIZES
+from loaded_tca.results.quantities import LAID_END_TO_END, MAP_CELLS, MAP_PARTS, SIZES
 from loaded_tca.unloaded.scan import arcs_at, edge_distances
 
 
@@ -109,44 +110,62 @@ Maps = tuple[tuple[tuple[PressureMap | None, ...], ...], ...]
 """By torque, position and tooth pair; None where a pair carries nothing."""
 
 
-def stacked_maps(maps: Maps) -> dict[str, Array]:
-    """Part of a map -> array over torques, positions, pairs, padded with NaN to the largest grid."""
+def arrays_of_maps(maps: Maps) -> dict[str, Array]:
+    """Arrays of ``IN_FILES`` that hold all maps: grids end to end, the rest by torque, position and pair."""
     shape = len(maps), len(maps[0]), len(maps[0][0])
-    present = [one for rows in maps for row in rows for one in row if one is not None]
-    largest = {
-        "across": max((len(one.x) for one in present), default=1),
-        "along": max((len(one.y) for one in present), default=1),
-    }
-    sizes = {**SIZES, **largest}
-    stacks = {
-        name: np.full((*shape, *(sizes[axis] for axis in own)), np.nan) for name, (own, _, _) in MAP_PARTS.items()
-    }
-    for t, n, k in np.ndindex(shape):
-        one = maps[t][n][k]
-        if one is not None:
-            for name, stack in stacks.items():
-                part = np.asarray(getattr(one, name))
-                stack[(t, n, k, *map(slice, part.shape))] = part
-    return stacks
+    present = [((t, n, k), one) for t, n, k in np.ndindex(shape) if (one := maps[t][n][k]) is not None]
+    arrays = {name: np.zeros(shape, dtype=int) for name in MAP_CELLS}
+    for place, one in present:
+        for cells, length in zip(arrays.values(), one.pressure.shape, strict=True):
+            cells[place] = length
+    for name, (own, _, _) in MAP_PARTS.items():
+        parts = [np.asarray(getattr(one, name)) for _, one in present]
+        if own in LAID_END_TO_END:
+            arrays[f"map_{name}"] = np.concatenate([np.empty(0), *map(np.ravel, parts)])
+        else:
+            stack = arrays[f"map_{name}"] = np.full((*shape, *(SIZES[axis] for axis in own)), np.nan)
+            for (place, _), part in zip(present, parts, strict=True):
+                stack[place] = part
+    return arrays
 
 
-def maps_from(stacks: Mapping[str, Array]) -> Maps:
-    """Take the maps out of what ``stacked_maps`` made of them."""
+def maps_from(arrays: Mapping[str, Array]) -> Maps:
+    """Take the maps out of what ``arrays_of_maps`` made of them.
 
-    def at(*place: int) -> PressureMap | None:
-        """The map at a place without its padding; None if there is nothing else."""
-        counts = {name: int(np.isfinite(stacks[part][place]).sum()) for name, part in (("across", "x"), ("along", "y"))}
-        if not all(counts.values()):
+    Raises
+    ------
+    InputError
+        If there are more or fewer values than the cells of all maps.
+    """
+    counts = np.stack([arrays[name] for name in MAP_CELLS], axis=-1)
+    lengths = {("across",): counts[..., 0], ("along",): counts[..., 1], ("across", "along"): counts.prod(axis=-1)}
+    ends = {own: np.cumsum(length).reshape(length.shape) for own, length in lengths.items()}
+    problems = [
+        f"map_{name}: {arrays[f'map_{name}'].size} values, expected {ends[own][-1, -1, -1]} of all maps together"
+        for name, (own, _, _) in MAP_PARTS.items()
+        if own in ends and arrays[f"map_{name}"].size != ends[own][-1, -1, -1]
+    ]
+    if problems or (counts < 0).any():
+        raise InputError(problems or "map_cells: negative")
+
+    def at(place: tuple[int, int, int]) -> PressureMap | None:
+        shape = {"across": int(counts[place][0]), "along": int(counts[place][1])}
+        if not all(shape.values()):
             return None
-        parts: dict[str, Any] = {
-            name: stacks[name][place][tuple(slice(counts.get(axis)) for axis in own)]
-            for name, (own, _, _) in MAP_PARTS.items()
-        }
+        parts: dict[str, Any] = {}
+        for name, (own, _, _) in MAP_PARTS.items():
+            values = arrays[f"map_{name}"]
+            if own in ends:
+                end = int(ends[own][place])
+                values = values[end - int(lengths[own][place]) : end].reshape([shape[axis] for axis in own])
+            else:
+                values = values[place]
+            parts[name] = values
         dx, dy = parts["spacing"].tolist()
         return PressureMap(**{**parts, "spacing": (dx, dy)})
 
-    torques, positions, pairs = (range(length) for length in stacks["x"].shape[:3])
-    return tuple(tuple(tuple(at(t, n, k) for k in pairs) for n in positions) for t in torques)
+    torques, positions, pairs = (range(length) for length in counts.shape[:3])
+    return tuple(tuple(tuple(at((t, n, k)) for k in pairs) for n in positions) for t in torques)
 
 
 def arc_cells(pair: GearPair, one: PressureMap) -> Mask:

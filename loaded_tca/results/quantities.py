@@ -154,27 +154,38 @@ MAP_PARTS: dict[str, Part] = {
     "pressure": (
         ("across", "along"),
         "MPa",
-        "contact pressure, the mean over the whole cell where an edge cuts it; NaN beyond the grid of the position",
+        "contact pressure, the mean over the whole cell where an edge cuts it",
     ),
     "gap": (
         ("across", "along"),
         "mm",
-        "deformed gap, infinite where a flank ends before the middle of the cell, NaN beyond the grid",
+        "deformed gap, infinite where a flank ends before the middle of the cell",
     ),
     "origin": (("vector",), "mm", "contact point in the fixed frame"),
     "force_line": (("along",), "mm", "place of the force of each slice across the contact, from the contact point"),
     "axes": (("row", "vector"), "1", "directions across, along and normal out of the pinion, in rows"),
 }
-"""Parts of a pressure map; in a file each has the dimensions torque, position and pair before its own."""
+"""Parts of a pressure map."""
 SIZES = {"axis": 2, "row": 3, "vector": 3}
 """Lengths of dimensions that are the same in every map."""
 
+MAP_CELLS: dict[str, Part] = {
+    f"map_cells_{axis}": (PAIRS, "1", f"cells of the pressure map {axis} the contact; 0: no map")
+    for axis in ("across", "along")
+}
+"""How many values each map has in the arrays of all maps."""
+LAID_END_TO_END = {("across",): ("across",), ("along",): ("along",), ("across", "along"): ("cell",)}
+"""Dimensions of parts of unlike sizes -> the one dimension over which a file has those of all maps, one after another:
+torque by torque, position by position, pair by pair, each map row by row."""
 IN_FILES: dict[str, Part] = {
     **{f"path_{name}": (("path", "position", *own), unit, text) for name, (own, unit, text) in PATH_PARTS.items()},
-    **{f"map_{name}": ((*PAIRS, *own), unit, text) for name, (own, unit, text) in MAP_PARTS.items()},
+    **MAP_CELLS,
+    **{
+        f"map_{name}": (LAID_END_TO_END.get(own, (*PAIRS, *own)), unit, text)
+        for name, (own, unit, text) in MAP_PARTS.items()
+    },
 }
 """What a file has beside ``QUANTITIES``: the paths, that of the leading contact before those of the pairs; the maps."""
-
 
 ABOUT = ("version", "date", "warnings")
 """Attributes of the dataset: version of the package, date and accuracy warnings of the analysis, a line each."""

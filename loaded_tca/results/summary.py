@@ -30,8 +30,10 @@ BESIDE_ISO = (
 """What stands beside stress by the standard."""
 
 
-def summary_text(title: str, scope: str, figures: Sequence[Figures], warnings: Sequence[str] = ()) -> str:
-    """Return the summary: title, scope, one line per figure with a column per torque, notes, warnings.
+def summary_text(
+    title: str, scope: str, figures: Sequence[Figures], warnings: Sequence[str] = (), findings: Sequence[str] = ()
+) -> str:
+    """Return the summary: title, scope, one line per figure with a column per torque, notes, findings, warnings.
 
     Parameters
     ----------
@@ -39,8 +41,8 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures], warnings: S
         First two lines.
     figures : sequence of mapping
         Of each torque, as ``MeshCycle.key_figures`` gives them.
-    warnings : sequence of str
-        Accuracy warnings of the analysis.
+    warnings, findings : sequence of str
+        Accuracy warnings of the analysis, and what ``MeshCycle.findings`` says.
     """
     edge = kind_of_edge([entry for entry in figures if not math.isnan(entry.get("edge_pressure_MPa", math.nan))])
     rows = [
@@ -55,6 +57,7 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures], warnings: S
     table = [f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for label, cells in rows]
     beside = [WHERE_REASONS_ARE] if any(reasons_beside(*figures)) else []
     notes = [f"note: {sentence}" for sentence in limits_of(figures)]
+    notes += [f"finding: {sentence}" for sentence in findings]
     warned = [f"warning: {sentence}" for sentence in warnings]
     return "\n".join([title or "Loaded tooth contact", scope, *table, *beside, *notes, *warned])
 

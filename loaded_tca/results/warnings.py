@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.arrays import Mask
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
 from loaded_tca.errors import give_accuracy_warning
@@ -35,6 +35,8 @@ LEAST_CLEARANCE = 0.1
 HARDEST_MPa, OVER_MEAN = 4000.0, 4.0 / math.pi
 """Contact pressure that no gear steel carries (endurance limits of ISO 6336-5 end at 1650 MPa), and the largest one
 of a line contact over the mean, which sharp edges do not move."""
+HARDEST_ROOT_MPa = 1500.0
+"""Root stress that no gear steel carries: nominal strengths sigma_FE of ISO 6336-5 end at 1050 MPa."""
 MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
 
@@ -77,41 +79,52 @@ def warn_of_accuracy(
             for k, (number, loaded) in enumerate(zip(carried.pairs.tolist(), row, strict=True)):
                 if loaded is not None:
                     solved += 1
-                    place = _place(torque, angle, number)
+                    place = place_of(torque, angle, number)
                     at_rounding = [mesh_error] if (t, n, k) in large else []
-                    for reason in [*at_rounding, *_reasons(pair, grid, loaded)]:
+                    for reason in [*at_rounding, *reasons_of(pair, grid, loaded)]:
                         places.setdefault(reason, []).append(place)
-    sentences += [_at_places(reason, at, solved) for reason, at in places.items()]
-    turned = np.where(carried.rotation > 0.0, carried.rotation, math.inf)
-    twist = body_torsion * carried.torque[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
+    sentences += [at_places(reason, at, solved) for reason, at in places.items()]
+    sentences += rotation_reasons(pair, carried.torque, carried.rotation, body_torsion, load_sharing=load_sharing)
+    for sentence in sentences:
+        give_accuracy_warning(sentence, stacklevel=3)
+
+
+def rotation_reasons(
+    pair: GearPair, torques: Array, rotation: Array, body_torsion: float, *, load_sharing: bool = True
+) -> list[str]:
+    """Sentences on rotations (torque, position) [rad] by the load that are at a limit of the model."""
+    sentences = []
+    turned = np.where(rotation > 0.0, rotation, math.inf)
+    twist = body_torsion * torques[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
     if (share := float(twist.max())) > MOST_TORSION:
         bores = " and ".join(f"{bore:.4g}" for bore in pair.rigid_bores)
         sentences.append(kinds.BODY_TWIST.sentence(bores=bores, share=min(share, 1.0)))
-    deflection = float(np.nanmax(carried.rotation, initial=0.0)) * pair.base_radii[1]
+    deflection = float(np.nanmax(rotation, initial=0.0)) * pair.base_radii[1]
     if load_sharing and deflection > REACH * pair.module:
         sentences.append(kinds.DEFLECTION.sentence(deflection=deflection, reach=REACH))
-    for sentence in sentences:
-        give_accuracy_warning(sentence, stacklevel=3)
+    return sentences
 
 
 def warn_of_contacts(result: CycleNumbers, reason: str, where: Mask, stacklevel: int) -> None:
     """Give an AccuracyWarning with the number of contacts of a result, (torque, position, pair), that it concerns."""
     angles, pairs = result.path.pinion_angle, result.pair
-    places = [_place(result.torque[t], angles[n], pairs[k]) for t, n, k in np.argwhere(where).tolist()]
+    places = [place_of(result.torque[t], angles[n], pairs[k]) for t, n, k in np.argwhere(where).tolist()]
     if places:
         loaded = int(np.count_nonzero(result.load_share > 0.0))
-        give_accuracy_warning(_at_places(reason, places, loaded), stacklevel=stacklevel + 1)
+        give_accuracy_warning(at_places(reason, places, loaded), stacklevel=stacklevel + 1)
 
 
-def _place(torque: float, angle: float, number: int) -> str:
+def place_of(torque: float, angle: float, number: int) -> str:
+    """Torque [N mm], pinion angle [rad] and tooth pair of a contact in words."""
     return f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
 
 
-def _at_places(reason: str, places: Sequence[str], count: int) -> str:
+def at_places(reason: str, places: Sequence[str], count: int) -> str:
+    """A sentence with how many pressure maps of all it concerns, and the first of them."""
     return f"{reason} (at {len(places)} of {count} pressure maps; the first: {places[0]})"
 
 
-def warn_of_gears(scene: Scene, pair: GearPair) -> None:
+def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = False) -> None:
     """Give one AccuracyWarning for each reason why whole gears are not what the contact of two flanks says of them.
 
     Parameters
@@ -119,6 +132,8 @@ def warn_of_gears(scene: Scene, pair: GearPair) -> None:
     scene : Scene
     pair : GearPair
         Of the scene.
+    whole_revolution : bool
+        Whether the teeth stand at their own places in the analysis.
 
     Raises
     ------
@@ -127,6 +142,8 @@ def warn_of_gears(scene: Scene, pair: GearPair) -> None:
     """
     for sentence in [*scene.interferences(), *_odd_inputs(scene), *_small_clearances(scene, pair)]:
         give_accuracy_warning(sentence, stacklevel=3)
+    if scene.has_pitch_deviations and not whole_revolution:
+        give_accuracy_warning(kinds.PITCH_DEVIATIONS.sentence(), stacklevel=3)
     if scene.analysis.without_bodies:
         require_teeth(pair, scene.analysis.without_bodies)
     else:
@@ -160,12 +177,22 @@ def _small_clearances(scene: Scene, pair: GearPair) -> list[str]:
     ]
 
 
+def warn_of_root_stress(tension: Array, compression: Array) -> None:
+    """Give an AccuracyWarning for each gear with root stress (torque, position, gear) [MPa] beyond yield."""
+    for gear, name in enumerate(GEARS):
+        stress = float(np.nanmax(np.abs([tension[..., gear], compression[..., gear]]), initial=0.0))
+        if stress > HARDEST_ROOT_MPa:
+            sentence = kinds.ROOT_BEYOND_YIELD.sentence(gear=name, stress=stress, most=HARDEST_ROOT_MPa)
+            give_accuracy_warning(sentence, stacklevel=4)
+
+
 def without_place(sentence: str) -> str:
     """Return an accuracy warning without how many pressure maps it concerns, which differs between analyses."""
     return sentence.split(" (at ")[0]
 
 
-def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
+def reasons_of(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
+    """Sentences on what limits the accuracy of one loaded contact."""
     solution = loaded.solution
     reasons = []
     if loaded.at_edge and not loaded.at_arc:

@@ -6,25 +6,43 @@ import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan, cos, degrees, radians, sin, tan
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, get_args
 
+from loaded_tca.errors import require
+from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
+from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.checks import LARGEST_PRESSURE_ANGLE
 from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import spiral
+from loaded_tca.scene.bevel_blank import Blank, blank_rows, settings_table
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
-from loaded_tca.scene.model import Row, family
-from loaded_tca.scene.section import Rule, rule, subsection
-from loaded_tca.scene.sections import DRIVING, SENSE, Pair
+from loaded_tca.scene.model import Row, Scene, family, scene_from_table
+from loaded_tca.scene.section import Rule, as_table, rule, subsection
+from loaded_tca.scene.sections import DRIVING, SENSE, ERROR_mm, Pair
 from loaded_tca.scene.spiral import MountingErrors, SpiralScene
 
 SPIRAL_deg = Number(0.0, 59.0)
 CONE_deg = above_zero(179.0)
 PRESSURE_deg = Number(1.0, 44.0)
+USUAL_PRESSURE_deg = 20.0
+OF_BLANK = "face_angle", "root_angle", "face_apex", "root_apex", "mean_normal_thickness"
+"""What a gear takes from its blank."""
+OF_EQUATIONS = (
+    "face_width_mm",
+    "hand",
+    "profile_shift",
+    "face_angle_deg",
+    "root_angle_deg",
+    "face_apex_mm",
+    "root_apex_mm",
+)
+"""Keys of a gear that a face-milled one has in its blank, or not."""
+Method = Literal["duplex_spread_blade", "spread_blade"]
 ROUNDING = 1e-9
 """Cone angles closer than this [rad] are the same."""
 
@@ -38,6 +56,16 @@ def _too_steep(normal: float | None, spiral: float | None) -> str | None:
     return f"found {normal:g}; with spiral_angle_deg = {spiral:g} allowed up to {largest:.4f}, which is {most}"
 
 
+SIZES = "outer_module_mm", "mean_normal_module_mm", "wheel_outer_diameter_mm"
+
+
+def _one_size(*values: float | None) -> str | None:
+    given = [name for name, value in zip(SIZES, values, strict=True) if value is not None]
+    if len(given) == 1:
+        return None
+    return f"{'missing' if not given else 'given are ' + ' and '.join(given)}; allowed one of {', '.join(SIZES)}"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Geometry(Pair):
     """[pair] of straight and spiral bevel gears."""
@@ -45,7 +73,15 @@ class Geometry(Pair):
     type: Literal["straight_bevel", "spiral_bevel"] = key(
         Choice(("straight_bevel", "spiral_bevel")), "kind of gear pair"
     )
-    outer_module_mm: float = key(above_zero(1000.0), "outer transverse module m_et, at the heel")
+    outer_module_mm: float | None = key(
+        above_zero(1000.0), "outer transverse module m_et, at the heel", None, "by one of the next two"
+    )
+    mean_normal_module_mm: float | None = key(
+        above_zero(1000.0), "mean normal module m_mn, instead of `outer_module_mm`", None, "follows"
+    )
+    wheel_outer_diameter_mm: float | None = key(
+        above_zero(100000.0), "outer pitch diameter d_e2 of the wheel, instead of `outer_module_mm`", None, "follows"
+    )
     shaft_angle_deg: float = key(spiral.SHAFT_ANGLE_deg, "shaft angle Sigma", 90.0)
     spiral_angle_deg: float | None = key(
         SPIRAL_deg,
@@ -76,8 +112,12 @@ class Geometry(Pair):
     pinion_flank: spiral.Side | None = key(
         spiral.SIDE, "flank of a spiral pinion that is in contact, instead of `sense`", None, "by `sense`"
     )
+    blank: Blank | None = subsection(
+        Blank, "depths and thicknesses after ISO 23509; without it they are outer modules about one apex", optional=True
+    )
 
     rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(SIZES, _one_size),
         rule(
             ("spiral_angle_deg", "type"),
             lambda spiral, kind: not spiral or kind == "spiral_bevel",
@@ -109,6 +149,22 @@ class GearSection(BlankGearSection):
 
     face_angle_deg: float | None = key(CONE_deg, "face angle delta_a", None, "pitch angle + atan((1 + x) m_et/R_e)")
     root_angle_deg: float | None = key(CONE_deg, "root angle delta_f", None, "pitch angle - atan((1.25 - x) m_et/R_e)")
+    face_apex_mm: float | None = key(
+        ERROR_mm, "apex t_zF of the face cone, beyond the crossing point of the axes, away from the teeth", None, "0"
+    )
+    root_apex_mm: float | None = key(ERROR_mm, "apex t_zR of the root cone, likewise", None, "0")
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *BlankGearSection.rules,
+        *(
+            rule(
+                (f"{cone}_apex_mm", f"{cone}_angle_deg"),
+                lambda apex, angle: not apex or angle is not None,
+                f"found {{0:g}}; allowed with {cone}_angle_deg, the angle of a drawing",
+            )
+            for cone in ("face", "root")
+        ),
+    )
 
 
 @family("straight_bevel", "spiral_bevel")
@@ -154,6 +210,15 @@ class BevelScene(SpiralScene, BlankScene):
             "found {0:g}; allowed pinion.face_width_mm = {1:g}: both gears end on the same spheres",
         ),
         spiral.AXES_THAT_MEET,
+        *(
+            rule(
+                (f"{gear}.{name}", "pair.blank"),
+                lambda value, blank: blank is None or not value,
+                "found {0:g}; not allowed with [pair.blank], which has the depths and thicknesses",
+            )
+            for gear in ("pinion", "wheel")
+            for name in ("profile_shift", "face_angle_deg", "root_angle_deg")
+        ),
     )
 
     @property
@@ -166,19 +231,111 @@ class BevelScene(SpiralScene, BlankScene):
         """The transverse contact ratio."""
         return self.mesh().transverse_contact_ratio
 
+    @property
+    def outer_module(self) -> float:
+        """Outer transverse module m_et, as given or by m_mn or d_e2 [mm]."""
+        wanted = self.geometry
+        if wanted.outer_module_mm is not None:
+            return wanted.outer_module_mm
+        if wanted.wheel_outer_diameter_mm is not None:
+            return wanted.wheel_outer_diameter_mm / self.wheel.teeth
+        assert wanted.mean_normal_module_mm is not None  # by the rules of the section
+        pitch, _ = pitch_angles((self.pinion.teeth, self.wheel.teeth), radians(wanted.shaft_angle_deg))
+        mean = wanted.mean_normal_module_mm / cos(radians(wanted.spiral_angle_deg or 0.0))
+        return mean + self.pinion.face_width_mm * sin(pitch) / self.pinion.teeth
+
+    @property
+    def normal_pressure_angle(self) -> float:
+        """Mean normal pressure angle alpha_n on the pitch cone [rad]: 20 deg by default where a blank is given."""
+        wanted, spiral_angle = self.geometry, radians(self.geometry.spiral_angle_deg or 0.0)
+        if wanted.normal_pressure_angle_deg is not None:
+            return radians(wanted.normal_pressure_angle_deg)
+        if wanted.pressure_angle_deg is None and wanted.blank is not None:
+            return radians(USUAL_PRESSURE_deg)
+        transverse = USUAL_PRESSURE_deg if wanted.pressure_angle_deg is None else wanted.pressure_angle_deg
+        return atan(tan(radians(transverse)) * cos(spiral_angle))
+
+    def blanks(self) -> BevelBlank | None:
+        """Return the blanks of [pair.blank]; None without that section."""
+        if self.geometry.blank is None:
+            return None
+        return self.geometry.blank.build(
+            (self.pinion.teeth, self.wheel.teeth),
+            self.pinion.face_width_mm,
+            shaft_angle=radians(self.geometry.shaft_angle_deg),
+            spiral_angle=radians(self.geometry.spiral_angle_deg or 0.0),
+            pressure_angle=self.normal_pressure_angle,
+            outer_module=self.outer_module,
+        )
+
+    def face_milled(self, method: Method = "duplex_spread_blade") -> Scene:
+        """Return the face-milled scene of the blanks, with basic machine settings and cutters in closed form.
+
+        Modifications, mounting errors, material, load and analysis are those of this scene.
+
+        Parameters
+        ----------
+        method : {"duplex_spread_blade", "spread_blade"}
+            See :mod:`loaded_tca.gears.basic_settings`.
+
+        Raises
+        ------
+        InputError
+            If the scene has no [pair.blank] with a cutter radius, or the method is neither of the two.
+        GeometryError
+            If the gears cannot exist.
+
+        Examples
+        --------
+        >>> from loaded_tca import read_scene
+        >>> read_scene("examples/scenes/spiral_bevel_blank.toml").face_milled().pair()
+        GearPair(14/39, module 3.20333 mm, face 25.4 mm)
+        """
+        blanks = self.blanks()
+        require(
+            (method in get_args(Method), f"method: {method!r} is not one of {', '.join(get_args(Method))}"),
+            (
+                blanks is not None and blanks.cutter_radius is not None,
+                "pair.blank.cutter_radius_mm: missing; machine settings follow from blanks and their cutter",
+            ),
+        )
+        assert blanks is not None
+        settings = {"spread_blade": spread_blade, "duplex_spread_blade": duplex_spread_blade}[method]
+        gears = settings(blanks, self.hands[0])
+        table = {name: value for name, value in as_table(self).items() if name not in ("pair", "pinion", "wheel")}
+        table["pair"] = {
+            "type": "face_milled",
+            "shaft_angle_deg": self.geometry.shaft_angle_deg,
+            "driving": self.geometry.driving,
+            "sense": self.sense,
+        }
+        for name, own, gear in zip(("pinion", "wheel"), (self.pinion, self.wheel), gears, strict=True):
+            kept = {key: value for key, value in as_table(own).items() if key not in OF_EQUATIONS}
+            table[name] = kept | settings_table(gear)
+        return scene_from_table(table)
+
     def mesh(self) -> BevelMesh:
         """Return the macro geometry: cones, cone distances, contact ratios."""
-        normal = self.geometry.normal_pressure_angle_deg
+        blanks = self.blanks()
+        by_normal = blanks is not None or self.geometry.normal_pressure_angle_deg is not None
 
         def gear(own: GearSection, pitch_angle: float, sign: int, name: str) -> BevelGear:
-            values = parameters_of(BevelGear, self.geometry, own)
+            values = parameters_of(BevelGear, self.geometry, own) | {"outer_module": self.outer_module}
             values["spiral_angle"] = sign * values.get("spiral_angle", 0.0)
-            if normal is not None:
-                values["pressure_angle"] = atan(tan(radians(normal)) / cos(values["spiral_angle"]))
+            if by_normal:
+                values["pressure_angle"] = atan(tan(self.normal_pressure_angle) / cos(values["spiral_angle"]))
+            if blanks is not None:
+                blank = blanks.pinion if name == "pinion" else blanks.wheel
+                values |= {each: getattr(blank, each) for each in OF_BLANK}
             return BevelGear(**values, pitch_angle=pitch_angle, name=name)
 
         pitches = pitch_angles((self.pinion.teeth, self.wheel.teeth), radians(self.geometry.shaft_angle_deg))
         return BevelMesh(*map(gear, (self.pinion, self.wheel), pitches, self.hand_signs, ("pinion", "wheel")))
+
+    @property
+    def tip_clearances(self) -> tuple[float, ...]:
+        """Clearances of both roots and the mating gear's tip at the toe, where those about one apex are least [mm]."""
+        return self.mesh().tip_clearances
 
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two spherical involute flanks in space."""
@@ -203,7 +360,9 @@ class BevelScene(SpiralScene, BlankScene):
         gear = mesh.pinion
         distances = (gear.outer_cone_distance, gear.mean_cone_distance, gear.inner_cone_distance)
         modules = (gear.outer_module, gear.mean_normal_module / cos(gear.spiral_angle))
-        normal = self.geometry.normal_pressure_angle_deg
+        stated = self.geometry.normal_pressure_angle_deg
+        if stated is None and self.geometry.blank is not None and self.geometry.pressure_angle_deg is None:
+            stated = USUAL_PRESSURE_deg
         pressures = (gear.pressure_angle, atan(tan(gear.pressure_angle) * cos(gear.spiral_angle)))
         return [
             ("shaft angle Sigma [deg]", f"{degrees(mesh.shaft_angle):.4f}"),
@@ -212,7 +371,7 @@ class BevelScene(SpiralScene, BlankScene):
             ("mean normal module m_mn [mm]", f"{gear.mean_normal_module:.4f}"),
             ("mean spiral angle beta_m [deg]", f"{degrees(abs(gear.spiral_angle)):.4f}"),
             ("pressure angles alpha_t, alpha_n [deg]", *(f"{degrees(angle):.4f}" for angle in pressures)),
-            ("pressure angle that the scene states", "transverse" if normal is None else "normal"),
+            ("pressure angle that the scene states", "transverse" if stated is None else "normal"),
             ("backlash j_mt at the mean pitch circles [mm]", f"{round(mesh.backlash, 4) + 0.0:.4f}"),
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
@@ -223,6 +382,7 @@ class BevelScene(SpiralScene, BlankScene):
             ("hand of the spiral", *(self.hands if gear.spiral_angle else ("none", "none"))),
             ("flank in contact", *self.contact_sides),
             *_cone_rows(mesh),
+            *(_depth_rows(mesh) if (blanks := self.blanks()) is None else blank_rows(blanks, self.geometry.blank)),
         ]
 
     def interferences(self) -> Sequence[str]:
@@ -264,6 +424,13 @@ def _cone_rows(mesh: BevelMesh) -> list[Row]:
         *((label, *(f"{value:.4f}" for value in values)) for label, values in lengths),
         ("mating tip reaches below the form cone", *("yes" if below else "no" for below in interference)),
     ]
+
+
+def _depth_rows(mesh: BevelMesh) -> list[Row]:
+    """Depth of teeth without a blank beside that of ISO 23509, 2 m_mn."""
+    depth = _height(mesh.pinion, mesh.pinion.tip_angle) + _height(mesh.wheel, mesh.wheel.tip_angle)
+    standard = 2.0 * mesh.pinion.mean_normal_module
+    return [("working depth at mid-face h_mw; after ISO 23509 [mm]", f"{depth:.4f}", f"{standard:.4f}")]
 
 
 def _height(gear: BevelGear, cone_angle: float) -> float:

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
-from loaded_tca.errors import named
+from loaded_tca.errors import named, require
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
-from loaded_tca.flanks.spline import DEFAULT_POINTS, fitted, measured
+from loaded_tca.flanks.spline import DEFAULT_POINTS, fitted, measured, smoothing_coefficients
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
+from loaded_tca.pairs.tooth_deviations import ToothDeviations
 from loaded_tca.scene.flank_form import FITTED_DEGREE, FlankForm, Measurement
+from loaded_tca.scene.pitch import LARGEST_INDEX, Pitch
 from loaded_tca.scene.section import Section, as_table
 from loaded_tca.scene.sections import ElasticMaterial, GearSection
 from loaded_tca.tooth import ToothForm, ToothGeometry
@@ -62,6 +65,31 @@ def build_rounding(gear: GearSection) -> EdgeRounding:
 def build_materials(materials: tuple[ElasticMaterial, ElasticMaterial]) -> tuple[Material, Material]:
     """Return the materials of both gears."""
     return Material(**in_base_units(materials[0])), Material(**in_base_units(materials[1]))
+
+
+def build_tooth_deviations(
+    pitch: Pitch | None, teeth: int, owner: str, module: float, tolerances: Callable[[int], tuple[float, float]]
+) -> ToothDeviations:
+    """Return the deviations of the teeth of a gear; InputError if one is larger than 0.05 modules.
+
+    ``tolerances`` has the single and the cumulative pitch tolerance [um] of a class.
+    """
+    if pitch is None:
+        return ToothDeviations(np.zeros(teeth))
+    with named(f"{owner}.pitch"):
+        index = UNITS["um"].factor * pitch.index(teeth, tolerances)
+    worst = int(np.abs(index).argmax())
+    limit = LARGEST_INDEX * module
+    require(
+        (
+            abs(index[worst]) <= limit,
+            f"{owner}.pitch: index deviation of tooth {worst}: found {1e3 * index[worst]:g} um; allowed up to "
+            f"{1e3 * limit:g} um, {LARGEST_INDEX} modules",
+        )
+    )
+    return ToothDeviations(
+        index, 0.5 * UNITS["um"].factor * pitch.runout_um, UNITS["deg"].factor * pitch.runout_phase_deg
+    )
 
 
 def described_gear(gear: Gear, form: FlankForm, owner: str, measured_side: int) -> Gear:
@@ -122,7 +150,8 @@ class DescribedTooth(ToothGeometry):
                 return fitted(flank, wanted.points or DEFAULT_POINTS, wanted.degree or FITTED_DEGREE)
             if wanted.measurement is not None and flank.side == self.measured_side:
                 data = build_topography(wanted.measurement, flank.frame.upwards)
-                return measured(flank, data, degree=wanted.degree, coefficients=wanted.coefficients)
+                counts = wanted.coefficients or smoothing_coefficients(data.radius.shape[:2], wanted.degree)
+                return measured(flank, data, degree=wanted.degree, coefficients=counts)
         return flank
 
 

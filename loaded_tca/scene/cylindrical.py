@@ -14,9 +14,10 @@ from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, pro
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
+from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
-from loaded_tca.scene.keys import Choice, Number, above_zero, key
+from loaded_tca.scene.keys import Choice, Number, Whole, above_zero, key
 from loaded_tca.scene.model import Row, family
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import (
@@ -31,6 +32,8 @@ from loaded_tca.scene.sections import (
     below,
     contact_standard,
 )
+from loaded_tca.scene.thickness import as_measured, needs, one_thickness, one_tip, thickness_rows
+from loaded_tca.scene.tolerance_class import slope_tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,10 +70,33 @@ class GearSection(BlankGearSection):
         None,
         "0, or what leaves no backlash",
     )
-    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a", None, "d + 2 m_n (1 + x)")
+    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a", None, "d + 2 m_n (1 + x + k)")
+    tip_alteration_coefficient: float | None = key(
+        Number(-2.0, 1.0),
+        "tip alteration coefficient k, negative for a shortened tip, instead of `tip_diameter_mm`",
+        None,
+        "0",
+    )
+    thickness_allowance_um: float | None = key(
+        SLOPE_um,
+        "allowance A_sn of the tooth thickness in the normal section at the reference circle, negative for thinner "
+        "teeth, up to half a module: flanks and root are cut with x_E",
+        None,
+        "0",
+    )
+    span_measurement_mm: float | None = key(DIAMETER_mm, "or span W_k of these teeth", None, "not measured")
+    span_teeth: int | None = key(
+        Whole(1, 10000), "number of teeth k of the span", None, "touches nearest to d + 2 x m_n"
+    )
+    ball_measurement_mm: float | None = key(DIAMETER_mm, "or measure M_dK over two balls", None, "not measured")
+    ball_diameter_mm: float | None = key(DIAMETER_mm, "diameter D_M of the balls", None, "of `ball_measurement_mm`")
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankGearSection.rules,
+        Rule(("tip_alteration_coefficient", "tip_diameter_mm"), one_tip),
+        Rule(("thickness_allowance_um", "span_measurement_mm", "ball_measurement_mm"), one_thickness),
+        needs("span_teeth", "span_measurement_mm"),
+        needs("ball_diameter_mm", "ball_measurement_mm", back=True),
         below("bore_diameter_mm", "tip_diameter_mm"),
         below("modifications.tip_relief_start_mm", "tip_diameter_mm"),
         below("modifications.root_relief_start_mm", "tip_diameter_mm"),
@@ -142,7 +168,7 @@ class CylindricalScene(BlankScene):
             values = parameters_of(CylindricalGear, self.geometry, own)
             values["helix_angle"] *= sign
             values["profile_shift"] = shift or 0.0
-            return CylindricalGear(**values, name=name)
+            return as_measured(CylindricalGear(**values, name=name), own)
 
         sections, names, distance = (self.pinion, self.wheel), ("pinion", "wheel"), self.geometry.centre_distance_mm
         shifts = [own.profile_shift for own in sections]
@@ -184,6 +210,14 @@ class CylindricalScene(BlankScene):
             )
         )
         return Mounting(**errors)
+
+    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:
+        """Return f_pT and F_pT [um] times cos(alpha_t): from the reference circle to the line of action."""
+        mesh = self.mesh()
+        one = (mesh.pinion, mesh.wheel)[gear]
+        values = abs(one.teeth), one.normal_module, one.face_width, tolerance_class, one.helix_angle
+        tolerances, factor = flank_tolerances(*values), one.base_radius / one.reference_radius
+        return factor * tolerances.single_pitch, factor * tolerances.cumulative_pitch
 
     def active_starts(self) -> tuple[float, float]:
         """Return the roll lengths at which the active profiles of pinion and wheel start [mm]."""
@@ -228,6 +262,10 @@ class CylindricalScene(BlankScene):
         width = common_face_width(mesh, self.mounting.axial_offset_mm)
         return contact_standard(mesh, width, build_materials(self.materials))
 
+    def slope_tolerances(self, tolerance_class: int) -> Mapping[str, float]:
+        """Return the tolerances of the helix and profile slopes of both gears after ISO 1328-1 [um]."""
+        return slope_tolerances(self.mesh(), tolerance_class)
+
     @property
     def nominal_root_stress(self) -> tuple[float, float]:
         """Nominal root stress sigma_F0 after ISO 6336-3, method B, over the common face, per torque [MPa/(N mm)].
@@ -261,7 +299,7 @@ class CylindricalScene(BlankScene):
             ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
             ("base helix angle beta_b [deg]", f"{abs(math.degrees(mesh.pinion.base_helix_angle)):.4f}"),
             ("profile shift sum: given, without backlash", *(f"{value:.4f}" for value in _profile_shift_sums(mesh))),
-            backlash_row(mesh),
+            *backlash_rows(mesh),
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
@@ -271,6 +309,7 @@ class CylindricalScene(BlankScene):
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
             *_diameter_rows(mesh),
+            *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
             ("tip clearance of the mating gear c [mm]", *(f"{clearance:.4f}" for clearance in mesh.tip_clearances)),
         ]
 
@@ -310,7 +349,7 @@ def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, 
     try:
         section = iso6336_3.root_section(
             gear.teeth,
-            gear.profile_shift,
+            gear.generating_profile_shift,
             2.0 * gear.tip_radius / gear.normal_module,
             mesh.transverse_contact_ratio,
             helix_angle=gear.helix_angle,
@@ -324,10 +363,14 @@ def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, 
     return section.form_factor, section.stress_correction_factor, helix
 
 
-def backlash_row(mesh: CylindricalMesh | InternalMesh) -> Row:
-    """Backlash [mm], zero where it is rounding."""
-    backlash = mesh.backlash if abs(mesh.backlash) > 1e-9 * mesh.pinion.normal_module else 0.0
-    return "backlash j_wt at the working circles [mm]", f"{backlash:.4f}"
+def backlash_rows(mesh: CylindricalMesh | InternalMesh) -> tuple[Row, Row]:
+    """Backlash j_wt and j_bn [mm], zero where they are rounding."""
+    rounding = abs(mesh.backlash) <= 1e-9 * mesh.pinion.normal_module
+    along, normal = (0.0, 0.0) if rounding else (mesh.backlash, mesh.normal_backlash)
+    return (
+        ("backlash j_wt at the working circles [mm]", f"{along:.4f}"),
+        ("normal backlash j_bn [mm]", f"{normal:.4f}"),
+    )
 
 
 def _profile_shift_sums(mesh: CylindricalMesh) -> tuple[float, float]:

@@ -152,9 +152,9 @@ class FlankForm(Section):
     )
     coefficients: tuple[int, int] | None = key(
         List(COUNT, 2, 2),
-        "B-spline coefficients along the profile and lengthwise of a measured flank; fewer than points smooth it",
+        "B-spline coefficients along the profile and lengthwise of a measured flank; as many as points: through each",
         None,
-        "as many as points",
+        "half as many as points and two, which smooths the noise of measurement",
     )
     file: str | None = key(
         Line(1000),

@@ -16,11 +16,12 @@ from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.pairs.internal import internal_pair
 from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
-from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_row
+from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
 from loaded_tca.scene.keys import Choice, Number, Whole, key
 from loaded_tca.scene.model import Hand, Row, Scene, variant
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.sections import ContactStandard, DIAMETER_mm, below
+from loaded_tca.scene.thickness import as_measured
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -167,7 +168,8 @@ class InternalScene(CylindricalScene):
             for values, shift in ((of_pinion, shifts[0]), (of_ring, shifts[1])):
                 values["helix_angle"] *= sign
                 values["profile_shift"] = shift or 0.0
-            return CylindricalGear(**of_pinion, name="pinion"), RingGear(**of_ring, name="wheel")
+            pinion = as_measured(CylindricalGear(**of_pinion, name="pinion"), self.pinion)
+            return pinion, RingGear(**of_ring, name="wheel")
 
         shifts = [self.pinion.profile_shift, self.wheel.profile_shift]
         pinion, ring = gears(shifts)
@@ -226,7 +228,7 @@ class InternalScene(CylindricalScene):
             ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
             ("base helix angle beta_b [deg]", f"{abs(math.degrees(pinion.base_helix_angle)):.4f}"),
             ("profile shift sum: given, without backlash", *(f"{round(value, 4) + 0.0:.4f}" for value in shifts)),
-            backlash_row(mesh),
+            *backlash_rows(mesh),
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),

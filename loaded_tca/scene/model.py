@@ -6,13 +6,16 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
-from loaded_tca.pairs.gear_pair import GearPair, Sense
-from loaded_tca.scene.build import build_rounding, described_gear, in_base_units
+from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
+from loaded_tca.pairs.tooth_deviations import ToothDeviations
+from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key, literal
+from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.section import (
     Rule,
     Section,
@@ -26,6 +29,7 @@ from loaded_tca.scene.section import (
     subsection,
 )
 from loaded_tca.scene.sections import Analysis, ContactStandard, ElasticMaterial, GearSection, Load, Pair
+from loaded_tca.scene.tolerance_class import scatter_of_class
 
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
@@ -54,6 +58,8 @@ class Scene(Section, ABC):
         Of both gears; ``materials`` tells what holds for each.
     load : Load
     analysis : Analysis
+    revolution : Revolution or None
+        Of whole revolutions; None: a turn of the wheel.
     """
 
     title: str = key(Line(), "stands over reports and plots", "")
@@ -66,6 +72,7 @@ class Scene(Section, ABC):
     )
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
+    revolution: Revolution | None = subsection(Revolution, "which pitches a whole revolution has", optional=True)
 
     vh_keys: ClassVar[tuple[str, str]]
     """Keys of the two mounting errors that a V-H check varies."""
@@ -94,6 +101,7 @@ class Scene(Section, ABC):
             )
             for place in ("material", "pinion.material", "wheel.material")
         ),
+        *REVOLUTION_RULES,
     )
 
     @classmethod
@@ -128,6 +136,41 @@ class Scene(Section, ABC):
         """+1 for the right hand, -1 for the left one, of pinion and wheel."""
         sign = 1 if self.hands[0] == "right" else -1
         return sign, -sign
+
+    @property
+    def driving(self) -> Driving:
+        """The gear that drives."""
+        wanted: Any = self.geometry
+        driving: Driving = wanted.driving
+        return driving
+
+    def coast_side(self) -> Scene:
+        """Return the scene with the other gear driving in the same sense of rotation: the other flanks carry the load.
+
+        Torques of the pinion are the same; the flanks in contact have the same modifications.
+
+        Raises
+        ------
+        InputError
+            If a flank is measured: the scene has no measurement of the other side of its teeth.
+
+        Examples
+        --------
+        >>> from loaded_tca import parse_scene
+        >>> from loaded_tca.cli import DEMO_SCENE
+        >>> parse_scene(DEMO_SCENE.read_text()).coast_side().driving
+        'wheel'
+        """
+        gears = {"pinion": self.pinion, "wheel": self.wheel}
+        measured = [name for name, gear in gears.items() if gear.flank.form == "measured"]
+        require(
+            *((False, f'{name}.flank.form: "measured" is one side of the teeth; allowed others') for name in measured)
+        )
+        changes: dict[str, Any] = {"pair.driving": "wheel" if self.driving == "pinion" else "pinion"}
+        changes["pair.sense"] = self.sense
+        if hasattr(self.geometry, "pinion_flank"):
+            changes["pair.pinion_flank"] = None
+        return self.with_changes(changes)
 
     @abstractmethod
     def analytic_pair(self, sense: Sense) -> GearPair:
@@ -164,6 +207,61 @@ class Scene(Section, ABC):
             wheel=described_gear(pair.wheel, self.wheel.flank, "wheel", side),
         )
         return described.rounded(build_rounding(self.pinion), build_rounding(self.wheel))
+
+    @property
+    def has_pitch_deviations(self) -> bool:
+        """Whether a gear has pitch deviations or runout."""
+        return any(gear.pitch is not None and gear.pitch.is_given for gear in (self.pinion, self.wheel))
+
+    def tooth_deviations(self, pair: GearPair) -> tuple[ToothDeviations, ToothDeviations]:
+        """Return index deviations and eccentricity of the teeth of pinion and wheel.
+
+        Parameters
+        ----------
+        pair : GearPair
+            Of the scene.
+
+        Raises
+        ------
+        InputError
+            If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
+        """
+        pinion, wheel = (
+            build_tooth_deviations(gear.pitch, gear.teeth, name, pair.module, partial(self.pitch_tolerances, number))
+            for number, (name, gear) in enumerate((("pinion", self.pinion), ("wheel", self.wheel)))
+        )
+        return pinion, wheel
+
+    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:  # noqa: ARG002
+        """Return the single and the cumulative pitch tolerance of a gear [um], along the transverse line of action.
+
+        Parameters
+        ----------
+        gear : int
+            0 the pinion, 1 the wheel.
+        tolerance_class : int
+            Of ISO 1328-1:2013.
+
+        Raises
+        ------
+        InputError
+            Where the standard has none, as for bevel gears.
+        """
+        raise InputError(
+            f"tolerance_class: found {tolerance_class}; ISO 1328-1 has classes of cylindrical gears "
+            "alone; give index_um"
+        )
+
+    def vh_steps(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """Return three values of each key of ``vh_keys`` for a V-H check: none, and small errors of both signs.
+
+        A hundredth of the module, and for angles that over the face width, to one digit: it moves the contact of
+        crowned flanks by parts of a module.
+        """
+        pair = self.pair()
+        sizes = {"mm": 0.01 * pair.module, "deg": math.degrees(0.01 * pair.module / pair.face_width)}
+        first, second = (float(f"{sizes[key.rpartition('_')[2]]:.0e}") for key in self.vh_keys)
+        return (-first, 0.0, first), (-second, 0.0, second)
 
     @property
     def rigid_bores(self) -> tuple[float, float] | None:
@@ -243,6 +341,48 @@ class Scene(Section, ABC):
         GeometryError
             If nothing can turn.
         """
+
+    def slope_tolerances(self, tolerance_class: int) -> Mapping[str, float]:
+        """Return the tolerances of slopes of both gears of a class, by their keys [um].
+
+        Raises
+        ------
+        InputError
+            If there is no standard for gears of this kind, or it has no such class.
+        """
+        raise InputError(f"tolerance_class: {tolerance_class}; ISO 1328-1 holds for cylindrical gears alone")
+
+    def scatter_of_class(self, tolerance_class: int, *, deviations: bool = False) -> Mapping[str, Any]:
+        """Return how helix and profile slopes of both gears scatter that are of a tolerance class of ISO 1328-1:2013.
+
+        Each slope is normal about its value in the scene, with three standard deviations to its tolerance f_HbetaT or
+        f_HalphaT to either side, and independent of the others.
+
+        Parameters
+        ----------
+        tolerance_class : int
+            From 1 to 11.
+        deviations : bool
+            About zero instead, as the scatter of ``DesignModel`` counts it.
+
+        Returns
+        -------
+        mapping of str to frozen distribution of ``scipy.stats``
+            Key -> its distribution [um], as ``Study`` takes it.
+
+        Raises
+        ------
+        InputError
+            If the gears are not cylindrical, or outside the classes and ranges of the standard.
+
+        Examples
+        --------
+        >>> from loaded_tca import read_scene
+        >>> scatter = read_scene("examples/scenes/helical.toml").scatter_of_class(6)
+        >>> round(float(scatter["wheel.modifications.helix_slope_um"].std()), 3)
+        3.0
+        """
+        return scatter_of_class(self, tolerance_class, deviations=deviations)
 
     @property
     def flank_names(self) -> tuple[str, str]:

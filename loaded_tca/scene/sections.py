@@ -17,6 +17,7 @@ from loaded_tca.material import LARGEST_RATIO_IN_BENDING, SOFTEST, Material, con
 from loaded_tca.reference import iso6336
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, ZeroOr, above_zero, key
+from loaded_tca.scene.pitch import Pitch
 from loaded_tca.scene.section import Rule, Section, subsection
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
@@ -198,6 +199,9 @@ class GearSection(Section):
     flank: FlankForm = subsection(FlankForm, "how the flanks are described")
     material: ElasticMaterial | None = subsection(
         ElasticMaterial, "material of this gear, instead of the common one", optional=True
+    )
+    pitch: Pitch | None = subsection(
+        Pitch, "where the teeth stand beside their nominal places, in whole revolutions", optional=True
     )
 
 

@@ -80,21 +80,43 @@ def is_sampled(study: xarray.Dataset) -> bool:
     return any(study[key].attrs.get("sampling") == "distribution" for key in varied_keys(study))
 
 
-def rank_combinations(study: xarray.Dataset, by: str | None = None) -> pandas.DataFrame:
+def design_keys(study: xarray.Dataset) -> list[str]:
+    """Varied keys whose values make the designs of a study with distributions: those of factors and tables.
+
+    None without a distribution, where each variant is a design, or where every key has one.
+    """
+    keys = varied_keys(study) if is_sampled(study) else []
+    return [key for key in keys if study[key].attrs.get("sampling") != "distribution"]
+
+
+def ranking(
+    study: xarray.Dataset, by: str | None = None, torque: int | None = None, largest_is_best: bool = False
+) -> pandas.DataFrame:
+    """Designs of a study, the best first: :func:`rank_combinations` of one with distributions, else its variants."""
+    rank = rank_combinations if design_keys(study) else rank_variants
+    return rank(study, by, torque, largest_is_best)
+
+
+def rank_combinations(
+    study: xarray.Dataset, by: str | None = None, torque: int | None = None, largest_is_best: bool = False
+) -> pandas.DataFrame:
     """Combinations of the given values of a study with distributions, the best first.
+
+    Single samples say little of a design: the best one of many is lucky.
 
     Parameters
     ----------
     study : xarray.Dataset
-    by : str, optional
-        As for :func:`rank_variants`; the least value is the best.
+    by, torque, largest_is_best
+        As for :func:`rank_variants`.
 
     Returns
     -------
     pandas.DataFrame
         One row per combination: ``rank`` from 1, ``samples`` (how many are ok), the keys of factors and table, and of
-        each figure, its worst value over the torques, the 95 % quantile over the samples. A combination without the
-        figure has no rank. No rows where every key has a distribution.
+        each figure, its worst value over the torques, the 95 % quantile over the samples (with ``largest_is_best`` the
+        5 % quantile), and ``warnings`` (of all samples). A combination without the figure has no rank. No rows where
+        every key has a distribution.
 
     Raises
     ------
@@ -113,18 +135,21 @@ def rank_combinations(study: xarray.Dataset, by: str | None = None) -> pandas.Da
     """
     import pandas
 
-    variants = rank_variants(study, by)
-    keys = [key for key in varied_keys(study) if study[key].attrs.get("sampling") != "distribution"]
+    variants = rank_variants(study, by, torque, largest_is_best)
+    keys = design_keys(study)
     figures = list(dict.fromkeys([*([by] if by else []), *main_figures(study)]))
     if not (keys and figures):
-        return pandas.DataFrame(columns=["rank", "samples", *keys, *figures])
+        return pandas.DataFrame(columns=["rank", "samples", *keys, *figures, "warnings"])
     groups = variants.groupby(keys, sort=False)
-    ranked = groups[figures].quantile(QUANTILE)
+    ranked = groups[figures].quantile(1.0 - QUANTILE if largest_is_best else QUANTILE)
     ranked.insert(0, "samples", groups["status"].agg(lambda status: int((status == "ok").sum())))
-    ranked = ranked.reset_index().sort_values(figures[0], kind="stable", ignore_index=True)
+    ranked["warnings"] = groups["warnings"].sum()
+    ranked = ranked.reset_index().sort_values(
+        figures[0], kind="stable", ignore_index=True, ascending=not largest_is_best
+    )
     ranked.insert(0, "rank", pandas.array(ranked.index + 1, dtype="Int64"))
     ranked.loc[ranked[figures[0]].isna(), "rank"] = pandas.NA
-    return ranked[["rank", "samples", *keys, *figures]]
+    return ranked[["rank", "samples", *keys, *figures, "warnings"]]
 
 
 def rank_variants(

@@ -22,7 +22,7 @@ from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest, shown, shown_key
 from loaded_tca.scene.parse import LARGEST_FILE, toml_table
 from loaded_tca.scene.section import values_of
-from loaded_tca.studies.study import MOST_VARIANTS, Distribution, Study, is_finite
+from loaded_tca.studies.study import MOST_VARIANTS, Distribution, Study, is_finite, is_whole
 
 WORDS = ("scene", "changes", "factors", "distributions", "samples", "seed", "table")
 LARGEST_TABLE = 2**27
@@ -33,6 +33,10 @@ DISTRIBUTION = "distribution"
 """Word for the name of a distribution; its parameters stand beside it."""
 ABOUT, NOMINAL = "about", "nominal"
 """Word for what a distribution lies about, and the one answer: the value that the scene has."""
+
+
+CLASS = "tolerance_class"
+"""Word for a tolerance class of ISO 1328-1, alone: the distribution of a slope of gears that are of it."""
 
 
 def read_study(path: str | os.PathLike[str]) -> Study:
@@ -92,7 +96,7 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
         (given, "table", _table, (table.get("table"), Path(folder))),
     ]
     of_scene = partial(_distribution, given)
-    for word, read, words in (("factors", _values, SPAN), ("distributions", of_scene, {DISTRIBUTION})):
+    for word, read, words in (("factors", _values, SPAN), ("distributions", of_scene, {DISTRIBUTION, CLASS})):
         section = table.get(word, {})
         if isinstance(section, dict):
             given[word] = {}
@@ -151,6 +155,8 @@ def _distribution(study: Mapping[str, Any], place: str, value: Any) -> Distribut
     from scipy import stats
 
     key = place.removeprefix("distributions.")
+    if isinstance(value, dict) and CLASS in value:
+        return _of_class(study.get("scene"), place, value)
 
     name = value.get(DISTRIBUTION) if isinstance(value, dict) else None
     known = getattr(stats, name, None) if isinstance(name, str) else None
@@ -188,6 +194,27 @@ def _distribution(study: Mapping[str, Any], place: str, value: Any) -> Distribut
         given = ", ".join(parameters) or "none"
         raise InputError(f"{place}: {name} has the parameters {', '.join(takes)}; found {given}") from None
     return frozen
+
+
+def _of_class(scene: Scene | None, place: str, value: Mapping[str, Any]) -> Distribution:
+    """Distribution of a slope, about that of the scene, of gears of a tolerance class."""
+    if beside := [word for word in value if word != CLASS]:
+        raise InputError(f"{place}: found {', '.join(map(shown_key, beside))} beside {CLASS}; allowed nothing else")
+    given = value[CLASS]
+    if not is_whole(given, 1, 11):
+        raise InputError(f"{place}.{CLASS}: found {shown(given)}; allowed a whole number from 1 to 11")
+    if scene is None:  # a problem of its own
+        from scipy.stats import norm
+
+        nothing: Distribution = norm()
+        return nothing
+    with named(place):
+        bounded = scene.scatter_of_class(given)
+    key = place.removeprefix("distributions.")
+    if key not in bounded:
+        raise InputError(f"{place}: ISO 1328-1 has no tolerance of it by class; allowed {', '.join(bounded)}")
+    found: Distribution = bounded[key]
+    return found
 
 
 def _table(name: Any, folder: Path) -> dict[str, list[Any]]:

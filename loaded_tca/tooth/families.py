@@ -219,13 +219,15 @@ class BevelTooth(ToothGeometry):
     def nominal(self, side: int) -> Flank:
         """Spherical involute flank of a side."""
         gear = self.gear
+        (form, below), (face, above) = gear.cones
         return SphericalInvoluteFlank(
             gear.pitch_angle,
             gear.pressure_angle,
             gear.spiral_angle,
             side,
-            (gear.form_angle, gear.tip_angle),
+            (form, face),
             (gear.inner_cone_distance, gear.outer_cone_distance),
+            (below, above),
         )
 
     def modified(self, nominal: Flank) -> Flank:
@@ -244,7 +246,7 @@ class BevelTooth(ToothGeometry):
         """Spheres about the apex, root cone, and arcs of 0.38 mean normal modules or the largest that fit."""
         gear = self.gear
         fillet = ArcFillet(FILLET_RADIUS_COEFFICIENT * gear.mean_normal_module, gear.mean_cone_distance)
-        root = RootCone(gear.root_cone_angle)
+        root = RootCone(gear.root_cone_angle if gear.root_angle is None else gear.root_angle, -gear.root_apex)
         return ToothForm(gear.teeth, gear.half_thickness_angle, ApexSpheres(), root, fillet, largest_that_fits=True)
 
 

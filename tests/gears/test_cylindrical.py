@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError, LoadedTCAError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.gears.cylindrical import inverse_involute, involute
+from loaded_tca.gears.involute import inverse_involute, involute
 from tests.refusals import refusals, refused_calls
 
 ROUNDING = 1e-12  # a few dozen floating point operations

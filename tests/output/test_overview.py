@@ -239,14 +239,14 @@ def test_path_of_contact_has_the_points_of_iso_21771_beside_those_of_the_flanks(
             found = [float(cell) for cell in cells(text, f"  {letter}, ISO 21771")]
             assert_allclose(found, expected, atol=1e-4)  # four decimals
         if letter != "C":
-            found = [float(cell) for cell in cells(plain, f"  {letter}, these flanks")]
+            found = [float(cell) for cell in cells(plain, f"  {letter}, unloaded contact point")]
             assert_allclose(found, expected, rtol=2e-3)  # ends found to 5e-5 of four pitches
     for letter in "AD":
-        assert float(cells(relieved, f"  {letter}, these flanks")[0]) > getattr(path, letter) + 0.1
+        assert float(cells(relieved, f"  {letter}, unloaded contact point")[0]) > getattr(path, letter) + 0.1
 
 
 def test_path_of_contact_that_lies_on_an_edge_has_nominal_points_alone():
     text = described("misaligned")
     assert cells(text, "  A, ISO 21771")
-    assert "these flanks" not in text
+    assert "unloaded contact point" not in text
     assert "path of contact of the pinion" not in described("straight_bevel")

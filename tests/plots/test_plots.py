@@ -253,6 +253,13 @@ def test_pressure_map_tells_its_directions():
     assert figure.axes[0].yaxis.get_inverted() == (radius < cycle.path.pinion_radius[2])
 
 
+def test_contacts_of_positions_without_pressure_drawn_are_pale():
+    cycle = result(positions=9)
+    figure = plot_contact_path(cycle)
+    assert len(figure.axes[0].collections) == 9
+    assert figure.legends[0].get_title().get_text() == "pressure drawn at 7 of 9 positions, contacts of the others pale"
+
+
 def test_contact_areas_lie_around_the_path_within_the_flank():
     cycle = result()
     for axes, radius in zip(

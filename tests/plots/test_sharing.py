@@ -58,7 +58,7 @@ def test_path_without_ends_on_the_flanks_has_no_marks_for_them():
 def test_hertz_is_drawn_beside_the_pressure_of_the_path():
     figure = plot_path_pressure(shared(torques=(40.0,)))
     labels = figure.axes[0].get_legend_handles_labels()[1]
-    assert "after Hertz" in labels
+    assert "after Hertz, where it holds" in labels
     drawn = [line for line in figure.axes[0].lines if line.get_linestyle() == "--" and len(line.get_xdata())]
     hertz = shared(torques=(40.0,)).hertz_pressure
     assert np.nanmax(drawn[0].get_ydata()) == np.nanmax(hertz)
@@ -293,11 +293,20 @@ def test_full_mesh_without_load_says_so():
     assert len(figure.axes) == 2  # no bar of colours
 
 
+def test_rings_mark_positions_at_which_the_contact_of_the_path_reaches_an_edge():
+    cycle = result("misaligned", positions=2)
+    axes = plot_path_pressure(cycle).axes[0]
+    rings = [line for line in axes.lines if line.get_fillstyle() == "none" and len(line.get_xdata())]
+    reached = cycle.on_edge[0].astype(bool) & np.isfinite(cycle.peak_pressure[0])
+    assert sum(len(line.get_xdata()) for line in rings) == reached.sum() > 0
+    assert any("reaches an edge" in label for label in axes.get_legend_handles_labels()[1])
+
+
 def test_letters_that_are_not_drawn_are_not_explained():
     """Of the spiral bevel pair more than one pair is in contact all the time: no B, no D."""
-    axes = plot_path_pressure(result("mesh_cycle_bevel", positions=3)).axes[0]
-    drawn = {text.get_text() for text in axes.texts}
-    label = axes.get_xlabel().replace("\n", " ")
+    figure = plot_path_pressure(result("mesh_cycle_bevel", positions=3))
+    drawn = {text.get_text() for text in figure.axes[0].texts}
+    label = told(figure).replace("\n", " ")
     assert drawn == {"A", "C", "E"}
     assert {letter for letter in "ABCDE" if f"{letter}: " in label} == drawn
 
@@ -306,7 +315,7 @@ def test_letters_say_what_they_are_and_do_not_cover_each_other():
     figure = plot_path_pressure(shared())
     figure.draw_without_rendering()
     axes, _ = figure.axes
-    label = axes.get_xlabel().replace("\n", " ")
+    label = told(figure).replace("\n", " ")
     assert all(f"{letter}: {what}" in label for letter, what in sharing.WHAT_LETTERS_ARE.items())
     boxes = sorted((text.get_window_extent() for text in axes.texts), key=lambda box: box.x0)
     assert len(boxes) == 5

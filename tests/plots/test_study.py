@@ -281,6 +281,48 @@ def test_band_over_the_torque_holds_nine_tenths_of_the_variants():
     assert [text.get_text() for text in figure.legends[0].texts] == ["5 to 95 %", "median"]
 
 
+def designs():
+    """Two designs with 20 samples each; the luckiest sample is one of the design with the larger scatter."""
+    lead = np.repeat([2.0, 6.0], 20)
+    span = np.concatenate([np.linspace(3.0, 4.0, 20), np.linspace(0.5, 9.0, 20)])
+    study = dataset(
+        {LEAD: lead, MISALIGNMENT: np.tile(np.linspace(-9.0, 9.0, 20), 2)},
+        {SPAN: np.stack([span, 2.0 * span], axis=1)},
+        torques=(40.0, 80.0),
+    )
+    study[LEAD].attrs["sampling"], study[MISALIGNMENT].attrs["sampling"] = "factor", "distribution"
+    return study
+
+
+def test_ranking_with_distributions_is_of_designs_by_their_quantile():
+    figure = plot_study_ranking(designs(), SPAN)
+    table = figure.axes[0].tables[0]
+    rows = [[table[row, column].get_text().get_text() for column in range(4)] for row in (1, 2)]
+    assert [row[2] for row in rows] == ["2", "6"]
+    assert [float(row[3]) for row in rows] == pytest.approx([7.9, 17.15], rel=1e-3)  # 95 % of even steps, larger torque
+    assert "95 % quantile over the samples" in title(figure)
+    figure = plot_study_ranking(designs(), SPAN, largest_is_best=True)
+    assert "5 % quantile over the samples" in title(figure)
+    assert figure.axes[0].tables[0][1, 2].get_text().get_text() == "2"  # 5 % of the least: 3.05 and 0.925
+
+
+def test_each_design_has_its_band_over_the_torque():
+    figure = plot_study_over_torque(designs())
+    bands = [one for one in figure.axes[0].collections if isinstance(one, PolyCollection)]
+    tops = [band.get_paths()[0].vertices[:, 1].max() for band in bands]
+    assert tops == pytest.approx([7.9, 17.15], rel=1e-3)
+    assert [text.get_text() for text in figure.legends[0].texts] == ["2", "6"]
+
+
+def test_heat_map_of_many_cells_takes_no_mask_of_all_samples_for_each():
+    """160 000 cells with 160 000 samples: masks would take 25 GB."""
+    count = 400
+    first, second = (values.ravel() for values in np.meshgrid(np.arange(count) * 1.0, np.arange(count) * 1.0))
+    figure = plot_study_heat_map(dataset({LEAD: first, TIP: second}, {SPAN: first - second}), SPAN)
+    (mesh,) = [one for one in figure.axes[0].collections if isinstance(one, QuadMesh)]
+    assert_array_equal(mesh.get_array(), (first - second).reshape(count, count))
+
+
 def test_nominal_variant_is_drawn_over_the_torque_where_there_is_one():
     study = dataset(
         {MISALIGNMENT: [5.0, 0.0, -5.0]}, {SPAN: [[1.0, 2.0], [3.0, 4.0], [5.0, 7.0]]}, torques=(40.0, 80.0)

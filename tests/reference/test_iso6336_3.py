@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.gears.cylindrical import involute
+from loaded_tca.gears.involute import involute
 from loaded_tca.reference.iso6336_3 import (
     face_load_factor,
     helix_angle_factor,

@@ -48,7 +48,7 @@ def test_result_survives_its_file_unchanged(path, make):
     assert_same(MeshCycle.load(path), before)
 
 
-def test_infinite_gaps_survive_padding(path):
+def test_infinite_gaps_survive(path):
     small = with_a_gap().maps[0][-1][0]
     gap = small.gap.copy()
     gap[0, :3] = np.inf
@@ -58,6 +58,33 @@ def test_infinite_gaps_survive_padding(path):
     assert found.shape == gap.shape
     assert np.isinf(found[0, :3]).all()
     assert np.isfinite(found[1:]).all()
+
+
+def test_file_grows_with_the_cells_of_the_maps_not_with_the_largest(path, tmp_path):
+    """One map refined four times each way adds its own cells, 16 bytes each, and three lines of them."""
+    before = with_a_gap()
+    before.save(path)
+    one = before.maps[0][-1][0]
+    nx, ny = 4 * one.pressure.shape[0], 4 * one.pressure.shape[1]
+    zeros = {"pressure": np.zeros((nx, ny)), "gap": np.zeros((nx, ny))}
+    fine = replace(one, x=np.arange(nx) * 1.0, y=np.arange(ny) * 1.0, force_line=np.zeros(ny), **zeros)
+    larger = replace(before, maps=tuple((*row[:-1], (fine,)) for row in before.maps))
+    larger.save(tmp_path / "larger.nc")
+    added = 8 * len(before.maps) * (2 * (nx * ny - one.pressure.size) + nx - len(one.x) + 2 * (ny - len(one.y)))
+    assert (tmp_path / "larger.nc").stat().st_size - path.stat().st_size == added
+    assert_same(MeshCycle.load(tmp_path / "larger.nc"), larger)
+
+
+def test_file_with_fewer_values_than_its_maps_have_cells_is_told(path):
+    result().save(path)
+    file = read_dataset(path)
+    write_dataset(path, file.isel(cell=slice(1, None)))
+    cells = file.sizes["cell"]
+    with pytest.raises(InputError) as caught:
+        MeshCycle.load(path)
+    assert caught.value.problems[1:] == tuple(
+        f"map_{name}: {cells - 1} values, expected {cells} of all maps together" for name in ("pressure", "gap")
+    )
 
 
 def test_result_without_any_map_survives(path):

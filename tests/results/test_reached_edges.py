@@ -1,10 +1,47 @@
 """Edges that loaded contacts reach: told by name, and there wherever a contact is said to reach one."""
 
+import re
+import warnings
+
 import numpy as np
 import pytest
 
+from loaded_tca.analysis import analyse
+from loaded_tca.errors import AccuracyWarning
 from loaded_tca.results.mesh_cycle import NAMES, reached_edges
-from tests.samples.results import result, with_a_gap
+from loaded_tca.scene import read_scene
+from tests.samples.results import FLANKS_ALONE, SCENES, result, with_a_gap
+
+
+def analysed(scene):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # edge contacts are wanted here
+        return analyse(scene)
+
+
+def test_finding_names_the_edges_of_the_largest_edge_pressure_and_the_relief_that_frees_them():
+    cycle = result("misaligned", positions=2)
+    (sentence,) = cycle.findings()
+    at = (0, *cycle.edge_contact(0))
+    assert f"edge pressure {cycle.edge_pressure[at]:.4g} MPa at 130 N m on " in sentence
+    reached = [name for name, one in zip(NAMES, reached_edges(cycle)[at], strict=True) if one]
+    assert " + ".join(reached) in sentence
+    assert "end relief" in sentence
+    assert sentence in " ".join(cycle.summary().split("finding: "))
+    deflection = 1e3 * cycle.contact_deformation[at]  # of flanks alone
+    assert f"of more than {deflection:.2g} um" in sentence  # the misaligned pair touches at its end without load
+
+
+def test_relief_of_the_deflection_takes_the_load_off_the_edge():
+    changes = {"analysis.positions": 2, "analysis.accuracy": None, "analysis.cells": (24, 32)}
+    scene = read_scene(SCENES / "spur.toml").with_changes(changes | FLANKS_ALONE)
+    pressed = analysed(scene.with_changes({"pinion.modifications.lead_crowning_um": 2.0}))
+    (sentence,) = pressed.findings()
+    deflection = float(re.search(r"end relief of up to (\S+) um", sentence).group(1))
+    relief = {"pinion.modifications.end_relief_um": 1.3 * deflection, "pinion.modifications.end_relief_length_mm": 5.0}
+    relieved = analysed(pressed.scene.with_changes(relief))  # what the ends carried deflects the rest by as much more
+    assert relieved.findings() == ()
+    assert np.isnan(relieved.edge_pressure).all()
 
 
 def names(cycle):

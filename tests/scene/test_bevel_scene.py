@@ -43,7 +43,10 @@ EVERY_KEY = {
 
 
 ONE_PROBLEM = [
-    ({"pair.outer_module_mm": None}, "pair.outer_module_mm: missing; allowed a number above 0, up to 1000"),
+    (
+        {"pair.outer_module_mm": None},
+        "pair.outer_module_mm: missing; allowed one of outer_module_mm, mean_normal_module_mm, wheel_outer_diameter_mm",
+    ),
     ({"pair.outer_module_mm": 0}, "pair.outer_module_mm: found 0; allowed a number above 0, up to 1000"),
     ({"pair.shaft_angle_deg": 180.0}, "pair.shaft_angle_deg: found 180.0; allowed a number from 1 to 179"),
     ({"pair.pressure_angle_deg": 50.0}, "pair.pressure_angle_deg: found 50.0; allowed a number from 1 to 44"),
@@ -78,7 +81,7 @@ ONE_PROBLEM = [
     ),
     (
         {"pair.normal_module_mm": 3.0},
-        'pair.normal_module_mm: unknown key; did you mean "pair.outer_module_mm"?',
+        'pair.normal_module_mm: unknown key; did you mean "pair.mean_normal_module_mm"?',
     ),
     ({"pinion.face_angle_deg": 0.0}, "pinion.face_angle_deg: found 0.0; allowed a number above 0, up to 179"),
     ({"pinion.root_angle_deg": 180}, "pinion.root_angle_deg: found 180; allowed a number above 0, up to 179"),

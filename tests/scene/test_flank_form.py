@@ -145,6 +145,19 @@ def test_fewer_coefficients_smooth_the_noise(scene, tmp_path, rng):
     assert_allclose(wheel.fit_error.rms, 2e-4 * np.sqrt(1.0 - 42 / 180), rtol=0.2)
 
 
+def test_noise_is_smoothed_by_default_and_followed_where_asked(scene, tmp_path, rng):
+    points = deviations(scene, points=(12, 15))
+    points[..., 2] += rng.normal(0.0, 0.2, points.shape[:2])
+    path = tmp_path / "noisy.csv"
+    path.write_text(csv_of(points), encoding="utf-8")
+    wanted = {"form": "measured", "file": str(path)}
+    smooth = scene.with_changes({"wheel.flank": wanted}).pair().wheel.flank
+    assert smooth.spline.coefficients.shape == (8, 9)
+    assert_allclose(smooth.fit_error.rms, 2e-4 * np.sqrt(1.0 - 72 / 180), rtol=0.2)
+    through = scene.with_changes({"wheel.flank": wanted | {"coefficients": [12, 15]}}).pair().wheel.flank
+    assert through.fit_error.rms < 1e-3 * smooth.fit_error.rms
+
+
 def test_other_flank_of_a_measured_tooth_follows_from_the_equations(scene, measured_file):
     found = scene.with_changes({"wheel.flank": {"form": "measured", "file": str(measured_file)}})
     assert isinstance(found.pair("positive").wheel.flank, SplineFlank)

@@ -158,6 +158,36 @@ def test_distribution_that_takes_the_place_of_a_nominal_value_says_so(tmp_path):
         scattered(tmp_path, f'{SLOPE} = {{ distribution = "norm", scale = 2.0 }}')
 
 
+def test_tolerance_class_is_the_distribution_of_a_slope_about_that_of_the_scene(tmp_path):
+    """f_HbetaT of class 6 is 9.0 um for d 105.6 mm, b 25 mm; f_HalphaT of class 8 15 um for d 177 mm, m_n 3 mm."""
+    profile = "wheel.modifications.profile_slope_um"
+    found = scattered(tmp_path, f"{SLOPE} = {{ tolerance_class = 6 }}\n{profile}.tolerance_class = 8\n")
+    assert (found[SLOPE].mean(), found[SLOPE].std()) == (4.0, 3.0)
+    assert (found[profile].mean(), found[profile].std()) == (0.0, 5.0)
+
+
+CLASSES = "allowed pinion.modifications.helix_slope_um, pinion.modifications.profile_slope_um, wheel"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (f"{SLOPE} = {{ tolerance_class = 12 }}", f"{SLOPE}.tolerance_class: found 12; allowed a whole number from 1"),
+        (f'{SLOPE} = {{ tolerance_class = "6" }}', f'{SLOPE}.tolerance_class: found "6"; allowed a whole number'),
+        (
+            f"{SLOPE} = {{ tolerance_class = 6, scale = 2.0 }}",
+            f"{SLOPE}: found scale beside tolerance_class; allowed",
+        ),
+        (f"{TILTED} = {{ tolerance_class = 6 }}", f"{TILTED}: ISO 1328-1 has no tolerance of it by class; {CLASSES}"),
+    ],
+)
+def test_tolerance_class_of_a_study_is_refused(tmp_path, text, told):
+    with pytest.raises(
+        InputError, match=re.escape(f"distributions.{told}") if told.startswith((SLOPE, TILTED)) else told
+    ):
+        scattered(tmp_path, text)
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [

@@ -1,7 +1,8 @@
 """Planet and ring of the second stage of the NREL 5 MW reference gearbox, against the digits of a printed report.
 
-The KISSsoft report stands beside a public model of the drive train (gfsReboucas/Drivetrain, @NREL_5MW/stage_02.rtf);
-the stage is that of Nejad, Guo, Gao, Moan 2016, Wind Energy 19, table V. Tolerances are half a unit of the last printed digit.
+The KISSsoft report stands beside a public model of the drive train (gfsReboucas/Drivetrain,
+@NREL_5MW/stage_02.rtf); the stage is that of Nejad, Guo, Gao, Moan 2016, Wind Energy 19, table V. Tolerances are half a
+unit of the last printed digit, or a whole one where the report cuts digits off.
 """
 
 from pathlib import Path

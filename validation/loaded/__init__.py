@@ -1,6 +1,7 @@
 """The loaded mesh cycle by itself; ``validation.calculix`` has it beside finite elements.
 
 - ``limits``: balance, energy, no load, conjugate teeth, published stiffnesses;
+- ``revolution``: whole revolutions beside one pitch, flanks really turned, eccentric axes, stiffnesses of single teeth;
 - ``cut_contacts``: scatter of contacts that end at faces and tips;
 - ``mesh_stiffness``: beside ISO 6336-1, over helix angle, bore, face width, torque and crowning;
 - ``bending_line``: a helical pair whose pressure leaves the axis of its grid, beside repeated analyses;

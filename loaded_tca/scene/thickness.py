@@ -1,0 +1,86 @@
+"""Tooth thickness of cylindrical gears in scenes: the keys that give it, the gear that follows, its rows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from loaded_tca.errors import InputError
+from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
+from loaded_tca.scene.section import Rule
+
+if TYPE_CHECKING:
+    from loaded_tca.scene.cylindrical import GearSection
+    from loaded_tca.scene.model import Row
+
+
+def one_thickness(allowance: float | None, span: float | None, balls: float | None) -> str | None:
+    """What is wrong where more than one key gives the tooth thickness."""
+    keys = {"thickness_allowance_um": allowance, "span_measurement_mm": span, "ball_measurement_mm": balls}
+    given = [f"{name} = {value:g}" for name, value in keys.items() if value is not None]
+    return f"found {' beside '.join(given)}; give one of them" if len(given) > 1 else None
+
+
+def needs(key: str, other: str, *, back: bool = False) -> Rule:
+    """Rule: a key has a meaning beside another one only; ``back``: and the other one beside it."""
+
+    def complain(value: float | None, partner: float | None) -> str | None:
+        if value is not None and partner is None:
+            return f"found {value:g}; it needs {other}"
+        if back and value is None and partner is not None:
+            return f"missing; {other} = {partner:g} needs it"
+        return None
+
+    return Rule((key, other), complain)
+
+
+def one_tip(alteration: float | None, diameter: float | None) -> str | None:
+    """What is wrong where the tip is given twice."""
+    if alteration is None or diameter is None:
+        return None
+    return f"found {alteration:g} beside tip_diameter_mm = {diameter:g}; give one of them"
+
+
+def as_measured(gear: CylindricalGear, own: GearSection) -> CylindricalGear:
+    """Gear with the thickness of its teeth that a span or balls tell, if they do."""
+    if own.span_measurement_mm is not None:
+        teeth = own.span_teeth or gear.span_teeth
+        measured = replace(gear, thickness_allowance=allowance_of_span(gear, own.span_measurement_mm, teeth))
+        measured.span_measurement(teeth)  # refuses a span that touches no flank
+        return measured
+    if own.ball_measurement_mm is not None and own.ball_diameter_mm is not None:
+        allowance = allowance_of_balls(gear, own.ball_measurement_mm, own.ball_diameter_mm)
+        measured = replace(gear, thickness_allowance=allowance)
+        measured.ball_measurement(own.ball_diameter_mm)
+        return measured
+    return gear
+
+
+def thickness_rows(mesh: CylindricalMesh, balls: Sequence[float | None]) -> list[Row]:
+    """Tooth thickness of both gears and how it is measured; "-" where a span touches no flank."""
+    gears = mesh.pinion, mesh.wheel
+    rows = [
+        ("tip alteration coefficient k", *(f"{gear.tip_alteration / gear.normal_module + 0.0:.4f}" for gear in gears)),
+        ("tooth thickness s_n [mm]", *(f"{gear.normal_tooth_thickness:.4f}" for gear in gears)),
+        ("span W_k over k teeth [mm]", *map(_span, gears)),
+    ]
+    if any(gear.thickness_allowance for gear in gears):
+        rows[1:1] = [
+            ("thickness allowance A_sn [um]", *(f"{1e3 * gear.thickness_allowance + 0.0:.1f}" for gear in gears)),
+            ("generating profile shift x_E", *(f"{gear.generating_profile_shift:.4f}" for gear in gears)),
+        ]
+    if any(balls):
+        measures = (f"{g.ball_measurement(size):.4f}" if size else "-" for g, size in zip(gears, balls, strict=True))
+        rows.append(("measure over balls M_dK [mm]", *measures))
+    return rows
+
+
+def _span(gear: CylindricalGear) -> str:
+    """Span over the usual number of teeth, and that number."""
+    teeth = gear.span_teeth
+    try:
+        return f"{gear.span_measurement(teeth):.4f} ({teeth})"
+    except InputError:
+        return "-"

@@ -1,0 +1,33 @@
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.analysis import analyse
+from loaded_tca.errors import InputError
+from loaded_tca.scene import read_scene
+from tests.samples.results import SCENES
+
+NAMES = ("helical", "straight_bevel", "spiral_bevel", "face_milled_19x62")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_coast_side_turns_the_same_way_on_the_other_flanks(name):
+    drive = read_scene(SCENES / f"{name}.toml")
+    coast = drive.coast_side()
+    assert coast.sense == drive.sense
+    assert {drive.driving, coast.driving} == {"pinion", "wheel"}
+    sides = [[gear.flank.side for gear in (pair.pinion, pair.wheel)] for pair in (drive.pair(), coast.pair())]
+    assert sides[0] == [-side for side in sides[1]]
+    assert coast.coast_side().pair().pinion.flank.side == drive.pair().pinion.flank.side
+
+
+def test_pair_that_is_its_own_mirror_image_is_as_stiff_on_both_sides():
+    changes = {"analysis.positions": 3, "analysis.compliance": "contact", "analysis.cells": (16, 16)}
+    drive = read_scene(SCENES / "spur.toml").with_changes(changes)
+    results = [analyse(scene) for scene in (drive, drive.coast_side())]
+    spans = [result.transmission_error for result in results]
+    assert_allclose(spans[1], -spans[0][:, ::-1], rtol=1e-5, atol=1e-12)  # the solver's tolerance
+
+
+def test_measured_flanks_are_one_side():
+    with pytest.raises(InputError, match=r'flank\.form: "measured" is one side of the teeth'):
+        read_scene(SCENES / "measured_flank.toml").coast_side()

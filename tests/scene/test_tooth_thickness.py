@@ -1,0 +1,145 @@
+"""Tooth thickness and tips of scenes as engineers give them: by allowance, span, balls or tip alteration."""
+
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import GeometryError, InputError, parse_scene, read_scene
+from tests.refusals import refused_calls
+from tests.samples.results import SCENES
+
+THIN = -0.06
+"""Allowance [mm]."""
+
+
+def scene(**changes):
+    return read_scene(SCENES / "helical.toml").with_changes(
+        {key.replace("__", "."): value for key, value in changes.items()}
+    )
+
+
+def thinned():
+    return scene(pinion__thickness_allowance_um=1e3 * THIN)
+
+
+def test_allowance_span_and_balls_make_the_same_gear():
+    by_allowance = thinned().mesh().pinion
+    assert_allclose(by_allowance.thickness_allowance, THIN)
+    span, balls = by_allowance.span_measurement(), by_allowance.ball_measurement(5.25)
+    by_span = scene(pinion__span_measurement_mm=span)
+    by_span_of_six = scene(pinion__span_measurement_mm=by_allowance.span_measurement(6), pinion__span_teeth=6)
+    by_balls = scene(pinion__ball_measurement_mm=balls, pinion__ball_diameter_mm=5.25)
+    for other in (by_span, by_span_of_six, by_balls):
+        assert_allclose(other.mesh().pinion.thickness_allowance, THIN, atol=1e-9)
+        assert_allclose(other.mesh().pinion.root_radius, by_allowance.root_radius, rtol=1e-10)
+        assert parse_scene(other.to_toml()) == other
+
+
+def test_flanks_of_the_pair_keep_their_involute_and_the_teeth_are_thinner():
+    nominal, thin = scene().pair(), thinned().pair()
+    form, thinner = nominal.pinion.form, thin.pinion.form
+    gear = thinned().mesh().pinion
+    angle = -THIN / (2.0 * gear.reference_radius * 0.96592582628)  # cos(15 deg): the allowance is normal
+    assert_allclose(form.half_thickness_angle - thinner.half_thickness_angle, angle, rtol=1e-8)
+
+
+def test_profile_shift_that_follows_from_the_centre_distance_is_that_of_nominal_teeth():
+    given = {"pair__centre_distance_mm": 142.0, "pinion__profile_shift": 0.1}
+    nominal, thin = scene(**given).mesh(), scene(**given, wheel__thickness_allowance_um=-80.0).mesh()
+    assert thin.wheel.profile_shift == nominal.wheel.profile_shift
+    assert abs(nominal.backlash) < 1e-9
+    assert thin.backlash > 0.08
+
+
+def test_check_tells_thickness_backlash_and_tips():
+    thin = scene(pinion__thickness_allowance_um=-60.0, wheel__ball_measurement_mm=185.0, wheel__ball_diameter_mm=5.5)
+    rows = {name: cells for name, *cells in thin.geometry_rows()}
+    mesh = thin.mesh()
+    assert rows["thickness allowance A_sn [um]"][0] == "-60.0"
+    assert rows["generating profile shift x_E"][0] == f"{-0.03 / (3.0 * 0.36397023):.4f}"
+    assert rows["normal backlash j_bn [mm]"] == [f"{mesh.normal_backlash:.4f}"]
+    assert rows["measure over balls M_dK [mm]"] == ["-", "185.0000"]
+    assert rows["span W_k over k teeth [mm]"][0] == f"{mesh.pinion.span_measurement():.4f} (5)"
+    plain = {name for name, *_ in scene().geometry_rows()}
+    assert "thickness allowance A_sn [um]" not in plain
+    assert "span W_k over k teeth [mm]" in plain
+
+
+def test_span_that_touches_no_flank_is_not_told():
+    narrow = {f"{gear}__face_width_mm": 5.0 for gear in ("pinion", "wheel")}
+    rows = {name: cells for name, *cells in scene(**narrow).geometry_rows()}
+    assert rows["span W_k over k teeth [mm]"] == ["-", "-"]
+
+
+def test_tip_alteration_is_told_and_shortens():
+    short = scene(pinion__tip_alteration_coefficient=-0.1)
+    assert_allclose(scene().mesh().pinion.tip_radius - short.mesh().pinion.tip_radius, 0.3)
+    rows = {name: cells for name, *cells in short.geometry_rows()}
+    assert rows["tip alteration coefficient k"] == ["-0.1000", "0.0000"]
+
+
+def test_backlash_of_allowances_is_used_up_by_an_error_of_the_centre_distance():
+    nearer = {"mounting__centre_distance_error_mm": -0.05}
+    assert scene(**nearer).interferences() == []  # nominal teeth say nothing of backlash
+    thin = scene(**nearer, pinion__thickness_allowance_um=-60.0)
+    assert thin.interferences() == []
+    far = scene(mounting__centre_distance_error_mm=-0.3, pinion__thickness_allowance_um=-60.0)
+    assert "negative backlash" in far.interferences()[0]
+
+
+test_thickness_keys_refuse = refused_calls(
+    (
+        lambda: scene(pinion__thickness_allowance_um=-40.0, pinion__span_measurement_mm=41.4),
+        "^pinion.thickness_allowance_um: found thickness_allowance_um = -40 beside span_measurement_mm = 41.4",
+    ),
+    (
+        lambda: scene(wheel__span_measurement_mm=60.2, wheel__ball_measurement_mm=185.0, wheel__ball_diameter_mm=5.5),
+        "^wheel.thickness_allowance_um: found span_measurement_mm = 60.2 beside ball_measurement_mm = 185; give one",
+    ),
+    (lambda: scene(pinion__span_teeth=5), "^pinion.span_teeth: found 5; it needs span_measurement_mm"),
+    (lambda: scene(pinion__ball_diameter_mm=5.0), "^pinion.ball_diameter_mm: found 5; it needs ball_measurement_mm"),
+    (
+        lambda: scene(pinion__ball_measurement_mm=113.0),
+        "^pinion.ball_diameter_mm: missing; ball_measurement_mm = 113 needs it",
+    ),
+    (
+        lambda: scene(pinion__tip_diameter_mm=111.0, pinion__tip_alteration_coefficient=-0.1),
+        "^pinion.tip_alteration_coefficient: found -0.1 beside tip_diameter_mm = 111; give one of them",
+    ),
+    (
+        lambda: scene(pinion__span_measurement_mm=41.4, pinion__span_teeth=4).mesh(),
+        "^pinion: span_measurement: 41.4 mm over 4 teeth makes the teeth 9.392 mm thicker .* is 32.5744 mm",
+    ),
+    (
+        lambda: scene(pinion__span_measurement_mm=6.0, pinion__span_teeth=1).mesh(),
+        "^pinion: span_teeth: a span over 1 teeth touches no flank",
+    ),
+    (
+        lambda: scene(pinion__ball_measurement_mm=113.0, pinion__ball_diameter_mm=9.0).mesh(),
+        "^pinion: ball_measurement: 113 mm over balls of 9 mm",
+    ),
+    (
+        lambda: scene(pinion__thickness_allowance_um=-1600.0).mesh(),
+        "^pinion: thickness_allowance: -1.6 mm is",
+    ),
+)
+
+
+def test_pointed_teeth_stay_a_matter_of_geometry():
+    with pytest.raises(GeometryError, match="pointed tooth"):
+        scene(pinion__profile_shift=1.6, pinion__thickness_allowance_um=10.0, pinion__teeth=12).mesh()
+
+
+def test_scene_without_thickness_is_the_scene_of_before():
+    """To the last bit: the nominal gear is not made anew."""
+    gear = scene().mesh().pinion
+    assert gear.thickness_allowance == 0.0
+    assert gear.generating_profile_shift == gear.profile_shift
+
+
+def test_measures_of_a_gear_may_be_given_to_both():
+    pair = scene(pinion__span_measurement_mm=41.38, wheel__span_measurement_mm=60.15).mesh()
+    assert pair.pinion.thickness_allowance < 0.0
+    assert pair.wheel.thickness_allowance < 0.0
+    assert_allclose(pair.wheel.span_measurement(7), 60.15, rtol=1e-10)
+    with pytest.raises(InputError):
+        scene(pinion__span_measurement_mm=-1.0)
