@@ -2,7 +2,7 @@
 
 The relative curvature across the contact is that of two involutes on one side of the line of action, 1/a1 - 1/a2 with
 the roll lengths a1 and a2; along it that of the lead crowning, 8 C/b^2. One tooth pair carries all, on flanks alone, at
-pinion angles at which the ellipse lies inside the flank. Hertz has bodies of constant curvature: the contact is small
+the pitch point. Hertz has bodies of constant curvature: the contact is small
 against the radii, and the grids are those of an accuracy of 1e-3; asked for are 2e-3.
 """
 
@@ -35,7 +35,7 @@ poisson_ratio = 0.3
 [load]
 pinion_torque_Nm = 20.0
 [analysis]
-positions = 3
+positions = 1
 accuracy = 1e-3
 compliance = "contact"
 load_sharing = false
@@ -43,20 +43,18 @@ free_edges = false
 """
 
 
-def rows(torques: tuple[float, ...] = (20.0,)) -> list[Row]:
-    """Peak pressure and the approach's counterpart, the normal force, at the positions, over Hertz's."""
-    scene = parse_scene(SCENE).with_changes({"analysis.torques_Nm": list(torques)})
-    result = analyse(scene)
-    mesh = scene.mesh()
+def rows(pairs: tuple[tuple[int, int], ...] = ((25, 60), (40, 60), (35, 90))) -> list[Row]:
+    """Peak pressure at the pitch point of pairs, over Hertz's."""
     modulus = contact_modulus(*(Material(206000.0, 0.3),) * 2)
     table = []
-    for t, torque in enumerate(torques):
-        for n in (1, 2):  # the pitch point, and half a pitch behind it
-            roll = float(np.sqrt(result.path.pinion_radius[n] ** 2 - mesh.pinion.base_radius**2))
-            of_ring = roll - mesh.path_of_contact.T2
-            across, along = 1.0 / roll - 1.0 / of_ring, 8.0 * CROWNING / WIDTH**2
-            hertz = point_contact(1e3 * torque / mesh.pinion.base_radius, (across, along), modulus)
-            peak = float(np.nanmax(result.peak_pressure[t, n]))
-            name = f"peak pressure, {torque:g} N m, roll length {roll:.2f} mm [MPa]"
-            table.append(Row(CASE, SOURCE, name, hertz.max_pressure, peak, 2e-3))
+    for pinion, ring in pairs:
+        changes = {"pinion.teeth": pinion, "wheel.teeth": -ring, "wheel.tip_diameter_mm": 3.0 * ring - 4.8}
+        scene = parse_scene(SCENE).with_changes(changes)
+        mesh, result = scene.mesh(), analyse(scene)
+        roll = mesh.path_of_contact.C
+        curvatures = 1.0 / roll - 1.0 / (roll - mesh.path_of_contact.T2), 8.0 * CROWNING / WIDTH**2
+        hertz = point_contact(20e3 / mesh.pinion.base_radius, curvatures, modulus)
+        name = f"peak pressure of {pinion}/-{ring}, 20 N m [MPa]"
+        peak = float(np.nanmax(result.peak_pressure))
+        table.append(Row(CASE, SOURCE, name, hertz.max_pressure, peak, 2e-3))
     return table
