@@ -33,7 +33,7 @@ tip_diameter_mm = 175.2
 youngs_modulus_MPa = 206000.0
 poisson_ratio = 0.3
 [load]
-pinion_torque_Nm = 20.0
+pinion_torque_Nm = 5.0
 [analysis]
 positions = 1
 accuracy = 1e-3
@@ -53,8 +53,8 @@ def rows(pairs: tuple[tuple[int, int], ...] = ((25, 60), (40, 60), (35, 90))) ->
         mesh, result = scene.mesh(), analyse(scene)
         roll = mesh.path_of_contact.C
         curvatures = 1.0 / roll - 1.0 / (roll - mesh.path_of_contact.T2), 8.0 * CROWNING / WIDTH**2
-        hertz = point_contact(20e3 / mesh.pinion.base_radius, curvatures, modulus)
-        name = f"peak pressure of {pinion}/-{ring}, 20 N m [MPa]"
+        hertz = point_contact(5e3 / mesh.pinion.base_radius, curvatures, modulus)
+        name = f"peak pressure of {pinion}/-{ring}, 5 N m [MPa]"
         peak = float(np.nanmax(result.peak_pressure))
         table.append(Row(CASE, SOURCE, name, hertz.max_pressure, peak, 2e-3))
     return table
