@@ -23,7 +23,7 @@ normal_module_mm = 3.0
 [pinion]
 teeth = 25
 face_width_mm = 25.0
-profile_shift = 0.3
+profile_shift = 0.0
 modifications.lead_crowning_um = 20.0
 [wheel]
 teeth = -60
