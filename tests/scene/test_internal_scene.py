@@ -137,3 +137,11 @@ def test_every_problem_of_a_ring_is_told():
     with pytest.raises(InputError) as caught:
         parse_scene(SCENE.replace("teeth = -60", "teeth = -60\nouter_diameter_mm = -1.0\nbore_diameter_mm = 5.0"))
     assert len(caught.value.problems) == 2
+
+
+def test_pitch_deviations_of_a_ring_are_as_many_as_its_teeth():
+    assert changed(wheel__pitch={"index_um": [0.0] * 59 + [2.0]}).has_pitch_deviations
+    with pytest.raises(InputError, match="found 25 values; allowed 60"):
+        changed(wheel__pitch={"index_um": [0.0] * 24 + [2.0]})
+    tolerances = changed().pitch_tolerances(1, 6)
+    assert 0.0 < tolerances[0] < tolerances[1]
