@@ -41,7 +41,7 @@ def expected_revolution_effort(scene: Scene) -> Effort:
     The time is that of the states of all its positions; the memory that of those which are solved together.
     """
     asked, torques = _asked(scene), len(scene.torques)
-    states = asked.count((scene.pinion.teeth, scene.wheel.teeth)) * asked.positions_per_pitch
+    states = asked.count((scene.pinion.teeth, abs(scene.wheel.teeth))) * asked.positions_per_pitch
     some = max(1, min(states, STATES_AT_A_TIME // torques))
     one, part = (
         expected_effort(scene.with_changes({"analysis.positions": count, "analysis.load_sharing": True}))

@@ -104,7 +104,7 @@ class Revolution:
     @cached_property
     def teeth(self) -> tuple[int, int]:
         """Numbers of teeth of pinion and wheel."""
-        return self.scene.pinion.teeth, self.scene.wheel.teeth
+        return self.scene.pinion.teeth, abs(self.scene.wheel.teeth)
 
     @property
     def _asked(self) -> RevolutionSection:

@@ -44,6 +44,8 @@ from loaded_tca.scene.tolerance_class import scatter_of_class
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
 """Label and cells of a line of an overview."""
+_OF_FAMILIES = frozenset({"pair", "pair.type", "wheel", "wheel.teeth"})
+"""Keys whose change may make a scene one of another family or variant."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,6 +117,11 @@ class Scene(Section, ABC):
         ),
         *REVOLUTION_RULES,
     )
+
+    @classmethod
+    def describes(cls, table: Mapping[str, Any]) -> bool:  # noqa: ARG003 (of families without variants)
+        """Whether a table is one of this class; asked of the variants of a family alone."""
+        return True
 
     @abstractmethod
     def mesh(self) -> Any:
@@ -254,7 +261,7 @@ class Scene(Section, ABC):
             If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
         """
         pinion, wheel = (
-            build_tooth_deviations(gear.pitch, gear.teeth, name, pair.module, partial(self.pitch_tolerances, number))
+            build_tooth_deviations(gear.pitch, abs(gear.teeth), name, pair.module, partial(self.pitch_tolerances, number))
             for number, (name, gear) in enumerate((("pinion", self.pinion), ("wheel", self.wheel)))
         )
         return pinion, wheel
@@ -450,7 +457,7 @@ class Scene(Section, ABC):
             scene.with_changes({"analysis.cells": (32, 32)})
         """
         # Sections without a change stay what they are, since they are checked; another family may have others.
-        table = contents(self) if {"pair", "pair.type"}.isdisjoint(changes) else as_table(self)
+        table = contents(self) if _OF_FAMILIES.isdisjoint(changes) else as_table(self)
         for path, value in changes.items():
             *sections, name = path.split(".")
             place = table
@@ -469,6 +476,9 @@ class Scene(Section, ABC):
 FAMILIES: dict[str, type[Scene]] = {}
 """Type of a gear pair, as files call it -> the scenes of its family; filled by ``family``."""
 
+VARIANTS: dict[type[Scene], dict[type[Scene], str]] = {}
+"""Class of a family -> its variants, which scenes of other keys are, and of what; filled by ``variant``."""
+
 SceneType = TypeVar("SceneType", bound=type[Scene])
 
 
@@ -477,6 +487,16 @@ def family(*types: str) -> Callable[[SceneType], SceneType]:
 
     def known(scene: SceneType) -> SceneType:
         FAMILIES.update(dict.fromkeys(types, scene))
+        return scene
+
+    return known
+
+
+def variant(scenes: type[Scene], about: str) -> Callable[[SceneType], SceneType]:
+    """Make a class known as a variant of a family, for the tables that it describes; ``about`` says when."""
+
+    def known(scene: SceneType) -> SceneType:
+        VARIANTS.setdefault(scenes, {})[scene] = about
         return scene
 
     return known
@@ -497,6 +517,7 @@ def scene_from_table(table: Mapping[str, Any]) -> Scene:
         scenes = FAMILIES[Choice(tuple(FAMILIES)).read(kind)]  # type: ignore[index]
     except ValueError as refused:
         raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
+    scenes = next((one for one in VARIANTS.get(scenes, {}) if one.describes(table)), scenes)
     values, problems = check(scenes, table)
     if problems:
         raise InputError(problems)

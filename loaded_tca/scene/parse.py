@@ -9,14 +9,14 @@ import os
 import re
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
 from loaded_tca.scene.keys import Key, literal, shown, shown_key
-from loaded_tca.scene.model import FAMILIES, Scene, scene_from_table
+from loaded_tca.scene.model import FAMILIES, VARIANTS, Scene, scene_from_table
 from loaded_tca.scene.section import Section, Subsection, entries
 
 LARGEST_FILE = 2**21
@@ -185,6 +185,11 @@ def describe_keys() -> str:
         for path, (section, about) in table.items():
             if path and path not in shared:
                 lines += _section_lines(path, section, f"{about} ({kinds})")
+        for own, when in VARIANTS.get(scene, {}).items():
+            of_family = {section for section, _ in table.values()}
+            for path, (section, about) in _sections(own, "", {}):
+                if path and section not in of_family:
+                    lines += _section_lines(path, section, f"{about} ({when})", {})
     for path, keys_of in shared.items():
         lines += _section_lines(path, *keys_of)
     return "\n".join(lines).strip() + "\n"
@@ -194,7 +199,7 @@ Found = tuple[type[Section], str]
 """A section and what it is about."""
 
 
-def _sections(section: type[Section], path: str) -> Iterator[tuple[str, Found]]:
+def _sections(section: type[Section], path: str, same_as: Mapping[str, str] = SAME_AS) -> Iterator[tuple[str, Found]]:
     """Path of every section -> what it is, the whole scene first."""
     if not path:
         yield "", (section, "Above all sections")
@@ -202,14 +207,16 @@ def _sections(section: type[Section], path: str) -> Iterator[tuple[str, Found]]:
         if isinstance(entry, Subsection):
             inner = f"{path}.{name}" if path else name
             yield inner, (entry.section, entry.about)
-            if inner not in SAME_AS:
-                yield from _sections(entry.section, inner)
+            if inner not in same_as:
+                yield from _sections(entry.section, inner, same_as)
 
 
-def _section_lines(path: str, section: type[Section], about: str) -> Iterator[str]:
+def _section_lines(
+    path: str, section: type[Section], about: str, same_as: Mapping[str, str] = SAME_AS
+) -> Iterator[str]:
     yield from ("", f"### `[{path}]`: {about}" if path else f"### {about}", "")
-    if path in SAME_AS:
-        yield f"Keys as in `[{SAME_AS[path]}]`."
+    if path in same_as:
+        yield f"Keys as in `[{same_as[path]}]`."
         return
     yield from ("| key | allowed | default | meaning |", "|---|---|---|---|")
     for name, (_, entry) in entries(section).items():

@@ -189,10 +189,10 @@ def entry_for_each_tooth(gear: str) -> Rule:
     """Rule: the pitch deviations of a gear are as many as its teeth."""
 
     def complain(pitch: Pitch | None, teeth: int) -> str | None:
-        if pitch is None or pitch.count in (None, teeth):
+        if pitch is None or pitch.count in (None, abs(teeth)):
             return None
         name = "index_um" if pitch.index_um is not None else "single_um"
-        return f"{name}: found {pitch.count} values; allowed {teeth}, one for each tooth"
+        return f"{name}: found {pitch.count} values; allowed {abs(teeth)}, one for each tooth"
 
     return Rule((f"{gear}.pitch", f"{gear}.teeth"), complain)
 
@@ -205,9 +205,10 @@ def _within_hunting(pitches: int | str, pinion: int, wheel: int) -> str | None:
 
 
 def _known_teeth(first: int | tuple[int, int], pinion: int, wheel: int) -> str | None:
-    if isinstance(first, int) or (first[0] < pinion and first[1] < wheel):
+    if isinstance(first, int) or (first[0] < pinion and first[1] < abs(wheel)):
         return None
-    return f"found {shown(first)}; allowed teeth up to {pinion - 1} of the pinion and up to {wheel - 1} of the wheel"
+    last = pinion - 1, abs(wheel) - 1
+    return f"found {shown(first)}; allowed teeth up to {last[0]} of the pinion and up to {last[1]} of the wheel"
 
 
 def teeth_of_their_own(gear: str) -> Rule:
