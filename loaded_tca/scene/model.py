@@ -261,8 +261,10 @@ class Scene(Section, ABC):
             If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
         """
         pinion, wheel = (
-            build_tooth_deviations(gear.pitch, abs(gear.teeth), name, pair.module, partial(self.pitch_tolerances, number))
-            for number, (name, gear) in enumerate((("pinion", self.pinion), ("wheel", self.wheel)))
+            build_tooth_deviations(gear.pitch, teeth, name, pair.module, partial(self.pitch_tolerances, number))
+            for number, (name, gear, teeth) in enumerate(
+                zip(("pinion", "wheel"), (self.pinion, self.wheel), pair.teeth, strict=True)
+            )
         )
         return pinion, wheel
 
