@@ -398,7 +398,7 @@ def edge_findings(result: MeshCycle) -> tuple[str, ...]:
         sentences.append(
             f"edge pressure {result.edge_pressure[at]:.4g} MPa at {1e-3 * torque:g} N m on {' + '.join(edges)} (pinion "
             f"diameter {2.0 * result.edge_radius[at]:.4g} mm, axial {result.edge_axial[at]:.4g} mm), where the pair "
-            f"carries {100.0 * result.load_share[at]:.2g} % of the torque; {elastic}, {accuracy}; "
+            f"carries {100.0 * result.load_share[at]:.3g} % of the torque; {elastic}, {accuracy}; "
             f"{remedy} {amount}{more}"
         )
     return tuple(sentences)
