@@ -254,7 +254,7 @@ PITCH_DEVIATIONS = Kind(
 OPEN_REVOLUTION = Kind(
     "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: the ends of the curve do not meet",
     "amplitudes of a curve that is not closed leak into neighbouring orders; spans hold for the part that is there",
-    '`pitches = "hunting"`, or a multiple of the number of teeth of the {gear}',
+    '`pitches = "hunting"`, or a multiple of the number of teeth of that gear',
 )
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))

@@ -260,10 +260,11 @@ class Scene(Section, ABC):
         InputError
             If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
         """
-        gears = enumerate((("pinion", self.pinion), ("wheel", self.wheel)))
         pinion, wheel = (
-            build_tooth_deviations(own.pitch, abs(own.teeth), name, pair.module, partial(self.pitch_tolerances, number))
-            for number, (name, own) in gears
+            build_tooth_deviations(gear.pitch, teeth, name, pair.module, partial(self.pitch_tolerances, number))
+            for number, (name, gear, teeth) in enumerate(
+                zip(("pinion", "wheel"), (self.pinion, self.wheel), pair.teeth, strict=True)
+            )
         )
         return pinion, wheel
 

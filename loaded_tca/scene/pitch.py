@@ -216,8 +216,8 @@ def teeth_of_their_own(gear: str) -> Rule:
 
     def complain(given: tuple[Any, ...] | None, teeth: int) -> str | None:
         numbers = [tooth.number for tooth in given or ()]
-        if numbers and max(numbers) >= teeth:
-            return f"number: found {max(numbers)}; allowed 0 to {teeth - 1}"
+        if numbers and max(numbers) >= abs(teeth):
+            return f"number: found {max(numbers)}; allowed 0 to {abs(teeth) - 1}"
         twice = sorted({number for number in numbers if numbers.count(number) > 1})
         return f"number: found {twice[0]} twice; allowed once" if twice else None
 

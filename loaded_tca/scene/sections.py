@@ -250,7 +250,7 @@ class GearSection(Section):
     def kinds_of_teeth(self) -> tuple[Indices, list[dict[str, Section]]]:
         """Kind of every tooth (teeth,), 0 where it is as the others, and the sections that each kind has of its own."""
         kinds: list[dict[str, Section]] = [{}]
-        of_teeth = np.zeros(self.teeth, dtype=int)
+        of_teeth = np.zeros(abs(self.teeth), dtype=int)
         for tooth in self.tooth or ():
             if tooth.own not in kinds:
                 kinds.append(tooth.own)

@@ -27,7 +27,7 @@ from loaded_tca.pairs.tooth_deviations import (
     ToothDeviations,
     ToothFlanks,
     eccentric_separation,
-    transverse_line_of_action,
+    transverse_normal,
 )
 from loaded_tca.unloaded.path import ContactPath, ContactPoint, trace_contact
 from loaded_tca.unloaded.tooth_cycle import REACH, reach, teeth_between
@@ -142,8 +142,14 @@ def trace_revolution(
     path, contact, own_gears = _traced(gears, own, kinds, (low, high))
     known = contact >= 0
     height = np.where(path.in_contact, pair.driving * path.transmission_error * pair.base_radii[1], -np.inf)
-    heights = np.where(known, height[contact], -np.inf) - of_pinion - deviations[1].index[teeth[1]]
     angle = pair.pitch * (turn + phase)
+    turned = [
+        ratio * angle + 2.0 * np.pi * first / count
+        for ratio, first, count in zip((1.0, pair.ratio), first_teeth, pair.teeth, strict=True)
+    ]
+    common, own_part = _eccentric(pair, deviations, (turned[0], turned[1]), path, contact)
+    apart_by = of_pinion + deviations[1].index[teeth[1]] + own_part
+    heights = np.where(known & np.isfinite(height[contact]), height[contact] - apart_by, -np.inf)
     top = heights.max(axis=1)
     if (apart := np.isinf(top)).any():
         raise GeometryError(
@@ -152,11 +158,6 @@ def trace_revolution(
         )
     separation = np.where(heights >= top[:, None] - REACH * pair.module, top[:, None] - heights, np.nan)
     used = np.isfinite(separation).any(axis=0)
-    turned = [
-        ratio * angle + 2.0 * np.pi * first / count
-        for ratio, first, count in zip((1.0, pair.ratio), first_teeth, pair.teeth, strict=True)
-    ]
-    common = _eccentric(pair, deviations, (turned[0], turned[1]))
     return RevolutionPath(
         pair=pair,
         pinion_angle=angle,
@@ -202,11 +203,19 @@ def _contacts(pair: GearPair, angles: Array) -> ContactPath:
 
 
 def _eccentric(
-    pair: GearPair, deviations: tuple[ToothDeviations, ToothDeviations], turned: tuple[Array, Array]
-) -> Array:
-    """Separation (n,) [mm] of all pairs by eccentricity, zero without."""
+    pair: GearPair,
+    deviations: tuple[ToothDeviations, ToothDeviations],
+    turned: tuple[Array, Array],
+    path: ContactPath,
+    contact: Indices,
+) -> tuple[Array, Array]:
+    """Separation [mm] by eccentricity: of all pairs in common (n,), and of each on top of it (n, 1) or (n, m)."""
+    none = np.zeros(len(contact))
     if not any(one.eccentricity for one in deviations):
-        return np.zeros(len(turned[0]))
-    contact = trace_contact(pair, [0.0], warn=False)[0]
-    direction = transverse_line_of_action(pair, contact.normal, contact.wheel_lever)
-    return eccentric_separation(pair, deviations, turned, direction)
+        return none, none[:, None]
+    normal = transverse_normal(pair)
+    if normal is not None:
+        return eccentric_separation(pair, deviations, turned, normal), none[:, None]
+    directions = path.normal * (pair.base_radii[1] / path.wheel_lever)[:, None]
+    angles = turned[0][:, None], turned[1][:, None]
+    return none, eccentric_separation(pair, deviations, angles, directions[contact])
