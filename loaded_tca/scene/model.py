@@ -227,7 +227,9 @@ class Scene(Section, ABC):
             If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
         """
         pinion, wheel = (
-            build_tooth_deviations(gear.pitch, abs(gear.teeth), name, pair.module, partial(self.pitch_tolerances, number))
+            build_tooth_deviations(
+                gear.pitch, abs(gear.teeth), name, pair.module, partial(self.pitch_tolerances, number)
+            )
             for number, (name, gear) in enumerate((("pinion", self.pinion), ("wheel", self.wheel)))
         )
         return pinion, wheel
