@@ -45,6 +45,15 @@ from loaded_tca.plots.sharing import (
     plot_path_pressure,
 )
 from loaded_tca.plots.solution import plot_solution
+from loaded_tca.plots.stage import (
+    STAGE_PICTURES,
+    plot_stage_error,
+    plot_stage_load_factor,
+    plot_stage_orders,
+    plot_stage_phases,
+    plot_stage_shares,
+    plot_stage_sun_orbit,
+)
 from loaded_tca.plots.study import (
     plot_study,
     plot_study_heat_map,
@@ -62,6 +71,7 @@ __all__ = [
     "MORE_PICTURES",
     "PICTURES",
     "REVOLUTION_PICTURES",
+    "STAGE_PICTURES",
     "draw_teeth",
     "plot_all",
     "plot_at_a_glance",
@@ -96,6 +106,12 @@ __all__ = [
     "plot_root_stress_over_torque",
     "plot_sensitivity_curves",
     "plot_solution",
+    "plot_stage_error",
+    "plot_stage_load_factor",
+    "plot_stage_orders",
+    "plot_stage_phases",
+    "plot_stage_shares",
+    "plot_stage_sun_orbit",
     "plot_stress_below",
     "plot_study",
     "plot_study_heat_map",

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -72,8 +73,50 @@ def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult
     return StageResult(stage=stage, dataset=stage_dataset(arrays, **about), sun_mesh=of_sun, ring_mesh=of_ring)
 
 
+OF_BALANCE = frozenset(
+    f"stage.{name}" for name in ("pin_tangential_um", "pin_radial_um", "floating_sun", "sun_support_stiffness_N_per_um")
+)
+"""Keys that change the balance of the planets alone."""
+
+
+def rebalanced(result: StageResult, changes: Mapping[str, Any]) -> StageResult:
+    """The result of a stage with other pins, or another support of the sun: both meshes stay what they are.
+
+    For studies: a balance takes milliseconds a position, where the meshes take seconds.
+
+    Parameters
+    ----------
+    result : StageResult
+    changes : mapping
+        Keys ``stage.pin_tangential_um``, ``stage.pin_radial_um``, ``stage.floating_sun`` and
+        ``stage.sun_support_stiffness_N_per_um``.
+
+    Returns
+    -------
+    StageResult
+
+    Raises
+    ------
+    InputError
+        If a key changes more than the balance.
+    """
+    require(*((name in OF_BALANCE, f"{name}: needs other meshes; analyse the changed stage") for name in changes))
+    stage = result.stage.with_changes(changes)
+    cycles = result.sun_mesh, result.ring_mesh
+    forces = cycles[0].dataset["torque"].values / cycles[0].gear_pair.base_radii[0]
+    about = {name: str(value) for name, value in result.dataset.attrs.items()}
+    arrays = _shared(stage, result.dataset["torque"].values, forces, cycles)
+    return replace(result, stage=stage, dataset=stage_dataset(arrays, **about))
+
+
 def _part_of(progress: Progress | None, begin: int, total: int) -> Progress | None:
     return None if progress is None else lambda done, _: progress(begin + done, total)
+
+
+def states_of(stage: Stage) -> int:
+    """How many states of both meshes an analysis of a stage has."""
+    forces = _forces(np.asarray(stage.sun_torques), len(stage.stage.angles))
+    return 2 * len(forces) * stage.analysis.positions
 
 
 def _forces(whole: Array, planets: int) -> Array:
