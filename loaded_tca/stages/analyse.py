@@ -22,10 +22,10 @@ from loaded_tca.stages.kinematics import mesh_phases
 from loaded_tca.stages.result import StageResult, stage_dataset
 from loaded_tca.stages.sections import Stage
 
-PARTS = 0.1, 0.4, 0.7, 1.0, 1.4, 2.0
-"""Forces of the mesh cycles over an even share, below the whole force: where the planets may come to."""
-NEAR = 0.05
-"""Relative difference of two forces of which one is enough."""
+PARTS = 0.15, 0.5, 1.6
+"""Forces of the mesh cycles over an even share, beside it and the whole force: where planets may come to."""
+NEAR = 0.15
+"""Relative difference of two forces of which one is enough, unless it is an even share."""
 Progress = Callable[[int, int], None]
 
 
@@ -121,13 +121,12 @@ def states_of(stage: Stage) -> int:
 
 def _forces(whole: Array, planets: int) -> Array:
     """Forces at the base circles [N] of the mesh cycles: parts of even shares, up to the whole ones."""
-    parts = [part for part in PARTS if part < planets] + [float(planets)]
-    wanted = np.unique(np.outer(whole / planets, parts))
-    kept = [wanted[-1]]
-    for force in wanted[-2::-1]:
-        if force < (1.0 - NEAR) * kept[-1]:
+    even = whole / planets
+    kept = [*even.tolist(), float(whole.max())]
+    for force in np.sort(np.outer(even, [part for part in PARTS if part < planets]).ravel())[::-1].tolist():
+        if all(abs(force / other - 1.0) > NEAR for other in kept):
             kept.append(force)
-    return np.array(kept[::-1])
+    return np.unique(kept)
 
 
 def _under(scene: Scene, torques: Array) -> Scene:

@@ -151,4 +151,4 @@ def neutralised(order: int, angles: Sequence[float], sun_teeth: int) -> tuple[bo
     psi = np.asarray(angles)
     waves = np.exp(-1j * order * sun_teeth * psi)
     sums = [abs((waves * np.exp(1j * turn * psi)).sum()) / len(psi) for turn in (0, 1, -1)]
-    return sums[0] < CANCELLED, max(sums[1:]) < CANCELLED
+    return bool(sums[0] < CANCELLED), bool(max(sums[1:]) < CANCELLED)
