@@ -17,6 +17,8 @@ from loaded_tca.stages import StageResult, rebalanced
 
 SHARES_OF_ERRORS = 0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0
 """Pin errors of the picture of K_gamma, over those of the stage or, without any, over a hundredth of the module."""
+LEAST_ORBIT = 0.5
+"""Half the side of the picture of the sun's motion at the least [µm]."""
 PLAIN = 0.01
 """Pin error of planet 0 over the module that is varied where the stage has none."""
 
@@ -96,7 +98,7 @@ def plot_stage_shares(result: StageResult, torque: int | None = None) -> Figure:
     axes.margins(x=0.0)
     style.widen(axes, 1.0)
     axes.grid(alpha=0.3)
-    figure.legend(loc="outside lower center", ncols=4, fontsize="small")
+    figure.legend(loc="outside lower center", ncols=7, fontsize="small")
     factor = f"K_gamma = {result.mesh_load_factor[torque]:.4g}"
     return _title(figure, result, f"shares of the planets, sun torque {shown_torque(result.torque[torque])}", factor)
 
@@ -167,8 +169,13 @@ def plot_stage_sun_orbit(result: StageResult) -> Figure:
         )
     axes.set_xlabel("x, towards the angle 0 of the carrier [µm]")
     axes.set_ylabel("y [µm]")
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(0.25)
+    places = 1e3 * result.sun_motion.reshape(-1, 2)
+    low, high = places.min(axis=0), places.max(axis=0)
+    half = max(0.8 * float((high - low).max()), LEAST_ORBIT)
+    axes.set_xlim(*(0.5 * (low + high)[0] + np.array([-half, half])))
+    axes.set_ylim(*(0.5 * (low + high)[1] + np.array([-half, half])))
+    axes.set_aspect("equal")
+    axes.ticklabel_format(useOffset=False)
     axes.grid(alpha=0.3)
     figure.legend(loc="outside lower center", ncols=3, fontsize="small")
     return _title(figure, result, "motion of the sun's axis over a mesh cycle")
@@ -227,20 +234,9 @@ def plot_stage_orders(result: StageResult, torque: int | None = None) -> Figure:
     axes.bar(count - 0.2, [one.stage for one in orders], 0.36, color=style.DISTINCT_COLOURS[0], label="stage")
     path = [one.one_path for one in orders]
     axes.bar(count + 0.2, path, 0.36, color=style.DISTINCT_COLOURS[1], hatch="//", label="one planet alone")
-    for one in orders:
-        if one.torsion_cancels:
-            axes.annotate(
-                "cancelled",
-                (one.order - 0.2, one.stage),
-                rotation=90,
-                ha="center",
-                va="bottom",
-                fontsize="small",
-                xytext=(0, 3),
-                textcoords="offset points",
-            )
-    axes.set_xticks(count)
-    axes.set_xlabel("order of the mesh")
+    names = [f"{one.order}\ncancels" if one.torsion_cancels else f"{one.order}" for one in orders]
+    axes.set_xticks(count, names)
+    axes.set_xlabel("order of the mesh; those that cancel do so between equal planets")
     axes.set_ylabel("amplitude [µm]")
     axes.grid(alpha=0.3, axis="y")
     figure.legend(loc="outside lower center", ncols=2, fontsize="small")
