@@ -331,7 +331,7 @@ def test_tooth_with_its_own_relief_changes_its_own_mesh_alone():
     assert_allclose(difference[before], 0.0, atol=1e-9)
 
 
-def test_root_stress_is_that_of_one_pitch_and_names_its_teeth():
+def test_root_stress_is_that_of_one_pitch_and_names_its_teeth(tmp_path):
     changes = CONTACT | {"analysis.root_stress": True, "analysis.positions": 5}
     scene = helical(changes | {"pinion.face_width_mm": 15.0, "wheel.face_width_mm": 15.0})
     with coarsely():
@@ -344,6 +344,11 @@ def test_root_stress_is_that_of_one_pitch_and_names_its_teeth():
     assert teeth[4].tolist() == [4, 6]
     figures = turn.key_figures()[0]
     assert figures["pinion_root_tension_MPa"] == np.nanmax(turn.dataset.root_tension.values[0, :, 0])
+    turn.save(tmp_path / "turn.nc")
+    assert Revolution.load(tmp_path / "turn.nc").dataset.equals(turn.dataset)
+    columns = turn.to_table()
+    assert_allclose(columns["wheel_root_tension_MPa"], turn.dataset.root_tension.values[0, :, 1])
+    assert columns["wheel_root_tension_tooth"].tolist() == teeth[:, 1].tolist()
 
 
 test_refusals_of_teeth = refused_calls(
