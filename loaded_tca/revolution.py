@@ -100,6 +100,7 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
             pair, wanted, asked = scene.pair(), scene.analysis, _asked(scene)
             require(
                 (wanted.load_sharing, "analysis.load_sharing: found false; allowed true in a whole revolution"),
+                (not scene.is_supported, "pinion.support, wheel.support: allowed none in a whole revolution"),
                 (not (effort := expected_revolution_effort(scene)).is_refused, f"analysis.cells: {effort}"),
             )
             pitches = asked.count(pair.teeth)
@@ -193,7 +194,7 @@ class _Numbers:
         self.arrays["stiffness"][:, rows] = part.stiffness
         maps: dict[Place, PressureMap | None] = dict.fromkeys(contacts)
         for pair, own in by_gears.values():
-            numbers, own_maps = numbers_and_maps(pair, own, dict.fromkeys(own), shape)
+            numbers, own_maps = numbers_and_maps([pair] * shape[0], own, dict.fromkeys(own), shape)
             maps |= own_maps
             known = ~np.isnan(numbers["normal_force"])
             for name in KEPT:

@@ -331,6 +331,16 @@ class Scene(Section, ABC):
         return {}
 
     @property
+    def is_supported(self) -> bool:
+        """Whether a gear gives way as a whole: it has a section for its support."""
+        return any(gear.support is not None for gear in (self.pinion, self.wheel))
+
+    @property
+    def face_middles(self) -> tuple[float, float]:
+        """Axial coordinates, on the gears themselves, of the middles of both faces: motions are those of them [mm]."""
+        return 0.0, 0.0
+
+    @property
     def mean_contact_length(self) -> float:
         """Mean length of all contact lines over a pitch [mm]; NaN for gears outside ISO 6336-1."""
         return math.nan

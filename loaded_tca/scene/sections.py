@@ -22,6 +22,7 @@ from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, ZeroOr, above_zero, key
 from loaded_tca.scene.pitch import Pitch
 from loaded_tca.scene.section import Rule, Section, Tables, subsection
+from loaded_tca.scene.supports import SupportSection
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
 
@@ -230,6 +231,9 @@ class GearSection(Section):
     flank: FlankForm = subsection(FlankForm, "how the flanks are described")
     material: ElasticMaterial | None = subsection(
         ElasticMaterial, "material of this gear, instead of the common one", optional=True
+    )
+    support: SupportSection | None = subsection(
+        SupportSection, "how far the gear gives way as a whole; without it, rigid", optional=True
     )
     pitch: Pitch | None = subsection(
         Pitch, "where the teeth stand beside their nominal places, in whole revolutions", optional=True

@@ -13,7 +13,7 @@ import numpy as np
 from loaded_tca.arrays import Array, Indices, index_checks
 from loaded_tca.errors import NotAskedError, require
 from loaded_tca.reference.iso6336_20 import scuffing_safety, scuffing_temperature
-from loaded_tca.results.files import FilePath, write_dataset
+from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replacing
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.tribology.conditions import MEAN, Conditions
@@ -99,6 +99,23 @@ class Tribology:
     def lacking(self, name: str) -> str:
         """What a number of ``QUANTITIES`` lacks, as its error says it; nothing if it is known."""
         return self._lacking(QUANTITIES[name].needs)
+
+    def by_speed(self, name: str) -> Array:
+        """A number under each torque, or a place of one, (speed, torque), whatever it depends on."""
+        values = np.asarray(getattr(self, name), dtype=float)
+        return np.broadcast_to(values, (self.conditions.speeds.size, len(self.result.torque)))
+
+    def knows(self, name: str) -> bool:
+        """Whether a number of ``QUANTITIES`` is known: it lacks no input, and there is load."""
+        return not self.lacking(name) and len(self.sweep) > 0
+
+    def on_flanks(self, name: str, torque: int, speed: int) -> tuple[Array, Array, Array]:
+        """A column of the slices under one torque, with their middles and half their lengths in the fixed frame."""
+        self.check(torque, speed)
+        require((name in COLUMNS, f"name: {name!r:.60}; allowed {', '.join(COLUMNS)}"))
+        self._require(name, COLUMNS[name][2])
+        some = self.sweep.of_torque(torque)
+        return self._column(name, speed)[some].astype(float), self.sweep.point[some], self.sweep.tangent[some]
 
     def extreme_on_edge(self, name: str) -> bool:
         """Whether an extreme of ``EXTREMES`` lies in a slice at an edge of a flank, under any torque and speed."""
@@ -277,12 +294,13 @@ class Tribology:
         """
         import pandas
 
-        self._check(torque, speed)
+        self.check(torque, speed)
         some = self.sweep.of_torque(torque)
         known = {name: self._column(name, speed)[some] for name in COLUMNS if not self._lacking(COLUMNS[name][2])}
         return pandas.DataFrame(known)
 
-    def _check(self, torque: int, speed: int) -> None:
+    def check(self, torque: int, speed: int) -> None:
+        """Refuse indices of a torque and a speed that there are not."""
         counts = {"torque": len(self.result.torque), "speed": self.conditions.speeds.size}
         given = {"torque": torque, "speed": speed}
         require(*index_checks(**{name: (given[name], count) for name, count in counts.items()}))
@@ -338,7 +356,7 @@ class Tribology:
         """
         import xarray
 
-        self._check(torque, speed)
+        self.check(torque, speed)
         require(
             (name in COLUMNS, f"name: {name!r:.60}; allowed {', '.join(COLUMNS)}"),
             (gear in ("pinion", "wheel"), f"gear: {gear!r:.60}; allowed 'pinion' or 'wheel'"),
@@ -379,7 +397,7 @@ class Tribology:
         speed : int
             Index of the speed of a list.
         """
-        self._check(0, speed)
+        self.check(0, speed)
         known = [name for name in SUMMARY if not self.lacking(name)]
         rows = [["pinion torque [N m]", *(shown_torque(one).split()[0] for one in self.result.torque)]]
         for name in known:
@@ -422,7 +440,13 @@ class Tribology:
         InputError
             If it cannot be written.
         """
-        write_dataset(path, self.dataset.drop_vars("gear").assign_attrs(kind="tribology", gears="pinion, wheel"))
+        content = self.to_netcdf()
+        with replacing(path) as temporary:
+            temporary.write_bytes(content)
+
+    def to_netcdf(self) -> Buffer:
+        """Return the bytes of the file that ``save`` writes; in it gears are 0, the pinion, and 1, the wheel."""
+        return netcdf_of(self.dataset.drop_vars("gear").assign_attrs(kind="tribology"))
 
 
 SUMMARY = {
