@@ -16,7 +16,7 @@ STAGE = Path(__file__).parents[2] / "examples" / "stages" / "helical_automotive.
 @pytest.fixture(scope="module")
 def result():
     changes = {"analysis.cells": [12, 16], "analysis.compliance": "contact", "analysis.free_edges": False}
-    with pytest.warns(Warning):  # contacts reach edges
+    with pytest.warns(UserWarning, match="edge"):
         return analyse_stage(read_stage(STAGE).with_changes({**changes, "analysis.positions": 5}))
 
 
