@@ -247,14 +247,14 @@ PITCH_VELOCITY = Kind(
     "a number for `friction`, from a test",
 )
 PITCH_DEVIATIONS = Kind(
-    "the gears have pitch deviations or runout, which an analysis of one pitch leaves out: all teeth count as alike",
-    "deviations of single teeth and of the axis repeat with a turn of their gear, not with every pitch",
+    "the gears have runout or teeth that differ, which an analysis of one pitch leaves out: all teeth count as alike",
+    "pitch deviations, flanks of single teeth and eccentricity repeat with a turn of their gear, not with every pitch",
     "`loaded-tca revolution`, or `analyse_revolution`",
 )
 OPEN_REVOLUTION = Kind(
     "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: the ends of the curve do not meet",
     "amplitudes of a curve that is not closed leak into neighbouring orders; spans hold for the part that is there",
-    '`pitches = "hunting"`, or a multiple of the number of teeth of the {gear}',
+    '`pitches = "hunting"`, or a multiple of the number of teeth of that gear',
 )
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))

@@ -101,6 +101,19 @@ REVOLUTION = """files in DIR:
   revolution_waterfall.png  orders over the torque
 [pinion.pitch], [wheel.pitch] and [revolution] of the scene say where the teeth stand and which pitches follow each
 other; docs/guide/whole_revolutions.md says more."""
+STAGE = """files in DIR:
+  stage.nc, sun_mesh.nc, ring_mesh.nc
+                            everything, to be read by loaded_tca.stages.StageResult.load; the meshes are results as
+                            of 'loaded-tca run', for 'loaded-tca plot' and the other commands
+  stage.json                phases, key figures and orders
+  stage.csv                 one row per torque and position
+  stage_phases.png          phases of the meshes of all planets
+  stage_shares.png          share of every planet, under the largest torque
+  stage_load_factor.png     K_gamma over the pin errors, all torques
+  stage_sun_orbit.png       motion of the sun's axis, all torques
+  stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
+  stage_orders.png          their orders of the mesh
+docs/guide/planetary_stages.md says more."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -153,6 +166,10 @@ def _add_analyses(command: Command) -> None:
     revolution = command("revolution", run_by.revolution, text, REVOLUTION)
     _add_scene(revolution)
     revolution.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
+    stage = command("stage", run_by.stage, "analyse a planetary stage: how its planets share the torque", STAGE)
+    stage.add_argument("stage", metavar="STAGE.toml", help="stage file")
+    _add_changes(stage)
+    stage.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
 
 
 def _add_readers(command: Command) -> None:
@@ -355,6 +372,10 @@ def _tolerance(text: str) -> tuple[str, float | None]:
 
 def _add_scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE.toml", help="scene file")
+    _add_changes(parser)
+
+
+def _add_changes(parser: argparse.ArgumentParser) -> None:
     text = "another value of a key, for instance pinion.teeth=21; may be given again for other keys"
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
 

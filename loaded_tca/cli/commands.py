@@ -298,6 +298,29 @@ def _is_of_tribology(key: str) -> bool:
     return section in ("operation", "lubricant") or name in alone
 
 
+def stage(options: argparse.Namespace) -> None:
+    """Analyse a planetary stage, write everything into a directory, and show the summary."""
+    from loaded_tca.analysis import expected_effort
+    from loaded_tca.output.stage_files import write_stage
+    from loaded_tca.plots import STAGE_PICTURES, png_of
+    from loaded_tca.scene.parse import literal_value
+    from loaded_tca.stages import analyse_stage, read_stage
+    from loaded_tca.stages.analyse import states_of
+
+    asked, directory = read_stage(options.stage), options.out
+    changes = {key: literal_value(value) for key, value in options.set}
+    asked = asked.with_changes(changes) if changes else asked
+    check_place(directory)
+    asked.require_assembly()
+    states = states_of(asked)
+    with progress_bar(expected_effort(asked.sun_scene), "states of both meshes", states) as progress:
+        result = analyse_stage(asked, progress=progress)
+    pictures = {f"{name}.png": png_of(draw(result)) for name, draw in STAGE_PICTURES.items()}
+    written = write_stage(result, directory, pictures)
+    print(result.summary(), end="\n\n")
+    print_files(written)
+
+
 def plot(options: argparse.Namespace) -> None:
     """Draw the pictures of a result again."""
     from loaded_tca.plots import plot_all, plot_at_a_glance

@@ -45,6 +45,15 @@ from loaded_tca.plots.sharing import (
     plot_path_pressure,
 )
 from loaded_tca.plots.solution import plot_solution
+from loaded_tca.plots.stage import (
+    STAGE_PICTURES,
+    plot_stage_error,
+    plot_stage_load_factor,
+    plot_stage_orders,
+    plot_stage_phases,
+    plot_stage_shares,
+    plot_stage_sun_orbit,
+)
 from loaded_tca.plots.study import (
     plot_study,
     plot_study_heat_map,
@@ -72,6 +81,7 @@ __all__ = [
     "MORE_PICTURES",
     "PICTURES",
     "REVOLUTION_PICTURES",
+    "STAGE_PICTURES",
     "TRIBOLOGY_PICTURES",
     "draw_teeth",
     "plot_all",
@@ -113,6 +123,12 @@ __all__ = [
     "plot_sensitivity_curves",
     "plot_sliding_velocities",
     "plot_solution",
+    "plot_stage_error",
+    "plot_stage_load_factor",
+    "plot_stage_orders",
+    "plot_stage_phases",
+    "plot_stage_shares",
+    "plot_stage_sun_orbit",
     "plot_stress_below",
     "plot_study",
     "plot_study_heat_map",

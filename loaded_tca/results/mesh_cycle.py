@@ -25,11 +25,13 @@ from loaded_tca.results.pressure_map import arc_cells, arrays_of_maps, maps_from
 from loaded_tca.results.quantities import (
     ABOUT,
     IN_FILES,
+    MOTIONS,
     PAIRS,
     PATH_PARTS,
     QUANTITIES,
     ROOT_PARTS,
     SIZES,
+    SUPPORT_QUANTITIES,
     not_asked,
 )
 from loaded_tca.results.root_stress import RootStressMap, root_stress_maps
@@ -302,9 +304,13 @@ class MeshCycle(CycleNumbers):
             raise InputError(f"{path}: not the result of a mesh cycle: it has neither paths of contact nor maps")
         try:
             scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml", folder=None)
-            in_dataset = QUANTITIES | (ROOT_PARTS if scene.analysis.root_stress or "root_tension" in file else {})
+            supported = SUPPORT_QUANTITIES if scene.is_supported else {}
+            in_dataset = (
+                QUANTITIES | supported | (ROOT_PARTS if scene.analysis.root_stress or "root_tension" in file else {})
+            )
             arrays = arrays_of(file, in_dataset | IN_FILES)
             expected = {**SIZES, "end": 2, "edge": 8, "path": 1 + file.sizes["pair"]}
+            expected |= {"motion": MOTIONS} if supported else {}
             checks = [(name, file.sizes[name] == size, f"{size}") for name, size in expected.items()]
             checks += [(name, file.sizes[name] > 0, "at least 1") for name in PAIRS]
             require(*((holds, f"{name}: {file.sizes[name]} long, expected {size}") for name, holds, size in checks))
@@ -398,7 +404,7 @@ def edge_findings(result: MeshCycle) -> tuple[str, ...]:
         sentences.append(
             f"edge pressure {result.edge_pressure[at]:.4g} MPa at {1e-3 * torque:g} N m on {' + '.join(edges)} (pinion "
             f"diameter {2.0 * result.edge_radius[at]:.4g} mm, axial {result.edge_axial[at]:.4g} mm), where the pair "
-            f"carries {100.0 * result.load_share[at]:.2g} % of the torque; {elastic}, {accuracy}; "
+            f"carries {100.0 * result.load_share[at]:.3g} % of the torque; {elastic}, {accuracy}; "
             f"{remedy} {amount}{more}"
         )
     return tuple(sentences)

@@ -150,16 +150,16 @@ class DescribedTooth(ToothGeometry):
             if wanted.form == "bspline":
                 return fitted(flank, wanted.points or DEFAULT_POINTS, wanted.degree or FITTED_DEGREE)
             if wanted.measurement is not None and flank.side == self.measured_side:
-                data = build_topography(wanted.measurement)
+                data = build_topography(wanted.measurement, flank.frame.upwards)
                 counts = wanted.coefficients or smoothing_coefficients(data.radius.shape[:2], wanted.degree)
                 return measured(flank, data, degree=wanted.degree, coefficients=counts)
         return flank
 
 
-def build_topography(measurement: Measurement) -> Topography:
-    """Return the measured points, or deviations."""
+def build_topography(measurement: Measurement, upwards: int = 1) -> Topography:
+    """Return the measured points, or deviations; ``upwards`` is that of the frame of the flank."""
     values = in_base_units(measurement)
     notes = {"source": values["source"]}
     if measurement.x_mm is not None:
-        return MeasuredPoints(np.stack([values["x"], values["y"], values["z"]], axis=-1), notes)
-    return MeasuredDeviations(values["radius"], values["axial"], values["deviation"], notes)
+        return MeasuredPoints(np.stack([values["x"], values["y"], values["z"]], axis=-1) * (1, upwards, upwards), notes)
+    return MeasuredDeviations(values["radius"], upwards * np.asarray(values["axial"]), values["deviation"], notes)

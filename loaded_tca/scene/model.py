@@ -7,12 +7,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
-from loaded_tca.pairs.tooth_deviations import ToothDeviations
+from loaded_tca.pairs.tooth_deviations import ToothDeviations, ToothFlanks
 from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key, literal
 from loaded_tca.scene.lubrication import LubricantSection, Operation
@@ -26,6 +27,7 @@ from loaded_tca.scene.section import (
     contents,
     entries,
     made,
+    plain,
     rule,
     subsection,
 )
@@ -42,6 +44,8 @@ from loaded_tca.scene.tolerance_class import scatter_of_class
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
 """Label and cells of a line of an overview."""
+_OF_FAMILIES = frozenset({"pair", "pair.type", "wheel", "wheel.teeth"})
+"""Keys whose change may make a scene one of another family or variant."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,6 +117,11 @@ class Scene(Section, ABC):
         ),
         *REVOLUTION_RULES,
     )
+
+    @classmethod
+    def describes(cls, table: Mapping[str, Any]) -> bool:  # noqa: ARG003 (of families without variants)
+        """Whether a table is one of this class; asked of the variants of a family alone."""
+        return True
 
     @abstractmethod
     def mesh(self) -> Any:
@@ -215,8 +224,28 @@ class Scene(Section, ABC):
 
     @property
     def has_pitch_deviations(self) -> bool:
-        """Whether a gear has pitch deviations or runout."""
-        return any(gear.pitch is not None and gear.pitch.is_given for gear in (self.pinion, self.wheel))
+        """Whether the teeth of a gear stand beside their places, or have flanks of their own."""
+        return any(gear.teeth_differ for gear in (self.pinion, self.wheel))
+
+    def tooth_flanks(self) -> ToothFlanks | None:
+        """Return which teeth have flanks of their own, and the gears with them; None if all are alike.
+
+        Raises
+        ------
+        InputError, GeometryError
+            As of :meth:`pair`, where flanks of single teeth cannot be made.
+        """
+        if not (self.pinion.tooth or self.wheel.tooth):
+            return None
+        numbered = [gear.kinds_of_teeth() for gear in (self.pinion, self.wheel)]
+        common = {"pinion.tooth": None, "wheel.tooth": None}
+        gears = {}
+        for (a, first), (b, second) in product(*(enumerate(changes) for _, changes in numbered)):
+            if (a, b) != (0, 0):
+                changes = {f"pinion.{name}": value for name, value in first.items()}
+                changes |= {f"wheel.{name}": value for name, value in second.items()}
+                gears[a, b] = self.with_changes(common | changes).pair()
+        return ToothFlanks((numbered[0][0], numbered[1][0]), gears)
 
     def tooth_deviations(self, pair: GearPair) -> tuple[ToothDeviations, ToothDeviations]:
         """Return index deviations and eccentricity of the teeth of pinion and wheel.
@@ -232,8 +261,10 @@ class Scene(Section, ABC):
             If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
         """
         pinion, wheel = (
-            build_tooth_deviations(gear.pitch, gear.teeth, name, pair.module, partial(self.pitch_tolerances, number))
-            for number, (name, gear) in enumerate((("pinion", self.pinion), ("wheel", self.wheel)))
+            build_tooth_deviations(gear.pitch, teeth, name, pair.module, partial(self.pitch_tolerances, number))
+            for number, (name, gear, teeth) in enumerate(
+                zip(("pinion", "wheel"), (self.pinion, self.wheel), pair.teeth, strict=True)
+            )
         )
         return pinion, wheel
 
@@ -298,6 +329,16 @@ class Scene(Section, ABC):
     def path_points(self) -> Mapping[str, float]:
         """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion; none of bevel gears."""
         return {}
+
+    @property
+    def is_supported(self) -> bool:
+        """Whether a gear gives way as a whole: it has a section for its support."""
+        return any(gear.support is not None for gear in (self.pinion, self.wheel))
+
+    @property
+    def face_middles(self) -> tuple[float, float]:
+        """Axial coordinates, on the gears themselves, of the middles of both faces: motions are those of them [mm]."""
+        return 0.0, 0.0
 
     @property
     def mean_contact_length(self) -> float:
@@ -428,7 +469,7 @@ class Scene(Section, ABC):
             scene.with_changes({"analysis.cells": (32, 32)})
         """
         # Sections without a change stay what they are, since they are checked; another family may have others.
-        table = contents(self) if {"pair", "pair.type"}.isdisjoint(changes) else as_table(self)
+        table = contents(self) if _OF_FAMILIES.isdisjoint(changes) else as_table(self)
         for path, value in changes.items():
             *sections, name = path.split(".")
             place = table
@@ -447,6 +488,9 @@ class Scene(Section, ABC):
 FAMILIES: dict[str, type[Scene]] = {}
 """Type of a gear pair, as files call it -> the scenes of its family; filled by ``family``."""
 
+VARIANTS: dict[type[Scene], dict[type[Scene], str]] = {}
+"""Class of a family -> its variants, which scenes of other keys are, and of what; filled by ``variant``."""
+
 SceneType = TypeVar("SceneType", bound=type[Scene])
 
 
@@ -455,6 +499,16 @@ def family(*types: str) -> Callable[[SceneType], SceneType]:
 
     def known(scene: SceneType) -> SceneType:
         FAMILIES.update(dict.fromkeys(types, scene))
+        return scene
+
+    return known
+
+
+def variant(scenes: type[Scene], about: str) -> Callable[[SceneType], SceneType]:
+    """Make a class known as a variant of a family, for the tables that it describes; ``about`` says when."""
+
+    def known(scene: SceneType) -> SceneType:
+        VARIANTS.setdefault(scenes, {})[scene] = about
         return scene
 
     return known
@@ -475,6 +529,7 @@ def scene_from_table(table: Mapping[str, Any]) -> Scene:
         scenes = FAMILIES[Choice(tuple(FAMILIES)).read(kind)]  # type: ignore[index]
     except ValueError as refused:
         raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
+    scenes = next((one for one in VARIANTS.get(scenes, {}) if one.describes(table)), scenes)
     values, problems = check(scenes, table)
     if problems:
         raise InputError(problems)
@@ -504,5 +559,5 @@ def _lines(section: Section, path: str) -> list[str]:
         elif value is None:
             keys.append(f"# {name} is not given: {entry.absent}")
         else:
-            keys.append(f"{name} = {literal(value)}")
+            keys.append(f"{name} = {literal(plain(value))}")
     return keys + sections

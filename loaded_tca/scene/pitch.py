@@ -6,7 +6,7 @@ import csv
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -189,10 +189,10 @@ def entry_for_each_tooth(gear: str) -> Rule:
     """Rule: the pitch deviations of a gear are as many as its teeth."""
 
     def complain(pitch: Pitch | None, teeth: int) -> str | None:
-        if pitch is None or pitch.count in (None, teeth):
+        if pitch is None or pitch.count in (None, abs(teeth)):
             return None
         name = "index_um" if pitch.index_um is not None else "single_um"
-        return f"{name}: found {pitch.count} values; allowed {teeth}, one for each tooth"
+        return f"{name}: found {pitch.count} values; allowed {abs(teeth)}, one for each tooth"
 
     return Rule((f"{gear}.pitch", f"{gear}.teeth"), complain)
 
@@ -205,15 +205,31 @@ def _within_hunting(pitches: int | str, pinion: int, wheel: int) -> str | None:
 
 
 def _known_teeth(first: int | tuple[int, int], pinion: int, wheel: int) -> str | None:
-    if isinstance(first, int) or (first[0] < pinion and first[1] < wheel):
+    if isinstance(first, int) or (first[0] < pinion and first[1] < abs(wheel)):
         return None
-    return f"found {shown(first)}; allowed teeth up to {pinion - 1} of the pinion and up to {wheel - 1} of the wheel"
+    last = pinion - 1, abs(wheel) - 1
+    return f"found {shown(first)}; allowed teeth up to {last[0]} of the pinion and up to {last[1]} of the wheel"
+
+
+def teeth_of_their_own(gear: str) -> Rule:
+    """Rule: the teeth of a gear that have flanks of their own exist, each given once."""
+
+    def complain(given: tuple[Any, ...] | None, teeth: int) -> str | None:
+        numbers = [tooth.number for tooth in given or ()]
+        if numbers and max(numbers) >= abs(teeth):
+            return f"number: found {max(numbers)}; allowed 0 to {abs(teeth) - 1}"
+        twice = sorted({number for number in numbers if numbers.count(number) > 1})
+        return f"number: found {twice[0]} twice; allowed once" if twice else None
+
+    return Rule((f"{gear}.tooth", f"{gear}.teeth"), complain)
 
 
 TEETH = "pinion.teeth", "wheel.teeth"
 REVOLUTION_RULES: tuple[Rule, ...] = (
     entry_for_each_tooth("pinion"),
     entry_for_each_tooth("wheel"),
+    teeth_of_their_own("pinion"),
+    teeth_of_their_own("wheel"),
     Rule(("revolution.pitches", *TEETH), _within_hunting),
     Rule(("revolution.first_pair", *TEETH), _known_teeth),
 )
