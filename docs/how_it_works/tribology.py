@@ -52,7 +52,7 @@ def draw() -> Figure:
     over.plot(overlap, [even_loss(one) for one in pairs], color=EVEN, label="even line load, exact")
     over.plot(overlap, [standard_loss(one) for one in pairs], "--", color=STANDARD, label="ISO/TR 15144-1")
     over.set(xlabel="overlap ratio $\\varepsilon_\\beta$", ylabel="load loss factor $H_v$")
-    over.set_ylim(bottom=0.0)
+    over.set_ylim(0.0, 0.16)
     spur = pairs[0]
     path, pitch = spur.path_of_contact, spur.pinion.base_pitch
     places = np.linspace(path.A, path.E, 800)
