@@ -18,6 +18,7 @@ from loaded_tca.reference import iso6336
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, ZeroOr, above_zero, key
 from loaded_tca.scene.section import Rule, Section, subsection
+from loaded_tca.scene.shafts import ShaftSection
 from loaded_tca.scene.supports import SupportSection
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
@@ -199,6 +200,9 @@ class GearSection(Section):
     flank: FlankForm = subsection(FlankForm, "how the flanks are described")
     material: ElasticMaterial | None = subsection(
         ElasticMaterial, "material of this gear, instead of the common one", optional=True
+    )
+    shaft: ShaftSection | None = subsection(
+        ShaftSection, "the shaft that the gear sits on; without it, and without a support, rigid", optional=True
     )
     support: SupportSection | None = subsection(
         SupportSection, "how far the gear gives way as a whole; without it, rigid", optional=True

@@ -13,7 +13,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.scene import Scene, parse_scene, read_scene, scene_from_table
 from loaded_tca.scene.keys import Choice, Grid, Key, Line, List, Number, Whole, ZeroOr
 from loaded_tca.scene.model import FAMILIES
-from loaded_tca.scene.section import Subsection, as_table, entries
+from loaded_tca.scene.section import Subsection, Tables, as_table, entries
 
 ROOT = Path(__file__).parents[2]
 
@@ -180,6 +180,8 @@ def sound_values(kind):
                 max_size=kind.shortest + 1,
             )
         )
+    if isinstance(kind, Tables):
+        return st.lists(sound_tables(kind.section), min_size=kind.shortest, max_size=kind.shortest + 1)
     assert isinstance(kind, List)
     return st.lists(sound_values(kind.kind), min_size=kind.shortest, max_size=max(kind.shortest, min(kind.longest, 5)))
 
