@@ -6,25 +6,29 @@ What an analysis takes, time and memory, estimated before it starts.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
+from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, default_density, model_of, require_teeth, root_stress_model, way_out_told
 from loaded_tca.compliance.body import body_torsion
 from loaded_tca.contact.adaptive import MOST_CELLS
 from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, noted_accuracy_warnings, require
-from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
-from loaded_tca.loaded.rounded_edges import pressures_at_rounded_edges
+from loaded_tca.loaded.cycle import Carried, Progress, carried_by_all, carried_by_one, farthest_apart
+from loaded_tca.loaded.rounded_edges import PeakAtEdge, pressures_at_rounded_edges
+from loaded_tca.loaded.supported import CarriedOnSupports, SupportedCycle, all_torques, pitches_apart
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import mesh_cycle
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.warnings import warn_of_accuracy, warn_of_gears
 from loaded_tca.scene import Scene
+from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded import trace_contact, trace_teeth
 
@@ -210,21 +214,63 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
             free_edges=wanted.free_edges,
         )
         roots = roots_of(scene, pair)
-        if wanted.load_sharing:
-            mesh = trace_teeth(pair, angles)
-            bending = model_of(scene, pair, farthest_apart(mesh))
-            carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
+        cycles: list[CarriedOnSupports] = []
+        if scene.is_supported:
+            carried, at_edges, cycles = _on_supports(scene, pair, angles, grid, progress)
         else:
-            path = trace_contact(pair, angles)
-            bending = model_of(scene, pair, 1)
-            carried = carried_by_one(pair, path, torques, grid, bending, progress)
-        torsion = 0.0 if bending is None else sum(body_torsion(pair))
-        at_edges = pressures_at_rounded_edges(
-            pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
+            if wanted.load_sharing:
+                mesh = trace_teeth(pair, angles)
+                bending = model_of(scene, pair, farthest_apart(mesh))
+                carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
+            else:
+                path = trace_contact(pair, angles)
+                bending = model_of(scene, pair, 1)
+                carried = carried_by_one(pair, path, torques, grid, bending, progress)
+            at_edges = pressures_at_rounded_edges(
+                pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
+            )
+        torsion = 0.0 if wanted.compliance == "contact" else sum(body_torsion(pair))
+        turned = np.concatenate([one.carried.rotation for one in cycles]) if cycles else carried.rotation
+        warn_of_accuracy(
+            pair,
+            grid,
+            replace(carried, rotation=turned),
+            at_edges,
+            load_sharing=wanted.load_sharing,
+            body_torsion=torsion,
         )
-        warn_of_accuracy(pair, grid, carried, at_edges, load_sharing=wanted.load_sharing, body_torsion=torsion)
         date = datetime.now(UTC).isoformat(timespec="seconds")
-        return mesh_cycle(scene, pair, carried, at_edges, roots, warnings=warned, date=date)
+        return mesh_cycle(scene, pair, carried, at_edges, roots, cycles, warnings=warned, date=date)
+
+
+def _on_supports(
+    scene: Scene, pair: GearPair, angles: Array, grid: GridChoice, progress: Progress | None
+) -> tuple[Carried, dict[tuple[int, int, int], PeakAtEdge], list[CarriedOnSupports]]:
+    """What the tooth pairs carry on supports that give way, pressures at rounded edges, and both torque by torque."""
+    wanted = scene.analysis
+    supports = support_compliance(scene, pair)
+    assert supports is not None
+    apart = pitches_apart(supports, max(scene.torques), angles) if wanted.load_sharing else 1
+    bending = model_of(scene, pair, apart)
+    assert bending is not None
+    supported = SupportedCycle(pair, bending, angles, grid, load_sharing=wanted.load_sharing)
+    cycles: list[CarriedOnSupports] = []
+    at_edges: dict[tuple[int, int, int], PeakAtEdge] = {}
+    for t, torque in enumerate(scene.torques):
+        report = None if progress is None else partial(_of_all, progress, t, len(scene.torques))
+        cycles.append(one := supported.under(torque, report))
+        peaks = pressures_at_rounded_edges(
+            one.pair, one.carried, one.bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
+        )
+        at_edges |= {(t, n, int(one.carried.pairs[k])): peak for (_, n, k), peak in peaks.items()}
+    carried = all_torques(supported.at_rest, cycles, load_sharing=wanted.load_sharing)
+    column = {number: k for k, number in enumerate(carried.pairs.tolist())}
+    return carried, {(t, n, column[number]): peak for (t, n, number), peak in at_edges.items()}, cycles
+
+
+def _of_all(progress: Progress, torque: int, torques: int, done: int, total: int) -> None:
+    """Report the positions of one torque among those of all."""
+    progress(torque * total + done, torques * total)
 
 
 def roots_of(scene: Scene, pair: GearPair) -> tuple[RootStress, ...]:

@@ -100,6 +100,7 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
             pair, wanted, asked = scene.pair(), scene.analysis, _asked(scene)
             require(
                 (wanted.load_sharing, "analysis.load_sharing: found false; allowed true in a whole revolution"),
+                (not scene.is_supported, "pinion.support, wheel.support: allowed none in a whole revolution"),
                 (not (effort := expected_revolution_effort(scene)).is_refused, f"analysis.cells: {effort}"),
             )
             pitches = asked.count(pair.teeth)
@@ -110,7 +111,12 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
             for gear in open_turns(scene, pitches):
                 give_accuracy_warning(kinds.OPEN_REVOLUTION.sentence(pitches=pitches, gear=gear))
             path = trace_revolution(
-                pair, scene.tooth_deviations(pair), pitches, asked.positions_per_pitch, asked.first_teeth(pair.teeth)
+                pair,
+                scene.tooth_deviations(pair),
+                pitches,
+                asked.positions_per_pitch,
+                asked.first_teeth(pair.teeth),
+                scene.tooth_flanks(),
             )
             grid = GridChoice(
                 cells=None if wanted.cells is None else (wanted.cells[0], wanted.cells[1]),
@@ -173,20 +179,26 @@ class _Numbers:
         begin, shape = part.positions.start, (len(self.torques), len(part.positions), len(self.path.pairs))
         rows = slice(begin, part.positions.stop)
         contacts: dict[Place, LoadedContact | None] = dict.fromkeys(np.ndindex(shape))
+        by_gears: dict[int, tuple[GearPair, dict[Place, LoadedContact | None]]] = {}
         columns = {number: column for column, number in enumerate(self.path.pairs.tolist())}
         for (t, n), shared in part.shared.items():
             self.arrays["rotation"][t, begin + n] = shared.rotation
             for share in shared.shares:
                 k = columns[share.tooth_pair.pair]
                 contacts[t, n, k] = share.loaded
+                gears = share.tooth_pair.gears or self.pair
+                by_gears.setdefault(id(gears), (gears, {}))[1][t, n, k] = share.loaded
                 at = t, begin + n, k
                 self.arrays["load_share"][at] = share.torque / self.torques[t] if shared.torque > 0.0 else 1.0
                 self.arrays["tooth_deflection"][at] = share.tooth_deflection
         self.arrays["stiffness"][:, rows] = part.stiffness
-        numbers, maps = numbers_and_maps(self.pair, contacts, dict.fromkeys(contacts), shape)
-        for name in KEPT:
+        maps: dict[Place, PressureMap | None] = dict.fromkeys(contacts)
+        for pair, own in by_gears.values():
+            numbers, own_maps = numbers_and_maps([pair] * shape[0], own, dict.fromkeys(own), shape)
+            maps |= own_maps
             known = ~np.isnan(numbers["normal_force"])
-            self.arrays[name][:, rows][known] = numbers[name][known]
+            for name in KEPT:
+                self.arrays[name][:, rows][known] = numbers[name][known]
         self._note(contacts, begin)
         for t in range(shape[0]):
             for n in self.wanted_maps & set(part.positions):

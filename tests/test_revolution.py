@@ -11,6 +11,7 @@ from loaded_tca import InputError, Revolution, analyse, analyse_revolution, load
 from loaded_tca.revolution import expected_revolution_effort
 from loaded_tca.studies import Study, revolution_figures, run_study
 from tests.refusals import refused_calls
+from tests.samples.root_stress import coarsely
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
 
@@ -277,4 +278,86 @@ test_refusals = refused_calls(
         lambda: analyse_revolution(scene_of("mesh_cycle_bevel", CONTACT | {"wheel.pitch.tolerance_class": 6})),
         r"wheel\.pitch: tolerance_class: found 6; .* cylindrical gears",
     ),
+)
+
+
+def with_teeth(numbers, modifications, gear="wheel"):
+    return {f"{gear}.tooth": [{"number": number, "modifications": modifications} for number in numbers]}
+
+
+CROWNED = {"lead_crowning_um": 3.0, "profile_crowning_um": 5.0}
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_all_teeth_with_flanks_of_their_own_are_a_gear_with_these_flanks(gear):
+    """One pairing among others: bending is that of the common teeth, which these flanks leave as it is here."""
+    scene = helical()
+    count = 17 if gear == "pinion" else 24
+    of_teeth = revolution_of(scene, 2, 4, **with_teeth(range(count), CROWNED, gear))
+    of_gear = revolution_of(scene, 2, 4, **{f"{gear}.modifications.{name}": um for name, um in FULL.items()})
+    assert_allclose(of_teeth.error_um(), of_gear.error_um(), atol=1e-9)
+    assert_allclose(of_teeth.error_um(0), of_gear.error_um(0), atol=AS_ONE_PITCH_um)
+    assert_allclose(of_teeth.dataset.peak_pressure, of_gear.dataset.peak_pressure, rtol=1e-4)
+
+
+FULL = {"lead_crowning_um": 0.0, "profile_crowning_um": 0.0} | CROWNED
+
+
+@pytest.mark.parametrize("changes", [CONTACT, COARSE], ids=["flanks alone", "bending"])
+def test_tooth_with_less_material_all_over_is_one_that_is_set_back(changes):
+    """An amount along the normal is 1/cos(beta_b) of it along the transverse line of action."""
+    scene, removed_um = helical(changes), 3.0
+    base_helix = math.asin(math.sin(math.radians(15.0)) * math.cos(math.radians(20.0)))
+    index = [0.0] * 24
+    index[2] = removed_um / math.cos(base_helix)
+    thinner = revolution_of(scene, 5, 4, **with_teeth([2], {"polynomial_mm": [1e-3 * removed_um] + [0.0] * 5}))
+    set_back = revolution_of(scene, 5, 4, **{"wheel.pitch.index_um": index})
+    assert_allclose(thinner.error_um(), set_back.error_um(), atol=2e-3)  # it turns by a ten thousandth, and is as large
+    assert_allclose(thinner.error_um(0), set_back.error_um(0), atol=5e-3)
+    assert_allclose(thinner.dataset.load_share, set_back.dataset.load_share, atol=2e-3)
+
+
+def test_tooth_with_its_own_relief_changes_its_own_mesh_alone():
+    relief = {"tip_relief_um": 20.0, "tip_relief_start_roll_deg": 30.0}
+    scene = helical()
+    alike, one = revolution_of(scene, 8, 4), revolution_of(scene, 8, 4, **with_teeth([4], relief))
+    meshes = (one.dataset.wheel_tooth.values == 4) & (one.dataset.load_share.values[0] > 0.0)
+    touched = meshes.any(axis=1)
+    difference = np.abs(one.error_um(0) - alike.error_um(0))
+    assert 0 < touched.sum() < len(touched)
+    assert difference[touched].max() > 0.1
+    before = ~(one.dataset.wheel_tooth.values == 4).any(axis=1)  # neither in mesh nor within reach
+    assert before.any()
+    assert_allclose(difference[before], 0.0, atol=1e-9)
+
+
+def test_root_stress_is_that_of_one_pitch_and_names_its_teeth(tmp_path):
+    changes = CONTACT | {"analysis.root_stress": True, "analysis.positions": 5}
+    scene = helical(changes | {"pinion.face_width_mm": 15.0, "wheel.face_width_mm": 15.0})
+    with coarsely():
+        one = analyse(scene)
+        turn = revolution_of(scene, 2, 4, **{"revolution.first_pair": [3, 5]})
+    places = np.round(4.0 * one.pinion_angle[:4] / scene.pair().pitch).astype(int) % 4
+    assert_allclose(turn.dataset.root_tension.values[0, places], one.root_tension[0, :4], rtol=1e-4)
+    teeth = turn.dataset.root_tension_tooth.values[0]
+    assert teeth[0].tolist() == [3, 5]  # at the pitch point, where its pair carries the most
+    assert teeth[4].tolist() == [4, 6]
+    figures = turn.key_figures()[0]
+    assert figures["pinion_root_tension_MPa"] == np.nanmax(turn.dataset.root_tension.values[0, :, 0])
+    turn.save(tmp_path / "turn.nc")
+    assert Revolution.load(tmp_path / "turn.nc").dataset.equals(turn.dataset)
+    columns = turn.to_table()
+    assert_allclose(columns["wheel_root_tension_MPa"], turn.dataset.root_tension.values[0, :, 1])
+    assert columns["wheel_root_tension_tooth"].tolist() == teeth[:, 1].tolist()
+
+
+test_refusals_of_teeth = refused_calls(
+    (lambda: asked(with_teeth([24], CROWNED)), r"wheel\.tooth: number: found 24; allowed 0 to 23"),
+    (lambda: asked(with_teeth([3, 3], CROWNED)), r"wheel\.tooth: number: found 3 twice; allowed once"),
+    (lambda: asked({"wheel.tooth": [{"modifications": {}}]}), r"wheel\.tooth: table 1\.number: missing"),
+    (
+        lambda: asked({"wheel.tooth": [{"number": 1}, {"number": 2, "modifications": {"lead_um": 3.0}}]}),
+        r"wheel\.tooth: table 2\.modifications\.lead_um: unknown key",
+    ),
+    (lambda: asked({"wheel.tooth": 3}), r"wheel\.tooth: found 3; allowed up to 10000 tables with the keys number"),
 )

@@ -38,6 +38,7 @@ CASES = (
     "cylindrical.internal_hertz",
     "cylindrical.fzg_c14_geometry",
     "cylindrical.fzg_c14_root_stress",
+    "tribology.published",
     "bevel.iso_23509_sample",
     "face_milled.settings",
     "face_milled.swept_cutter",

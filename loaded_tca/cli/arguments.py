@@ -47,6 +47,15 @@ files in DIR:
 and with --loaded instead
   vh_under_load.png         highest pressure at each place of the flank
   vh_study.nc, vh_study_maps/  the study behind it; the same command goes on from there"""
+TRIBOLOGY = """[operation], [lubricant], roughness_Ra_um and the thermal keys of materials say how the pair runs; --set
+gives or changes them. What needs an input that is not given is left out, and the summary says which.
+
+files in DIR:
+  tribology.nc              everything, to be read by xarray
+  tribology.csv             one row per speed and torque
+  tribology_slices.csv      every slice of every contact, first speed, all torques
+{tribology_pictures}
+Friction of the teeth alone; docs/guide/efficiency_and_scuffing.md says more."""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
   subsurface.csv            the same over the depth, below the highest pressure
@@ -134,6 +143,7 @@ def command_line() -> argparse.ArgumentParser:
 
     _add_analyses(command)
     _add_readers(command)
+    _add_tribology(command)
     _add_comparisons(command)
     _add_tables_and_maps(command)
     _add_studies(command)
@@ -186,6 +196,18 @@ def _add_readers(command: Command) -> None:
     below.add_argument(
         "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
     )
+
+
+def _add_tribology(command: Command) -> None:
+    """Add the command that reads tribology off a result."""
+    text = "show loss, temperatures, films, scuffing and micropitting of a result at one speed or several"
+    reader = command("tribology", run_by.tribology, text, TRIBOLOGY)
+    reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+    text = "of the pinion; default: operation.pinion_speed_rpm of the scene"
+    reader.add_argument("--speed", metavar="RPM", nargs="+", type=float, help=text)
+    text = "another value of a key, for instance lubricant.oil_temperature_C=90; may be given again for other keys"
+    reader.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
+    reader.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: beside the result")
 
 
 def _add_comparisons(command: Command) -> None:
@@ -279,6 +301,8 @@ class _Parser(argparse.ArgumentParser):
     def format_help(self) -> str:
         if self.epilog == FILES:
             self.epilog = FILES.format(pictures=_list_of_pictures())
+        if self.epilog == TRIBOLOGY:
+            self.epilog = TRIBOLOGY.format(tribology_pictures=_list_of_tribology())
         return super().format_help()
 
     def error(self, message: str) -> NoReturn:
@@ -303,6 +327,12 @@ def _list_of_pictures() -> str:
         lines += [] if head is None else [head]
         lines += [f"  {name + '.png':<24}  {one.line}" for name, one in pictures.items()]
     return "\n".join(lines)
+
+
+def _list_of_tribology() -> str:
+    from loaded_tca.plots import TRIBOLOGY_PICTURES
+
+    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in TRIBOLOGY_PICTURES.items())
 
 
 class _Version(argparse.Action):

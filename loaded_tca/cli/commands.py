@@ -260,6 +260,44 @@ def revolution(options: argparse.Namespace) -> None:
     print_files(written)
 
 
+def tribology(options: argparse.Namespace) -> None:
+    """Write loss, temperatures and films of a result at speeds, with tables and pictures, and show the summary."""
+    from dataclasses import replace
+
+    from loaded_tca.output.tribology_files import write_tribology
+    from loaded_tca.plots import png_of, tribology_figures
+    from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.scene.parse import literal_value
+
+    path = result_file(options.result)
+    result = MeshCycle.load(path)
+    directory = options.out or path.parent
+    check_place(directory)
+    changes = {key: literal_value(value) for key, value in options.set}
+    require(*((_is_of_tribology(key), f"--set {key}: {OF_TRIBOLOGY}") for key in changes))
+    if options.speed is not None:
+        changes.setdefault("operation.pinion_speed_rpm", options.speed[0])
+    changed = replace(result, scene=result.scene.with_changes(changes)) if changes else result
+    found = changed.tribology(options.speed)
+    pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(found).items()}
+    written = write_tribology(found, directory, pictures)
+    print(found.summary(), end="\n\n")
+    print_files(written)
+
+
+OF_TRIBOLOGY = (
+    "an analysis depends on it; allowed keys of [operation] and [lubricant], roughness_Ra_um of the gears, and "
+    "conductivity_W_mK, density_kg_m3 and heat_capacity_J_kgK of materials"
+)
+
+
+def _is_of_tribology(key: str) -> bool:
+    """Whether a key of a scene concerns tribology alone, so that a result stays valid."""
+    section, _, name = key.rpartition(".")
+    alone = {"roughness_Ra_um", "conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK"}
+    return section in ("operation", "lubricant") or name in alone
+
+
 def stage(options: argparse.Namespace) -> None:
     """Analyse a planetary stage, write everything into a directory, and show the summary."""
     from loaded_tca.analysis import expected_effort

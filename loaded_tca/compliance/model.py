@@ -17,6 +17,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.compliance import ContactGrid, tooth_compliance, way_out_told
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
+from loaded_tca.supports import SupportCompliance, support_compliance
 
 
 class BendingModel(Protocol):
@@ -89,6 +90,17 @@ class SumOfParts(BendingModel):
         """Deflection (m,) [mm] of the slices of one contact under forces (n,) [N] on those of another."""
         return _sum([part.deflection(at, under, forces) for part in self.parts])
 
+    @property
+    def supports(self) -> SupportCompliance | None:
+        """Its part that is the supports, if there is one."""
+        return next((part for part in self.parts if isinstance(part, SupportCompliance)), None)
+
+    @property
+    def on_rigid_supports(self) -> SumOfParts | None:
+        """The other parts; None without any."""
+        parts = tuple(part for part in self.parts if not isinstance(part, SupportCompliance))
+        return SumOfParts(parts) if parts else None
+
     def mounted(self, pair: GearPair) -> SumOfParts:
         """The same parts in a pair whose wheel stands elsewhere."""
         return SumOfParts(tuple(part.mounted(pair) for part in self.parts))
@@ -109,7 +121,12 @@ def teeth_and_bodies(scene: Scene, pair: GearPair, neighbours: int) -> BendingPa
         return tooth_compliance(pair, neighbours=neighbours)
 
 
-PARTS: tuple[Callable[[Scene, GearPair, int], BendingPart | None], ...] = (teeth_and_bodies,)
+def shafts_and_bearings(scene: Scene, pair: GearPair, _: int) -> BendingPart | None:
+    """Supports of both gears; None where the scene has none."""
+    return support_compliance(scene, pair)
+
+
+PARTS: tuple[Callable[[Scene, GearPair, int], BendingPart | None], ...] = (teeth_and_bodies, shafts_and_bearings)
 """What a bending model is the sum of: each makes its part, or None where the scene does not ask for it."""
 
 

@@ -35,7 +35,7 @@ class InternalMesh:
     ring : RingGear
         Of the normal module, normal pressure angle and **same** hand of the pinion, with more teeth.
     centre_distance : float [mm], optional
-        |a|; None: the one without backlash. Never refused for its backlash.
+        abs(a); None: the one without backlash. Never refused for its backlash.
 
     Raises
     ------
@@ -141,7 +141,7 @@ class InternalMesh:
 
     @property
     def _line_of_action(self) -> float:
-        """T1T2 = |a| sin(alpha_wt) [mm], without the loss of digits of the sine near alpha_wt = 0."""
+        """T1T2 = abs(a) sin(alpha_wt) [mm], without the loss of digits of the sine near alpha_wt = 0."""
         base, distance = self._base_difference, self.working_centre_distance
         return sqrt((distance - base) * (distance + base))
 
@@ -172,19 +172,19 @@ class InternalMesh:
 
     @property
     def gear_ratio(self) -> float:
-        """Gear ratio |u| = |z2|/z1."""
+        """Gear ratio abs(u) = abs(z2)/z1."""
         return self.ring.tooth_count / self.pinion.teeth
 
     @cached_property
     def working_centre_distance(self) -> float:
-        """Centre distance |a| as given, or without backlash from the profile shifts [mm]."""
+        """Centre distance abs(a) as given, or without backlash from the profile shifts [mm]."""
         if self.centre_distance is not None:
             return self.centre_distance
         return self._base_difference / cos(inverse_involute(self._involute_without_backlash))
 
     @property
     def working_pressure_angle(self) -> float:
-        """Transverse working pressure angle alpha_wt, cos(alpha_wt) = (r_b2 - r_b1)/|a| [rad]."""
+        """Transverse working pressure angle alpha_wt, cos(alpha_wt) = (r_b2 - r_b1)/abs(a) [rad]."""
         return atan(self._line_of_action / self._base_difference)
 
     @property
@@ -194,12 +194,12 @@ class InternalMesh:
 
     @property
     def pinion_working_radius(self) -> float:
-        """r_w1 = |a|/(|u| - 1) [mm]."""
+        """r_w1 = abs(a)/(abs(u) - 1) [mm]."""
         return self.working_centre_distance / (self.gear_ratio - 1.0)
 
     @property
     def wheel_working_radius(self) -> float:
-        """|r_w2| = |a| |u|/(|u| - 1) [mm]."""
+        """abs(r_w2) = abs(a) abs(u)/(abs(u) - 1) [mm]."""
         return self.working_centre_distance * self.gear_ratio / (self.gear_ratio - 1.0)
 
     @property
@@ -364,7 +364,7 @@ class InternalMesh:
 
     @property
     def overlap_ratio(self) -> float:
-        """eps_beta = b sin(|beta|)/(pi m_n), b the common face width."""
+        """eps_beta = b sin(abs(beta))/(pi m_n), b the common face width."""
         return self.common_face_width * sin(abs(self.pinion.helix_angle)) / (pi * self.pinion.normal_module)
 
     @property

@@ -82,9 +82,9 @@ class RingGear:
     profile_shift : float
         Coefficient x with the sign of ISO 21771, in normal modules.
     tip_diameter : float [mm], optional
-        |d_a|; None: |d| - 2 m_n (1 + x).
+        abs(d_a); None: abs(d) - 2 m_n (1 + x).
     root_diameter : float [mm], optional
-        |d_f|; None: |d| + 2 m_n (h_fP/m_n - x).
+        abs(d_f); None: abs(d) + 2 m_n (h_fP/m_n - x).
     dedendum_coefficient : float
         h_fP/m_n of the basic rack.
     root_radius_coefficient : float
@@ -213,7 +213,7 @@ class RingGear:
 
     @property
     def tooth_count(self) -> int:
-        """|z|."""
+        """abs(z)."""
         return -self.teeth
 
     @property
@@ -238,29 +238,29 @@ class RingGear:
 
     @property
     def reference_radius(self) -> float:
-        """|r| = |z| m_t/2 [mm]."""
+        """abs(r) = abs(z) m_t/2 [mm]."""
         return 0.5 * self.tooth_count * self.transverse_module
 
     @property
     def base_radius(self) -> float:
-        """|r_b| = |r| cos(alpha_t) [mm]."""
+        """abs(r_b) = abs(r) cos(alpha_t) [mm]."""
         return self.reference_radius * cos(self.transverse_pressure_angle)
 
     @property
     def tip_radius(self) -> float:
-        """|r_a| = |d_a|/2 [mm]."""
+        """abs(r_a) = abs(d_a)/2 [mm]."""
         if self.tip_diameter is not None:
             return 0.5 * self.tip_diameter
         return self.reference_radius - self.normal_module * (1.0 + self.profile_shift)
 
     @property
     def tip_alteration(self) -> float:
-        """Tip alteration k m_n = |r| - |r_a| - m_n (1 + x), negative for a shortened tooth [mm]."""
+        """Tip alteration k m_n = abs(r) - abs(r_a) - m_n (1 + x), negative for a shortened tooth [mm]."""
         return self.reference_radius - self.tip_radius - self.normal_module * (1.0 + self.profile_shift)
 
     @property
     def root_radius(self) -> float:
-        """|r_f| = |r| + m_n (h_fP/m_n - x), or as given [mm]."""
+        """abs(r_f) = abs(r) + m_n (h_fP/m_n - x), or as given [mm]."""
         if self.root_diameter is not None:
             return 0.5 * self.root_diameter
         return self.reference_radius + self.normal_module * (self.dedendum_coefficient - self.profile_shift)
@@ -279,7 +279,7 @@ class RingGear:
 
     @property
     def half_thickness_angle_at_base(self) -> float:
-        """Half tooth thickness angle that the flanks would have at the base circle, s_t/(2 |r|) - inv(alpha_t) [rad].
+        """Half tooth thickness angle that flanks would have at the base circle, s_t/(2 abs(r)) - inv(alpha_t) [rad].
 
         Negative where they would meet before it: a ring's teeth grow outwards.
         """
@@ -348,7 +348,7 @@ class RingGear:
 
     @cached_property
     def form_radius(self) -> float:
-        """|r_Ff|, where fillet and involute meet [mm]."""
+        """abs(r_Ff), where fillet and involute meet [mm]."""
         if self.cutter is None:
             return self.radius_at_roll_length(self._arc_centre(self.fillet_radius)[2])
         cutting_roll = self._cutter_rounding_centre(self.fillet_radius)[2]
@@ -439,7 +439,7 @@ class RingGear:
 
     @property
     def _cutting_distance(self) -> float:
-        """|a_0| between the axes of ring and cutter [mm]."""
+        """abs(a_0) between the axes of ring and cutter [mm]."""
         return (self.base_radius - self._cutter_base_radius) / cos(self._cutting_angle)
 
     @property

@@ -16,7 +16,7 @@ from loaded_tca.errors import ConvergenceError, named
 from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair, tooth_pairs_at, torque_shared
 from loaded_tca.loaded.loaded_contact import LoadedContact, Result, Steps, found_together
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
-from loaded_tca.loaded.tooth_contact import GridChoice, contact_under_load
+from loaded_tca.loaded.tooth_contact import Coupling, GridChoice, contact_under_load
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPath, MeshPath
 from loaded_tca.unloaded.curvature import relative_curvatures
@@ -75,6 +75,7 @@ def carried_by_one(
     grid: GridChoice,
     bending: BendingModel | None = None,
     progress: Progress | None = None,
+    given: Coupling | None = None,
 ) -> Carried:
     """Let the tooth pair at the pitch point carry the whole load.
 
@@ -89,6 +90,8 @@ def carried_by_one(
     bending : BendingModel, optional
         Of the teeth beneath the contact; default: none.
     progress : callable, optional
+    given : callable, optional
+        Displacement of the slices of a grid that does not depend on the forces; default: none.
     """
     shape = len(torques), len(path)
     contacts: Contacts = [[[None] for _ in range(shape[1])] for _ in range(shape[0])]
@@ -99,12 +102,15 @@ def carried_by_one(
         if not contact.in_contact:
             return None
         with told_where(torques[t], contact.pinion_angle):
-            return (yield from contact_under_load(pair, contact, torques[t] / contact.pinion_lever, grid, bending))
+            load = torques[t] / contact.pinion_lever
+            return (yield from contact_under_load(pair, contact, load, grid, bending, coupling=given))
 
     for (t, n), loaded in _found(pair, shape, steps, progress):
         contacts[t][n][0] = loaded
         if loaded is not None:
             deflection[t, n] = loaded.own_tooth_deflection
+            if loaded.coupling_deflection is not None and loaded.solution.load > 0.0:
+                deflection[t, n] += loaded.slice_shares @ loaded.coupling_deflection
             rotation[t, n] = loaded.solution.approach / loaded.contact.wheel_lever
     share = np.broadcast_to(np.where(path.in_contact, 1.0, math.nan)[:, None], (*shape, 1)).copy()
     number = np.zeros(1, dtype=int)
@@ -119,6 +125,7 @@ def carried_by_all(
     grid: GridChoice,
     bending: BendingModel | None = None,
     progress: Progress | None = None,
+    given: Coupling | None = None,
 ) -> Carried:
     """Let all tooth pairs in contact share the load.
 
@@ -126,13 +133,13 @@ def carried_by_all(
     ----------
     mesh : MeshPath
         Unloaded contact of all teeth, :func:`loaded_tca.unloaded.trace_teeth`.
-    pair, torques, grid, bending, progress
+    pair, torques, grid, bending, progress, given
         As of :func:`carried_by_one`.
     """
     angles, shape = mesh.pinion_angle, (len(torques), len(mesh))
     tooth_pairs = [tooth_pairs_at(mesh, n) for n in range(len(mesh))]
     shared = torques_shared(
-        pair, list(zip(angles.tolist(), tooth_pairs, strict=True)), torques, grid, bending, progress
+        pair, list(zip(angles.tolist(), tooth_pairs, strict=True)), torques, grid, bending, progress, given
     )
     carrying = {0} | {share.tooth_pair.pair for one in shared.values() for share in one.shares}
     columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
@@ -144,15 +151,12 @@ def carried_by_all(
             place = t, n, pairs.index(part.tooth_pair.pair)
             contacts[t][n][place[2]], deflection[place] = part.loaded, part.tooth_deflection
             share[place] = part.torque / torques[t] if shared[t, n].torque > 0.0 else 1.0
-    in_gear_angles = []
-    for path in (mesh.paths[column] for column in columns):
-        turned = pair.ratio * (angles - path.pinion_angle)
-        in_gear_angles.append(replace(path, pinion_angle=angles, wheel_angle=path.wheel_angle + turned))
+    leading, paths = in_gear_angles(mesh)
     return Carried(
-        path=replace(mesh.leading_contact, pinion_angle=angles, wheel_angle=mesh.wheel_angle),
+        path=leading,
         torque=torques,
         pairs=mesh.pairs[columns],
-        paths=tuple(in_gear_angles),
+        paths=tuple(paths[number] for number in pairs),
         contacts=contacts,
         rotation=np.array([one.rotation for one in shared.values()]).reshape(shape),
         states=_loaded_states(mesh.pairs[columns], contacts, bending),
@@ -168,6 +172,7 @@ def torques_shared(
     grid: GridChoice,
     bending: BendingModel | None = None,
     progress: Progress | None = None,
+    given: Coupling | None = None,
 ) -> dict[tuple[int, int], SharedLoad]:
     """Share every torque over the tooth pairs of every position.
 
@@ -175,7 +180,7 @@ def torques_shared(
     ----------
     positions : sequence of (float, sequence of ToothPair)
         Pinion angle [rad], and all pairs that may come into contact there.
-    pair, torques, grid, bending, progress
+    pair, torques, grid, bending, progress, given
         As of :func:`carried_by_one`.
 
     Returns
@@ -183,14 +188,24 @@ def torques_shared(
     dict
         By the indices of torque and position, torque by torque.
     """
-    relative_curvatures(pair, [one.contact for _, all_at in positions for one in all_at])  # kept for all torques
+    alike = [one.contact for _, all_at in positions for one in all_at if one.gears is None]
+    relative_curvatures(pair, alike)  # kept for all torques
 
     def steps(t: int, n: int) -> Steps[SharedLoad]:
         angle, tooth_pairs = positions[n]
         with told_where(torques[t], angle):
-            return (yield from torque_shared(pair, tooth_pairs, float(torques[t]), grid, bending))
+            return (yield from torque_shared(pair, tooth_pairs, float(torques[t]), grid, bending, given))
 
     return dict(_found(pair, (len(torques), len(positions)), steps, progress))
+
+
+def in_gear_angles(mesh: MeshPath) -> tuple[ContactPath, dict[int, ContactPath]]:
+    """Unloaded contact of the leading tooth pairs, and of each pair by its number, in the angles of the gears."""
+    angles, paths = mesh.pinion_angle, dict[int, ContactPath]()
+    for number, path in zip(mesh.pairs.tolist(), mesh.paths, strict=True):
+        turned = mesh.pair.ratio * (angles - path.pinion_angle)
+        paths[number] = replace(path, pinion_angle=angles, wheel_angle=path.wheel_angle + turned)
+    return replace(mesh.leading_contact, pinion_angle=angles, wheel_angle=mesh.wheel_angle), paths
 
 
 def _found(

@@ -40,8 +40,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, InputError, named
 from loaded_tca.loaded.balance import PowerLaw, balance
-from loaded_tca.loaded.loaded_contact import Gap, LoadedContact, Steps, found_alone
-from loaded_tca.loaded.tooth_contact import FIRST_CELLS, GridChoice, contact_under_load, expected_pressure
+from loaded_tca.loaded.loaded_contact import Gap, LoadedContact, Steps, found_alone, with_gears
+from loaded_tca.loaded.tooth_contact import FIRST_CELLS, Coupling, GridChoice, contact_under_load, expected_pressure
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import point_contact
 from loaded_tca.separation import Separation
@@ -83,11 +83,14 @@ class ToothPair:
         Its first contact, unloaded, in the angles of its own tooth.
     initial_separation : float [rad]
         Rotation of the wheel that brings it into contact; zero for the leading pair.
+    gears : GearPair or None
+        With the flanks of its own teeth, where they differ from those of the others; None: the common ones.
     """
 
     pair: int
     contact: ContactPoint
     initial_separation: float
+    gears: GearPair | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,8 +211,12 @@ def torque_shared(
     torque: float,
     grid: GridChoice,
     bending: BendingModel | None = None,
+    given: Coupling | None = None,
 ) -> Steps[SharedLoad]:
-    """Share a torque over the tooth pairs of one position, step by step; see :func:`share_load`."""
+    """Share a torque over the tooth pairs of one position, step by step; see :func:`share_load`.
+
+    ``given``: displacement of the slices of a grid, of whichever pair, that does not depend on the forces.
+    """
     if not 0.0 <= torque < math.inf:
         raise InputError(f"torque: {torque!r} N mm is not a finite number >= 0")
     if not tooth_pairs:
@@ -217,9 +224,10 @@ def torque_shared(
     leading = min(tooth_pairs, key=lambda tooth_pair: tooth_pair.initial_separation)
     smallest = SMALLEST_SHARED * pair.contact_modulus * pair.module**2
     if torque <= smallest * leading.contact.pinion_lever:
-        loaded = yield from contact_under_load(pair, leading.contact, 0.0, grid)
+        steps = contact_under_load(leading.gears or pair, leading.contact, 0.0, grid)
+        loaded = yield from with_gears(leading.gears, steps)
         return SharedLoad(0.0, 0.0, (Share(leading, loaded, 0.0),), 0.0, 0)
-    return (yield from _Balance(pair, tooth_pairs, torque, grid, bending).steps())
+    return (yield from _Balance(pair, tooth_pairs, torque, grid, bending, given).steps())
 
 
 class _Balance:
@@ -232,24 +240,27 @@ class _Balance:
         torque: float,
         grid: GridChoice,
         bending: BendingModel | None,
+        given: Coupling | None = None,
     ) -> None:
         self.pair, self.tooth_pairs, self.torque, self.grid = pair, tuple(tooth_pairs), torque, grid
+        self.given, self.given_means = given, np.zeros(len(tooth_pairs))  # [mm], the mean over the force of a pair
         self.bending, self.lines_held = bending, grid.lines_held
         self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
         self.first_gaps = np.zeros(len(tooth_pairs))  # [mm], where the grid of a pair touches first: it grows, is cut
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
         self.levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts]).T
-        self.laws = [self._first_law(contact) for contact in contacts]
+        self.laws = [self._first_law(tooth_pair) for tooth_pair in tooth_pairs]
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
         self.first_grids: list[Separation] = []
         usual = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
         self.agreement = usual if grid.agreement is None else grid.agreement
 
-    def _first_law(self, contact: ContactPoint) -> PowerLaw:
+    def _first_law(self, tooth_pair: ToothPair) -> PowerLaw:
         """Hertz's law of the curvatures at the contact point, or of a slender contact over the face."""
+        contact, gears = tooth_pair.contact, tooth_pair.gears or self.pair
         load, modulus = self.torque / contact.pinion_lever, self.pair.contact_modulus
-        curvature = relative_curvature(self.pair, contact)
+        curvature = relative_curvature(gears, contact)
         if curvature.across >= curvature.along > 0.0:
             ellipse = point_contact(load, (curvature.across, curvature.along), modulus)
             if 2.0 * ellipse.semi_major < self.pair.face_width:
@@ -292,11 +303,15 @@ class _Balance:
         lines: list[tuple[int, Separation]] = []
         shares: list[Array] = []
         for number, law, tooth_pair in zip(numbers, self.laws, self.tooth_pairs, strict=True):
-            separation: Separation = yield Gap(tooth_pair.contact, FIRST_CELLS, load=law.load)
+            separation: Separation = yield Gap(tooth_pair.contact, FIRST_CELLS, load=law.load, gears=tooth_pair.gears)
             force = expected_pressure(separation).sum(axis=0)
             lines.append((number, separation))
             shares.append(force / force.sum())
         self.first_grids = [separation for _, separation in lines]
+        if self.given is not None:
+            self.given_means = np.array(
+                [share @ self.given(separation) for share, (_, separation) in zip(shares, lines, strict=True)]
+            )
         compliance = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
         for (i, one), (j, other) in combinations(enumerate(lines), 2):
             if self._coupled(i, j):
@@ -318,9 +333,10 @@ class _Balance:
             if loaded is None or loaded.solution.reaches_border:
                 contact, number = tooth_pair.contact, tooth_pair.pair
                 with named(f"tooth pair {number:+d}"):
-                    loaded = yield from contact_under_load(
-                        self.pair, contact, force, self.grid, self.bending, number, coupling
+                    steps = contact_under_load(
+                        tooth_pair.gears or self.pair, contact, force, self.grid, self.bending, number, coupling
                     )
+                    loaded = yield from with_gears(tooth_pair.gears, steps)
         except ConvergenceError as error:
             raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
         self.solved[index], self.first_gaps[index] = loaded, loaded.separation.cut_gap.min()
@@ -366,7 +382,7 @@ class _Balance:
     @property
     def _first_rotations(self) -> Array:
         """Rotations (k,) [rad] at which the grids of the pairs touch; contact laws count from there."""
-        return np.asarray(self.separations + self.first_gaps / self.levers[1])
+        return np.asarray(self.separations + (self.first_gaps + self.given_means) / self.levers[1])
 
     def _loaded(self) -> Iterator[tuple[int, LoadedContact]]:
         """Place and contact of the pairs that were solved under a load."""
@@ -377,9 +393,10 @@ class _Balance:
 
         The force of another pair is spread over its slices as in its last solution.
         """
+        given = None if self.given is None else self.given(separation)
         if self.bending is None:
-            return None
-        displaced = np.zeros(len(separation.y))
+            return given
+        displaced = np.zeros(len(separation.y)) if given is None else given
         for n, other in self._loaded():
             if n != index and forces[n] > 0.0:
                 force = forces[n] * other.slice_shares
@@ -404,25 +421,37 @@ class _Balance:
             return compliance
         for index, loaded in self._loaded():
             compliance[index, index] = loaded.own_tooth_deflection / loaded.solution.load
+            if self.given is not None:
+                self.given_means[index] = loaded.slice_shares @ self.given(loaded.separation)
         for (index, one), (other, two) in combinations(self._loaded(), 2):
             displaced = self._deflection((index, one.separation), (other, two.separation), two.slice_shares)
             compliance[index, other] = compliance[other, index] = one.slice_shares @ displaced
         loaded_pairs = dict(self._loaded())
         for index, separation in enumerate(self.first_grids):
-            if index in loaded_pairs:
-                continue
-            bent = {
-                other: self._deflection((index, separation), (other, two.separation), two.slice_shares)
-                for other, two in loaded_pairs.items()
-                if self._coupled(index, other)
-            }
-            distance = separation.cut_gap.min(axis=0)
-            for other, displaced in bent.items():
-                distance = distance + loaded_pairs[other].solution.load * displaced
-            place = int(distance.argmin())  # where it comes into contact first, bent away by the others as it is
-            for other, displaced in bent.items():
-                compliance[index, other] = compliance[other, index] = displaced[place]
+            if index not in loaded_pairs:
+                self._correct_apart(index, separation, loaded_pairs, compliance)
         return compliance
+
+    def _correct_apart(
+        self, index: int, separation: Separation, loaded_pairs: dict[int, LoadedContact], compliance: Array
+    ) -> None:
+        """Correct the compliance (k, k) of a pair that carries nothing, where the others let it touch first."""
+        bent = {
+            other: self._deflection((index, separation), (other, two.separation), two.slice_shares)
+            for other, two in loaded_pairs.items()
+            if self._coupled(index, other)
+        }
+        distance = separation.cut_gap.min(axis=0)
+        given = None if self.given is None else self.given(separation)
+        if given is not None:
+            distance = distance + given
+        for other, displaced in bent.items():
+            distance = distance + loaded_pairs[other].solution.load * displaced
+        place = int(distance.argmin())  # where it comes into contact first, bent away by the others as it is
+        for other, displaced in bent.items():
+            compliance[index, other] = compliance[other, index] = displaced[place]
+        if given is not None:
+            self.given_means[index] = given[place]
 
     def _settled(self, forces: Array, rotation: float) -> bool:
         """Whether the rotation closes no pair that carries nothing, and all were solved as the others still bend them.
@@ -445,7 +474,7 @@ class _Balance:
 
     def _shared(self, forces: Array, count: int) -> SharedLoad:
         carrying = np.array([index for index, _ in self._loaded() if forces[index] > 0.0])
-        deflections = self.compliance @ forces
+        deflections = self.compliance @ forces + self.given_means
         shares = []
         for index in carrying.tolist():
             loaded = self.solved[index]

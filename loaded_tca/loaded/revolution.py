@@ -14,7 +14,7 @@ from loaded_tca.loaded.sensitivity import LoadedGrid, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.unloaded.revolution import RevolutionPath
 
-STATES_AT_A_TIME = 256
+STATES_AT_A_TIME = 128
 """Positions times torques that are solved together: stacks are full, and memory does not grow with the revolution."""
 
 

@@ -12,6 +12,7 @@ from loaded_tca.output.tables import (
     write_sensitivities,
     write_subsurface,
 )
+from loaded_tca.output.tribology_files import write_tribology
 from loaded_tca.results.teeth import teeth_in_space
 
 __all__ = [
@@ -28,5 +29,6 @@ __all__ = [
     "write_stl",
     "write_subsurface",
     "write_teeth",
+    "write_tribology",
     "write_vtk",
 ]

@@ -26,6 +26,7 @@ from loaded_tca.results.quantities import (
     QUANTITIES,
     ROOT_MAPS,
     ROOT_QUANTITIES,
+    SUPPORT_QUANTITIES,
 )
 from loaded_tca.results.summary import without_rounding
 from loaded_tca.units import factor_of
@@ -134,6 +135,10 @@ def positions_csv(result: MeshCycle) -> str:
             columns[column] = (result.at_position(name) if dimensions == PAIRS else getattr(result, name)) * factor
     columns["transmission_error_um"] = result.transmission_error * result.wheel_base_radius * 1e3
     columns |= {f"load_share_pair_{number}": result.load_share[..., k] for k, number in enumerate(result.pair)}
+    for name, (dimensions, unit, _) in SUPPORT_QUANTITIES.items():
+        if dimensions == CYCLE and result.scene.is_supported:
+            column, factor = _column(name, unit)
+            columns[column] = getattr(result, name) * factor
     for name, (dimensions, unit, _) in ROOT_QUANTITIES.items():
         if dimensions == OVER_CYCLE and result.has_root_stress:
             column, factor = _column(name, unit)
@@ -208,6 +213,10 @@ def describe_results() -> str:
         for name, (axes, unit, _) in ROOT_QUANTITIES.items()
         if axes == OVER_CYCLE
     }
+    of_supports = {
+        name: _column(name, unit)[0] for name, (axes, unit, _) in SUPPORT_QUANTITIES.items() if axes == CYCLE
+    }
+    lines += ["", "### Supports, where the scene has them", "", *_described(SUPPORT_QUANTITIES, of_supports)]
     lines += [
         "",
         "### Root stress, where the scene asks for it",

@@ -2,23 +2,25 @@
 
 Both separate a tooth pair from contact, by a length along the transverse line of action at the base circles, positive
 where the flanks come apart. An index deviation belongs to its tooth; an eccentricity turns with the gear and shifts
-all of its teeth together, so that it changes no share of the load.
+all of its teeth together, so that on
+cylindrical gears it changes no share of the load.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.pairs.gear_pair import GearPair
 
 LONG_WAVES = (1.0, 0.35, 0.2)
 """Amplitudes of the first orders of a turn in random deviations: clamping and indexing leave mostly the first one."""
 PARALLEL = 0.9
-"""Cosine of the angle between the axes of external cylindrical pairs, mounting errors included, at the least."""
+"""Cosine of the angle between the axes of cylindrical pairs, mounting errors included, at the least."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,39 +49,40 @@ class ToothDeviations:
         return not self.index.any() and self.eccentricity == 0.0
 
 
-def transverse_line_of_action(pair: GearPair, contact_normal: Array, wheel_lever: float) -> Array:
-    """Direction (3,) along which a displacement of a gear moves its flanks against the mating ones, at r_b2.
+@dataclass(frozen=True, eq=False)
+class ToothFlanks:
+    """Flanks that differ tooth by tooth: kinds of teeth of each gear, and the gears of each pairing of them.
 
-    Parameters
+    Attributes
     ----------
-    pair : GearPair
-    contact_normal : (3,) array
-        Normal out of the pinion at the contact point at phi1 = 0, of pairs whose axes are not parallel.
-    wheel_lever : float [mm]
-        Torque of a unit force along it about the axis of the wheel.
-
-    Returns
-    -------
-    (3,) array
-        Of external cylindrical pairs the transverse normal of both base circles at their mounted distance; of others
-        the normal times r_b2 over its lever.
+    kinds : (array, array)
+        Kind of every tooth of pinion (z1,) and wheel (z2,), whole numbers; 0: the common flanks.
+    gears : mapping of (int, int) to GearPair
+        With the flanks of a kind of pinion tooth and a kind of wheel tooth.
     """
-    if pair.wheel_axes[2, 2] < PARALLEL:
-        return contact_normal * pair.base_radii[1] / wheel_lever
-    cosine = sum(pair.base_radii) / float(np.hypot(*pair.wheel_origin[:2]))
-    side = pair.sense * pair.driving
-    return np.array([np.sqrt(1.0 - min(cosine, 1.0) ** 2), side * cosine, 0.0])
+
+    kinds: tuple[Indices, Indices]
+    gears: Mapping[tuple[int, int], GearPair]
+
+
+def transverse_normal(pair: GearPair) -> Array | None:
+    """Normal (3,) of both base circles of a cylindrical pair at its mounted distance, out of the pinion; else None."""
+    along = pair.wheel_axes[2, 2]  # about 1, of a ring, whose frame is turned about the x axis, -1
+    if abs(along) < PARALLEL:
+        return None
+    radii = pair.base_radii[1] + np.sign(along) * pair.base_radii[0]
+    cosine = min(radii / float(np.hypot(*pair.wheel_origin[:2])), 1.0)
+    return np.array([np.sqrt(1.0 - cosine**2), pair.sense * pair.driving * cosine, 0.0])
 
 
 def eccentric_separation(
     pair: GearPair, deviations: tuple[ToothDeviations, ToothDeviations], angles: tuple[Array, Array], direction: Array
 ) -> Array:
-    r"""Separation (n,) [mm] of all tooth pairs by the eccentricity of both gears.
+    r"""Separation (...) [mm] of tooth pairs by the eccentricity of both gears.
 
     .. math:: e = n \cdot (d_2 - d_1)
 
-    to first order in the displacements d of the teeth of both gears; n the transverse line of action, out of the
-    pinion.
+    to first order in the displacements d of the teeth of both gears.
 
     Parameters
     ----------
@@ -87,15 +90,16 @@ def eccentric_separation(
     deviations : (ToothDeviations, ToothDeviations)
         Of pinion and wheel.
     angles : (array, array) [rad]
-        (n,) each, how far the gears have turned in the motion since their teeth 0 touched at the pitch point.
-    direction : (3,) array
-        :func:`transverse_line_of_action`.
+        How far the gears have turned in the motion since their teeth 0 touched at the pitch point.
+    direction : (..., 3) array
+        n: of cylindrical pairs :func:`transverse_normal`, which all tooth pairs have in common; else the normal out of
+        the pinion at a contact, times r_b2 over its lever about the axis of the wheel.
     """
     pinion, wheel = deviations
     azimuth = pinion.phase + pair.sense * angles[0], wheel.phase - pair.sense * angles[1]
-    x, y = pair.wheel_axes[:2] @ direction
-    of_wheel = wheel.eccentricity * (np.cos(azimuth[1]) * x + np.sin(azimuth[1]) * y)
-    of_pinion = pinion.eccentricity * (np.cos(azimuth[0]) * direction[0] + np.sin(azimuth[0]) * direction[1])
+    in_wheel = direction @ pair.wheel_axes[:2].T
+    of_wheel = wheel.eccentricity * (np.cos(azimuth[1]) * in_wheel[..., 0] + np.sin(azimuth[1]) * in_wheel[..., 1])
+    of_pinion = pinion.eccentricity * (np.cos(azimuth[0]) * direction[..., 0] + np.sin(azimuth[0]) * direction[..., 1])
     return of_wheel - of_pinion
 
 

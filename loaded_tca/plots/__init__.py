@@ -63,6 +63,16 @@ from loaded_tca.plots.study_panels import plot_study_ranking
 from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
 from loaded_tca.plots.style import chosen_torque, png_of, save_figure
 from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
+from loaded_tca.plots.tribology import (
+    TRIBOLOGY_PICTURES,
+    plot_contact_temperature,
+    plot_efficiency,
+    plot_film_ratio,
+    plot_friction_power,
+    plot_over_flank,
+    plot_sliding_velocities,
+    tribology_figures,
+)
 from loaded_tca.plots.vh_check import plot_ease_off, plot_loaded_vh_check, plot_vh_check
 from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -72,6 +82,7 @@ __all__ = [
     "PICTURES",
     "REVOLUTION_PICTURES",
     "STAGE_PICTURES",
+    "TRIBOLOGY_PICTURES",
     "draw_teeth",
     "plot_all",
     "plot_at_a_glance",
@@ -80,9 +91,13 @@ __all__ = [
     "plot_comparison",
     "plot_contact_path",
     "plot_contact_patterns",
+    "plot_contact_temperature",
     "plot_ease_off",
+    "plot_efficiency",
     "plot_face_load",
+    "plot_film_ratio",
     "plot_first_order_scatter",
+    "plot_friction_power",
     "plot_full_mesh",
     "plot_harmonics",
     "plot_line_load",
@@ -90,6 +105,7 @@ __all__ = [
     "plot_load_share",
     "plot_loaded_vh_check",
     "plot_mesh_stiffness",
+    "plot_over_flank",
     "plot_path_pressure",
     "plot_peak_pressure",
     "plot_peak_to_peak_over_torque",
@@ -105,6 +121,7 @@ __all__ = [
     "plot_root_stress_cycle",
     "plot_root_stress_over_torque",
     "plot_sensitivity_curves",
+    "plot_sliding_velocities",
     "plot_solution",
     "plot_stage_error",
     "plot_stage_load_factor",
@@ -130,6 +147,7 @@ __all__ = [
     "result_figures",
     "save_figure",
     "show_teeth",
+    "tribology_figures",
 ]
 
 

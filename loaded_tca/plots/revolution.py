@@ -20,6 +20,8 @@ KINDS = {"mesh": "#d55e00", "wheel": "#0072b2", "pinion": "#009e73", "other": "0
 """Colours of orders: of the mesh, of the rotation of both gears and their sidebands, and others."""
 MOST_ORDERS = 3.5
 """Mesh orders that are shown."""
+BESIDE_MESH = 0.3
+"""Pitches before and after the mesh of a tooth pair that are shown."""
 LEAST_SHOWN = 1e-4
 """Amplitude [um] below which orders are not told from each other."""
 
@@ -170,6 +172,9 @@ def plot_revolution_shares(revolution: Revolution, torque: int | None = None) ->
     curves.set_xlabel("pitches since the tooth pair was at the pitch point")
     curves.set_ylabel("share of the torque")
     curves.set_ylim(0.0, 1.05)
+    under_load = places[known][high > 0.0]
+    if under_load.size:
+        curves.set_xlim(under_load[0] - BESIDE_MESH, under_load[-1] + BESIDE_MESH)
     _draw_teeth(teeth, revolution, torque)
     for axes in (curves, teeth):
         axes.grid(alpha=0.3)

@@ -14,6 +14,7 @@ from loaded_tca.compliance import RootStress
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.loaded_contact import EQUAL, LoadedContact
 from loaded_tca.loaded.rounded_edges import NOT_REACHED, PeakAtEdge
+from loaded_tca.loaded.supported import CarriedOnSupports
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
 from loaded_tca.results.load_factors import load_factors
@@ -22,6 +23,7 @@ from loaded_tca.results.numbers import dataset_of
 from loaded_tca.results.pressure_map import PressureMap, place_on_material, sharp_edge_cell
 from loaded_tca.results.root_stress import root_stress_arrays
 from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
+from loaded_tca.results.supports import secant_on_rigid_supports, support_arrays
 from loaded_tca.results.warnings import warn_of_root_stress
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
@@ -36,6 +38,7 @@ def mesh_cycle(
     carried: Carried,
     at_rounded_edges: Mapping[tuple[int, int, int], PeakAtEdge],
     roots: Sequence[RootStress] = (),
+    on_supports: Sequence[CarriedOnSupports] = (),
     *,
     warnings: Sequence[str] = (),
     date: str = "",
@@ -52,6 +55,8 @@ def mesh_cycle(
         Peaks there by the indices of torque, position and tooth pair, as ``carried`` has them.
     roots : sequence of RootStress
         Of pinion and wheel, where the scene asks for root stress.
+    on_supports : sequence of CarriedOnSupports
+        By torque, where supports give way; ``carried`` is all of them.
     warnings : sequence of str
         Sentences of the accuracy warnings of the analysis; each is kept once.
     date : str
@@ -61,7 +66,8 @@ def mesh_cycle(
     share = carried.share[..., order]
     contacts = {(t, n, k): carried.contacts[t][n][order[k]] for t, n, k in np.ndindex(share.shape)}
     at_edges = {(t, n, k): at_rounded_edges.get((t, n, int(order[k]))) for t, n, k in contacts}
-    numbers, maps = numbers_and_maps(pair, contacts, at_edges, share.shape)
+    moved = [one.pair for one in on_supports]
+    numbers, maps = numbers_and_maps(moved or [pair] * share.shape[0], contacts, at_edges, share.shape)
     apart = np.isnan(numbers["contact_deformation"])
     numbers["normal_force"] = np.where(apart & ~np.isnan(share), 0.0, numbers["normal_force"])
     lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
@@ -70,6 +76,14 @@ def mesh_cycle(
     path, (torques, positions, pairs) = carried.path, (range(length) for length in share.shape)
     stacked = tuple(tuple(tuple(maps[t, n, k] for k in pairs) for n in positions) for t in torques)
     face_load_factor, transverse_load_factor = load_factors(pair, path, stacked, scene.mean_contact_length)
+    rate, supported = carried.torque_rate, dict[str, Array]()
+    if on_supports:
+        rate, secant = (
+            np.stack([one.mesh_rate for one in on_supports]),
+            secant_on_rigid_supports(carried, on_supports),
+        )
+        angle, _ = scene.transverse_angles
+        supported = support_arrays(pair, on_supports, pressure_angle=angle, stiffness_per_rate=1.0 / lengths)
     arrays = {
         **numbers,
         "torque": carried.torque,
@@ -82,15 +96,16 @@ def mesh_cycle(
         "face_load_factor": face_load_factor,
         "transverse_load_factor": transverse_load_factor,
         "transmission_error": path.transmission_error - pair.driving * carried.rotation,
-        "mesh_stiffness": carried.torque_rate / lengths,
+        "mesh_stiffness": rate / lengths,
         "secant_stiffness": secant / lengths,
         "loaded_pairs": (numbers["normal_force"] > 0.0).sum(axis=-1),
         "load_share": share,
         "tooth_deflection": np.where(apart, math.nan, carried.tooth_deflection[..., order]),
     }
+    arrays |= supported
     if roots:
         in_contact = ~np.isnan(arrays["normal_force"]).all(axis=-1)
-        arrays |= root_stress_arrays(pair, roots, arrays["pair"].tolist(), in_contact, stacked)
+        arrays |= root_stress_arrays(pair, roots, arrays["pair"].tolist(), in_contact, stacked, moved)
         warn_of_root_stress(arrays["root_tension"], arrays["root_compression"])
     return MeshCycle(
         scene=scene,
@@ -100,12 +115,12 @@ def mesh_cycle(
         path=path,
         paths=tuple(carried.paths[k] for k in order),
         maps=stacked,
-        states=(scene, carried.states),
+        states=None if on_supports else (scene, carried.states),
     )
 
 
 def numbers_and_maps(
-    pair: GearPair,
+    pairs: Sequence[GearPair],
     contacts: Mapping[Place, LoadedContact | None],
     at_edges: Mapping[Place, PeakAtEdge | None],
     shape: tuple[int, ...],
@@ -114,7 +129,8 @@ def numbers_and_maps(
 
     Parameters
     ----------
-    pair : GearPair
+    pairs : sequence of GearPair
+        The gears as they stand under each torque.
     contacts : mapping
         Of each place; None where a pair carries nothing.
     at_edges : mapping
@@ -126,12 +142,16 @@ def numbers_and_maps(
     maps: dict[Place, PressureMap | None] = dict.fromkeys(contacts)
     under_load = {place: one for place, one in contacts.items() if one is not None and one.solution.load > 0.0}
     rough = {place: loaded for place, loaded in under_load.items() if loaded.is_rough}
-    under = [(one.contact, one.separation, one.solution.pressure) for one in rough.values()]
-    peaks = dict(zip(rough, largest_slice_pressures(pair, under), strict=True)) if rough else {}
+    peaks: dict[Place, SlicePeak] = {}
+    for pair in dict.fromkeys(pairs):
+        there = {place: loaded for place, loaded in rough.items() if pairs[place[0]] is pair}
+        under = [(one.contact, one.separation, one.solution.pressure) for one in there.values()]
+        peaks |= dict(zip(there, largest_slice_pressures(pair, under), strict=True)) if there else {}
     for place, loaded in contacts.items():
         if loaded is None:
             continue
-        one = maps[place] = _pressure_map(loaded)
+        one, pair = _pressure_map(loaded), pairs[place[0]]
+        maps[place] = one
         of_contact = _numbers(pair, loaded, one, peaks.get(place)) | _at_edge(pair, loaded, one, at_edges[place])
         for name, number in of_contact.items():
             missing = math.nan if isinstance(number, float) else type(number)()

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import body_torsion
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, NotAskedError
 from loaded_tca.loaded.sensitivity import LoadedStates
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import variables_of
@@ -25,6 +25,7 @@ from loaded_tca.results.quantities import (
     PAIRS,
     QUANTITIES,
     ROOT_PARTS,
+    SUPPORT_QUANTITIES,
     not_asked,
 )
 from loaded_tca.scene import Scene
@@ -38,11 +39,12 @@ if TYPE_CHECKING:
 def dataset_of(arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
     """Make the dataset of a mesh cycle of the arrays of all ``QUANTITIES`` and the attributes of ``ABOUT``.
 
-    Those of ``ROOT_PARTS`` are part of it where there are any.
+    Those of ``ROOT_PARTS`` and ``SUPPORT_QUANTITIES`` are part of it where there are any.
     """
     import xarray
 
-    variables = variables_of(QUANTITIES | {name: part for name, part in ROOT_PARTS.items() if name in arrays}, arrays)
+    optional = SUPPORT_QUANTITIES | ROOT_PARTS
+    variables = variables_of(QUANTITIES | {name: part for name, part in optional.items() if name in arrays}, arrays)
     coordinates = {name: variables.pop(name) for name in COORDINATES}
     return xarray.Dataset(variables, coordinates, about)
 
@@ -65,13 +67,19 @@ class CycleNumbers:
     def __getattr__(self, name: str) -> Any:
         if name in (*ROOT_PARTS, "root_stress") and not self.has_root_stress:
             raise not_asked(name)
-        if name not in (*QUANTITIES, *ROOT_PARTS) or name not in self.dataset:
+        if name in SUPPORT_QUANTITIES and name not in self.dataset:
+            raise NotAskedError(f"{name}: the scene has no supports; [pinion.support] or [wheel.support] gives them")
+        if name not in (*QUANTITIES, *SUPPORT_QUANTITIES, *ROOT_PARTS) or name not in self.dataset:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
         values = self.dataset[name].values
         return values if values.ndim else values.item()
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *QUANTITIES, *(name for name in ROOT_PARTS if name in self.dataset)]
+        return [
+            *super().__dir__(),
+            *QUANTITIES,
+            *(name for name in (*SUPPORT_QUANTITIES, *ROOT_PARTS) if name in self.dataset),
+        ]
 
     @property
     def version(self) -> str:
@@ -144,7 +152,11 @@ class CycleNumbers:
             For any other name.
         """
         if not isinstance(name, str) or name not in self.dataset or self.dataset[name].dims != PAIRS:
-            known = f"; result.{name} has its numbers as they are" if name in (*QUANTITIES, *ROOT_PARTS) else ""
+            known = (
+                f"; result.{name} has its numbers as they are"
+                if name in (*QUANTITIES, *SUPPORT_QUANTITIES, *ROOT_PARTS)
+                else ""
+            )
             raise InputError(f"name: {name!r} is no array (torque, position, pair) of the result{known}")
         values = self.dataset[name].values
         if name in OF_THE_PEAK:

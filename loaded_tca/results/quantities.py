@@ -124,6 +124,26 @@ ROOT_MAPS: dict[str, Part] = {
 """The same by their names in a file; places along the face are as many as the width of each gear asks for."""
 ROOT_PARTS = ROOT_QUANTITIES | ROOT_MAPS
 
+MOTION = (*CYCLE, "motion")
+SUPPORT_QUANTITIES: dict[str, Part] = {
+    "pinion_motion": (
+        MOTION,
+        "mm, rad",
+        "motion of the middle of the pinion's face on its axis: along x, y, z and about them, axes of the fixed frame",
+    ),
+    "wheel_motion": (MOTION, "mm, rad", "the same of the wheel"),
+    "misalignment": (
+        CYCLE,
+        "um",
+        "misalignment F_beta of the motions over the common face, signs as of mounting.misalignment_um; NaN for bevel "
+        "gears",
+    ),
+    "drive_stiffness": (CYCLE, "N/(mm um)", "mesh stiffness with what the supports give way"),
+}
+"""Numbers that a result has where its scene has supports."""
+MOTIONS = 6
+"""Length of the axis ``motion``."""
+
 PATH_PARTS: dict[str, Part] = {
     "pinion_angle": ((), "rad", "angle of the pinion phi1"),
     "wheel_angle": ((), "rad", "unloaded angle of the wheel phi2"),

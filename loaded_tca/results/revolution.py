@@ -21,6 +21,7 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.quantities import CYCLE, GEARS, OVER_CYCLE, QUANTITIES, ROOT_QUANTITIES
+from loaded_tca.results.summary import shown
 from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 
@@ -279,7 +280,7 @@ class Revolution:
         for name in figures[0]:
             label, _, unit = name.rpartition("_")
             titled = f"{label} [{unit}]" if unit in ("um", "MPa") else name
-            rows[titled.replace("_", " ")] = [f"{one[name]:.4g}" for one in figures]
+            rows[titled.replace("_", " ")] = [shown(one[name], name) for one in figures]
         width = 2 + max(len(cell) for cells in rows.values() for cell in cells)
         labels = max(map(len, rows))
         table = [f"{name:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for name, cells in rows.items()]
@@ -399,4 +400,4 @@ def revolution_dataset(arrays: Mapping[str, Any], **about: str) -> xarray.Datase
 def open_turns(scene: Scene, pitches: int) -> list[str]:
     """Gears with deviations of which so many pitches are no whole turn."""
     gears = zip(GEARS, (scene.pinion, scene.wheel), strict=True)
-    return [name for name, gear in gears if gear.pitch is not None and gear.pitch.is_given and pitches % gear.teeth]
+    return [name for name, gear in gears if gear.teeth_differ and pitches % gear.teeth]

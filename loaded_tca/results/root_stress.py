@@ -61,7 +61,12 @@ def root_stress_maps(result: CycleNumbers) -> tuple[RootStressMap, RootStressMap
 
 
 def root_stress_arrays(
-    pair: GearPair, models: Sequence[RootStress], numbers: Sequence[int], known: NDArray[np.bool_], maps: Maps
+    pair: GearPair,
+    models: Sequence[RootStress],
+    numbers: Sequence[int],
+    known: NDArray[np.bool_],
+    maps: Maps,
+    moved: Sequence[GearPair] = (),
 ) -> dict[str, Array]:
     """Arrays of ``ROOT_PARTS`` of what the tooth pairs carry.
 
@@ -75,9 +80,13 @@ def root_stress_arrays(
     known : (torque, position) bool array
         Where a tooth pair is in contact; elsewhere all is NaN.
     maps : Maps
+    moved : sequence of GearPair
+        The gears as they stand under each torque, where they move; default: as in ``pair``.
     """
     with one_blas_thread():  # the matrices are small: threads waiting for each other cost more
-        by_gear = [root_stress_of_gear(pair, gear, model, numbers, known, maps) for gear, model in enumerate(models)]
+        by_gear = [
+            root_stress_of_gear(pair, gear, model, numbers, known, maps, moved) for gear, model in enumerate(models)
+        ]
     arrays = {name: np.stack([one[name] for one in by_gear], axis=-1) for name in ROOT_QUANTITIES if name in by_gear[0]}
     for name in ("root_tension_place", "root_compression_place"):
         arrays[name] = np.moveaxis(arrays[name], -1, -2)
@@ -87,7 +96,13 @@ def root_stress_arrays(
 
 
 def root_stress_of_gear(
-    pair: GearPair, gear: int, model: RootStress, numbers: Sequence[int], known: NDArray[np.bool_], maps: Maps
+    pair: GearPair,
+    gear: int,
+    model: RootStress,
+    numbers: Sequence[int],
+    known: NDArray[np.bool_],
+    maps: Maps,
+    moved: Sequence[GearPair] = (),
 ) -> dict[str, Array]:
     """Arrays of one gear: those of :func:`root_stress_arrays` without the axis of the gears."""
     fillets = model.tangent_angle.shape
@@ -95,7 +110,7 @@ def root_stress_of_gear(
     place = {sign: np.full((*known.shape, len(PLACE)), -1) for sign in extreme}
     blank = np.where(known.any(axis=1), 0.0, math.nan)[:, None, None, None]
     at_tension, largest, smallest = blank + np.zeros((3, len(known), *fillets))
-    for t, positions, tooth, stress in _stresses(pair, gear, model, numbers, maps):
+    for t, positions, tooth, stress in _stresses(moved or [pair] * len(maps), gear, model, numbers, maps):
         largest[t] = np.maximum(largest[t], stress.max(axis=0))
         smallest[t] = np.minimum(smallest[t], stress.min(axis=0))
         for sign, so_far in extreme.items():
@@ -121,10 +136,10 @@ def root_stress_of_gear(
 
 
 def _stresses(
-    pair: GearPair, gear: int, model: RootStress, numbers: Sequence[int], maps: Maps
+    pairs: Sequence[GearPair], gear: int, model: RootStress, numbers: Sequence[int], maps: Maps
 ) -> Iterator[tuple[int, Indices, int, Array]]:
     """Torque, positions (n,) under load, tooth, and its stress there (n, 2, stations, p), for every tooth with any."""
-    for t, rows in enumerate(maps):
+    for t, (pair, rows) in enumerate(zip(pairs, maps, strict=True)):
         loaded = np.array([n for n, row in enumerate(rows) if any(row)], dtype=int)
         for first in range(0, len(loaded), STATES_AT_A_TIME):
             positions = loaded[first : first + STATES_AT_A_TIME]

@@ -411,6 +411,12 @@ class Sensitivities:
         return changes
 
 
+NOT_ON_SUPPORTS = (
+    "sensitivities: the gears stand on supports that give way, which move their geometry under load; derivatives hold "
+    "for rigid ones: leave out [pinion.support] and [wheel.support], or vary the keys in a study"
+)
+
+
 def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
     """Derivatives of a result to keys of its scene; see :meth:`MeshCycle.sensitivities`."""
     listed = isinstance(keys, Iterable) and not isinstance(keys, str | bytes)
@@ -421,6 +427,7 @@ def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
         *((isinstance(key, str), f"keys: {key!r:.60} is no text; allowed are keys of the scene") for key in keys),
         *((keys.count(key) < 2, f"keys: {key} is given twice") for key in dict.fromkeys(map(str, keys))),
     )
+    require((not result.scene.is_supported, NOT_ON_SUPPORTS))
     named = [key for key in keys if key != TORQUE]
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
     solved, states = result.states or (None, None)

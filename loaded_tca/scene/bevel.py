@@ -227,6 +227,13 @@ class BevelScene(SpiralScene, BlankScene):
         return self.sides(self.sense) if self.geometry.spiral_angle_deg else ("straight", "straight")
 
     @property
+    def face_middles(self) -> tuple[float, float]:
+        """Axial coordinates of the mean pitch circles of both gears, from their apexes [mm]."""
+        mesh = self.mesh()
+        first, second = (gear.mean_cone_distance * cos(gear.pitch_angle) for gear in (mesh.pinion, mesh.wheel))
+        return first, second
+
+    @property
     def pairs_in_contact(self) -> float:
         """The transverse contact ratio."""
         return self.mesh().transverse_contact_ratio

@@ -30,8 +30,9 @@ def in_base_units(section: Section) -> dict[str, Any]:
 
     Examples
     --------
-    >>> in_base_units(ElasticMaterial(youngs_modulus_MPa=206000, poisson_ratio=0.3))
-    {'youngs_modulus': 206000.0, 'poisson_ratio': 0.3}
+    >>> from loaded_tca.scene import Load
+    >>> in_base_units(Load(pinion_torque_Nm=130.0))
+    {'pinion_torque': 130000.0}
     """
     return {
         without_unit(key): _scaled(value, UNITS[ending].factor) if (ending := ending_of(key)) else value

@@ -6,7 +6,7 @@ import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from math import degrees, isclose, radians
+from math import cos, degrees, isclose, radians
 from typing import ClassVar, Literal
 
 from loaded_tca.errors import require
@@ -245,6 +245,12 @@ class FaceMilledScene(SpiralScene):
     def hands(self) -> tuple[Hand, Hand]:
         """Hands of pinion and wheel."""
         return self.pinion.blank.hand, self.wheel.blank.hand
+
+    @property
+    def face_middles(self) -> tuple[float, float]:
+        """Axial coordinates of the mean pitch circles of both gears, from the crossing point of the axes [mm]."""
+        first, second = (gear.blank.mean_cone_distance * cos(gear.blank.pitch_angle) for gear in self.mesh().gears)
+        return first, second
 
     def mesh(self) -> FaceMilledMesh:
         """Return blanks, machine settings and cutters of both gears."""

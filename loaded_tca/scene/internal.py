@@ -61,8 +61,8 @@ class RingSection(BlankGearSection):
         None,
         "0, or what leaves no backlash",
     )
-    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter |d_a|", None, "|d| - 2 m_n (1 + x)")
-    root_diameter_mm: float | None = key(DIAMETER_mm, "root diameter |d_f|", None, "|d| + 2 m_n (h_fP - x)")
+    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a, positive", None, "d - 2 m_n (1 + x)")
+    root_diameter_mm: float | None = key(DIAMETER_mm, "root diameter d_f, positive", None, "d + 2 m_n (h_fP - x)")
     outer_diameter_mm: float | None = key(
         DIAMETER_mm, "outer diameter, held rigid where teeth bend", None, "root diameter + 14 m_n"
     )

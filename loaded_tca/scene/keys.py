@@ -37,6 +37,8 @@ def literal(value: Any) -> str:
         return "true" if value else "false"
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name} = {literal(inner)}" for name, inner in value.items()) + "}"
     if isinstance(value, list | tuple) and value and isinstance(value[0], list | tuple):
         return "[\n" + "".join(f"    {literal(line)},\n" for line in value) + "]"
     if isinstance(value, list | tuple):

@@ -7,14 +7,16 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
-from loaded_tca.pairs.tooth_deviations import ToothDeviations
+from loaded_tca.pairs.tooth_deviations import ToothDeviations, ToothFlanks
 from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key, literal
+from loaded_tca.scene.lubrication import LubricantSection, Operation
 from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.section import (
     Rule,
@@ -25,10 +27,18 @@ from loaded_tca.scene.section import (
     contents,
     entries,
     made,
+    plain,
     rule,
     subsection,
 )
-from loaded_tca.scene.sections import Analysis, ContactStandard, ElasticMaterial, GearSection, Load, Pair
+from loaded_tca.scene.sections import (
+    Analysis,
+    ContactStandard,
+    ElasticMaterial,
+    GearSection,
+    Load,
+    Pair,
+)
 from loaded_tca.scene.tolerance_class import scatter_of_class
 
 Hand = Literal["right", "left"]
@@ -58,6 +68,8 @@ class Scene(Section, ABC):
         Of both gears; ``materials`` tells what holds for each.
     load : Load
     analysis : Analysis
+    operation : Operation or None
+    lubricant : LubricantSection or None
     revolution : Revolution or None
         Of whole revolutions; None: a turn of the wheel.
     """
@@ -72,6 +84,8 @@ class Scene(Section, ABC):
     )
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
+    operation: Operation | None = subsection(Operation, "speed and factors, for tribology", optional=True)
+    lubricant: LubricantSection | None = subsection(LubricantSection, "the oil, for tribology", optional=True)
     revolution: Revolution | None = subsection(Revolution, "which pitches a whole revolution has", optional=True)
 
     vh_keys: ClassVar[tuple[str, str]]
@@ -210,8 +224,28 @@ class Scene(Section, ABC):
 
     @property
     def has_pitch_deviations(self) -> bool:
-        """Whether a gear has pitch deviations or runout."""
-        return any(gear.pitch is not None and gear.pitch.is_given for gear in (self.pinion, self.wheel))
+        """Whether the teeth of a gear stand beside their places, or have flanks of their own."""
+        return any(gear.teeth_differ for gear in (self.pinion, self.wheel))
+
+    def tooth_flanks(self) -> ToothFlanks | None:
+        """Return which teeth have flanks of their own, and the gears with them; None if all are alike.
+
+        Raises
+        ------
+        InputError, GeometryError
+            As of :meth:`pair`, where flanks of single teeth cannot be made.
+        """
+        if not (self.pinion.tooth or self.wheel.tooth):
+            return None
+        numbered = [gear.kinds_of_teeth() for gear in (self.pinion, self.wheel)]
+        common = {"pinion.tooth": None, "wheel.tooth": None}
+        gears = {}
+        for (a, first), (b, second) in product(*(enumerate(changes) for _, changes in numbered)):
+            if (a, b) != (0, 0):
+                changes = {f"pinion.{name}": value for name, value in first.items()}
+                changes |= {f"wheel.{name}": value for name, value in second.items()}
+                gears[a, b] = self.with_changes(common | changes).pair()
+        return ToothFlanks((numbered[0][0], numbered[1][0]), gears)
 
     def tooth_deviations(self, pair: GearPair) -> tuple[ToothDeviations, ToothDeviations]:
         """Return index deviations and eccentricity of the teeth of pinion and wheel.
@@ -227,10 +261,10 @@ class Scene(Section, ABC):
             If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
         """
         pinion, wheel = (
-            build_tooth_deviations(
-                gear.pitch, abs(gear.teeth), name, pair.module, partial(self.pitch_tolerances, number)
+            build_tooth_deviations(gear.pitch, teeth, name, pair.module, partial(self.pitch_tolerances, number))
+            for number, (name, gear, teeth) in enumerate(
+                zip(("pinion", "wheel"), (self.pinion, self.wheel), pair.teeth, strict=True)
             )
-            for number, (name, gear) in enumerate((("pinion", self.pinion), ("wheel", self.wheel)))
         )
         return pinion, wheel
 
@@ -295,6 +329,16 @@ class Scene(Section, ABC):
     def path_points(self) -> Mapping[str, float]:
         """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion; none of bevel gears."""
         return {}
+
+    @property
+    def is_supported(self) -> bool:
+        """Whether a gear gives way as a whole: it has a section for its support."""
+        return any(gear.support is not None for gear in (self.pinion, self.wheel))
+
+    @property
+    def face_middles(self) -> tuple[float, float]:
+        """Axial coordinates, on the gears themselves, of the middles of both faces: motions are those of them [mm]."""
+        return 0.0, 0.0
 
     @property
     def mean_contact_length(self) -> float:
@@ -515,5 +559,5 @@ def _lines(section: Section, path: str) -> list[str]:
         elif value is None:
             keys.append(f"# {name} is not given: {entry.absent}")
         else:
-            keys.append(f"{name} = {literal(value)}")
+            keys.append(f"{name} = {literal(plain(value))}")
     return keys + sections

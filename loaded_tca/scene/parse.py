@@ -22,7 +22,7 @@ from loaded_tca.scene.section import Section, Subsection, entries
 LARGEST_FILE = 2**21
 """Bytes of a scene file; a full one has about 5000, one with two measured flanks of 100 x 100 points a million."""
 
-LEVELS_WITH_FILES = 3
+LEVELS_WITH_FILES = 4
 """Parts of the longest key that names a file."""
 
 MOST_DOTS = 2000
@@ -109,9 +109,11 @@ def _with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[
     for name, value in table.items():
         key = (*section, name)
         with_files[name] = value
-        if isinstance(value, dict) and len(key) < LEVELS_WITH_FILES:
+        tables = isinstance(value, list) and all(isinstance(one, dict) for one in value)
+        if (isinstance(value, dict) or tables) and len(key) < LEVELS_WITH_FILES:
             try:
-                with_files[name] = _with_files_from(folder, value, key)
+                inner = [_with_files_from(folder, one, key) for one in (value if tables else [value])]
+                with_files[name] = inner if tables else inner[0]
             except InputError as error:
                 problems += error.problems
         elif name == "file" and isinstance(value, str):

@@ -6,7 +6,7 @@ import csv
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -211,10 +211,25 @@ def _known_teeth(first: int | tuple[int, int], pinion: int, wheel: int) -> str |
     return f"found {shown(first)}; allowed teeth up to {last[0]} of the pinion and up to {last[1]} of the wheel"
 
 
+def teeth_of_their_own(gear: str) -> Rule:
+    """Rule: the teeth of a gear that have flanks of their own exist, each given once."""
+
+    def complain(given: tuple[Any, ...] | None, teeth: int) -> str | None:
+        numbers = [tooth.number for tooth in given or ()]
+        if numbers and max(numbers) >= abs(teeth):
+            return f"number: found {max(numbers)}; allowed 0 to {abs(teeth) - 1}"
+        twice = sorted({number for number in numbers if numbers.count(number) > 1})
+        return f"number: found {twice[0]} twice; allowed once" if twice else None
+
+    return Rule((f"{gear}.tooth", f"{gear}.teeth"), complain)
+
+
 TEETH = "pinion.teeth", "wheel.teeth"
 REVOLUTION_RULES: tuple[Rule, ...] = (
     entry_for_each_tooth("pinion"),
     entry_for_each_tooth("wheel"),
+    teeth_of_their_own("pinion"),
+    teeth_of_their_own("wheel"),
     Rule(("revolution.pitches", *TEETH), _within_hunting),
     Rule(("revolution.first_pair", *TEETH), _known_teeth),
 )

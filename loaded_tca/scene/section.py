@@ -64,6 +64,32 @@ class Section:
             object.__setattr__(self, attribute, values[name])
 
 
+@dataclass(frozen=True)
+class Tables:
+    """A list of sections, as ``[[name]]`` of a file."""
+
+    section: type[Section]
+    longest: int
+
+    @property
+    def allowed(self) -> str:
+        """Keys of each."""
+        return f"up to {self.longest} tables with the keys {', '.join(entries(self.section))}"
+
+    def read(self, value: Any) -> tuple[Section, ...]:
+        """Return the sections, each checked."""
+        if not isinstance(value, list | tuple) or len(value) > self.longest:
+            raise ValueError(f"found {shown(value)}; allowed {self.allowed}")
+        sections, problems = [], []
+        for count, table in enumerate(value, 1):
+            inner, inner_problems = _check_subsection(f"{count}", Subsection(self.section, ""), table, "", self.section)
+            problems += inner_problems
+            sections.append(inner.get(f"{count}"))
+        if problems:
+            raise ValueError("; ".join(f"table {problem}" for problem in problems))
+        return tuple(section for section in sections if section is not None)
+
+
 def subsection(section: type[Section], about: str, optional: bool = False, name: str = "") -> Any:
     """Dataclass field that is a section of a file, under ``name`` where that is not the field's own."""
     entry = {"entry": Subsection(section, about, optional, name)}
@@ -87,11 +113,16 @@ def contents(section: Section) -> dict[str, Any]:
 
 def as_table(section: Section) -> dict[str, Any]:
     """Return the section as nested dictionaries, as a file would give it, without the keys that hold None."""
-    return {
-        name: as_table(value) if isinstance(value, Section) else value
-        for name, value in contents(section).items()
-        if value is not None
-    }
+    return {name: plain(value) for name, value in contents(section).items() if value is not None}
+
+
+def plain(value: Any) -> Any:
+    """Return a value as a file would give it: sections as dictionaries, also those of a list."""
+    if isinstance(value, Section):
+        return as_table(value)
+    if isinstance(value, tuple) and value and isinstance(value[0], Section):
+        return [as_table(one) for one in value]
+    return value
 
 
 def values_of(section: Section) -> dict[str, Any]:

@@ -14,8 +14,8 @@ pitch serve all pitches, but for pinion teeth with index deviations, which have 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -23,7 +23,12 @@ import numpy as np
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import GeometryError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.pairs.tooth_deviations import ToothDeviations, eccentric_separation, transverse_line_of_action
+from loaded_tca.pairs.tooth_deviations import (
+    ToothDeviations,
+    ToothFlanks,
+    eccentric_separation,
+    transverse_normal,
+)
 from loaded_tca.unloaded.path import ContactPath, ContactPoint, trace_contact
 from loaded_tca.unloaded.tooth_cycle import REACH, reach, teeth_between
 
@@ -49,6 +54,8 @@ class RevolutionPath:
         Different contacts, in the angles of their own teeth.
     contact : (n, m) int array
         Which of them each pair has at each position.
+    gears : tuple of GearPair or None
+        Of each contact, where its teeth have flanks of their own; None: ``pair``.
     """
 
     pair: GearPair
@@ -60,15 +67,16 @@ class RevolutionPath:
     initial_separation: Array
     contacts: ContactPath
     contact: Indices
+    gears: tuple[GearPair | None, ...]
 
     def __len__(self) -> int:
         return len(self.pinion_angle)
 
-    def pairs_at(self, position: int) -> Iterator[tuple[int, ContactPoint, float]]:
-        """Number, contact and initial separation [rad] of the tooth pairs within reach at a position."""
+    def pairs_at(self, position: int) -> Iterator[tuple[int, ContactPoint, float, GearPair | None]]:
+        """Number, contact, initial separation [rad] and own gears of the tooth pairs within reach at a position."""
         for column in np.flatnonzero(np.isfinite(self.initial_separation[position])):
-            point = self._points[self.contact[position, column]]
-            yield int(self.pairs[column]), point, float(max(self.initial_separation[position, column], 0.0))
+            place, separation = self.contact[position, column], float(self.initial_separation[position, column])
+            yield int(self.pairs[column]), self._points[place], max(separation, 0.0), self.gears[place]
 
     @cached_property
     def _points(self) -> list[ContactPoint]:
@@ -82,6 +90,7 @@ def trace_revolution(
     pitches: int,
     per_pitch: int,
     first_teeth: tuple[int, int] = (0, 0),
+    flanks: ToothFlanks | None = None,
 ) -> RevolutionPath:
     """Unloaded contact of all teeth over whole pitches.
 
@@ -94,6 +103,8 @@ def trace_revolution(
         How many pitches follow each other, and positions in each: n = pitches per_pitch.
     first_teeth : (int, int)
         Teeth of pinion and wheel that are at the pitch point at the first position.
+    flanks : ToothFlanks, optional
+        Where they differ tooth by tooth; default: all are those of the pair.
 
     Raises
     ------
@@ -114,30 +125,31 @@ def trace_revolution(
     >>> [round(float(value), 6) + 0.0 for value in error]
     [0.0, 0.0, 0.0, 0.0, -10.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     """
+    alike = ToothFlanks((np.zeros(pair.teeth[0], dtype=int), np.zeros(pair.teeth[1], dtype=int)), {})
+    kinds_of, gears = (flanks or alike).kinds, {(0, 0): pair, **(flanks or alike).gears}
     spread = sum(float(np.ptp(one.index)) for one in deviations) / pair.module
-    low, high = reach(pair, REACH + spread)
+    windows = [reach(one, REACH * min(len(gears), 2) + spread) for one in gears.values()]
+    low, high = min(window[0] for window in windows), max(window[1] for window in windows)
     shift = float(np.abs(deviations[0].index).max()) / pair.base_radii[0]
     last = pair.pitch * (1.0 - 1.0 / per_pitch)
     pairs = np.sort(teeth_between(0.0, last, (low - shift, high + shift), pair.pitch))
-    turn = np.arange(pitches * per_pitch) // per_pitch
-    phase = np.arange(pitches * per_pitch) % per_pitch
-    number = turn[:, None] + pairs
-    pinion_tooth, wheel_tooth = ((number + first) % z for first, z in zip(first_teeth, pair.teeth, strict=True))
-    of_pinion = deviations[0].index[pinion_tooth]
-    own, contact = _different(pair.pitch * phase / per_pitch, pairs, pair, of_pinion)
-    within = (own >= low) & (own <= high)
-    if not within.any():
-        raise GeometryError("no common flank: none of the tooth pairs comes into reach")
-    path = trace_contact(pair, own[within], warn=False)
-    known, contact = within[contact], (np.cumsum(within) - 1)[contact]
+    turn, rest = np.divmod(np.arange(pitches * per_pitch), per_pitch)
+    phase = rest / per_pitch
+    teeth = [(turn[:, None] + pairs + first) % count for first, count in zip(first_teeth, pair.teeth, strict=True)]
+    of_pinion = deviations[0].index[teeth[0]]
+    own = (pair.pitch * phase)[:, None] - pair.pitch * pairs - pair.driving * of_pinion / pair.base_radii[0]
+    kinds = np.stack([of_tooth[tooth] for of_tooth, tooth in zip(kinds_of, teeth, strict=True)], axis=-1)
+    path, contact, own_gears = _traced(gears, own, kinds, (low, high))
+    known = contact >= 0
     height = np.where(path.in_contact, pair.driving * path.transmission_error * pair.base_radii[1], -np.inf)
-    angle = pair.pitch * (turn + phase / per_pitch)
-    turned = tuple(
-        ratio * angle + 2.0 * np.pi * first / z
-        for ratio, first, z in zip((1.0, pair.ratio), first_teeth, pair.teeth, strict=True)
-    )
-    index = of_pinion + deviations[1].index[wheel_tooth]
-    heights = np.where(known, height[np.where(known, contact, 0)], -np.inf) - index
+    angle = pair.pitch * (turn + phase)
+    turned = [
+        ratio * angle + 2.0 * np.pi * first / count
+        for ratio, first, count in zip((1.0, pair.ratio), first_teeth, pair.teeth, strict=True)
+    ]
+    common, own_part = _eccentric(pair, deviations, (turned[0], turned[1]), path, contact)
+    apart_by = of_pinion + deviations[1].index[teeth[1]] + own_part
+    heights = np.where(known & np.isfinite(height[contact]), height[contact] - apart_by, -np.inf)
     top = heights.max(axis=1)
     if (apart := np.isinf(top)).any():
         raise GeometryError(
@@ -146,33 +158,64 @@ def trace_revolution(
         )
     separation = np.where(heights >= top[:, None] - REACH * pair.module, top[:, None] - heights, np.nan)
     used = np.isfinite(separation).any(axis=0)
-    common = _eccentric(pair, deviations, (turned[0], turned[1]))
     return RevolutionPath(
         pair=pair,
         pinion_angle=angle,
         pairs=pairs[used],
-        pinion_tooth=pinion_tooth[:, used],
-        wheel_tooth=wheel_tooth[:, used],
+        pinion_tooth=teeth[0][:, used],
+        wheel_tooth=teeth[1][:, used],
         transmission_error=pair.driving * (top - common) / pair.base_radii[1],
         initial_separation=separation[:, used] / pair.base_radii[1],
         contacts=path,
         contact=contact[:, used],
+        gears=own_gears,
     )
 
 
-def _different(begin: Array, pairs: Indices, pair: GearPair, of_pinion: Array) -> tuple[Array, Indices]:
-    """Own pinion angles that differ, ascending, and which of them each pair (n, m) has."""
-    own = begin[:, None] - pair.pitch * pairs - pair.driving * of_pinion / pair.base_radii[0]
-    angles, place = np.unique(own, return_inverse=True)
-    return angles, place.reshape(own.shape)
+def _traced(
+    gears: Mapping[tuple[int, int], GearPair], own: Array, kinds: Indices, window: tuple[float, float]
+) -> tuple[ContactPath, Indices, tuple[GearPair | None, ...]]:
+    """Different contacts of pairings of kinds (n, m, 2) at own pinion angles (n, m), each once.
+
+    Returns the contacts, which of them each pair has (-1: out of the window), and their own gears, None of the common.
+    """
+    within = (own >= window[0]) & (own <= window[1])
+    parts: list[ContactPath] = []
+    contact = np.full(own.shape, -1)
+    owners: list[GearPair | None] = []
+    for kind, pair in gears.items():
+        rows = within & (kinds == kind).all(axis=-1)
+        if not rows.any():
+            continue
+        angles, place = np.unique(own[rows], return_inverse=True)
+        contact[rows] = len(owners) + place
+        owners += [None if kind == (0, 0) else pair] * len(angles)
+        parts.append(_contacts(pair, angles))
+    if not parts:
+        raise GeometryError("no common flank: none of the tooth pairs comes into reach")
+    joined = {one.name: np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(ContactPath)}
+    return ContactPath(**joined), contact, tuple(owners)
+
+
+def _contacts(pair: GearPair, angles: Array) -> ContactPath:
+    """Contacts at own pinion angles, and at 0: those of some teeth alone may all be apart."""
+    return trace_contact(pair, np.append(angles, 0.0), warn=False)[: len(angles)]
 
 
 def _eccentric(
-    pair: GearPair, deviations: tuple[ToothDeviations, ToothDeviations], turned: tuple[Array, Array]
-) -> Array:
-    """Separation (n,) [mm] of all pairs by eccentricity, zero without."""
+    pair: GearPair,
+    deviations: tuple[ToothDeviations, ToothDeviations],
+    turned: tuple[Array, Array],
+    path: ContactPath,
+    contact: Indices,
+) -> tuple[Array, Array]:
+    """Separation [mm] by eccentricity: of all pairs in common (n,), and of each on top of it (n, 1) or (n, m)."""
+    none = np.zeros(len(contact))
     if not any(one.eccentricity for one in deviations):
-        return np.zeros(len(turned[0]))
-    contact = trace_contact(pair, [0.0], warn=False)[0]
-    direction = transverse_line_of_action(pair, contact.normal, contact.wheel_lever)
-    return eccentric_separation(pair, deviations, turned, direction)
+        return none, none[:, None]
+    normal = transverse_normal(pair)
+    if normal is not None:
+        return eccentric_separation(pair, deviations, turned, normal), none[:, None]
+    directions = path.normal * (pair.base_radii[1] / path.wheel_lever)[:, None]
+    angles = turned[0][:, None], turned[1][:, None]
+    return none, eccentric_separation(pair, deviations, angles, directions[contact])

@@ -111,3 +111,31 @@ test_refusals = refused_calls(
     (lambda tmp_path: Pitch(file=str(tmp_path / "absent.csv")), "file: .*absent.csv: cannot be read"),
     (lambda: Pitch(tolerance_class=12), "tolerance_class: found 12; allowed a whole number from 1 to 11"),
 )
+
+
+def test_teeth_of_their_own_are_written_and_read_back():
+    teeth = [{"number": 7, "modifications": {"tip_relief_um": 4.0, "tip_relief_start_mm": 176.0}}, {"number": 9}]
+    scene = SCENE.with_changes({"wheel.tooth": teeth})
+    assert scene.wheel.tooth[0].modifications.tip_relief_um == 4.0
+    assert parse_scene(scene.to_toml(), folder=None) == scene
+    text = SCENE.to_toml() + "\n[[wheel.tooth]]\nnumber = 7\nmodifications = {lead_crowning_um = 3.0}\n"
+    assert parse_scene(text).wheel.tooth[0].modifications.lead_crowning_um == 3.0
+
+
+def test_kinds_of_teeth_are_as_many_as_flanks_differ():
+    teeth = [
+        {"number": number, "modifications": {"lead_crowning_um": um}} for number, um in ((1, 3.0), (4, 5.0), (6, 3.0))
+    ]
+    kinds, sections = SCENE.with_changes({"wheel.tooth": teeth}).wheel.kinds_of_teeth()
+    assert kinds[[0, 1, 4, 6]].tolist() == [0, 1, 2, 1]
+    assert len(sections) == 3
+    assert SCENE.tooth_flanks() is None
+
+
+def test_measured_flank_of_one_tooth_is_read_from_the_folder_of_the_scene_alone(tmp_path):
+    tooth = '\n[[wheel.tooth]]\nnumber = 2\n[wheel.tooth.flank]\nform = "measured"\nfile = "{}"\n'
+    (tmp_path / "scenes").mkdir()
+    with pytest.raises(InputError, match=r"wheel\.tooth\.flank\.file: .* a file in the folder of the scene"):
+        parse_scene(SCENE.to_toml() + tooth.format("../flank.csv"), folder=tmp_path / "scenes")
+    with pytest.raises(InputError, match=r"wheel\.tooth: table 1\.flank\.file: .*scenes.flank.csv: cannot be read"):
+        parse_scene(SCENE.to_toml() + tooth.format("flank.csv"), folder=tmp_path / "scenes")

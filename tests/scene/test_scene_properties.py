@@ -13,7 +13,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.scene import Scene, parse_scene, read_scene, scene_from_table
 from loaded_tca.scene.keys import Choice, Either, Grid, Key, Line, List, Number, Whole, ZeroOr
 from loaded_tca.scene.model import FAMILIES
-from loaded_tca.scene.section import Subsection, as_table, entries
+from loaded_tca.scene.section import Subsection, Tables, as_table, entries
 
 ROOT = Path(__file__).parents[2]
 
@@ -172,6 +172,8 @@ def sound_values(kind):
         return st.sampled_from(kind.options)
     if isinstance(kind, Either):
         return st.one_of(*map(sound_values, kind.kinds))
+    if isinstance(kind, Tables):
+        return st.lists(sound_tables(kind.section), max_size=2)
     if isinstance(kind, Line):
         return st.text(st.characters(exclude_categories=["Cc", "Cs", "Zl", "Zp"]), max_size=kind.longest)
     if isinstance(kind, Grid):

@@ -1,0 +1,338 @@
+r"""Gears on shafts and bearings that give way: the geometry moved by what the mean load moves, the rest coupled.
+
+Under each torque the loads W of both gears, the means over a pitch, move them by q(W) = C W + q0. The pair is moved
+by that motion as rigid bodies, its unloaded contact is traced anew, and the mesh cycle is solved with the compliance C
+of the supports and a given displacement of every slice,
+
+.. math:: d_i = a_i \cdot q_0 - r_i \cdot q(W),
+
+with a_i and r_i the unit loads of the slice on the stations and on the rigid body: what the geometry has moved already
+does not move again. Newton's step: the loads that follow are those of the next motion, until it stays; a few positions
+of the pitch are enough for it. The last one holds for the ordinary cycle, whose loads alternate about the mean.
+
+References
+----------
+Deuflhard 2011, Newton Methods for Nonlinear Problems, chapter 2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.compliance.model import SumOfParts
+from loaded_tca.errors import ConvergenceError, GeometryError, named
+from loaded_tca.loaded.cycle import (
+    Carried,
+    Contacts,
+    Progress,
+    carried_by_all,
+    carried_by_one,
+    farthest_apart,
+    in_gear_angles,
+)
+from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
+from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.separation import Separation
+from loaded_tca.supports import SupportCompliance, moved_pair
+from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
+
+POSITIONS = 4
+"""Positions of a pitch whose mean load moves the geometry: motions follow the load's place to 1e-3."""
+SETTLED = 0.02
+"""Change of the motions from one step to the next, over the motions, from which the geometry stays where it is: what
+is left of them is coupled, and what that leaves out is of their product with the motions themselves."""
+MOST_STEPS = 12
+"""Steps before giving up; two to four are the rule."""
+
+Loads = tuple[Array, Array]
+"""Of the stations of pinion and wheel, (6 m,) each [N, N mm], in the axes of each gear's own frame."""
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedOnSupports:
+    """What the tooth pairs carry under one torque, on supports that give way.
+
+    Attributes
+    ----------
+    pair : GearPair
+        Moved by the mean load.
+    bending : SumOfParts
+        Of that pair, supports included.
+    carried : Carried
+        Under the one torque, from the moved pair on.
+    loads : tuple of (n, 6 m) arrays
+        Of pinion and wheel at the positions; NaN where nothing is in contact.
+    mesh_rate : (n,) array [N mm/rad]
+        Tangent of the torque over the rotation with supports held.
+    """
+
+    pair: GearPair
+    bending: SumOfParts
+    carried: Carried
+    loads: tuple[Array, Array]
+    mesh_rate: Array
+
+
+class SupportedCycle:
+    """Mesh cycles of a pair on supports, torque by torque.
+
+    Parameters
+    ----------
+    pair : GearPair
+        At rest.
+    bending : SumOfParts
+        With its supports.
+    angles : (n,) array [rad]
+        Of the pinion.
+    grid : GridChoice
+    load_sharing : bool
+        Whether all tooth pairs in contact share the load.
+    """
+
+    def __init__(
+        self, pair: GearPair, bending: SumOfParts, angles: Array, grid: GridChoice, *, load_sharing: bool
+    ) -> None:
+        assert bending.supports is not None
+        self.pair, self.bending, self.supports = pair, bending, bending.supports
+        self.angles, self.grid, self.load_sharing = angles, grid, load_sharing
+
+    @property
+    def at_rest(self) -> GearPair:
+        """The pair as other loads alone move it."""
+        return moved_by(self.supports, _no_loads(self.supports))
+
+    def under(self, torque: float, progress: Progress | None = None) -> CarriedOnSupports:
+        """Mesh cycle under a pinion torque [N mm].
+
+        Raises
+        ------
+        GeometryError
+            If the flanks are not in contact any more where the supports let the gears move.
+        ConvergenceError
+            If the motions do not settle, or a contact is not solved.
+        """
+        loads = self._settled(torque) if torque > 0.0 else _no_loads(self.supports)
+        pair, carried = self._carried(torque, loads, self.angles, progress)
+        bending = self.bending.mounted(pair)
+        assert bending.supports is not None
+        return CarriedOnSupports(
+            pair, bending, carried, loads_of(bending.supports, carried), _rate_on_rigid_supports(carried, bending)
+        )
+
+    def _settled(self, torque: float) -> Loads:
+        """Mean loads whose motions of the geometry are those that follow from it."""
+        count = min(POSITIONS, len(self.angles))
+        spread = (np.arange(count) - 0.5 * (count - 1)) / count * self.pair.pitch if count > 1 else self.angles
+        loads = _first_loads(self.supports, self.at_rest, torque)
+        for _ in range(MOST_STEPS):
+            pair, carried = self._carried(torque, loads, spread)
+            supports = self.supports.mounted(pair)
+            pinion, wheel = (np.nanmean(load, axis=0) for load in loads_of(supports, carried))
+            before, loads = loads, (pinion, wheel)
+            if self._distance(loads, before) <= SETTLED * self._distance(loads, _no_loads(self.supports)):
+                return loads
+        raise ConvergenceError(
+            f"supports: motions under {1e-3 * torque:g} N m not settled in {MOST_STEPS} steps: the supports are too "
+            "soft for these gears",
+            last=loads,
+        )
+
+    def _distance(self, one: Loads, other: Loads) -> float:
+        """Largest way of the two gears between two loads, at a lever of half the face width [mm]."""
+        lever = np.repeat([1.0, 0.5 * self.pair.face_width], 3)
+        ways = [
+            support.at_middle(support.compliance @ (a - b)) * lever
+            for support, a, b in zip(self.supports.supports, one, other, strict=True)
+        ]
+        return float(np.abs(ways).max())
+
+    def _carried(
+        self, torque: float, loads: Loads, angles: Array, progress: Progress | None = None
+    ) -> tuple[GearPair, Carried]:
+        """The pair moved by loads, and what its tooth pairs carry."""
+        pair, torques = moved_by(self.supports, loads), np.array([torque])
+        bending = self.bending.mounted(pair)
+        assert bending.supports is not None
+        given = partial(_given, bending.supports, loads)
+        try:
+            with named("supports"):
+                if self.load_sharing:
+                    mesh = trace_teeth(pair, angles)
+                    return pair, carried_by_all(pair, mesh, torques, self.grid, bending, progress, given)
+                path = trace_contact(pair, angles)
+                return pair, carried_by_one(pair, path, torques, self.grid, bending, progress, given)
+        except GeometryError as error:
+            raise _moved_too_far(error, torque) from None
+
+
+def _no_loads(supports: SupportCompliance) -> Loads:
+    pinion, wheel = (np.zeros(len(support.compliance)) for support in supports.supports)
+    return pinion, wheel
+
+
+def moved_by(supports: SupportCompliance, loads: Loads) -> GearPair:
+    """The pair of supports, at rest, moved as rigid bodies by what loads of the stations move."""
+    motions = [support.at_middle(support.moved(load)) for support, load in zip(supports.supports, loads, strict=True)]
+    return moved_pair(supports.pair, supports.supports, motions) if any(one.any() for one in motions) else supports.pair
+
+
+def _moved_too_far(error: GeometryError, torque: float) -> GeometryError:
+    return GeometryError(f"{error}; under {1e-3 * torque:g} N m the supports let the gears move too far")
+
+
+def pitches_apart(supports: SupportCompliance, torque: float, angles: Array) -> int:
+    """How many pitches tooth pairs within reach are apart, at rest and moved by a pinion torque [N mm].
+
+    The force of the torque acts where the flanks touch first without load.
+
+    Raises
+    ------
+    GeometryError
+        If the moved flanks are not in contact.
+    """
+    at_rest = moved_by(supports, _no_loads(supports))
+    apart = farthest_apart(trace_teeth(at_rest, angles))
+    try:
+        moved = moved_by(supports, _first_loads(supports, at_rest, torque))
+        return max(apart, farthest_apart(trace_teeth(moved, angles)))
+    except GeometryError as error:
+        raise _moved_too_far(error, torque) from None
+
+
+def _first_loads(supports: SupportCompliance, at_rest: GearPair, torque: float) -> Loads:
+    contact = trace_contact(at_rest, [0.0], warn=False)[0]
+    if not contact.in_contact:
+        return _no_loads(supports)
+    unit = supports.mounted(at_rest).loads(_OnePoint(contact))
+    pinion, wheel = (torque / contact.pinion_lever * load[0] for load in unit)
+    return pinion, wheel
+
+
+@dataclass(frozen=True, eq=False)
+class _OnePoint:
+    """A contact of one slice at a contact point."""
+
+    contact: ContactPoint
+
+    @property
+    def y(self) -> Array:
+        return np.zeros(1)
+
+    @property
+    def force_line(self) -> Array:
+        return np.zeros(1)
+
+    @property
+    def origin(self) -> Array:
+        return np.asarray(self.contact.point)
+
+    @property
+    def axes(self) -> Array:
+        return np.stack([np.zeros(3), np.zeros(3), self.contact.normal])
+
+
+def _given(supports: SupportCompliance, loads: Loads, separation: Separation) -> Array:
+    """Displacement of the slices of a grid (ny,) [mm] beside what the forces do, in the pair moved by loads."""
+    both = list(zip(supports.supports, loads, strict=True))
+    other_loads = [np.zeros(len(load)) if support.motion is None else support.motion for support, load in both]
+    bodies = [support.at_middle(support.moved(load)) for support, load in both]
+    return np.asarray(supports.opened(separation, other_loads) - supports.opened_rigidly(separation, bodies))
+
+
+def loads_of(supports: SupportCompliance, carried: Carried) -> tuple[Array, Array]:
+    """Loads (n, 6 m) of pinion and wheel at the positions under the one torque; NaN where nothing is in contact."""
+    at_positions: list[tuple[Array, Array]] = []
+    for contacts in carried.contacts[0]:
+        there = [one for one in contacts if one is not None]
+        pinion, wheel = (np.full(len(support.compliance), 0.0 if there else math.nan) for support in supports.supports)
+        for one in there:
+            on_pinion, on_wheel = supports.loads(one.separation)
+            pinion, wheel = pinion + one.slice_force @ on_pinion, wheel + one.slice_force @ on_wheel
+        at_positions.append((pinion, wheel))
+    pinions, wheels = zip(*at_positions, strict=True)
+    return np.stack(pinions), np.stack(wheels)
+
+
+def _rate_on_rigid_supports(carried: Carried, bending: SumOfParts) -> Array:
+    """Tangent (n,) of the torque over the rotation, the supports held [N mm/rad]."""
+    teeth = bending.on_rigid_supports
+    numbers = carried.pairs.tolist()
+    states = [
+        [_on_rigid_supports(number, one, teeth) for number, one in zip(numbers, at, strict=True) if one is not None]
+        for at in carried.contacts[0]
+    ]
+    stiffness = loaded_states(states, teeth).stiffness
+    return np.where(np.isnan(carried.rotation[0]), math.nan, stiffness)
+
+
+def _on_rigid_supports(number: int, loaded: LoadedContact, teeth: SumOfParts | None) -> LoadedGrid:
+    """What the tangent needs of a loaded contact whose supports do not give way."""
+    one = LoadedGrid.of(number, loaded)
+    bent = None if teeth is None else teeth.within(number, loaded.separation)
+    slices = loaded.ends if bent is None else bent if loaded.ends is None else bent + loaded.ends
+    return replace(one, problem=replace(one.problem, slice_compliance=slices), bending=bent)
+
+
+def all_torques(pair: GearPair, cycles: Sequence[CarriedOnSupports], *, load_sharing: bool) -> Carried:
+    """What the tooth pairs carry under all torques, each in its own pair.
+
+    Parameters
+    ----------
+    pair : GearPair
+        As it stands without load.
+    cycles : sequence of CarriedOnSupports
+        By torque.
+    load_sharing : bool
+
+    Returns
+    -------
+    Carried
+        Its paths are those of the unloaded pair, and of the moved one where a tooth pair comes into reach by load only;
+        its rotation is that from the unloaded pair on, motions of the gears included.
+    """
+    angles = cycles[0].carried.path.pinion_angle
+    paths = {int(k): path for one in cycles for k, path in zip(one.carried.pairs, one.carried.paths, strict=True)}
+    numbers = np.array(sorted(paths))
+    if load_sharing:
+        path, at_rest = in_gear_angles(trace_teeth(pair, angles))
+        paths |= at_rest
+    else:
+        path = paths[0] = trace_contact(pair, angles)
+    shape = len(cycles), len(path), len(numbers)
+    contacts: Contacts = [[[None] * shape[2] for _ in range(shape[1])] for _ in cycles]
+    share, deflection = np.zeros((2, *shape))
+    rotation = np.empty(shape[:2])
+    for t, one in enumerate(cycles):
+        carried = one.carried
+        columns = np.searchsorted(numbers, carried.pairs)
+        share[t][:, columns], deflection[t][:, columns] = carried.share[0], carried.tooth_deflection[0]
+        moved = path.transmission_error - carried.path.transmission_error
+        rotation[t] = carried.rotation[0] + pair.driving * moved
+        for n, at in enumerate(carried.contacts[0]):
+            for column, loaded in zip(columns.tolist(), at, strict=True):
+                contacts[t][n][column] = loaded
+    states = [one.carried.states for one in cycles]
+    return Carried(
+        path=path,
+        torque=np.concatenate([one.carried.torque for one in cycles]),
+        pairs=numbers,
+        paths=tuple(paths[number] for number in numbers.tolist()),
+        contacts=contacts,
+        rotation=rotation,
+        states=LoadedStates(
+            tuple(grids for one in states for grids in one.grids),
+            None,
+            tuple(by_rotation for one in states for by_rotation in one.by_rotation),
+            np.concatenate([one.stiffness for one in states]),
+        ),
+        share=share,
+        tooth_deflection=deflection,
+    )

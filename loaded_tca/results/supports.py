@@ -1,0 +1,93 @@
+"""What a result has of gears on supports that give way: their motions, and the stiffness of the whole drive."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.supported import CarriedOnSupports
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.supports import SupportCompliance
+
+MICROMETRES = 1e3
+"""Per millimetre."""
+
+
+def support_arrays(
+    pair: GearPair, cycles: Sequence[CarriedOnSupports], *, pressure_angle: float, stiffness_per_rate: float
+) -> dict[str, Array]:
+    """Arrays of ``SUPPORT_QUANTITIES``.
+
+    Parameters
+    ----------
+    pair : GearPair
+        At rest.
+    cycles : sequence of CarriedOnSupports
+        By torque.
+    pressure_angle : float [rad]
+        Working transverse one; NaN: axes that meet have no misalignment in a plane of action.
+    stiffness_per_rate : float [1/(mm^2 um)]
+        Of the drive stiffness over the tangent of the torque over the rotation.
+    """
+    motions = [_motions(one) for one in cycles]
+    return {
+        "pinion_motion": np.stack([one[0] for one in motions]),
+        "wheel_motion": np.stack([one[1] for one in motions]),
+        "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),
+        "drive_stiffness": np.stack([one.carried.torque_rate[0] for one in cycles]) * stiffness_per_rate,
+    }
+
+
+def secant_on_rigid_supports(carried: Carried, cycles: Sequence[CarriedOnSupports]) -> Array:
+    """Torque over the rotation (torque, position) [N mm/rad] without what the supports give way.
+
+    Parameters
+    ----------
+    carried : Carried
+        Under all torques, its rotation with the supports.
+    cycles : sequence of CarriedOnSupports
+        By torque.
+    """
+    secant = np.full(carried.rotation.shape, math.nan)
+    for t, one in enumerate(cycles):
+        for n, contacts in enumerate(one.carried.contacts[0]):
+            moment = sum(c.solution.load * c.contact.wheel_lever for c in contacts if c is not None)
+            if moment > 0.0:
+                work = sum(
+                    float(load[n] @ support.compliance @ load[n])
+                    for load, support in zip(one.loads, _parts(one).supports, strict=True)
+                )
+                rotation = carried.rotation[t, n] - work / moment
+                secant[t, n] = carried.torque[t] / rotation if rotation > 0.0 else math.nan
+    return secant
+
+
+def _parts(one: CarriedOnSupports) -> SupportCompliance:
+    supports = one.bending.supports
+    assert supports is not None
+    return supports
+
+
+def _motions(one: CarriedOnSupports) -> Array:
+    """Motions (2, n, 6) of the middles of both faces [mm, rad], in the axes of the fixed frame."""
+    motions = []
+    for support, loads, axes in zip(_parts(one).supports, one.loads, _parts(one).axes, strict=True):
+        own = np.stack([support.at_middle(support.moved(load)) for load in loads])
+        motions.append(np.concatenate([own[:, :3] @ axes, own[:, 3:] @ axes], axis=-1))
+    return np.stack(motions)
+
+
+def _misalignment(pair: GearPair, pressure_angle: float, motions: Array) -> Array:
+    """F_beta (n,) [mm] over the common face by motions (2, n, 6), as mounting errors count it.
+
+    The tilts of the wheel against the pinion about x and y turn its axis in the plane of action, whose normal is that
+    of the flanks in contact: b (r_x cos(alpha_wt) - s r_y sin(alpha_wt)).
+    """
+    about_x, about_y = (motions[1] - motions[0])[:, 3:5].T
+    side = pair.sense * pair.driving
+    in_plane_of_action = about_x * math.cos(pressure_angle) - side * about_y * math.sin(pressure_angle)
+    return np.asarray(pair.face_width * in_plane_of_action)

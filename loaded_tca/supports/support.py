@@ -1,0 +1,246 @@
+r"""Supports: the motions of both gears under the forces on their teeth, and what these do to the gaps.
+
+A gear has stations on its axis, one if it moves as a whole. A unit normal force at slice i loads the stations by a_i
+(6 numbers each): the force -n on the pinion, +n on the wheel, and the moment (p_i - station) x force, the share of each
+station linear between them. Under the loads W = sum of a_j f_j the stations of a gear move by
+
+.. math:: q = C W + q_0,
+
+q_0 by other loads on its shaft, and the gap of slice i grows by a_i . q. So every slice gives way under a unit force
+on any other one, of whichever tooth pair, by
+
+.. math:: a_i^{T} C a_j,
+
+of pinion and wheel together: a symmetric compliance of low rank. All loads and motions of a gear are in the axes of its
+own frame, which do not turn with it; the grid of a contact lies in its true place in space, whatever the number of its
+tooth pair.
+
+References
+----------
+Przemieniecki 1968, Theory of Matrix Structural Analysis, chapter 6 (flexibilities of supported structures).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import require
+from loaded_tca.pairs.gear_pair import GearPair
+
+AXIS = np.array([0.0, 0.0, 1.0])
+ROTATION_ABOUT_AXIS = 5
+"""Place of the rotation about the axis among the motions of a station."""
+
+
+class Slices(Protocol):
+    """Where the slices of a contact lie, as a separation and a pressure map have it."""
+
+    @property
+    def y(self) -> Array:
+        """Middles of the slices along the contact (ny,) [mm], from the contact point."""
+
+    @property
+    def origin(self) -> Array:
+        """The contact point (3,) in the fixed frame [mm]."""
+
+    @property
+    def axes(self) -> Array:
+        """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
+
+    @property
+    def force_line(self) -> Array:
+        """Where across the contact the force of every slice acts (ny,) [mm], from the contact point."""
+
+
+@dataclass(frozen=True, eq=False)
+class Support:
+    """What holds a gear, in the axes of its own frame.
+
+    Parameters
+    ----------
+    middle : float [mm]
+        Axial coordinate of the middle of the face, whose motion is that of the gear.
+    compliance : (6 m, 6 m) array [mm, rad, N, N mm]
+        Motions of the stations under forces and moments on them: x, y, z, about x, y, z of each; symmetric.
+    stations : (m,) array, optional [mm]
+        Axial coordinates, ascending; default: the middle alone.
+    motion : (6 m,) array, optional [mm, rad]
+        Motions of the stations without any force on the teeth; default: none.
+
+    Raises
+    ------
+    InputError
+        If the shapes do not fit each other.
+
+    Examples
+    --------
+    >>> support = Support(0.0, np.diag([1e-5, 1e-5, 0.0, 0.0, 0.0, 0.0]))
+    >>> support.at_middle(support.moved(np.array([100.0, 0.0, 0.0, 0.0, 0.0, 0.0])))[:2]
+    array([0.001, 0.   ])
+    """
+
+    middle: float
+    compliance: Array
+    stations: Array | None = None
+    motion: Array | None = None
+
+    def __post_init__(self) -> None:
+        size = 6 * len(self.places)
+        shape = () if self.motion is None else self.motion.shape
+        require(
+            (
+                self.compliance.shape == (size, size),
+                f"compliance: shape {self.compliance.shape}, expected {size} twice",
+            ),
+            (shape in ((), (size,)), f"motion: shape {shape}, expected ({size},)"),
+        )
+
+    @property
+    def places(self) -> Array:
+        """Axial coordinates of the stations (m,) [mm]."""
+        return np.array([self.middle]) if self.stations is None else self.stations
+
+    def moved(self, loads: Array) -> Array:
+        """Motions of the stations (6 m,) [mm, rad] under loads (6 m,) [N, N mm] beside the other ones."""
+        moved = self.compliance @ loads
+        return np.asarray(moved if self.motion is None else moved + self.motion)
+
+    def at_middle(self, motions: Array) -> Array:
+        """Motion (6,) of the middle of the face by those of the stations (6 m,)."""
+        return np.asarray(self.shares(np.array([self.middle]))[0] @ motions.reshape(-1, 6))
+
+    def shares(self, axial: Array) -> Array:
+        """Shares (n, m) of the stations in forces at axial coordinates (n,) [mm]; all of the last one beyond it."""
+        places = self.places
+        return np.stack([np.interp(axial, places, row) for row in np.eye(len(places))], axis=-1)
+
+    def loads(self, points: Array, forces: Array) -> Array:
+        """Loads (n, 6 m) on the stations by forces (n, 3) [N] at points (n, 3) [mm] of the gear's own frame."""
+        arms = points[:, None] - self.places[:, None] * AXIS
+        moments = np.cross(arms, forces[:, None])
+        both = np.concatenate([np.broadcast_to(forces[:, None], moments.shape), moments], axis=-1)
+        return np.asarray((self.shares(points[:, 2])[..., None] * both).reshape(len(points), -1))
+
+
+def rotation(vector: Array) -> Array:
+    """Matrix (3, 3) of the rotation by a vector [rad] (Rodrigues).
+
+    Examples
+    --------
+    >>> rotation(np.array([0.0, 0.0, np.pi / 2])).round(12) @ [1.0, 0.0, 0.0]
+    array([0., 1., 0.])
+    """
+    angle = float(np.linalg.norm(vector))
+    x, y, z = vector
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    first, second = np.sinc(angle / np.pi), 0.5 * np.sinc(0.5 * angle / np.pi) ** 2
+    return np.asarray(np.eye(3) + first * cross + second * cross @ cross)
+
+
+def moved_pair(pair: GearPair, supports: tuple[Support, Support], motions: Sequence[Array]) -> GearPair:
+    """The pair whose gears have moved as rigid bodies; the fixed frame stays with the pinion.
+
+    Parameters
+    ----------
+    pair : GearPair
+    supports : (Support, Support)
+        Of pinion and wheel.
+    motions : two arrays (6,) [mm, rad]
+        Of the middles of the faces of pinion and wheel, in the axes of each gear's own frame.
+
+    Examples
+    --------
+    A wheel that moves along its own x by 0.1 mm comes nearer:
+
+    >>> from loaded_tca import parse_scene
+    >>> from loaded_tca.cli import DEMO_SCENE
+    >>> pair, rigid = parse_scene(DEMO_SCENE.read_text()).pair(), Support(0.0, np.zeros((6, 6)))
+    >>> nearer = moved_pair(pair, (rigid, rigid), [np.zeros(6), np.array([0.1, 0.0, 0.0, 0.0, 0.0, 0.0])])
+    >>> (nearer.wheel_origin - pair.wheel_origin).round(9) + 0.0
+    array([-0.1,  0. ,  0. ])
+    """
+    (pinion, wheel), axes = motions, pair.wheel_axes
+    on_pinion, on_wheel = (support.middle * AXIS for support in supports)
+    turn, own_turn = rotation(pinion[3:]), rotation(wheel[3:])
+    origin = pair.wheel_origin + (on_wheel + wheel[:3] - own_turn @ on_wheel) @ axes
+    moved_axes = own_turn.T @ axes  # rows: the turned axes, in the fixed frame
+    return replace(
+        pair,
+        wheel_origin=(origin - on_pinion - pinion[:3]) @ turn + on_pinion,
+        wheel_axes=moved_axes @ turn,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SupportCompliance:
+    """The part of a bending model that is the supports of both gears.
+
+    Attributes
+    ----------
+    pair : GearPair
+        As its gears stand.
+    supports : (Support, Support)
+        Of pinion and wheel.
+    axes : (2, 3, 3) array
+        Axes of the own frames of both gears at rest, in rows, in the fixed frame.
+    """
+
+    pair: GearPair
+    supports: tuple[Support, Support]
+    axes: Array
+
+    @property
+    def neighbours(self) -> int:
+        """How many pitches two loaded tooth pairs may be apart: supports know no teeth."""
+        return max(self.pair.teeth)
+
+    def mounted(self, pair: GearPair) -> SupportCompliance:
+        """The same supports in a pair whose wheel stands elsewhere."""
+        return replace(self, pair=pair)
+
+    def loads(self, grid: Slices) -> tuple[Array, Array]:
+        """Loads of pinion and wheel (ny, 6 m) each by a unit normal force on every slice of a contact [1, mm]."""
+        points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
+        normals = np.broadcast_to(grid.axes[2], points.shape)
+        origins = np.zeros(3), self.pair.wheel_origin
+        pinion, wheel = (
+            support.loads((points - origin) @ own.T, sign * normals @ own.T)
+            for support, origin, own, sign in zip(self.supports, origins, self.axes, (-1.0, 1.0), strict=True)
+        )
+        return pinion, wheel
+
+    def within(self, number: int, grid: Slices, under: Slices | None = None) -> Array:  # noqa: ARG002
+        """Deflection of every slice under a unit force on each, or on each of ``under`` [mm/N]."""
+        return self._between(grid, grid if under is None else under)
+
+    def between(self, at: tuple[int, Slices], under: tuple[int, Slices]) -> Array:
+        """Deflection of every slice of one contact under a unit force on each slice of another [mm/N]."""
+        return self._between(at[1], under[1])
+
+    def deflection(self, at: tuple[int, Slices], under: tuple[int, Slices], forces: Array) -> Array:
+        """Deflection (m,) [mm] of the slices of one contact under forces (n,) [N] on those of another."""
+        there, here = self.loads(at[1]), self.loads(under[1])
+        pinion, wheel = (
+            a @ (support.compliance @ (forces @ b)) for a, b, support in zip(there, here, self.supports, strict=True)
+        )
+        return np.asarray(pinion + wheel)
+
+    def opened(self, grid: Slices, motions: Sequence[Array]) -> Array:
+        """How far the gap of every slice (ny,) [mm] grows by motions (6 m,) of the stations of both gears."""
+        pinion, wheel = (loads @ motion for loads, motion in zip(self.loads(grid), motions, strict=True))
+        return np.asarray(pinion + wheel)
+
+    def opened_rigidly(self, grid: Slices, motions: Sequence[Array]) -> Array:
+        """The same by motions (6,) of both gears as rigid bodies, with the middles of their faces."""
+        pinion, wheel = (Support(support.middle, np.zeros((6, 6))) for support in self.supports)
+        return replace(self, supports=(pinion, wheel)).opened(grid, motions)
+
+    def _between(self, at: Slices, under: Slices) -> Array:
+        there, here = self.loads(at), self.loads(under)
+        pinion, wheel = (a @ support.compliance @ b.T for a, b, support in zip(there, here, self.supports, strict=True))
+        return np.asarray(pinion + wheel)

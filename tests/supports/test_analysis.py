@@ -1,0 +1,175 @@
+"""Mesh cycles of gears on supports that give way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import MeshCycle, analyse, load_result, read_scene
+from loaded_tca.arrays import Array
+from loaded_tca.errors import GeometryError, InputError, NotAskedError
+from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.scene import Scene
+from tests.supports.oracle import settled
+
+pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # contacts at edges: not the matter here
+
+AGREES, MOTIONS_AGREE = 1e-4, 1e-3
+"""Of the transmission error and of the motions with rigid analyses repeated: what the coupling is asked for. What is
+left is the product of the motions and their change over a step."""
+CELLS = 24
+
+
+def matrix(translation: float, tilt: float, twist: float, seed: int) -> Array:
+    """A full compliance with such diagonal entries."""
+    half = 0.3 * np.random.default_rng(seed).normal(size=(6, 6)) + np.eye(6)
+    product = half @ half.T
+    roots = np.sqrt(np.array([translation] * 3 + [tilt] * 2 + [twist]) / product.diagonal())
+    return np.asarray(product * np.outer(roots, roots))
+
+
+def scene_of(name: str, **changes: Any) -> Scene:
+    fixed = {"analysis.positions": 1, "analysis.cells": (CELLS, CELLS), "analysis.compliance": "contact"}
+    return read_scene(f"examples/scenes/{name}.toml").with_changes(fixed | changes)
+
+
+def on(scene: Scene, pinion: Array | None, wheel: Array | None) -> Scene:
+    changes: Mapping[str, Any] = {
+        f"{gear}.support.compliance": one.tolist()
+        for gear, one in (("pinion", pinion), ("wheel", wheel))
+        if one is not None
+    }
+    return scene.with_changes(changes)
+
+
+@pytest.mark.parametrize(
+    ("name", "size"),
+    [
+        ("mesh_cycle_spur", (4e-6, 4e-9, 4e-9)),
+        ("helical", (4e-6, 3e-9, 1e-9)),
+        ("spiral_bevel", (3e-6, 1e-9, 1e-9)),
+        ("straight_bevel", (3e-6, 1e-9, 1e-9)),
+        ("face_milled_19x62_matched", (1e-6, 1e-10, 1e-10)),
+    ],
+)
+def test_coupled_analysis_equals_rigid_ones_with_moved_gears(name: str, size: tuple[float, float, float]) -> None:
+    scene = scene_of(name)
+    pinion, wheel = matrix(*size, seed=1), matrix(*size, seed=2)
+    result = analyse(on(scene, pinion, wheel))
+    grid = GridChoice((CELLS, CELLS), tolerance=scene.analysis.tolerance, free_edges=scene.analysis.free_edges)
+    expected = settled(scene, (pinion, wheel), grid, relaxation=0.7)
+    assert_allclose(result.transmission_error[0, 0], expected.transmission_error, rtol=AGREES)
+    motions = np.stack([result.pinion_motion[0, 0], result.wheel_motion[0, 0]])
+    largest = np.abs(expected.motions).reshape(2, 2, 3).max(axis=-1).repeat(3, axis=-1)
+    assert (np.abs(motions - expected.motions) < MOTIONS_AGREE * largest).all()
+
+
+@pytest.fixture(scope="module")
+def soft() -> MeshCycle:
+    scene = scene_of("mesh_cycle_helical", **{"analysis.positions": 3, "analysis.torques_Nm": [20.0, 60.0]})
+    return analyse(on(scene, matrix(1e-6, 1e-9, 1e-9, 1), matrix(1e-6, 1e-9, 2e-9, 2)))
+
+
+@pytest.fixture(scope="module")
+def rigid(soft: MeshCycle) -> MeshCycle:
+    return analyse(soft.scene.with_changes({"pinion.support": None, "wheel.support": None}))
+
+
+def test_rotation_about_the_axis_alone_is_wind_up() -> None:
+    scene = scene_of("mesh_cycle_spur")
+    torsion = np.diag([0.0, 0.0, 0.0, 0.0, 0.0, 1e-9])
+    result, held = analyse(on(scene, torsion, torsion)), analyse(scene)
+    torque, ratio = np.array(scene.torques)[:, None], scene.pair().ratio
+    wind_up = 1e-9 * torque * (ratio + 1.0 / ratio)
+    assert_allclose(result.pinion_motion[..., 5], -1e-9 * torque, rtol=1e-5)
+    assert_allclose(held.transmission_error - result.transmission_error, wind_up, rtol=1e-4)
+    assert_allclose(result.peak_pressure, held.peak_pressure, rtol=5e-4)  # the wound-up pinion is a little on
+    assert_allclose(result.secant_stiffness, held.secant_stiffness, rtol=1e-3)
+
+
+def test_forces_on_both_gears_are_equal_and_opposite() -> None:
+    scene = scene_of("helical")
+    same = np.diag([1e-6, 1e-6, 1e-6, 0.0, 0.0, 0.0])
+    result = analyse(on(scene, same, same))
+    assert_allclose(result.pinion_motion[..., :3], -result.wheel_motion[..., :3], rtol=1e-9, atol=1e-15)
+
+
+def test_supports_next_to_rigid_change_nothing() -> None:
+    scene = scene_of("helical")
+    result, held = analyse(on(scene, 1e-14 * np.eye(6), None)), analyse(scene)
+    assert_allclose(result.transmission_error, held.transmission_error, rtol=5e-5)  # rotations agree to 1e-5
+    assert_allclose(result.peak_pressure, held.peak_pressure, rtol=1e-5)
+
+
+def test_mesh_stiffness_is_that_on_rigid_supports(soft: MeshCycle, rigid: MeshCycle) -> None:
+    assert_allclose(soft.mesh_stiffness, rigid.mesh_stiffness, rtol=0.02)  # the contact moves a little along the face
+    assert (soft.drive_stiffness < 0.5 * soft.mesh_stiffness).all()
+    assert_allclose(soft.secant_stiffness, rigid.secant_stiffness, rtol=0.05)
+
+
+def test_drive_stiffness_is_the_slope_of_the_torque(soft: MeshCycle) -> None:
+    near = analyse(soft.scene.with_changes({"analysis.torques_Nm": [59.7, 60.3]}))
+    pair = soft.gear_pair
+    slope = 600.0 / -np.diff(near.transmission_error, axis=0)[0]
+    lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
+    assert_allclose(soft.drive_stiffness[1], slope / lengths, rtol=5e-3)  # geometry moves with the torque, too
+
+
+def test_motions_grow_with_the_torque(soft: MeshCycle) -> None:
+    assert soft.pinion_motion.shape == (2, 3, 6)
+    assert_allclose(soft.pinion_motion[1], 3.0 * soft.pinion_motion[0], atol=0.1 * np.abs(soft.pinion_motion[1]).max())
+    assert np.isfinite(soft.misalignment).all()
+
+
+def test_results_on_supports_are_saved_and_read(soft: MeshCycle, tmp_path: Any) -> None:
+    soft.save(tmp_path / "result.nc")
+    back = load_result(tmp_path / "result.nc")
+    for name in ("pinion_motion", "wheel_motion", "misalignment", "drive_stiffness", "mesh_stiffness"):
+        assert_allclose(getattr(back, name), getattr(soft, name), rtol=0.0)
+    assert back.scene == soft.scene
+
+
+def test_derivatives_of_gears_on_supports_are_refused(soft: MeshCycle) -> None:
+    with pytest.raises(InputError, match="sensitivities: the gears stand on supports"):
+        soft.sensitivities(["pinion.modifications.lead_crowning_um"])
+
+
+def test_rigid_gears_have_no_motions(rigid: MeshCycle) -> None:
+    with pytest.raises(NotAskedError, match="pinion_motion: the scene has no supports"):
+        _ = rigid.pinion_motion
+
+
+def test_misalignment_counts_as_mounting_errors_do() -> None:
+    scene = scene_of("mesh_cycle_spur", **{"analysis.load_sharing": False})
+    offset = np.zeros((6, 6))
+    offset[1, 1], offset[3, 3], offset[1, 3], offset[3, 1] = 1e-6, 1e-9, 1e-8, 1e-8  # tilts about x by a force along y
+    result = analyse(on(scene, None, offset))
+    moved = scene.with_changes({"mounting.misalignment_um": float(result.misalignment[0, 0])})
+    assert abs(result.misalignment[0, 0]) > 0.1
+    in_both = [one.peak_axial[0, 0, 0] for one in (result, analyse(moved))]
+    assert_allclose(in_both[0], in_both[1], atol=0.5)  # the side of the face that carries more
+
+
+def test_one_pair_alone_on_supports_agrees_with_shared_load_where_one_carries() -> None:
+    scene = on(scene_of("mesh_cycle_spur"), matrix(1e-6, 1e-9, 1e-9, 1), None)
+    alone = analyse(scene.with_changes({"analysis.load_sharing": False}))
+    assert_allclose(alone.transmission_error, analyse(scene).transmission_error, rtol=1e-5)
+
+
+def test_supports_that_give_way_too_far_are_told() -> None:
+    scene = scene_of("mesh_cycle_spur", **{"analysis.torques_Nm": [20.0]})
+    scene = on(scene, np.diag([0.05, 0.05, 0.0, 0.0, 0.0, 0.0]), None)
+    with pytest.raises(GeometryError, match="under 20 N m the supports let the gears move too far"):
+        analyse(scene)
+
+
+def test_teeth_bend_beside_supports() -> None:
+    bends = scene_of("mesh_cycle_spur", **{"analysis.compliance": "contact+tooth"})
+    torsion = np.diag([0.0, 0.0, 0.0, 0.0, 0.0, 1e-9])
+    result, held = analyse(on(bends, torsion, None)), analyse(bends)
+    wind_up = 1e-9 * np.array(bends.torques)[:, None] * bends.pair().ratio
+    assert_allclose(held.transmission_error - result.transmission_error, wind_up, rtol=2e-4)
