@@ -1,8 +1,8 @@
 """Teeth of a ring against plane-strain finite elements of their own: deflection under narrow strips, root stress.
 
 The package draws the tooth of a ring in an inversion and computes on it with its elements, half-spaces and a local
-term. Here the same section is triangulated in its true form by Delaunay's rule, eleven teeth with their rim, fine at the
-loaded flank and the fillets, with quadratic elements; the outside is held. What is compared is the displacement of a
+term. Here the same section is triangulated in its true form by Delaunay's rule, eleven teeth with their rim, fine at
+the loaded flank and the fillets, with quadratic elements; the outside is held. What is compared is the displacement of a
 strip of elliptical pressure along the force, and the largest tension at the root. Asked for: 2 % and 4 %.
 """
 
