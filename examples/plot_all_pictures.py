@@ -9,8 +9,7 @@ from tempfile import TemporaryDirectory
 
 from scipy.stats import norm
 
-import loaded_tca.plots as plots
-from loaded_tca import analyse, read_scene
+from loaded_tca import analyse, plots, read_scene
 from loaded_tca.flank_maps import ease_off_map, vh_check
 from loaded_tca.loaded.shaft_lines import shaft_lines
 from loaded_tca.results import stress_below
@@ -23,7 +22,6 @@ LEAD, TIP = "pinion.modifications.lead_crowning_um", "wheel.modifications.tip_re
 RELIEF = {TIP: 10.0, "wheel.modifications.tip_relief_start_mm": 179.0, "analysis.torques_Nm": [60.0, 130.0]}
 HELICAL = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(COARSE | RELIEF)
 BEVEL = read_scene(SCENES / "mesh_cycle_bevel.toml").with_changes(FEW | {"analysis.torques_Nm": [0.8]})
-SHAFTS = read_scene(SCENES / "helical_on_shafts.toml")
 OFFSET, AXIAL, STEPS = "mounting.offset_mm", "mounting.pinion_axial_mm", (-0.01, 0.0, 0.01)
 SCATTER = {"mounting.misalignment_um": norm(0.0, 5.0), LEAD: norm(5.0, 1.0)}
 
@@ -37,12 +35,11 @@ def main() -> None:
     drawn |= {"comparison": plots.plot_comparison(both), "compared_maps": plots.plot_compared_maps(both)}
     check = vh_check(lambda v, h: BEVEL.with_changes({OFFSET: v, AXIAL: h}).pair(), STEPS, STEPS)
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
-    drawn["shafts"] = plots.plot_shafts(shaft_lines(SHAFTS), {"pinion": 25.0, "wheel": 25.0}, SHAFTS.title)
-    study = vh_study(BEVEL, STEPS, STEPS)
+    drawn["shafts"] = plots.plot_shafts(shaft_lines(read_scene(SCENES / "helical_on_shafts.toml")))
+    few, study = HELICAL.with_changes(FEW), vh_study(BEVEL, STEPS, STEPS)
     with TemporaryDirectory() as folder:
         loaded = run_study(study, out=Path(folder, "vh.nc"), keep_maps=range(len(study)))
         drawn["loaded_vh_check"] = plots.plot_loaded_vh_check(loaded, Path(folder, "vh_maps"))
-    few = HELICAL.with_changes(FEW)
     sampled, found = run_study(Study(few, {}, SCATTER, 8)), result.sensitivities(list(SCATTER))
     for kind in ("tornado", "sensitivity_curves", "transmission_error_band", "removal_weights"):
         drawn[kind] = getattr(plots, f"plot_{kind}")(found)

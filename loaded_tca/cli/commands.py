@@ -397,8 +397,7 @@ def shaft(options: argparse.Namespace) -> None:
     lines = shaft_lines(scene)
     print(bearings_text(lines), end="\n\n")
     if options.out is not None:
-        width = scene.pair().face_width
-        picture = plot_shafts(lines, {"pinion": width, "wheel": width}, scene.title)
+        picture = plot_shafts(lines, scene.title)
         contents = {"shaft.csv": shaft_csv(lines).encode(), "bearings.csv": bearings_csv(lines).encode()}
         print_files(replace_together(options.out, {**contents, "shaft.png": png_of(picture)}))
 

@@ -29,6 +29,8 @@ class ShaftLine:
     shaft : Shaft
     middle : float [mm]
         Axial coordinate of the middle of the face.
+    face_width : float [mm]
+        Common face width.
     places : (n,) array [mm]
         Axial coordinates, ascending.
     motions : (n, 6) array [mm, rad]
@@ -41,6 +43,7 @@ class ShaftLine:
     torque: float
     shaft: Shaft
     middle: float
+    face_width: float
     places: Array
     motions: Array
     bearing_forces: Array
@@ -67,7 +70,8 @@ def shaft_lines(scene: Scene) -> tuple[ShaftLine, ...]:
     """
     if not any(gear.shaft for gear in (scene.pinion, scene.wheel)):
         raise InputError("pinion.shaft: missing; a line of deflection needs [pinion.shaft] or [wheel.shaft]")
-    supports = support_compliance(scene, scene.pair())
+    pair = scene.pair()
+    supports = support_compliance(scene, pair)
     assert supports is not None
     at_rest = moved_by(supports, tuple(np.zeros(len(one.compliance)) for one in supports.supports))  # type: ignore[arg-type]
     lines = []
@@ -82,5 +86,5 @@ def shaft_lines(scene: Scene) -> tuple[ShaftLine, ...]:
         for torque in scene.torques:
             loads = np.append(loads_at_first_contact(supports, at_rest, torque)[n], 1.0)
             motions, forces = solved.at_nodes[..., columns] @ loads, solved.on_bearings[..., columns] @ loads
-            lines.append(ShaftLine(gear, torque, shaft, support.middle, solved.nodes, motions, forces))
+            lines.append(ShaftLine(gear, torque, shaft, support.middle, pair.face_width, solved.nodes, motions, forces))
     return tuple(lines)

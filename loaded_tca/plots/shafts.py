@@ -18,15 +18,13 @@ from loaded_tca.results.summary import shown_torque
 PLANES = "x", "y"
 
 
-def plot_shafts(lines: Sequence[ShaftLine], face_widths: dict[str, float], title: str) -> Figure:
+def plot_shafts(lines: Sequence[ShaftLine], title: str = "") -> Figure:
     """Outline of every shaft with its gear and bearings, and below it how it bends along x and y of the gear's frame.
 
     Parameters
     ----------
     lines : sequence of ShaftLine
         Of :func:`loaded_tca.loaded.shaft_lines.shaft_lines`.
-    face_widths : dict
-        Width of the faces by "pinion" and "wheel" [mm].
     title : str
         Stands over the picture.
 
@@ -39,7 +37,7 @@ def plot_shafts(lines: Sequence[ShaftLine], face_widths: dict[str, float], title
     panels = figure.subplots(3, len(gears), squeeze=False, sharex="col")
     for column, gear in enumerate(gears):
         own = [line for line in lines if line.gear == gear]
-        _draw_outline(panels[0, column], own[0], face_widths[gear])
+        _draw_outline(panels[0, column], own[0])
         for place, plane in enumerate(PLANES):
             axes = panels[1 + place, column]
             for n, line in enumerate(own):
@@ -58,9 +56,9 @@ def plot_shafts(lines: Sequence[ShaftLine], face_widths: dict[str, float], title
     return figure
 
 
-def _draw_outline(axes: Axes, line: ShaftLine, width: float) -> None:
+def _draw_outline(axes: Axes, line: ShaftLine) -> None:
     """Sections of a shaft in their length and diameter, the face of the gear, and bearings as triangles below."""
-    start, shaft = line.shaft.start, line.shaft
+    start, shaft, width = line.shaft.start, line.shaft, line.face_width
     largest = max(section.outer_diameter for section in shaft.sections)
     for section in shaft.sections:
         outer, inner = 0.5 * section.outer_diameter, 0.5 * section.inner_diameter

@@ -62,7 +62,7 @@ def test_scene_without_a_shaft_is_refused(capsys: pytest.CaptureFixture[str]) ->
 def test_table_and_picture_have_units() -> None:
     lines = shaft_lines(read_scene(SCENE))
     assert shaft_csv(lines).splitlines()[0].startswith("gear,pinion_torque_Nm,axial_mm,x_um,y_um,z_um,about_x_rad")
-    figure = plot_shafts(lines, {"pinion": 25.0, "wheel": 25.0}, "pair")
+    figure = plot_shafts(lines, "pair")
     labels = {axes.get_ylabel() for axes in figure.axes}
     assert labels == {"radius [mm]", "deflection along x [µm]", "deflection along y [µm]"}
     drawn = figure.axes[2].lines[4].get_ydata()
