@@ -2,8 +2,8 @@
 
 The package draws the tooth of a ring in an inversion and computes on it with its elements, half-spaces and a local
 term. Here the same section is triangulated in its true form by Delaunay's rule, eleven teeth with their rim, fine at
-the loaded flank and the fillets, with quadratic elements; the outside is held. What is compared is the displacement of a
-strip of elliptical pressure along the force, and the largest tension at the root. Asked for: 2 % and 4 %.
+the loaded flank and the fillets, with quadratic elements; the outside is held. What is compared is the displacement of
+a strip of elliptical pressure along the force, and the largest tension at the root. Asked for: 2 % and 4 %.
 """
 
 import math
