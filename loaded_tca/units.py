@@ -31,6 +31,8 @@ UNITS = {
     "mm2_N": Unit("mm²/N", "mm²/N", 1.0),
     "N_per_mm_um": Unit("N/(mm um)", "N/(mm um)", 1.0),
     "mm_per_rad": Unit("mm/rad", "mm/rad", 1.0),
+    "N_per_um": Unit("N/um", "N/mm", 1e3),
+    "Nm_per_mrad": Unit("N m/mrad", "N mm/rad", 1e6),
     "N_per_mm": Unit("N/mm", "N/mm", 1.0),
     "arcsec": Unit("arcsec", "rad", math.radians(1.0 / 3600.0)),
     "um": Unit("um", "mm", 1e-3),

@@ -354,10 +354,10 @@ def test_root_stress_is_that_of_one_pitch_and_names_its_teeth(tmp_path):
 test_refusals_of_teeth = refused_calls(
     (lambda: asked(with_teeth([24], CROWNED)), r"wheel\.tooth: number: found 24; allowed 0 to 23"),
     (lambda: asked(with_teeth([3, 3], CROWNED)), r"wheel\.tooth: number: found 3 twice; allowed once"),
-    (lambda: asked({"wheel.tooth": [{"modifications": {}}]}), r"wheel\.tooth: table 1\.number: missing"),
+    (lambda: asked({"wheel.tooth": [{"modifications": {}}]}), r"wheel\.tooth: table 0: number: missing"),
     (
         lambda: asked({"wheel.tooth": [{"number": 1}, {"number": 2, "modifications": {"lead_um": 3.0}}]}),
         r"wheel\.tooth: table 2\.modifications\.lead_um: unknown key",
     ),
-    (lambda: asked({"wheel.tooth": 3}), r"wheel\.tooth: found 3; allowed up to 10000 tables with the keys number"),
+    (lambda: asked({"wheel.tooth": 3}), r"wheel\.tooth: found 3; allowed a list of 0 to 10000 tables of number"),
 )

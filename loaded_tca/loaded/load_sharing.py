@@ -459,7 +459,7 @@ class _Balance:
         A constant on top of all slices of a pair is of no account: it moves no force about.
         """
         deflection = self.levers[1] * (rotation - self._first_rotations) - self.compliance @ forces
-        allowed = self.agreement * rotation * self.levers[1]
+        allowed = self.agreement * self._scale(rotation, forces) * self.levers[1]
         if not (deflection <= allowed)[forces == 0.0].all():
             return False
         for index, loaded in self._loaded():
@@ -472,6 +472,13 @@ class _Balance:
                     return False
         return True
 
+    def _scale(self, rotation: float, forces: Array) -> float:
+        """Rotation [rad] to compare differences with; that of the contacts alone where a given one takes it back."""
+        if self.given is None:
+            return rotation
+        pressed = [(n, one.contact_deformation / self.levers[1, n]) for n, one in self._loaded() if forces[n] > 0.0]
+        return max(rotation, float(sum(forces[n] * turn for n, turn in pressed) / forces.sum()))
+
     def _shared(self, forces: Array, count: int) -> SharedLoad:
         carrying = np.array([index for index, _ in self._loaded() if forces[index] > 0.0])
         deflections = self.compliance @ forces + self.given_means
@@ -482,7 +489,7 @@ class _Balance:
             shares.append(Share(self.tooth_pairs[index], loaded, float(deflections[index])))
         asked = np.array([share.rotation for share in shares])
         rotation = float(asked @ forces[carrying] / forces[carrying].sum())
-        residual = float(np.abs(asked - rotation).max()) / rotation
+        residual = float(np.abs(asked - rotation).max()) / self._scale(rotation, forces)
         return SharedLoad(self.torque, rotation, tuple(shares), residual, count)
 
 

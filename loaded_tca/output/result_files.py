@@ -17,6 +17,7 @@ from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.mesh_cycle import NAMES as EDGES
 from loaded_tca.results.mesh_cycle import MeshCycle, reached_edges
 from loaded_tca.results.quantities import (
+    BEARING_QUANTITIES,
     CYCLE,
     GEARS,
     MAP_PARTS,
@@ -187,7 +188,7 @@ def _column(name: str, unit: str) -> tuple[str, float]:
     """Header of a number, and the factor to the unit that it tells."""
     ending = ENGINEERS_UNITS.get(unit, unit)
     column, times = COLUMNS.get(name, (f"{name}_{ending}" if ending else name, 1.0))
-    return column, times * factor_of(column)
+    return column, times * (1.0 if unit == "um" else factor_of(column))
 
 
 def cell(value: Any, name: str) -> str:
@@ -216,7 +217,12 @@ def describe_results() -> str:
     of_supports = {
         name: _column(name, unit)[0] for name, (axes, unit, _) in SUPPORT_QUANTITIES.items() if axes == CYCLE
     }
-    lines += ["", "### Supports, where the scene has them", "", *_described(SUPPORT_QUANTITIES, of_supports)]
+    lines += [
+        "",
+        "### Supports, where the scene has them",
+        "",
+        *_described(SUPPORT_QUANTITIES | BEARING_QUANTITIES, of_supports),
+    ]
     lines += [
         "",
         "### Root stress, where the scene asks for it",

@@ -16,8 +16,8 @@ from loaded_tca.results.revolution import Revolution
 from loaded_tca.results.summary import shown_torque
 
 RIGID = "0.35"
-KINDS = {"mesh": "#d55e00", "wheel": "#0072b2", "pinion": "#009e73", "other": "0.6"}
-"""Colours of orders: of the mesh, of the rotation of both gears and their sidebands, and others."""
+KINDS = {"other": "0.75", "wheel": "#0072b2", "pinion": "#009e73", "mesh": "#d55e00"}
+"""Colours of orders, from the lowest layer up: others, of the rotation of both gears with their sidebands, the mesh."""
 MOST_ORDERS = 3.5
 """Mesh orders that are shown."""
 BESIDE_MESH = 0.3
@@ -103,21 +103,18 @@ def plot_revolution_spectrum(revolution: Revolution, torque: int | None = None) 
     groups = np.array([_group(one) for one in kind.tolist()])
     labels = {"mesh": "mesh orders", "wheel": "rotation of the wheel and its sidebands"}
     labels |= {"pinion": "rotation of the pinion and its sidebands", "other": "other orders"}
-    for group, colour in KINDS.items():
+    rigid = np.maximum(revolution.spectrum(rigid=True).amplitude[shown], LEAST_SHOWN)
+    amplitude = np.maximum(amplitude, LEAST_SHOWN)
+    for (group, colour), marker in zip(KINDS.items(), ".s^o", strict=True):
         rows = groups == group
-        if rows.any():
-            wide = 3.0 if group == "mesh" else 1.2
-            axes.vlines(order[rows], LEAST_SHOWN, np.maximum(amplitude[rows], LEAST_SHOWN), colour, linewidth=wide)
-            axes.plot(
-                order[rows],
-                np.maximum(amplitude[rows], LEAST_SHOWN),
-                "os^."[list(KINDS).index(group)],
-                color=colour,
-                markersize=4.0,
-                label=labels[group],
-            )
-    rigid = revolution.spectrum(rigid=True).amplitude[shown]
-    axes.plot(order, np.maximum(rigid, LEAST_SHOWN), "_", color="black", markersize=5.0, label="without load")
+        if not rows.any():
+            continue
+        if group != "other":  # of a hunting period they are hundreds
+            axes.vlines(order[rows], LEAST_SHOWN, amplitude[rows], colour, linewidth=3.0 if group == "mesh" else 1.2)
+        size = 1.5 if group == "other" else 4.0
+        axes.plot(order[rows], amplitude[rows], marker, color=colour, markersize=size, label=labels[group])
+    named = groups != "other"
+    axes.plot(order[named], rigid[named], "_", color="black", markersize=5.0, label="the same without load")
     axes.set_yscale("log")
     axes.set_ylim(LEAST_SHOWN, 3.0 * max(float(amplitude.max()), float(rigid.max()), 10.0 * LEAST_SHOWN))
     gear = GEARS[revolution.counted_by]

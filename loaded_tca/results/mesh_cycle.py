@@ -24,6 +24,8 @@ from loaded_tca.results.numbers import CycleNumbers, dataset_of
 from loaded_tca.results.pressure_map import arc_cells, arrays_of_maps, maps_from
 from loaded_tca.results.quantities import (
     ABOUT,
+    BEARING_QUANTITIES,
+    GEARS,
     IN_FILES,
     MOTIONS,
     PAIRS,
@@ -305,6 +307,10 @@ class MeshCycle(CycleNumbers):
         try:
             scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml", folder=None)
             supported = SUPPORT_QUANTITIES if scene.is_supported else {}
+            on_shafts = [gear for gear in GEARS if getattr(scene, gear).shaft is not None]
+            supported = supported | {
+                name: BEARING_QUANTITIES[name] for name in map("{}_bearing_force".format, on_shafts)
+            }
             in_dataset = (
                 QUANTITIES | supported | (ROOT_PARTS if scene.analysis.root_stress or "root_tension" in file else {})
             )

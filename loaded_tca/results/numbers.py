@@ -19,6 +19,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import variables_of
 from loaded_tca.results.pressure_map import Maps
 from loaded_tca.results.quantities import (
+    BEARING_QUANTITIES,
     COORDINATES,
     OF_THE_EDGE,
     OF_THE_PEAK,
@@ -43,7 +44,7 @@ def dataset_of(arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
     """
     import xarray
 
-    optional = SUPPORT_QUANTITIES | ROOT_PARTS
+    optional = SUPPORT_QUANTITIES | BEARING_QUANTITIES | ROOT_PARTS
     variables = variables_of(QUANTITIES | {name: part for name, part in optional.items() if name in arrays}, arrays)
     coordinates = {name: variables.pop(name) for name in COORDINATES}
     return xarray.Dataset(variables, coordinates, about)
@@ -69,7 +70,9 @@ class CycleNumbers:
             raise not_asked(name)
         if name in SUPPORT_QUANTITIES and name not in self.dataset:
             raise NotAskedError(f"{name}: the scene has no supports; [pinion.support] or [wheel.support] gives them")
-        if name not in (*QUANTITIES, *SUPPORT_QUANTITIES, *ROOT_PARTS) or name not in self.dataset:
+        if name in BEARING_QUANTITIES and name not in self.dataset:
+            raise NotAskedError(f"{name}: the gear has no shaft; [{name.partition('_')[0]}.shaft] gives it")
+        if name not in (*QUANTITIES, *BEARING_QUANTITIES, *SUPPORT_QUANTITIES, *ROOT_PARTS) or name not in self.dataset:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
         values = self.dataset[name].values
         return values if values.ndim else values.item()
@@ -78,7 +81,7 @@ class CycleNumbers:
         return [
             *super().__dir__(),
             *QUANTITIES,
-            *(name for name in (*SUPPORT_QUANTITIES, *ROOT_PARTS) if name in self.dataset),
+            *(name for name in (*SUPPORT_QUANTITIES, *BEARING_QUANTITIES, *ROOT_PARTS) if name in self.dataset),
         ]
 
     @property

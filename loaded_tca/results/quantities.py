@@ -141,6 +141,15 @@ SUPPORT_QUANTITIES: dict[str, Part] = {
     "drive_stiffness": (CYCLE, "N/(mm um)", "mesh stiffness with what the supports give way"),
 }
 """Numbers that a result has where its scene has supports."""
+BEARING_QUANTITIES: dict[str, Part] = {
+    f"{gear}_bearing_force": (
+        (*CYCLE, f"{gear}_bearing", "motion"),
+        "N, N mm",
+        f"forces along x, y, z and moments about them on the bearings of the {gear}, axes of the {gear}'s own frame",
+    )
+    for gear in GEARS
+}
+"""Numbers that a result has of each gear with a shaft."""
 MOTIONS = 6
 """Length of the axis ``motion``."""
 

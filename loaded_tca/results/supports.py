@@ -11,6 +11,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.supported import CarriedOnSupports
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.quantities import GEARS
 from loaded_tca.supports import SupportCompliance
 
 MICROMETRES = 1e3
@@ -20,7 +21,7 @@ MICROMETRES = 1e3
 def support_arrays(
     pair: GearPair, cycles: Sequence[CarriedOnSupports], *, pressure_angle: float, stiffness_per_rate: float
 ) -> dict[str, Array]:
-    """Arrays of ``SUPPORT_QUANTITIES``.
+    """Arrays of ``SUPPORT_QUANTITIES``, and of ``BEARING_QUANTITIES`` of gears with shafts.
 
     Parameters
     ----------
@@ -34,7 +35,14 @@ def support_arrays(
         Of the drive stiffness over the tangent of the torque over the rotation.
     """
     motions = [_motions(one) for one in cycles]
-    return {
+    forces = {
+        f"{gear}_bearing_force": np.stack(
+            [[_parts(one).supports[n].bearing_forces(load) for load in one.loads[n]] for one in cycles]
+        )
+        for n, gear in enumerate(GEARS)
+        if _parts(cycles[0]).supports[n].on_bearings is not None
+    }
+    return forces | {
         "pinion_motion": np.stack([one[0] for one in motions]),
         "wheel_motion": np.stack([one[1] for one in motions]),
         "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),

@@ -38,12 +38,19 @@ def literal(value: Any) -> str:
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{name} = {literal(inner)}" for name, inner in value.items()) + "}"
-    if isinstance(value, list | tuple) and value and isinstance(value[0], list | tuple):
+        return "{" + ", ".join(f"{name} = {_in_one_line(entry)}" for name, entry in value.items()) + "}"
+    if isinstance(value, list | tuple) and value and isinstance(value[0], list | tuple | dict):
         return "[\n" + "".join(f"    {literal(line)},\n" for line in value) + "]"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(literal(entry) for entry in value) + "]"
     return repr(value)
+
+
+def _in_one_line(value: Any) -> str:
+    """A value as TOML without line breaks, as tables in lines have it."""
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(_in_one_line(entry) for entry in value) + "]"
+    return literal(value)
 
 
 def shown(value: Any) -> str:

@@ -22,12 +22,12 @@ from loaded_tca.scene.section import (
     Rule,
     Section,
     Subsection,
+    as_given,
     as_table,
     check,
     contents,
     entries,
     made,
-    plain,
     rule,
     subsection,
 )
@@ -105,6 +105,22 @@ class Scene(Section, ABC):
                 'elements of a material that keeps its volume lock; or set analysis.compliance = "contact"',
             )
             for place in ("material", "pinion.material", "wheel.material")
+        ),
+        *(
+            rule(
+                (f"{gear}.support", f"{gear}.shaft"),
+                lambda support, shaft: support is None or shaft is None,
+                f"found beside [{gear}.shaft]; give one of the two",
+            )
+            for gear in ("pinion", "wheel")
+        ),
+        *(
+            rule(
+                (f"{gear}.bore_diameter_mm", f"{gear}.shaft", "analysis.compliance"),
+                lambda bore, shaft, compliance: bore != 0.0 or shaft is None or compliance == "contact",
+                f"found {{0:g}}, a solid gear, whose torsion [{gear}.shaft] has, too; allowed the diameter of its seat",
+            )
+            for gear in ("pinion", "wheel")
         ),
         *(
             rule(
@@ -332,8 +348,8 @@ class Scene(Section, ABC):
 
     @property
     def is_supported(self) -> bool:
-        """Whether a gear gives way as a whole: it has a section for its support."""
-        return any(gear.support is not None for gear in (self.pinion, self.wheel))
+        """Whether a gear gives way as a whole: it has a section for its support or its shaft."""
+        return any(gear.support or gear.shaft for gear in (self.pinion, self.wheel))
 
     @property
     def face_middles(self) -> tuple[float, float]:
@@ -476,6 +492,8 @@ class Scene(Section, ABC):
             for section in sections:
                 inner = place.get(section)
                 inner = contents(inner) if isinstance(inner, Section) else inner
+                if isinstance(inner, tuple) and inner and isinstance(inner[0], Section | dict):
+                    inner = {str(n): one for n, one in enumerate(inner)}  # a list of tables: names are places
                 place[section] = place = dict(inner) if isinstance(inner, dict) else {}
             place[name] = value
         return scene_from_table(table)
@@ -559,5 +577,5 @@ def _lines(section: Section, path: str) -> list[str]:
         elif value is None:
             keys.append(f"# {name} is not given: {entry.absent}")
         else:
-            keys.append(f"{name} = {literal(plain(value))}")
+            keys.append(f"{name} = {literal(as_given(value))}")
     return keys + sections

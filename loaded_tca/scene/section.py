@@ -35,6 +35,47 @@ class Subsection:
 
 
 @dataclass(frozen=True)
+class Tables:
+    """A list of tables of one kind, which become sections; a kind of value of a key."""
+
+    section: type[Section]
+    shortest: int
+    longest: int
+
+    @property
+    def allowed(self) -> str:
+        """Length and keys in words."""
+        return f"a list of {self.shortest} to {self.longest} tables of {', '.join(entries(self.section))}"
+
+    def read(self, value: Any) -> tuple[Section, ...]:
+        """Return sections; all problems of all tables are told at once, with their places from 0 on.
+
+        Tables by their places, ``{"0": ..., "1": ...}``, are taken too.
+        """
+        if isinstance(value, Mapping) and set(value) == {str(place) for place in range(len(value))}:
+            value = [value[str(place)] for place in range(len(value))]
+        if not isinstance(value, list | tuple) or not self.shortest <= len(value) <= self.longest:
+            raise ValueError(f"found {shown(value)}; allowed {self.allowed}")
+        made_of: list[Section] = []
+        problems: list[str] = []
+        for place, table in enumerate(value):
+            if isinstance(table, self.section):
+                made_of.append(table)
+            elif not isinstance(table, Mapping):
+                problems.append(
+                    f"table {place}: found {shown(table)}; allowed a table of {', '.join(entries(self.section))}"
+                )
+            else:
+                values, wrong = check(self.section, table)
+                problems += [f"table {place}: {one}" for one in wrong]
+                if not wrong:
+                    made_of.append(made(self.section, values))
+        if problems:
+            raise ValueError("; ".join(problems))
+        return tuple(made_of)
+
+
+@dataclass(frozen=True)
 class Rule:
     """What several keys must fulfil together; looked at only where each of them is sound by itself.
 
@@ -64,32 +105,6 @@ class Section:
             object.__setattr__(self, attribute, values[name])
 
 
-@dataclass(frozen=True)
-class Tables:
-    """A list of sections, as ``[[name]]`` of a file."""
-
-    section: type[Section]
-    longest: int
-
-    @property
-    def allowed(self) -> str:
-        """Keys of each."""
-        return f"up to {self.longest} tables with the keys {', '.join(entries(self.section))}"
-
-    def read(self, value: Any) -> tuple[Section, ...]:
-        """Return the sections, each checked."""
-        if not isinstance(value, list | tuple) or len(value) > self.longest:
-            raise ValueError(f"found {shown(value)}; allowed {self.allowed}")
-        sections, problems = [], []
-        for count, table in enumerate(value, 1):
-            inner, inner_problems = _check_subsection(f"{count}", Subsection(self.section, ""), table, "", self.section)
-            problems += inner_problems
-            sections.append(inner.get(f"{count}"))
-        if problems:
-            raise ValueError("; ".join(f"table {problem}" for problem in problems))
-        return tuple(section for section in sections if section is not None)
-
-
 def subsection(section: type[Section], about: str, optional: bool = False, name: str = "") -> Any:
     """Dataclass field that is a section of a file, under ``name`` where that is not the field's own."""
     entry = {"entry": Subsection(section, about, optional, name)}
@@ -113,15 +128,15 @@ def contents(section: Section) -> dict[str, Any]:
 
 def as_table(section: Section) -> dict[str, Any]:
     """Return the section as nested dictionaries, as a file would give it, without the keys that hold None."""
-    return {name: plain(value) for name, value in contents(section).items() if value is not None}
+    return {name: as_given(value) for name, value in contents(section).items() if value is not None}
 
 
-def plain(value: Any) -> Any:
-    """Return a value as a file would give it: sections as dictionaries, also those of a list."""
+def as_given(value: Any) -> Any:
+    """A value as a file would give it: sections, and those of lists, as dictionaries."""
     if isinstance(value, Section):
         return as_table(value)
     if isinstance(value, tuple) and value and isinstance(value[0], Section):
-        return [as_table(one) for one in value]
+        return tuple(as_table(one) for one in value)
     return value
 
 
@@ -245,6 +260,13 @@ def key_at(section: type[Section], path: str, place: str = "") -> Key:
         if not rest:
             raise InputError(f"{place}{name}: a section; allowed is one of its keys")
         return key_at(entry.section, rest, f"{place}{name}.")
+    if rest and isinstance(entry.kind, Tables):
+        index, _, rest = rest.partition(".")
+        if not index.isdigit():
+            raise InputError(f"{place}{name}.{shown_key(index)}: not a place in a list; allowed 0, 1, ...")
+        if rest:
+            return key_at(entry.kind.section, rest, f"{place}{name}.{index}.")
+        raise InputError(f"{place}{name}.{index}: a table; allowed is one of its keys")
     if rest:
         raise InputError(f"{place}{name}.{shown_key(rest)}: unknown key; {place}{name} is a key, not a section")
     return entry

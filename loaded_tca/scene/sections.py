@@ -22,6 +22,7 @@ from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, ZeroOr, above_zero, key
 from loaded_tca.scene.pitch import Pitch
 from loaded_tca.scene.section import Rule, Section, Tables, subsection
+from loaded_tca.scene.shafts import ShaftSection
 from loaded_tca.scene.supports import SupportSection
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
@@ -232,6 +233,9 @@ class GearSection(Section):
     material: ElasticMaterial | None = subsection(
         ElasticMaterial, "material of this gear, instead of the common one", optional=True
     )
+    shaft: ShaftSection | None = subsection(
+        ShaftSection, "the shaft that the gear sits on; without it, and without a support, rigid", optional=True
+    )
     support: SupportSection | None = subsection(
         SupportSection, "how far the gear gives way as a whole; without it, rigid", optional=True
     )
@@ -239,7 +243,7 @@ class GearSection(Section):
         Pitch, "where the teeth stand beside their nominal places, in whole revolutions", optional=True
     )
     tooth: tuple[Tooth, ...] | None = key(
-        Tables(Tooth, 10000),
+        Tables(Tooth, 0, 10000),
         "teeth whose flanks differ from the others, in whole revolutions: `[[pinion.tooth]]`, `[[wheel.tooth]]` with "
         "`number`, from 0, and sections `modifications` or `flank` in place of those of the gear",
         None,

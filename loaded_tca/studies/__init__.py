@@ -11,6 +11,7 @@ from loaded_tca.studies.revolution import revolution_figures
 from loaded_tca.studies.rows import load_study
 from loaded_tca.studies.run import process_pool, run_study
 from loaded_tca.studies.study import Study
+from loaded_tca.studies.tribology import tribology_figures
 
 __all__ = [
     "DesignModel",
@@ -29,5 +30,6 @@ __all__ = [
     "robustness",
     "run_study",
     "study_summary",
+    "tribology_figures",
     "vh_study",
 ]

@@ -5,9 +5,21 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.supports.of_scene import support_compliance, supports_of
+    from loaded_tca.supports.of_scene import shafts_of, support_compliance, supports_of
+    from loaded_tca.supports.shaft import Bearing, Shaft, ShaftLoad, ShaftSection
     from loaded_tca.supports.support import Support, SupportCompliance, moved_pair
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
-__all__ = ["Support", "SupportCompliance", "moved_pair", "support_compliance", "supports_of"]
+__all__ = [
+    "Bearing",
+    "Shaft",
+    "ShaftLoad",
+    "ShaftSection",
+    "Support",
+    "SupportCompliance",
+    "moved_pair",
+    "shafts_of",
+    "support_compliance",
+    "supports_of",
+]

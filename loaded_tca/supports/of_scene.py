@@ -1,20 +1,33 @@
-"""The supports that a scene asks for."""
+"""The supports that a scene asks for: matrices, and shafts on bearings."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from loaded_tca.arrays import Array
+from loaded_tca.errors import named, require
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
+from loaded_tca.scene.build import build_materials, in_base_units
 from loaded_tca.scene.sections import GearSection
+from loaded_tca.scene.shafts import ShaftSection as ShaftKeys
+from loaded_tca.supports.shaft import Bearing, Shaft, ShaftLoad, ShaftSection
 from loaded_tca.supports.support import Support, SupportCompliance
+
+STATIONS = 9
+"""Places over the face at which teeth follow their shaft: with 17 K_Hbeta of a slender pinion is 0.2 % less."""
+GEARS = "pinion", "wheel"
 
 
 def supports_of(scene: Scene) -> tuple[Support, Support]:
-    """Supports of pinion and wheel; that of a gear without a section is rigid."""
-    pinion, wheel = (
-        _support_of(gear, middle) for gear, middle in zip((scene.pinion, scene.wheel), scene.face_middles, strict=True)
-    )
+    """Supports of pinion and wheel; that of a gear without a section is rigid.
+
+    Raises
+    ------
+    InputError
+        If something lies beside a shaft, or its bearings do not hold it.
+    """
+    pinion, wheel = (_support_of(scene, gear) for gear in range(2))
     return pinion, wheel
 
 
@@ -32,5 +45,53 @@ def support_compliance(scene: Scene, pair: GearPair) -> SupportCompliance | None
     return SupportCompliance(pair, supports_of(scene), np.stack([np.eye(3), pair.wheel_axes]))
 
 
-def _support_of(gear: GearSection, middle: float) -> Support:
-    return Support(middle, np.zeros((6, 6)) if gear.support is None else gear.support.matrix)
+def shafts_of(scene: Scene) -> tuple[Shaft | None, Shaft | None]:
+    """Shafts of pinion and wheel; None of a gear without one.
+
+    Raises
+    ------
+    InputError
+        As of :class:`Shaft`, with the section.
+    """
+    pinion, wheel = (_shaft_of(scene, gear) for gear in range(2))
+    return pinion, wheel
+
+
+def _shaft_of(scene: Scene, gear: int) -> Shaft | None:
+    keys = (scene.pinion, scene.wheel)[gear].shaft
+    if keys is None:
+        return None
+    with named(f"{GEARS[gear]}.shaft"):
+        return Shaft(
+            keys.start_mm,
+            [ShaftSection(**in_base_units(part)) for part in keys.sections],
+            build_materials(scene.materials)[gear],
+            keys.torque_at_mm,
+            [Bearing(one.at_mm, ShaftKeys.matrix_of(one)) for one in keys.bearings],
+            [ShaftLoad(one.at_mm, _load(one.force_N, one.moment_Nm)) for one in keys.loads],
+        )
+
+
+def _load(force: tuple[float, ...], moment: tuple[float, ...]) -> Array:
+    return np.array([*force, *(1e3 * one for one in moment)])
+
+
+def _support_of(scene: Scene, gear: int) -> Support:
+    section: GearSection = (scene.pinion, scene.wheel)[gear]
+    middle, shaft = scene.face_middles[gear], _shaft_of(scene, gear)
+    if shaft is None:
+        return Support(middle, np.zeros((6, 6)) if section.support is None else section.support.matrix)
+    keys = section.shaft
+    assert keys is not None
+    stations = np.array([middle])
+    if keys.gear == "along":
+        width = getattr(section, "face_width_mm", None)
+        cylindrical = width is not None and not np.isnan(scene.transverse_angles[0])
+        where = f'{GEARS[gear]}.shaft.gear: found "along"; allowed "rigid" for bevel gears'
+        require((cylindrical, where))
+        stations = middle + np.linspace(-0.5 * float(width or 0.0), 0.5 * float(width or 0.0), STATIONS)
+    with named(f"{GEARS[gear]}.shaft"):
+        motions = shaft.solved(stations.tolist())
+    of_stations = motions.at_places.reshape(6 * len(stations), -1)
+    compliance = 0.5 * (of_stations[:, :-1] + of_stations[:, :-1].T)
+    return Support(middle, compliance, stations, of_stations[:, -1] if keys.loads else None, motions.on_bearings)

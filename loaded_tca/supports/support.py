@@ -71,6 +71,8 @@ class Support:
         Axial coordinates, ascending; default: the middle alone.
     motion : (6 m,) array, optional [mm, rad]
         Motions of the stations without any force on the teeth; default: none.
+    on_bearings : (bearings, 6, 6 m + 1) array, optional [N, N mm]
+        Forces and moments on bearings under unit loads of the stations, in columns, and under other loads.
 
     Raises
     ------
@@ -88,6 +90,7 @@ class Support:
     compliance: Array
     stations: Array | None = None
     motion: Array | None = None
+    on_bearings: Array | None = None
 
     def __post_init__(self) -> None:
         size = 6 * len(self.places)
@@ -109,6 +112,11 @@ class Support:
         """Motions of the stations (6 m,) [mm, rad] under loads (6 m,) [N, N mm] beside the other ones."""
         moved = self.compliance @ loads
         return np.asarray(moved if self.motion is None else moved + self.motion)
+
+    def bearing_forces(self, loads: Array) -> Array:
+        """Forces and moments on the bearings (bearings, 6) [N, N mm] under loads (6 m,), other loads included."""
+        assert self.on_bearings is not None
+        return np.asarray(self.on_bearings @ np.append(loads, 1.0))
 
     def at_middle(self, motions: Array) -> Array:
         """Motion (6,) of the middle of the face by those of the stations (6 m,)."""

@@ -397,15 +397,7 @@ class Tribology:
         speed : int
             Index of the speed of a list.
         """
-        self.check(0, speed)
-        known = [name for name in SUMMARY if not self.lacking(name)]
-        rows = [["pinion torque [N m]", *(shown_torque(one).split()[0] for one in self.result.torque)]]
-        for name in known:
-            values = self._shaped(name)
-            values = values[speed] if self.conditions.several and QUANTITIES[name].over_speed else values
-            unit = QUANTITIES[name].unit
-            label = SUMMARY[name] + (f" [{unit}]" if unit != "1" else "")
-            rows.append([label, *("-" if math.isnan(one) else f"{one:.4g}" for one in values)])
+        rows = self.rows(speed)
         width, longest = max(len(cell) for _, *cells in rows for cell in cells) + 2, max(len(row[0]) for row in rows)
         table = [f"{head:<{longest}}" + "".join(f"{cell:>{width}}" for cell in cells) for head, *cells in rows]
         lacking = {name: self.lacking(name) for name in SUMMARY}
@@ -415,6 +407,16 @@ class Tribology:
                 reasons.setdefault(reason, []).append(SUMMARY[name])
         notes = [f"not known: {', '.join(names)}: {reason}" for reason, names in reasons.items()]
         return "\n".join([self.result.scene.title or "Tribology", self._about(speed), *table, *notes])
+
+    def rows(self, speed: int = 0) -> list[tuple[str, ...]]:
+        """Lines of the summary: the torques, and each number that is known under them."""
+        self.check(0, speed)
+        rows = [("pinion torque [N m]", *(shown_torque(one).split()[0] for one in self.result.torque))]
+        for name in (name for name in SUMMARY if not self.lacking(name)):
+            values, unit = self.by_speed(name)[speed], QUANTITIES[name].unit
+            label = SUMMARY[name] + (f" [{unit}]" if unit != "1" else "")
+            rows.append((label, *("-" if math.isnan(one) else f"{one:.4g}" for one in values)))
+        return rows
 
     def _about(self, speed: int) -> str:
         """Speed, oil and friction in words."""

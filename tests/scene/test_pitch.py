@@ -137,5 +137,5 @@ def test_measured_flank_of_one_tooth_is_read_from_the_folder_of_the_scene_alone(
     (tmp_path / "scenes").mkdir()
     with pytest.raises(InputError, match=r"wheel\.tooth\.flank\.file: .* a file in the folder of the scene"):
         parse_scene(SCENE.to_toml() + tooth.format("../flank.csv"), folder=tmp_path / "scenes")
-    with pytest.raises(InputError, match=r"wheel\.tooth: table 1\.flank\.file: .*scenes.flank.csv: cannot be read"):
+    with pytest.raises(InputError, match=r"wheel\.tooth: table 0: flank\.file: .*scenes.flank.csv: cannot be read"):
         parse_scene(SCENE.to_toml() + tooth.format("flank.csv"), folder=tmp_path / "scenes")

@@ -184,6 +184,8 @@ def sound_values(kind):
                 max_size=kind.shortest + 1,
             )
         )
+    if isinstance(kind, Tables):
+        return st.lists(sound_tables(kind.section), min_size=kind.shortest, max_size=kind.shortest + 1)
     assert isinstance(kind, List)
     return st.lists(sound_values(kind.kind), min_size=kind.shortest, max_size=max(kind.shortest, min(kind.longest, 5)))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,6 +14,7 @@ from loaded_tca import MeshCycle, analyse, load_result, read_scene
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError, NotAskedError
 from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.output.result_files import positions_csv
 from loaded_tca.scene import Scene
 from tests.supports.oracle import settled
 
@@ -131,6 +133,14 @@ def test_results_on_supports_are_saved_and_read(soft: MeshCycle, tmp_path: Any) 
     for name in ("pinion_motion", "wheel_motion", "misalignment", "drive_stiffness", "mesh_stiffness"):
         assert_allclose(getattr(back, name), getattr(soft, name), rtol=0.0)
     assert back.scene == soft.scene
+
+
+def test_table_of_positions_has_misalignment_and_drive_stiffness(soft: MeshCycle) -> None:
+    rows = list(csv.DictReader(positions_csv(soft).splitlines()))
+    misalignment = np.array([float(row["misalignment_um"]) for row in rows]).reshape(soft.misalignment.shape)
+    stiffness = np.array([float(row["drive_stiffness_N_per_mm_um"]) for row in rows]).reshape(misalignment.shape)
+    assert_allclose(misalignment, soft.misalignment, rtol=1e-7)  # nine digits
+    assert_allclose(stiffness, soft.drive_stiffness, rtol=1e-7)
 
 
 def test_derivatives_of_gears_on_supports_are_refused(soft: MeshCycle) -> None:

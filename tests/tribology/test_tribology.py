@@ -314,3 +314,22 @@ def test_columns_of_the_table_are_those_declared():
 def test_an_oil_without_a_formula_of_friction_is_told():
     with pytest.raises(InputError, match="base: 'water'"):
         Lubricant(viscosity_40=220.0, viscosity_100=19.0, oil_temperature=80.0, base="water")
+
+
+def test_report_has_a_section_of_scenes_that_say_how_the_pair_runs(tmp_path):
+    from loaded_tca.reports import write_html_report
+
+    plain = write_html_report(shared(SPUR), tmp_path / "plain.html").read_text(encoding="utf-8")
+    changes = {
+        "operation": {"pinion_speed_rpm": 1500.0},
+        "lubricant": {"viscosity_40_mm2_s": 220.0, "viscosity_100_mm2_s": 19.0, "oil_temperature_C": 80.0},
+        "pinion.roughness_Ra_um": 0.6,
+        "wheel.roughness_Ra_um": 0.5,
+    }
+    scene = replace(shared(SPUR), scene=shared(SPUR).scene.with_changes(changes))
+    page = write_html_report(scene, tmp_path / "oil.html").read_text(encoding="utf-8")
+    assert "<h2>Lubrication</h2>" not in plain
+    assert "<h2>Lubrication</h2>" in page
+    assert f"{known(scene).loss_factor[0]:.4g}" in page
+    assert "needs scuffing_load_stage" in page
+    assert page.count("<svg") > plain.count("<svg")
