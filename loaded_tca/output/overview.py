@@ -92,7 +92,7 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     if wanted.root_stress:
         yield "root stress", "on"
     if wanted.without_bodies:
-        yield "bores or journals held rigid (ring: outside) [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
+        yield "bores or journals held rigid, diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
 
 
 def _shown_torques(scene: Scene) -> tuple[float, ...]:
