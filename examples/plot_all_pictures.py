@@ -12,9 +12,10 @@ from scipy.stats import norm
 from loaded_tca import analyse, analyse_revolution, plots, read_scene
 from loaded_tca.flank_maps import ease_off_map, vh_check
 from loaded_tca.results import stress_below
+from loaded_tca.stages import analyse_stage, read_stage
 from loaded_tca.studies import DesignModel, Study, optimise, robustness, run_study, vh_study
 
-SCENES = Path(__file__).parent / "scenes"
+SCENES, STAGE = Path(__file__).parent / "scenes", Path(__file__).parent / "stages" / "helical_automotive.toml"
 COARSE = {"analysis.positions": 7, "analysis.cells": (16, 24), "analysis.accuracy": None}  # seconds, not minutes
 FEW = COARSE | {"analysis.positions": 4, "analysis.compliance": "contact", "analysis.free_edges": False}
 LEAD, TIP = "pinion.modifications.lead_crowning_um", "wheel.modifications.tip_relief_um"
@@ -26,7 +27,7 @@ SCATTER = {"mounting.misalignment_um": norm(0.0, 5.0), LEAD: norm(5.0, 1.0)}
 
 
 def main() -> None:
-    """Draw those of results, of a bevel pair, of a revolution, of sensitivities, of studies, of a design."""
+    """Draw those of results, of a bevel pair, of a revolution, of a stage, of sensitivities, of studies, of a design."""
     result, other = (analyse(HELICAL.with_changes({"analysis.root_stress": True, LEAD: um})) for um in (5.0, 10.0))
     drawn = plots.result_figures(result, more=True)
     drawn |= {"teeth": plots.plot_teeth(result), "stress_below": plots.plot_stress_below(stress_below(result))}
@@ -36,6 +37,8 @@ def main() -> None:
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
     turn = analyse_revolution(HELICAL.with_changes(FEW | {"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
     drawn |= {name: draw(turn) for name, draw in plots.REVOLUTION_PICTURES.items()}
+    stage = analyse_stage(read_stage(STAGE).with_changes(FEW | {"analysis.positions": 5}))
+    drawn |= {name: draw(stage) for name, draw in plots.STAGE_PICTURES.items()}
     with TemporaryDirectory() as folder:
         loaded = run_study(vh_study(BEVEL, STEPS, STEPS), out=Path(folder, "vh.nc"), keep_maps=range(9))
         drawn["loaded_vh_check"] = plots.plot_loaded_vh_check(loaded, Path(folder, "vh_maps"))
