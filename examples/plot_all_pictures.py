@@ -9,9 +9,8 @@ from tempfile import TemporaryDirectory
 
 from scipy.stats import norm
 
-from loaded_tca import analyse, plots, read_scene
+from loaded_tca import analyse, analyse_revolution, plots, read_scene, shaft_lines
 from loaded_tca.flank_maps import ease_off_map, vh_check
-from loaded_tca.loaded.shaft_lines import shaft_lines
 from loaded_tca.results import stress_below
 from loaded_tca.studies import DesignModel, Study, optimise, robustness, run_study, vh_study
 
@@ -22,23 +21,25 @@ LEAD, TIP = "pinion.modifications.lead_crowning_um", "wheel.modifications.tip_re
 RELIEF = {TIP: 10.0, "wheel.modifications.tip_relief_start_mm": 179.0, "analysis.torques_Nm": [60.0, 130.0]}
 HELICAL = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(COARSE | RELIEF)
 BEVEL = read_scene(SCENES / "mesh_cycle_bevel.toml").with_changes(FEW | {"analysis.torques_Nm": [0.8]})
-OFFSET, AXIAL, STEPS = "mounting.offset_mm", "mounting.pinion_axial_mm", (-0.01, 0.0, 0.01)
+(V, H), STEPS = BEVEL.vh_keys, (-0.01, 0.0, 0.01)
 SCATTER = {"mounting.misalignment_um": norm(0.0, 5.0), LEAD: norm(5.0, 1.0)}
 
 
 def main() -> None:
-    """Draw those of one result and of two, of a bevel pair, of sensitivities, of studies, of a design."""
+    """Draw those of results, of a bevel pair, of a revolution, of sensitivities, of studies, of a design."""
     result, other = (analyse(HELICAL.with_changes({"analysis.root_stress": True, LEAD: um})) for um in (5.0, 10.0))
     drawn = plots.result_figures(result, more=True)
     drawn |= {"teeth": plots.plot_teeth(result), "stress_below": plots.plot_stress_below(stress_below(result))}
     both = {"crowning 5 µm": result, "crowning 10 µm": other}
     drawn |= {"comparison": plots.plot_comparison(both), "compared_maps": plots.plot_compared_maps(both)}
-    check = vh_check(lambda v, h: BEVEL.with_changes({OFFSET: v, AXIAL: h}).pair(), STEPS, STEPS)
+    check = vh_check(lambda v, h: BEVEL.with_changes({V: v, H: h}).pair(), STEPS, STEPS)
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
     drawn["shafts"] = plots.plot_shafts(shaft_lines(read_scene(SCENES / "helical_on_shafts.toml")))
-    few, study = HELICAL.with_changes(FEW), vh_study(BEVEL, STEPS, STEPS)
+    few = HELICAL.with_changes(FEW)
+    turn = analyse_revolution(few.with_changes({"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
+    drawn |= {name: draw(turn) for name, draw in plots.REVOLUTION_PICTURES.items()}
     with TemporaryDirectory() as folder:
-        loaded = run_study(study, out=Path(folder, "vh.nc"), keep_maps=range(len(study)))
+        loaded = run_study(vh_study(BEVEL, STEPS, STEPS), out=Path(folder, "vh.nc"), keep_maps=range(9))
         drawn["loaded_vh_check"] = plots.plot_loaded_vh_check(loaded, Path(folder, "vh_maps"))
     sampled, found = run_study(Study(few, {}, SCATTER, 8)), result.sensitivities(list(SCATTER))
     for kind in ("tornado", "sensitivity_curves", "transmission_error_band", "removal_weights"):

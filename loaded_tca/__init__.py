@@ -16,7 +16,9 @@ if TYPE_CHECKING:
         LoadedTCAError,
         NotAskedError,
     )
-    from loaded_tca.results import MeshCycle, load_result
+    from loaded_tca.loaded.shaft_lines import shaft_lines
+    from loaded_tca.results import MeshCycle, Revolution, load_result
+    from loaded_tca.revolution import analyse_revolution
     from loaded_tca.scene import Scene, parse_scene, read_scene
     from loaded_tca.separation import sample_separation
     from loaded_tca.unloaded import trace_contact
@@ -42,12 +44,15 @@ __all__ = [
     "LoadedTCAError",
     "MeshCycle",
     "NotAskedError",
+    "Revolution",
     "Scene",
     "analyse",
+    "analyse_revolution",
     "load_result",
     "parse_scene",
     "read_scene",
     "sample_separation",
+    "shaft_lines",
     "solve_contact",
     "trace_contact",
 ]

@@ -23,6 +23,10 @@ class Material:
         Between 0 and 0.5; up to 0.49 where teeth bend.
     max_pressure : float [MPa], optional
         Pressure at which the surface yields (elastic-perfectly plastic cap); None: elastic.
+    conductivity : float [W/(m K)]
+        Of heat. Default, as of the next two: steel.
+    density : float [kg/m3]
+    heat_capacity : float [J/(kg K)]
 
     Raises
     ------
@@ -33,20 +37,42 @@ class Material:
     youngs_modulus: float = 206000.0
     poisson_ratio: float = 0.3
     max_pressure: float | None = None
+    conductivity: float = 50.0
+    density: float = 7850.0
+    heat_capacity: float = 484.0
 
     def __post_init__(self) -> None:
         modulus, ratio, cap = self.youngs_modulus, self.poisson_ratio, self.max_pressure
+        thermal = {"conductivity": "W/(m K)", "density": "kg/m3", "heat_capacity": "J/(kg K)"}
         finite = SOFTEST <= real(modulus) < float("inf")
         require(
             (finite, f"youngs_modulus: {modulus} MPa is not finite and at least {SOFTEST:g} MPa"),
             (0.0 <= real(ratio) <= 0.5, f"poisson_ratio: {ratio} is not between 0 and 0.5"),
             (cap is None or real(cap) > 0.0, f"max_pressure: {cap} MPa is not positive"),
+            *(
+                (
+                    0.0 < real(getattr(self, name)) < float("inf"),
+                    f"{name}: {getattr(self, name)} {unit} is not positive",
+                )
+                for name, unit in thermal.items()
+            ),
         )
 
     @property
     def plane_strain_modulus(self) -> float:
         """E/(1 - nu^2) [MPa]."""
         return self.youngs_modulus / (1.0 - self.poisson_ratio**2)
+
+    @property
+    def thermal_contact_coefficient(self) -> float:
+        """B_M, the root of conductivity, density and heat capacity [J/(m2 K s^0.5)]: what heat a moving source meets.
+
+        Examples
+        --------
+        >>> round(Material().thermal_contact_coefficient)
+        13783
+        """
+        return (self.conductivity * self.density * self.heat_capacity) ** 0.5
 
 
 def contact_modulus(first: Material, second: Material) -> float:

@@ -28,6 +28,7 @@ class Unit(NamedTuple):
 
 
 UNITS = {
+    "mm2_N": Unit("mm²/N", "mm²/N", 1.0),
     "N_per_mm_um": Unit("N/(mm um)", "N/(mm um)", 1.0),
     "mm_per_rad": Unit("mm/rad", "mm/rad", 1.0),
     "N_per_um": Unit("N/um", "N/mm", 1e3),
@@ -41,6 +42,12 @@ UNITS = {
     "Nm": Unit("N m", "N mm", 1e3),
     "MPa": Unit("MPa", "MPa", 1.0),
     "N": Unit("N", "N", 1.0),
+    "rpm": Unit("1/min", "1/min", 1.0),
+    "C": Unit("°C", "°C", 1.0),
+    "mm2_s": Unit("mm²/s", "mm²/s", 1.0),
+    "kg_m3": Unit("kg/m³", "kg/m³", 1.0),
+    "W_mK": Unit("W/(m K)", "W/(m K)", 1.0),
+    "J_kgK": Unit("J/(kg K)", "J/(kg K)", 1.0),
 }
 """Ending of a name -> unit; of several that fit, the first."""
 

@@ -226,9 +226,45 @@ LARGE_MOTIONS = Kind(
     "motions of that size shift the contact by parts of the tooth; stiffnesses may have another unit than was meant",
     "stiffer supports, less torque, or the unit of compliance and stiffness: mm, rad, N, N mm",
 )
+EXTREME_AT_EDGE = Kind(
+    "tribology: the {extreme} lies at an edge of a flank, where it is that of a line contact of the flank beside it",
+    "slices that reach a tip or a face end are real heat, but their pressure rises towards the edge: film and flash "
+    "temperature there are indicative",
+    "read the numbers of other slices, `on_edge` in the table of `slices`; tip or end relief; an edge with a radius",
+)
+EXTREME_MOVES = Kind(
+    "tribology: with every second position the {extreme} is another one by {change:.1%}",
+    "it lies in a corner of the path, or in few positions: more of them may find a worse one, by as much as half that",
+    "more `positions`: 17 and more for corners of helical gears",
+)
+SLICES_AT_CAP = Kind(
+    "tribology: the pressure of slices is cut at the cap on the pressure",
+    "flash temperature and film follow the cut pressure, while the force of the slices is the whole one",
+    "less torque, or a scene without `max_pressure_MPa`",
+)
+COLD_BULK = Kind(
+    "tribology: the bulk temperature, {bulk:g} °C, is below that of the oil, {oil:g} °C",
+    "teeth that transmit power are warmer than the oil that cools them",
+    "the temperatures in the place of each other, or `bulk_temperature_C` left out",
+)
+PITCH_VELOCITY = Kind(
+    "tribology: the pitch line velocity, {velocity:.3g} m/s, is outside {low:g} to {high:g} m/s",
+    "coefficients of friction of the standards were fitted within",
+    "a number for `friction`, from a test",
+)
+PITCH_DEVIATIONS = Kind(
+    "the gears have runout or teeth that differ, which an analysis of one pitch leaves out: all teeth count as alike",
+    "pitch deviations, flanks of single teeth and eccentricity repeat with a turn of their gear, not with every pitch",
+    "`loaded-tca revolution`, or `analyse_revolution`",
+)
+OPEN_REVOLUTION = Kind(
+    "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: the ends of the curve do not meet",
+    "amplitudes of a curve that is not closed leak into neighbouring orders; spans hold for the part that is there",
+    '`pitches = "hunting"`, or a multiple of the number of teeth of that gear',
+)
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))
-"""Of every accuracy warning of an analysis, and of derivatives of its result."""
+"""Of every accuracy warning of an analysis, of derivatives of its result, and of its tribology."""
 
 
 def kind_of(sentence: str) -> Kind | None:

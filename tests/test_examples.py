@@ -27,6 +27,8 @@ EXPECTED = {
     "plot_bevel_pressure": (1.0, 1e-2),  # peak over that of Hertz: the flanks bend a little over the ellipse
     "plot_transmission_error": (2.0 / 3.0, 5e-3),  # approach of a Hertz contact under growing load
     "plot_load_sharing": (1.0, 1e-3),  # half a pitch before and behind: the two pairs of one position
+    "plot_revolution": (1.0, 1e-4),  # an eccentric wheel turns as far as its axis is off, loaded as unloaded
+    "plot_tribology": (1.0, 1e-9),  # torques of friction do the friction power
     "plot_root_stress": (1.0, 1e-3),  # a pitch further the mesh is the same
     "plot_loaded_transmission_error": (1.0, 1e-3),  # a pitch further the mesh is the same
     "plot_comparison": (1.0, 5e-3),  # opposite errors mirror each other, on grids of 24 x 32 cells

@@ -54,6 +54,15 @@ files in DIR:
 and with --loaded instead
   vh_under_load.png         highest pressure at each place of the flank
   vh_study.nc, vh_study_maps/  the study behind it; the same command goes on from there"""
+TRIBOLOGY = """[operation], [lubricant], roughness_Ra_um and the thermal keys of materials say how the pair runs; --set
+gives or changes them. What needs an input that is not given is left out, and the summary says which.
+
+files in DIR:
+  tribology.nc              everything, to be read by xarray
+  tribology.csv             one row per speed and torque
+  tribology_slices.csv      every slice of every contact, first speed, all torques
+{tribology_pictures}
+Friction of the teeth alone; docs/guide/efficiency_and_scuffing.md says more."""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
   subsurface.csv            the same over the depth, below the highest pressure
@@ -87,6 +96,31 @@ STUDY = """files in DIR:
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
 pictures, accuracy warnings with what to do, and the scene file; of a study what varies, the ranking, best and worst
 variant; of a design start and optimum. It prints on A4. Needs the package jinja2."""
+REVOLUTION = """files in DIR:
+  revolution.nc             everything, to be read by loaded_tca.Revolution.load or xarray
+  revolution.json           the key figures: single-flank deviations, orders, worst teeth
+  revolution.csv            one row per torque and position
+  teeth.csv                 the largest share, force and pressure of every tooth of both gears
+  orders.csv                amplitudes of all orders, mesh orders and sidebands named
+  revolution_error.png      transmission error over the revolution, rigid and under each torque
+  revolution_spectrum.png   its orders under the largest torque
+  revolution_shares.png     share of every tooth as a band, highest pressure of every tooth
+  revolution_waterfall.png  orders over the torque
+[pinion.pitch], [wheel.pitch] and [revolution] of the scene say where the teeth stand and which pitches follow each
+other; docs/guide/whole_revolutions.md says more."""
+STAGE = """files in DIR:
+  stage.nc, sun_mesh.nc, ring_mesh.nc
+                            everything, to be read by loaded_tca.stages.StageResult.load; the meshes are results as
+                            of 'loaded-tca run', for 'loaded-tca plot' and the other commands
+  stage.json                phases, key figures and orders
+  stage.csv                 one row per torque and position
+  stage_phases.png          phases of the meshes of all planets
+  stage_shares.png          share of every planet, under the largest torque
+  stage_load_factor.png     K_gamma over the pin errors, all torques
+  stage_sun_orbit.png       motion of the sun's axis, all torques
+  stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
+  stage_orders.png          their orders of the mesh
+docs/guide/planetary_stages.md says more."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -116,6 +150,7 @@ def command_line() -> argparse.ArgumentParser:
 
     _add_analyses(command)
     _add_readers(command)
+    _add_tribology(command)
     _add_comparisons(command)
     _add_tables_and_maps(command)
     _add_studies(command)
@@ -134,6 +169,14 @@ def _add_analyses(command: Command) -> None:
     run.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     text = "analyse the coast side too, and compare: directories drive and coast in DIR, comparison.* beside them"
     run.add_argument("--coast", action="store_true", help=text)
+    text = "analyse a whole revolution, each tooth at its own place"
+    revolution = command("revolution", run_by.revolution, text, REVOLUTION)
+    _add_scene(revolution)
+    revolution.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
+    stage = command("stage", run_by.stage, "analyse a planetary stage: how its planets share the torque", STAGE)
+    stage.add_argument("stage", metavar="STAGE.toml", help="stage file")
+    _add_changes(stage)
+    stage.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
 
 
 def _add_readers(command: Command) -> None:
@@ -160,6 +203,18 @@ def _add_readers(command: Command) -> None:
     below.add_argument(
         "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
     )
+
+
+def _add_tribology(command: Command) -> None:
+    """Add the command that reads tribology off a result."""
+    text = "show loss, temperatures, films, scuffing and micropitting of a result at one speed or several"
+    reader = command("tribology", run_by.tribology, text, TRIBOLOGY)
+    reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+    text = "of the pinion; default: operation.pinion_speed_rpm of the scene"
+    reader.add_argument("--speed", metavar="RPM", nargs="+", type=float, help=text)
+    text = "another value of a key, for instance lubricant.oil_temperature_C=90; may be given again for other keys"
+    reader.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
+    reader.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: beside the result")
 
 
 def _add_comparisons(command: Command) -> None:
@@ -256,6 +311,8 @@ class _Parser(argparse.ArgumentParser):
     def format_help(self) -> str:
         if self.epilog == FILES:
             self.epilog = FILES.format(pictures=_list_of_pictures())
+        if self.epilog == TRIBOLOGY:
+            self.epilog = TRIBOLOGY.format(tribology_pictures=_list_of_tribology())
         return super().format_help()
 
     def error(self, message: str) -> NoReturn:
@@ -280,6 +337,12 @@ def _list_of_pictures() -> str:
         lines += [] if head is None else [head]
         lines += [f"  {name + '.png':<24}  {one.line}" for name, one in pictures.items()]
     return "\n".join(lines)
+
+
+def _list_of_tribology() -> str:
+    from loaded_tca.plots import TRIBOLOGY_PICTURES
+
+    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in TRIBOLOGY_PICTURES.items())
 
 
 class _Version(argparse.Action):
@@ -319,6 +382,10 @@ def _tolerance(text: str) -> tuple[str, float | None]:
 
 def _add_scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE.toml", help="scene file")
+    _add_changes(parser)
+
+
+def _add_changes(parser: argparse.ArgumentParser) -> None:
     text = "another value of a key, for instance pinion.teeth=21; may be given again for other keys"
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
 

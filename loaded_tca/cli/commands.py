@@ -224,11 +224,13 @@ def run(options: argparse.Namespace) -> None:
 
 def _run_scene(scene: Scene, directory: Path) -> None:
     """Analyse a scene, write everything into a directory, and show the summary."""
-    from loaded_tca.analysis import analyse
+    from loaded_tca.analysis import analyse, expected_effort
     from loaded_tca.output.result_files import write_report
     from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
 
-    with progress_bar(scene) as progress:
+    torques, positions = len(scene.torques), scene.analysis.positions
+    count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
+    with progress_bar(expected_effort(scene), count, torques * positions) as progress:
         result = analyse(scene, progress=progress)
     report = write_report(result, directory, outdated=[f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)])
     try:
@@ -239,6 +241,84 @@ def _run_scene(scene: Scene, directory: Path) -> None:
         raise
     print(result.summary(), end="\n\n")
     print_files([*report, *pictures])
+
+
+def revolution(options: argparse.Namespace) -> None:
+    """Analyse a whole revolution, write everything into a directory, and show the summary."""
+    from loaded_tca.output.revolution_files import write_revolution
+    from loaded_tca.plots import REVOLUTION_PICTURES, png_of
+    from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
+
+    scene, directory = scene_of(options), options.out
+    check_place(directory)
+    effort = expected_revolution_effort(scene)
+    with progress_bar(effort, "states", effort.contacts // 2) as progress:
+        result = analyse_revolution(scene, progress=progress)
+    pictures = {f"{name}.png": png_of(draw(result)) for name, draw in REVOLUTION_PICTURES.items()}
+    written = write_revolution(result, directory, pictures)
+    print(result.summary(), end="\n\n")
+    print_files(written)
+
+
+def tribology(options: argparse.Namespace) -> None:
+    """Write loss, temperatures and films of a result at speeds, with tables and pictures, and show the summary."""
+    from dataclasses import replace
+
+    from loaded_tca.output.tribology_files import write_tribology
+    from loaded_tca.plots import png_of, tribology_figures
+    from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.scene.parse import literal_value
+
+    path = result_file(options.result)
+    result = MeshCycle.load(path)
+    directory = options.out or path.parent
+    check_place(directory)
+    changes = {key: literal_value(value) for key, value in options.set}
+    require(*((_is_of_tribology(key), f"--set {key}: {OF_TRIBOLOGY}") for key in changes))
+    if options.speed is not None:
+        changes.setdefault("operation.pinion_speed_rpm", options.speed[0])
+    changed = replace(result, scene=result.scene.with_changes(changes)) if changes else result
+    found = changed.tribology(options.speed)
+    pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(found).items()}
+    written = write_tribology(found, directory, pictures)
+    print(found.summary(), end="\n\n")
+    print_files(written)
+
+
+OF_TRIBOLOGY = (
+    "an analysis depends on it; allowed keys of [operation] and [lubricant], roughness_Ra_um of the gears, and "
+    "conductivity_W_mK, density_kg_m3 and heat_capacity_J_kgK of materials"
+)
+
+
+def _is_of_tribology(key: str) -> bool:
+    """Whether a key of a scene concerns tribology alone, so that a result stays valid."""
+    section, _, name = key.rpartition(".")
+    alone = {"roughness_Ra_um", "conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK"}
+    return section in ("operation", "lubricant") or name in alone
+
+
+def stage(options: argparse.Namespace) -> None:
+    """Analyse a planetary stage, write everything into a directory, and show the summary."""
+    from loaded_tca.analysis import expected_effort
+    from loaded_tca.output.stage_files import write_stage
+    from loaded_tca.plots import STAGE_PICTURES, png_of
+    from loaded_tca.scene.parse import literal_value
+    from loaded_tca.stages import analyse_stage, read_stage
+    from loaded_tca.stages.analyse import states_of
+
+    asked, directory = read_stage(options.stage), options.out
+    changes = {key: literal_value(value) for key, value in options.set}
+    asked = asked.with_changes(changes) if changes else asked
+    check_place(directory)
+    asked.require_assembly()
+    states = states_of(asked)
+    with progress_bar(expected_effort(asked.sun_scene), "states of both meshes", states) as progress:
+        result = analyse_stage(asked, progress=progress)
+    pictures = {f"{name}.png": png_of(draw(result)) for name, draw in STAGE_PICTURES.items()}
+    written = write_stage(result, directory, pictures)
+    print(result.summary(), end="\n\n")
+    print_files(written)
 
 
 def plot(options: argparse.Namespace) -> None:

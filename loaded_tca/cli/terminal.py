@@ -13,7 +13,7 @@ from threading import Event, Thread
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
-    from loaded_tca.scene import Scene
+    from loaded_tca.analysis import Effort
     from loaded_tca.studies import Study
 
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {elapsed} gone, {remaining} left"
@@ -54,20 +54,24 @@ def print_files(paths: Sequence[Path]) -> None:
 
 
 @contextmanager
-def progress_bar(scene: Scene) -> Iterator[Callable[[int, int], None] | None]:
+def progress_bar(effort: Effort, count: str, whole: int) -> Iterator[Callable[[int, int], None] | None]:
     """An estimate of the analysis and, on a terminal, a bar with what is done, of how much, and the time left.
 
     In a file or a pipe there is no bar, and an estimate only of an analysis that is long or exceeds the memory. The bar
     is there from the start, before the first position teeth that bend are modelled, and shows the time all along.
-    """
-    from loaded_tca.analysis import expected_effort
 
-    effort, terminal = expected_effort(scene), sys.stderr is not None and sys.stderr.isatty()
+    Parameters
+    ----------
+    effort : Effort
+    count : str
+        What the bar counts.
+    whole : int
+        How many of them there are.
+    """
+    terminal = sys.stderr is not None and sys.stderr.isatty()
     if not effort.is_refused and (terminal or effort.seconds > WORTH_TELLING or not effort.fits):
         say(f"loaded-tca: {effort}")
-    torques, positions = len(scene.torques), scene.analysis.positions
-    count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
-    with bar_of(count, torques * positions, BAR) as show:
+    with bar_of(count, whole, BAR) as show:
         yield show
 
 

@@ -62,8 +62,9 @@ def gear_nodes(gear: Gear, density: MeshDensity, outline: int = 65) -> BodyNodes
     sections, root = gear.form.sections, tooth.outline[0]
     radius = np.hypot(root[:, 0], root[:, 1])
     bore = gear.bore_radius(sections.coordinate(radius, root[:, 2]))
-    growth = rim_growth(radius, bore, density, gear.form.teeth)
-    core, cuts = CORE if gear.is_solid else 0, cuts_at_bore(radius, bore, density.rim, growth)
+    rim = np.maximum(radius, bore), np.minimum(radius, bore)  # of a ring the bore of its image is the outside
+    growth = rim_growth(*rim, density, gear.form.teeth)
+    core, cuts = CORE if gear.is_solid else 0, cuts_at_bore(*rim, density.rim, growth)
     return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density, core, cuts, growth))
 
 
@@ -256,16 +257,16 @@ def gear_body(nodes: BodyNodes, material: Material, largest_error: float = 0.0) 
         except GeometryError:  # of a soft body by rounding alone; double precision tells
             pass
         else:
-            if error_of_displacements(mesh, factor, matrices) <= largest_error:
+            if error_of_displacements(mesh, factor, matrices, nodes.sections.outwards) <= largest_error:
                 return mesh, factor
             del factor, matrices  # memory is told for one of them
     return mesh, factorised(mesh, material, held, blocks)[0]
 
 
-def error_of_displacements(mesh: Discretisation, factor: Factorisation, matrices: Array) -> float:
+def error_of_displacements(mesh: Discretisation, factor: Factorisation, matrices: Array, outwards: int = 1) -> float:
     """Relative error of the displacements by a factor: the change by one step of refinement, in double precision.
 
-    Under unit loads along all axes on the outermost node.
+    Under unit loads along all axes on the node at the farthest tip.
 
     Parameters
     ----------
@@ -274,8 +275,10 @@ def error_of_displacements(mesh: Discretisation, factor: Factorisation, matrices
         Of its stiffness.
     matrices : (q, k d, k d) array
         Stiffness of the elements' kinds in double precision.
+    outwards : int
+        +1, or -1 where teeth point towards the axis.
     """
-    d, node = mesh.dimension, int(np.hypot(mesh.points[:, 0], mesh.points[:, 1]).argmax())
+    d, node = mesh.dimension, int((outwards * np.hypot(mesh.points[:, 0], mesh.points[:, 1])).argmax())
     loads = np.zeros((mesh.points.size, d))
     loads[d * node + np.arange(d), np.arange(d)] = 1.0
     displacements = factor.solve(loads).astype(float)
@@ -332,7 +335,7 @@ def _twist(gear: Gear) -> float:
     return (
         solid_torsion(held, root, width, gear.material)
         if gear.is_solid
-        else (ring_torsion(held, root, gear.material) / width)
+        else (ring_torsion(min(held, root), max(held, root), gear.material) / width)
     )
 
 

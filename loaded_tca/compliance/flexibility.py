@@ -155,8 +155,9 @@ def local_flexibility(gear: Gear, density: MeshDensity = DENSITY) -> tuple[Array
     """
     # The term ends in the middle of the tooth, so that it is the same for a solid gear, whose section is not held.
     nodes = gear_nodes(replace(gear, bore_diameter=None) if gear.is_solid else gear, density)
-    section = (values[:, :, density.lengthwise] for values in (nodes.radius, nodes.angle))
-    mesh = discretise(polar(*section), nodes.layout.elements)
+    radius, angle = (values[:, :, density.lengthwise] for values in (nodes.radius, nodes.angle))
+    true_radius = nodes.sections.in_true_size(radius, nodes.coordinate[density.lengthwise])
+    mesh = discretise(polar(true_radius, angle), nodes.layout.elements)
     column = nodes.layout.sector(0).first + 2 * density.land
     flank = mesh.number[column + (2 * density.through if gear.flank.side > 0 else 0)]
     middle = mesh.number[column + density.through]
@@ -203,7 +204,8 @@ class _Force:
         radius = np.hypot(*points[middle].T)
         upwards = points[middle[-1]] / radius[-1]
         place = np.linalg.solve(np.stack([upwards, -self.direction], axis=-1), self.point)[0]
-        below = [np.interp(place, radius, rest[middle, a]) for a in range(2)]
+        rising = np.argsort(radius)  # of a ring they fall from the outside to the tip
+        below = [np.interp(place, radius[rising], rest[middle, a][rising]) for a in range(2)]
         return float(self.direction @ (rest[self.node] - below))
 
 

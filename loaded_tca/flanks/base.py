@@ -190,11 +190,15 @@ class FlankFrame(ABC):
         What lies to the right, where the lengthwise coordinate is large.
     edges : (str, str, str, str)
         Names of the edges, in the order of ``Flank.edges``: tip, root, left end, right end.
+    upwards : int
+        +1; -1 of ring gears, whose own axes y and z point against those of the pinion: files of points of their flanks,
+        and places that are shown, have the axes of the pinion.
     """
 
     labels: tuple[str, str]
     heelwards: str
     edges: tuple[str, str, str, str]
+    upwards: int = 1
 
     @abstractmethod
     def to_picture(self, rho: Array, z: Array) -> tuple[Array, Array]:

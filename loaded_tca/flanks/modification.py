@@ -365,7 +365,9 @@ def _starts_of(relief: str) -> tuple[str, str, str]:
     return f"{relief}_start", f"{relief}_start_roll", f"{relief}_start_length"
 
 
-def _require_between(name: str, value: float, low: float, high: float, unit: str = "mm") -> None:
+def _require_between(name: str, value: float, first: float, second: float, unit: str = "mm") -> None:
+    """Refuse a value that is not between two others, in either order: of a ring the tip has the smaller diameter."""
+    low, high = min(first, second), max(first, second)
     if not low < value < high:
         raise InputError(f"{name}: {value:.6g} {unit} is not between {low:.6g} and {high:.6g} {unit}")
 

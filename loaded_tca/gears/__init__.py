@@ -7,6 +7,8 @@ from loaded_tca.gears.blank_gear import BlankGear
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import CylindricalMesh
 from loaded_tca.gears.face_milled import Blade, Cutter, FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
+from loaded_tca.gears.internal_mesh import InternalMesh
+from loaded_tca.gears.ring import PinionCutter, RingGear
 from loaded_tca.gears.transverse_profile import transverse_profile
 
 __all__ = [
@@ -21,7 +23,10 @@ __all__ = [
     "FaceMilledBlank",
     "FaceMilledGear",
     "FaceMilledMesh",
+    "InternalMesh",
     "MachineSettings",
+    "PinionCutter",
+    "RingGear",
     "bevel_mesh",
     "duplex_spread_blade",
     "spread_blade",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, named
-from loaded_tca.loaded.load_sharing import SharedLoad, tooth_pairs_at, torque_shared
+from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair, tooth_pairs_at, torque_shared
 from loaded_tca.loaded.loaded_contact import LoadedContact, Result, Steps, found_together
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice, contact_under_load
@@ -138,13 +138,9 @@ def carried_by_all(
     """
     angles, shape = mesh.pinion_angle, (len(torques), len(mesh))
     tooth_pairs = [tooth_pairs_at(mesh, n) for n in range(len(mesh))]
-    relative_curvatures(pair, [one.contact for all_at in tooth_pairs for one in all_at])  # kept for all torques
-
-    def steps(t: int, n: int) -> Steps[SharedLoad]:
-        with told_where(torques[t], angles[n]):
-            return (yield from torque_shared(pair, tooth_pairs[n], float(torques[t]), grid, bending, given))
-
-    shared = dict(_found(pair, shape, steps, progress))
+    shared = torques_shared(
+        pair, list(zip(angles.tolist(), tooth_pairs, strict=True)), torques, grid, bending, progress, given
+    )
     carrying = {0} | {share.tooth_pair.pair for one in shared.values() for share in one.shares}
     columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
     pairs = mesh.pairs[columns].tolist()
@@ -167,6 +163,40 @@ def carried_by_all(
         share=share,
         tooth_deflection=deflection,
     )
+
+
+def torques_shared(
+    pair: GearPair,
+    positions: Sequence[tuple[float, Sequence[ToothPair]]],
+    torques: Array,
+    grid: GridChoice,
+    bending: BendingModel | None = None,
+    progress: Progress | None = None,
+    given: Coupling | None = None,
+) -> dict[tuple[int, int], SharedLoad]:
+    """Share every torque over the tooth pairs of every position.
+
+    Parameters
+    ----------
+    positions : sequence of (float, sequence of ToothPair)
+        Pinion angle [rad], and all pairs that may come into contact there.
+    pair, torques, grid, bending, progress, given
+        As of :func:`carried_by_one`.
+
+    Returns
+    -------
+    dict
+        By the indices of torque and position, torque by torque.
+    """
+    alike = [one.contact for _, all_at in positions for one in all_at if one.gears is None]
+    relative_curvatures(pair, alike)  # kept for all torques
+
+    def steps(t: int, n: int) -> Steps[SharedLoad]:
+        angle, tooth_pairs = positions[n]
+        with told_where(torques[t], angle):
+            return (yield from torque_shared(pair, tooth_pairs, float(torques[t]), grid, bending, given))
+
+    return dict(_found(pair, (len(torques), len(positions)), steps, progress))
 
 
 def in_gear_angles(mesh: MeshPath) -> tuple[ContactPath, dict[int, ContactPath]]:

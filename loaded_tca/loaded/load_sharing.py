@@ -40,7 +40,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, InputError, named
 from loaded_tca.loaded.balance import PowerLaw, balance
-from loaded_tca.loaded.loaded_contact import Gap, LoadedContact, Steps, found_alone
+from loaded_tca.loaded.loaded_contact import Gap, LoadedContact, Steps, found_alone, with_gears
 from loaded_tca.loaded.tooth_contact import FIRST_CELLS, Coupling, GridChoice, contact_under_load, expected_pressure
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import point_contact
@@ -83,11 +83,14 @@ class ToothPair:
         Its first contact, unloaded, in the angles of its own tooth.
     initial_separation : float [rad]
         Rotation of the wheel that brings it into contact; zero for the leading pair.
+    gears : GearPair or None
+        With the flanks of its own teeth, where they differ from those of the others; None: the common ones.
     """
 
     pair: int
     contact: ContactPoint
     initial_separation: float
+    gears: GearPair | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,7 +224,8 @@ def torque_shared(
     leading = min(tooth_pairs, key=lambda tooth_pair: tooth_pair.initial_separation)
     smallest = SMALLEST_SHARED * pair.contact_modulus * pair.module**2
     if torque <= smallest * leading.contact.pinion_lever:
-        loaded = yield from contact_under_load(pair, leading.contact, 0.0, grid)
+        steps = contact_under_load(leading.gears or pair, leading.contact, 0.0, grid)
+        loaded = yield from with_gears(leading.gears, steps)
         return SharedLoad(0.0, 0.0, (Share(leading, loaded, 0.0),), 0.0, 0)
     return (yield from _Balance(pair, tooth_pairs, torque, grid, bending, given).steps())
 
@@ -245,17 +249,18 @@ class _Balance:
         self.first_gaps = np.zeros(len(tooth_pairs))  # [mm], where the grid of a pair touches first: it grows, is cut
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
         self.levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts]).T
-        self.laws = [self._first_law(contact) for contact in contacts]
+        self.laws = [self._first_law(tooth_pair) for tooth_pair in tooth_pairs]
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
         self.first_grids: list[Separation] = []
         usual = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
         self.agreement = usual if grid.agreement is None else grid.agreement
 
-    def _first_law(self, contact: ContactPoint) -> PowerLaw:
+    def _first_law(self, tooth_pair: ToothPair) -> PowerLaw:
         """Hertz's law of the curvatures at the contact point, or of a slender contact over the face."""
+        contact, gears = tooth_pair.contact, tooth_pair.gears or self.pair
         load, modulus = self.torque / contact.pinion_lever, self.pair.contact_modulus
-        curvature = relative_curvature(self.pair, contact)
+        curvature = relative_curvature(gears, contact)
         if curvature.across >= curvature.along > 0.0:
             ellipse = point_contact(load, (curvature.across, curvature.along), modulus)
             if 2.0 * ellipse.semi_major < self.pair.face_width:
@@ -298,7 +303,7 @@ class _Balance:
         lines: list[tuple[int, Separation]] = []
         shares: list[Array] = []
         for number, law, tooth_pair in zip(numbers, self.laws, self.tooth_pairs, strict=True):
-            separation: Separation = yield Gap(tooth_pair.contact, FIRST_CELLS, load=law.load)
+            separation: Separation = yield Gap(tooth_pair.contact, FIRST_CELLS, load=law.load, gears=tooth_pair.gears)
             force = expected_pressure(separation).sum(axis=0)
             lines.append((number, separation))
             shares.append(force / force.sum())
@@ -328,9 +333,10 @@ class _Balance:
             if loaded is None or loaded.solution.reaches_border:
                 contact, number = tooth_pair.contact, tooth_pair.pair
                 with named(f"tooth pair {number:+d}"):
-                    loaded = yield from contact_under_load(
-                        self.pair, contact, force, self.grid, self.bending, number, coupling
+                    steps = contact_under_load(
+                        tooth_pair.gears or self.pair, contact, force, self.grid, self.bending, number, coupling
                     )
+                    loaded = yield from with_gears(tooth_pair.gears, steps)
         except ConvergenceError as error:
             raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
         self.solved[index], self.first_gaps[index] = loaded, loaded.separation.cut_gap.min()

@@ -41,12 +41,16 @@ Result = TypeVar("Result")
 
 
 class Gap(NamedTuple):
-    """A separation to sample, in the box that a load needs or in a given one; see :func:`sample_separation`."""
+    """A separation to sample, in the box that a load needs or in a given one; see :func:`sample_separation`.
+
+    ``gears`` are those of a tooth pair that has flanks of its own; None: the common ones.
+    """
 
     contact: ContactPoint
     cells: tuple[int, int]
     load: float | None = None
     box: Box | None = None
+    gears: GearPair | None = None
 
 
 class Task(NamedTuple):
@@ -61,6 +65,7 @@ class Ends(NamedTuple):
     """Compliance that free edges add to the slices of a grid; see :func:`loaded_tca.loaded.free_edges`."""
 
     separation: Separation
+    gears: GearPair | None = None
 
 
 Steps = Generator[Gap | Ends | Task, Any, Result]
@@ -127,18 +132,44 @@ def _answers(
     kinds = {index: one.problem.cells if isinstance(one, Task) else type(one) for index, one in asked.items()}
     (most, _), *_ = Counter(kinds.values()).most_common(1)
     chosen: Any = {index: asked[index] for index, kind in kinds.items() if kind == most}
-    if most is Gap:
-        contacts, cells, loads, boxes = zip(*chosen.values(), strict=True)
-        answers = sample_separations(pair, contacts, cells=cells, loads=loads, boxes=boxes)
-        return dict(zip(chosen, answers, strict=True))
-    if most is Ends:
-        separations = [request.separation for request in chosen.values()]
-        return dict(zip(chosen, edge_compliances(pair, separations), strict=True))
+    if most in (Gap, Ends):
+        by_gears: dict[int, dict[int, Any]] = {}
+        for index, request in chosen.items():
+            by_gears.setdefault(id(request.gears), {})[index] = request
+        return {index: answer for some in by_gears.values() for index, answer in _of_flanks(pair, some).items()}
     solutions = solve_problems(*zip(*chosen.values(), strict=True), on_failure="return")
     return {
         index: solution.not_converged(task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution
         for (index, task), solution in zip(chosen.items(), solutions, strict=True)
     }
+
+
+def _of_flanks(pair: GearPair, asked: dict[int, Any]) -> dict[int, Separation | Array | LoadedTCAError | None]:
+    """Answer requests for gaps, or for free edges, of the same gears."""
+    requests = list(asked.values())
+    gears = requests[0].gears or pair
+    if isinstance(requests[0], Ends):
+        return dict(zip(asked, edge_compliances(gears, [one.separation for one in requests]), strict=True))
+    contacts, cells, loads, boxes, _ = zip(*requests, strict=True)
+    return dict(zip(asked, sample_separations(gears, contacts, cells=cells, loads=loads, boxes=boxes), strict=True))
+
+
+def with_gears(gears: GearPair | None, steps: Steps[Result]) -> Steps[Result]:
+    """Steps whose gaps and free edges are those of the gears of one tooth pair; None: of the common ones."""
+    if gears is None:
+        return (yield from steps)
+    answer: Any = None
+    failure: BaseException | None = None
+    while True:
+        try:
+            request = steps.send(answer) if failure is None else steps.throw(failure)
+        except StopIteration as end:
+            return end.value
+        failure = None
+        try:
+            answer = yield (request if isinstance(request, Task) else request._replace(gears=gears))
+        except LoadedTCAError as error:
+            failure = error
 
 
 EXACT = 1e-9

@@ -2,6 +2,8 @@
 
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.result_files import describe_results, write_report
+from loaded_tca.output.revolution_files import write_revolution
+from loaded_tca.output.stage_files import write_stage
 from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
 from loaded_tca.output.tables import (
     sensitivities_text,
@@ -10,6 +12,7 @@ from loaded_tca.output.tables import (
     write_sensitivities,
     write_subsurface,
 )
+from loaded_tca.output.tribology_files import write_tribology
 from loaded_tca.results.teeth import teeth_in_space
 
 __all__ = [
@@ -20,9 +23,12 @@ __all__ = [
     "write_comparison",
     "write_dynamics",
     "write_report",
+    "write_revolution",
     "write_sensitivities",
+    "write_stage",
     "write_stl",
     "write_subsurface",
     "write_teeth",
+    "write_tribology",
     "write_vtk",
 ]

@@ -4,6 +4,7 @@ from loaded_tca.pairs.bevel import BevelMounting, bevel_pair, face_milled_pair
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, MatingTeeth, Sense, mating_teeth
+from loaded_tca.pairs.internal import internal_pair
 
 __all__ = [
     "BevelMounting",
@@ -16,5 +17,6 @@ __all__ = [
     "bevel_pair",
     "cylindrical_pair",
     "face_milled_pair",
+    "internal_pair",
     "mating_teeth",
 ]

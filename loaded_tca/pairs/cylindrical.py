@@ -10,7 +10,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.modification import FlankModifications
-from loaded_tca.gears import CylindricalMesh
+from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
 from loaded_tca.gears.checks import LEAST_FACE
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
@@ -63,13 +63,17 @@ class Mounting:
 
     def place_parallel(self, centre_distance: float) -> tuple[Array, Array]:
         """Origin (3,) and axes (3, 3), in rows, of the wheel frame: R_y(gamma) R_x(delta) about its mid-face."""
+        origin = np.array([centre_distance + self.centre_distance_error, 0.0, self.axial_offset])
+        return origin, np.diag([-1.0, -1.0, 1.0]) @ self.turn.T
+
+    @property
+    def turn(self) -> Array:
+        """R_y(gamma) R_x(delta), which turns the axes of the wheel (3, 3)."""
         sin_gamma, cos_gamma = math.sin(self.in_plane), math.cos(self.in_plane)
         sin_delta, cos_delta = math.sin(self.out_of_plane), math.cos(self.out_of_plane)
         about_x = np.array([[1.0, 0.0, 0.0], [0.0, cos_delta, -sin_delta], [0.0, sin_delta, cos_delta]])
         about_y = np.array([[cos_gamma, 0.0, sin_gamma], [0.0, 1.0, 0.0], [-sin_gamma, 0.0, cos_gamma]])
-        nominal = np.diag([-1.0, -1.0, 1.0])
-        origin = np.array([centre_distance + self.centre_distance_error, 0.0, self.axial_offset])
-        return origin, nominal @ (about_y @ about_x).T
+        return about_y @ about_x
 
 
 def cylindrical_pair(
@@ -115,15 +119,10 @@ def cylindrical_pair(
     turning, drive = signs_of(driving, sense)
     radii = mesh.pinion_working_radius, mesh.wheel_working_radius
     profiles = mesh.pinion_active_profile, mesh.wheel_active_profile
-    _require_common_face(mesh, mounting.axial_offset)
+    require_common_face(mesh, mounting.axial_offset)
     gears = []
     for member, gear in enumerate((mesh.pinion, mesh.wheel)):
-        turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
-        if turn >= LARGEST_TURN:
-            raise GeometryError(
-                f"{gear.name}: its teeth wind {turn / (2.0 * math.pi):.3g} times around the gear over its face width, "
-                f"{gear.face_width:.6g} mm; less than one turn is allowed"
-            )
+        require_short_turn(gear)
         tooth = CylindricalTooth(gear, radii[member], profiles[member], modifications[member])
         gears.append(Gear.of(tooth, turning * drive, materials[member], gear.bore_diameter))
     origin, axes = mounting.place_parallel(mesh.working_centre_distance)
@@ -141,13 +140,23 @@ def cylindrical_pair(
     )
 
 
-def common_face_width(mesh: CylindricalMesh, axial_offset: float) -> float:
+def require_short_turn(gear: CylindricalGear | RingGear) -> None:
+    """Refuse teeth that wind a whole turn around their gear over its face width."""
+    turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
+    if turn >= LARGEST_TURN:
+        raise GeometryError(
+            f"{gear.name}: its teeth wind {turn / (2.0 * math.pi):.3g} times around the gear over its face width, "
+            f"{gear.face_width:.6g} mm; less than one turn is allowed"
+        )
+
+
+def common_face_width(mesh: CylindricalMesh | InternalMesh, axial_offset: float) -> float:
     """Face width that both gears cover, the wheel moved along its axis [mm]; of faces apart the narrower one."""
     covered = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(axial_offset)
     return min(mesh.common_face_width, covered) if covered > 0.0 else mesh.common_face_width
 
 
-def _require_common_face(mesh: CylindricalMesh, offset: float) -> None:
+def require_common_face(mesh: CylindricalMesh | InternalMesh, offset: float) -> None:
     """Refuse faces that the offset [mm] of the wheel leaves next to nothing in common; apart, they never touch."""
     common = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(offset)
     least = LEAST_FACE * mesh.pinion.normal_module

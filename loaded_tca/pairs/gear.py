@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numpy as np
-
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
@@ -15,12 +13,6 @@ from loaded_tca.flanks.rounding import EdgeRounding, RoundedFlank, sharp
 from loaded_tca.material import Material
 from loaded_tca.tooth.families import ToothForm, ToothGeometry
 from loaded_tca.tooth.rounded import RoundedTooth, rounding_problems
-
-DEFAULT_BORE = 0.55
-"""Bore of a gear that has none given, or journals of a solid gear, over the root diameter."""
-SMALLEST_BORE, LARGEST_BORE = 0.05, 0.98
-"""Bores over the smallest root diameter. A larger one leaves no rim below the teeth; at a smaller one a gear twists
-about its bore twenty times as far as its teeth bend, and no shaft is so thin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +34,7 @@ class Gear:
     material : Material
     bore_diameter : float [mm], optional
         Held rigid where teeth bend; None: 0.55 of the root diameter. 0: a solid gear, held on both faces by journals of
-        that diameter.
+        that diameter. Of a ring gear its outer diameter.
     """
 
     flank: Flank
@@ -122,23 +114,15 @@ class Gear:
     def bore_radius(self, coordinate: Array) -> Array:
         """Distance (k,) from the axis at which sections meet the bore [mm], given or by default, or the journals.
 
+        Of a ring gear the outside, as everywhere where a bore is spoken of.
+
         Raises
         ------
         InputError
             If the bore leaves no rim below the teeth, or is too thin to hold the gear by.
         """
         root, _ = self.form.sections.point(self.form.root_radius(coordinate), coordinate)
-        if self.bore_diameter is None or self.is_solid:
-            return DEFAULT_BORE * root
-        diameter, smallest = self.bore_diameter, 2.0 * root.min()
-        if not SMALLEST_BORE * smallest <= diameter < LARGEST_BORE * smallest:
-            thin = "it is held rigid, and the body would twist about so thin a bore far more than the teeth bend"
-            raise InputError(
-                f"bore_diameter: {diameter:.6g} mm is not between {SMALLEST_BORE:g} and {LARGEST_BORE:g} times the "
-                f"smallest root diameter, {smallest:.6g} mm, nor 0, a solid gear: "
-                + (thin if diameter < smallest * SMALLEST_BORE else "no rim is left below the teeth")
-            )
-        return np.full_like(root, 0.5 * self.bore_diameter)
+        return self.form.held.radius(self.bore_diameter, root)
 
     @property
     def rim_over_height(self) -> float:
@@ -157,8 +141,10 @@ class Gear:
         rho, z = self.nominal_flank.grid(2, 2)
         ends = sections.coordinate(rho[-1], z[-1])
         root, _ = sections.point(self.form.root_radius(ends), ends)
-        height = rho[-1] - root  # both lengths across the axis: they lie in one direction
-        return float(((root - self.bore_radius(ends)) / height).min()) if (height > 0.0).all() else math.inf
+        outwards = sections.outwards
+        height = outwards * (rho[-1] - root)  # both lengths across the axis: they lie in one direction
+        rim = outwards * (root - self.bore_radius(ends))
+        return float((rim / height).min()) if (height > 0.0).all() else math.inf
 
     @property
     def smallest_bore(self) -> float:

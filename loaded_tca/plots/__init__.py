@@ -21,6 +21,13 @@ from loaded_tca.plots.pressure_map import (
     plot_stress_below,
     plot_subsurface,
 )
+from loaded_tca.plots.revolution import (
+    REVOLUTION_PICTURES,
+    plot_revolution_error,
+    plot_revolution_shares,
+    plot_revolution_spectrum,
+    plot_revolution_waterfall,
+)
 from loaded_tca.plots.root_stress import plot_root_stress, plot_root_stress_cycle, plot_root_stress_over_torque
 from loaded_tca.plots.sensitivities import (
     plot_removal_weights,
@@ -39,6 +46,15 @@ from loaded_tca.plots.sharing import (
     plot_path_pressure,
 )
 from loaded_tca.plots.solution import plot_solution
+from loaded_tca.plots.stage import (
+    STAGE_PICTURES,
+    plot_stage_error,
+    plot_stage_load_factor,
+    plot_stage_orders,
+    plot_stage_phases,
+    plot_stage_shares,
+    plot_stage_sun_orbit,
+)
 from loaded_tca.plots.study import (
     plot_study,
     plot_study_heat_map,
@@ -48,6 +64,16 @@ from loaded_tca.plots.study_panels import plot_study_ranking
 from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
 from loaded_tca.plots.style import chosen_torque, png_of, save_figure
 from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
+from loaded_tca.plots.tribology import (
+    TRIBOLOGY_PICTURES,
+    plot_contact_temperature,
+    plot_efficiency,
+    plot_film_ratio,
+    plot_friction_power,
+    plot_over_flank,
+    plot_sliding_velocities,
+    tribology_figures,
+)
 from loaded_tca.plots.vh_check import plot_ease_off, plot_loaded_vh_check, plot_vh_check
 from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -55,6 +81,9 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 __all__ = [
     "MORE_PICTURES",
     "PICTURES",
+    "REVOLUTION_PICTURES",
+    "STAGE_PICTURES",
+    "TRIBOLOGY_PICTURES",
     "draw_teeth",
     "plot_all",
     "plot_at_a_glance",
@@ -63,9 +92,13 @@ __all__ = [
     "plot_comparison",
     "plot_contact_path",
     "plot_contact_patterns",
+    "plot_contact_temperature",
     "plot_ease_off",
+    "plot_efficiency",
     "plot_face_load",
+    "plot_film_ratio",
     "plot_first_order_scatter",
+    "plot_friction_power",
     "plot_full_mesh",
     "plot_harmonics",
     "plot_line_load",
@@ -73,19 +106,31 @@ __all__ = [
     "plot_load_share",
     "plot_loaded_vh_check",
     "plot_mesh_stiffness",
+    "plot_over_flank",
     "plot_path_pressure",
     "plot_peak_pressure",
     "plot_peak_to_peak_over_torque",
     "plot_pressure_envelope",
     "plot_pressure_map",
     "plot_removal_weights",
+    "plot_revolution_error",
+    "plot_revolution_shares",
+    "plot_revolution_spectrum",
+    "plot_revolution_waterfall",
     "plot_robustness",
     "plot_root_stress",
     "plot_root_stress_cycle",
     "plot_root_stress_over_torque",
     "plot_sensitivity_curves",
     "plot_shafts",
+    "plot_sliding_velocities",
     "plot_solution",
+    "plot_stage_error",
+    "plot_stage_load_factor",
+    "plot_stage_orders",
+    "plot_stage_phases",
+    "plot_stage_shares",
+    "plot_stage_sun_orbit",
     "plot_stress_below",
     "plot_study",
     "plot_study_heat_map",
@@ -104,6 +149,7 @@ __all__ = [
     "result_figures",
     "save_figure",
     "show_teeth",
+    "tribology_figures",
 ]
 
 

@@ -34,6 +34,7 @@ from loaded_tca.plots.style import (
 )
 from loaded_tca.results.load_factors import strip_borders, strip_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.summary import signed
 from loaded_tca.separation import slice_middles
 from loaded_tca.unloaded.path import contact_span, path_letters, roll_lengths_of_flanks
@@ -338,7 +339,7 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     return style.finished(figure, axes, result, what, f"unloaded contact point at {letters}")
 
 
-def over_the_path(result: MeshCycle, *numbers: Array) -> Iterator[Array]:
+def over_the_path(result: CycleNumbers, *numbers: Array) -> Iterator[Array]:
     """Ascending pinion angles from the pitch point of the own tooth pair (n,) [rad]; numbers (position, pair) there."""
     angle = result.pinion_angle[:, None] - result.gear_pair.pitch * result.pair
     order = np.argsort(angle, axis=None, kind="stable")

@@ -5,8 +5,32 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.reference import hertz, iso1328, iso6336, iso6336_3, punch, weber_banaschek, wedge
+    from loaded_tca.reference import (
+        friction,
+        hertz,
+        iso1328,
+        iso6336,
+        iso6336_3,
+        iso6336_20,
+        iso6336_21,
+        iso6336_22,
+        punch,
+        weber_banaschek,
+        wedge,
+    )
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
-__all__ = ["hertz", "iso1328", "iso6336", "iso6336_3", "punch", "weber_banaschek", "wedge"]
+__all__ = [
+    "friction",
+    "hertz",
+    "iso1328",
+    "iso6336",
+    "iso6336_3",
+    "iso6336_20",
+    "iso6336_21",
+    "iso6336_22",
+    "punch",
+    "weber_banaschek",
+    "wedge",
+]

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.output.overview import scene_sections
-from loaded_tca.plots import CAPTIONS, result_figures
+from loaded_tca.plots import CAPTIONS, TRIBOLOGY_PICTURES, result_figures, tribology_figures
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
 from loaded_tca.results.figure import NO_ESTIMATE, Figures, in_percent, labelled
@@ -46,6 +47,24 @@ def result_content(result: MeshCycle) -> dict[str, Any]:
         "warnings": None if result.warnings is None else explained(result.warnings),
         "glance": pictures_of(glance, CAPTIONS, result.scene.title),
         "pictures": pictures_of(pictures, CAPTIONS, result.scene.title),
+        "lubrication": _lubrication(result),
+    }
+
+
+def _lubrication(result: MeshCycle) -> dict[str, Any] | None:
+    """What the oil sees, of scenes that say how the pair runs: a line for each number, notes, pictures."""
+    if result.scene.operation is None and result.scene.lubricant is None:
+        return None
+    with noted_accuracy_warnings(given=False) as sentences:
+        found = result.tribology()
+    _, about, *lines = found.summary().split("\n")
+    rows, lacking = found.rows(), [line for line in lines if line.startswith("not known")]
+    captions = {name: picture.caption for name, picture in TRIBOLOGY_PICTURES.items()}
+    return {
+        "about": about,
+        "table": Table(tuple(rows[1:]), rows[0]),
+        "notes": [*lacking, *dict.fromkeys(sentences)],
+        "pictures": pictures_of(tribology_figures(found), captions, result.scene.title),
     }
 
 

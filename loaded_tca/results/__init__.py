@@ -3,6 +3,7 @@
 from loaded_tca.results.comparison import Comparison, compare_results
 from loaded_tca.results.mesh_cycle import MeshCycle, reached_edges
 from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.revolution import Revolution, Spectrum
 from loaded_tca.results.root_stress import RootStressMap
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.stress_below import StressBelow, stress_below
@@ -14,8 +15,10 @@ __all__ = [
     "Comparison",
     "MeshCycle",
     "PressureMap",
+    "Revolution",
     "RootStressMap",
     "Sensitivities",
+    "Spectrum",
     "StressBelow",
     "compare_results",
     "default_tolerances",

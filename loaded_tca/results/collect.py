@@ -67,7 +67,7 @@ def mesh_cycle(
     contacts = {(t, n, k): carried.contacts[t][n][order[k]] for t, n, k in np.ndindex(share.shape)}
     at_edges = {(t, n, k): at_rounded_edges.get((t, n, int(order[k]))) for t, n, k in contacts}
     moved = [one.pair for one in on_supports]
-    numbers, maps = _numbers_and_maps(moved or [pair] * share.shape[0], contacts, at_edges, share.shape)
+    numbers, maps = numbers_and_maps(moved or [pair] * share.shape[0], contacts, at_edges, share.shape)
     apart = np.isnan(numbers["contact_deformation"])
     numbers["normal_force"] = np.where(apart & ~np.isnan(share), 0.0, numbers["normal_force"])
     lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
@@ -119,7 +119,7 @@ def mesh_cycle(
     )
 
 
-def _numbers_and_maps(
+def numbers_and_maps(
     pairs: Sequence[GearPair],
     contacts: Mapping[Place, LoadedContact | None],
     at_edges: Mapping[Place, PeakAtEdge | None],
@@ -127,7 +127,16 @@ def _numbers_and_maps(
 ) -> tuple[dict[str, Array], dict[Place, PressureMap | None]]:
     """Arrays (torque, position, pair) of what a result has of each contact, by their names; its pressure maps.
 
-    ``pairs``: the gears as they stand under each torque.
+    Parameters
+    ----------
+    pairs : sequence of GearPair
+        The gears as they stand under each torque.
+    contacts : mapping
+        Of each place; None where a pair carries nothing.
+    at_edges : mapping
+        Peaks at rounded edges of each place; None where none is known.
+    shape : tuple of int
+        Of the arrays.
     """
     numbers: dict[str, Array] = {}
     maps: dict[Place, PressureMap | None] = dict.fromkeys(contacts)

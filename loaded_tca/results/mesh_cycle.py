@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import binary_dilation
 
 from loaded_tca.errors import InputError, require
@@ -45,6 +45,8 @@ from loaded_tca.unloaded.scan import edge_distances
 
 if TYPE_CHECKING:
     import xarray
+
+    from loaded_tca.tribology import Lubricant, Tribology
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -114,6 +116,84 @@ class MeshCycle(CycleNumbers):
             If a linear problem is not solved to its tolerance.
         """
         return sensitivities(self, keys)
+
+    def tribology(
+        self,
+        pinion_speed_rpm: ArrayLike | None = None,
+        lubricant: Lubricant | None = None,
+        roughness_um: Sequence[float] | None = None,
+        application_factor: float | None = None,
+        dynamic_factor: float | None = None,
+        friction: str | float | None = None,
+        bulk_temperature_C: float | None = None,
+        scuffing_load_stage: float | None = None,
+        permissible_film_ratio: float | None = None,
+    ) -> Tribology:
+        """Return loss, temperatures, films and safeties at one speed or several, with an oil and a roughness.
+
+        What is not given is taken from [operation], [lubricant] and ``roughness_Ra_um`` of the scene. Slices of the
+        contacts are found once: further speeds and oils are formulas on them.
+
+        Parameters
+        ----------
+        pinion_speed_rpm : float or (s,) array [1/min], optional
+            Several add the dimension ``speed``.
+        lubricant : loaded_tca.tribology.Lubricant, optional
+        roughness_um : (float, float) [um], optional
+            Ra of pinion and wheel.
+        application_factor, dynamic_factor : float, optional
+            K_A, K_v; default: of the scene, or 1. K_Hbeta and K_Halpha are in the contact analysis.
+        friction : {"ISO/TS 6336-22", "local", "Xu-Kahraman"} or float, optional
+            Mean coefficient of the standard, the default of cylindrical gears; of each slice after Schlenk or after Xu
+            and Kahraman; or a number.
+        bulk_temperature_C : float [C], optional
+            Of the teeth; default: computed, of cylindrical gears.
+        scuffing_load_stage : float, optional
+            Of the oil in the FZG test A/8.3/90, from 1 to 14.
+        permissible_film_ratio : float, optional
+            lambda_GFP.
+
+        Returns
+        -------
+        Tribology
+            What lacks an input raises a NotAskedError that names it, when it is asked for.
+
+        Raises
+        ------
+        InputError
+            With every value outside its range.
+
+        Warns
+        -----
+        AccuracyWarning
+            Where an extreme lies at an edge or moves with the positions, a pressure is cut at the cap, the bulk is
+            colder than the oil, or the pitch line velocity lies beyond the standards.
+
+        Examples
+        --------
+        >>> from loaded_tca import analyse, read_scene
+        >>> from loaded_tca.tribology import Lubricant
+        >>> changes = {"analysis.positions": 17, "analysis.torques_Nm": [130.0], "analysis.compliance": "contact"}
+        >>> result = analyse(read_scene("examples/scenes/mesh_cycle_spur.toml").with_changes(changes))
+        >>> oil = Lubricant(viscosity_40=220.0, viscosity_100=19.0, density_15=890.0, oil_temperature=80.0)
+        >>> tribology = result.tribology(1500.0, oil, (0.6, 0.6))
+        >>> tribology.loss_factor.shape, tribology.film_ratio.shape
+        ((1,), (1, 17, 3))
+        """
+        from loaded_tca.tribology import tribology_of  # which stands above results
+
+        return tribology_of(
+            self,
+            pinion_speed_rpm=pinion_speed_rpm,
+            lubricant=lubricant,
+            roughness_um=roughness_um,
+            application_factor=application_factor,
+            dynamic_factor=dynamic_factor,
+            friction=friction,
+            bulk_temperature_C=bulk_temperature_C,
+            scuffing_load_stage=scuffing_load_stage,
+            permissible_film_ratio=permissible_film_ratio,
+        )
 
     def to_dynamics(self) -> xarray.Dataset:
         """Return curves over the pitch and their Fourier coefficients in SI units, for models of gear dynamics.
@@ -215,6 +295,10 @@ class MeshCycle(CycleNumbers):
         """
         file = read_dataset(path)
         kind = file.attrs.get("kind")
+        if kind == "revolution":
+            raise InputError(
+                f"{path}: a whole revolution, not the result of a mesh cycle; read it with Revolution.load"
+            )
         if kind in ("study", "design"):
             reader = f"loaded_tca.studies.load_{kind}"
             raise InputError(f"{path}: a {kind}, not the result of a mesh cycle; read it with {reader}")
@@ -326,7 +410,7 @@ def edge_findings(result: MeshCycle) -> tuple[str, ...]:
         sentences.append(
             f"edge pressure {result.edge_pressure[at]:.4g} MPa at {1e-3 * torque:g} N m on {' + '.join(edges)} (pinion "
             f"diameter {2.0 * result.edge_radius[at]:.4g} mm, axial {result.edge_axial[at]:.4g} mm), where the pair "
-            f"carries {100.0 * result.load_share[at]:.2g} % of the torque; {elastic}, {accuracy}; "
+            f"carries {100.0 * result.load_share[at]:.3g} % of the torque; {elastic}, {accuracy}; "
             f"{remedy} {amount}{more}"
         )
     return tuple(sentences)

@@ -79,41 +79,52 @@ def warn_of_accuracy(
             for k, (number, loaded) in enumerate(zip(carried.pairs.tolist(), row, strict=True)):
                 if loaded is not None:
                     solved += 1
-                    place = _place(torque, angle, number)
+                    place = place_of(torque, angle, number)
                     at_rounding = [mesh_error] if (t, n, k) in large else []
-                    for reason in [*at_rounding, *_reasons(pair, grid, loaded)]:
+                    for reason in [*at_rounding, *reasons_of(pair, grid, loaded)]:
                         places.setdefault(reason, []).append(place)
-    sentences += [_at_places(reason, at, solved) for reason, at in places.items()]
-    turned = np.where(carried.rotation > 0.0, carried.rotation, math.inf)
-    twist = body_torsion * carried.torque[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
+    sentences += [at_places(reason, at, solved) for reason, at in places.items()]
+    sentences += rotation_reasons(pair, carried.torque, carried.rotation, body_torsion, load_sharing=load_sharing)
+    for sentence in sentences:
+        give_accuracy_warning(sentence, stacklevel=3)
+
+
+def rotation_reasons(
+    pair: GearPair, torques: Array, rotation: Array, body_torsion: float, *, load_sharing: bool = True
+) -> list[str]:
+    """Sentences on rotations (torque, position) [rad] by the load that are at a limit of the model."""
+    sentences = []
+    turned = np.where(rotation > 0.0, rotation, math.inf)
+    twist = body_torsion * torques[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
     if (share := float(twist.max())) > MOST_TORSION:
         bores = " and ".join(f"{bore:.4g}" for bore in pair.rigid_bores)
         sentences.append(kinds.BODY_TWIST.sentence(bores=bores, share=min(share, 1.0)))
-    deflection = float(np.nanmax(carried.rotation, initial=0.0)) * pair.base_radii[1]
+    deflection = float(np.nanmax(rotation, initial=0.0)) * pair.base_radii[1]
     if load_sharing and deflection > REACH * pair.module:
         sentences.append(kinds.DEFLECTION.sentence(deflection=deflection, reach=REACH))
-    for sentence in sentences:
-        give_accuracy_warning(sentence, stacklevel=3)
+    return sentences
 
 
 def warn_of_contacts(result: CycleNumbers, reason: str, where: Mask, stacklevel: int) -> None:
     """Give an AccuracyWarning with the number of contacts of a result, (torque, position, pair), that it concerns."""
     angles, pairs = result.path.pinion_angle, result.pair
-    places = [_place(result.torque[t], angles[n], pairs[k]) for t, n, k in np.argwhere(where).tolist()]
+    places = [place_of(result.torque[t], angles[n], pairs[k]) for t, n, k in np.argwhere(where).tolist()]
     if places:
         loaded = int(np.count_nonzero(result.load_share > 0.0))
-        give_accuracy_warning(_at_places(reason, places, loaded), stacklevel=stacklevel + 1)
+        give_accuracy_warning(at_places(reason, places, loaded), stacklevel=stacklevel + 1)
 
 
-def _place(torque: float, angle: float, number: int) -> str:
+def place_of(torque: float, angle: float, number: int) -> str:
+    """Torque [N mm], pinion angle [rad] and tooth pair of a contact in words."""
     return f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
 
 
-def _at_places(reason: str, places: Sequence[str], count: int) -> str:
+def at_places(reason: str, places: Sequence[str], count: int) -> str:
+    """A sentence with how many pressure maps of all it concerns, and the first of them."""
     return f"{reason} (at {len(places)} of {count} pressure maps; the first: {places[0]})"
 
 
-def warn_of_gears(scene: Scene, pair: GearPair) -> None:
+def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = False) -> None:
     """Give one AccuracyWarning for each reason why whole gears are not what the contact of two flanks says of them.
 
     Parameters
@@ -121,6 +132,8 @@ def warn_of_gears(scene: Scene, pair: GearPair) -> None:
     scene : Scene
     pair : GearPair
         Of the scene.
+    whole_revolution : bool
+        Whether the teeth stand at their own places in the analysis.
 
     Raises
     ------
@@ -129,6 +142,8 @@ def warn_of_gears(scene: Scene, pair: GearPair) -> None:
     """
     for sentence in [*scene.interferences(), *_odd_inputs(scene), *_small_clearances(scene, pair)]:
         give_accuracy_warning(sentence, stacklevel=3)
+    if scene.has_pitch_deviations and not whole_revolution:
+        give_accuracy_warning(kinds.PITCH_DEVIATIONS.sentence(), stacklevel=3)
     if scene.analysis.without_bodies:
         require_teeth(pair, scene.analysis.without_bodies)
     else:
@@ -176,7 +191,8 @@ def without_place(sentence: str) -> str:
     return sentence.split(" (at ")[0]
 
 
-def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
+def reasons_of(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
+    """Sentences on what limits the accuracy of one loaded contact."""
     solution = loaded.solution
     reasons = []
     if loaded.at_edge and not loaded.at_arc:

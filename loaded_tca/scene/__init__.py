@@ -8,8 +8,9 @@ module, with ``@family`` and its types over its class, and one line of import be
 
 # ruff: noqa: I001  -- the order of import is the order in which messages and documents name the families
 
-from loaded_tca.scene import cylindrical, bevel, face_milled
+from loaded_tca.scene import cylindrical, internal, bevel, face_milled
 from loaded_tca.scene.cylindrical import CylindricalScene
+from loaded_tca.scene.internal import InternalScene
 from loaded_tca.scene.bevel import BevelScene
 from loaded_tca.scene.face_milled import FaceMilledScene
 from loaded_tca.scene.parse import describe_keys
@@ -25,6 +26,7 @@ __all__ = [
     "ElasticMaterial",
     "FaceMilledScene",
     "FlankForm",
+    "InternalScene",
     "Load",
     "Measurement",
     "Modifications",
@@ -33,6 +35,7 @@ __all__ = [
     "cylindrical",
     "describe_keys",
     "face_milled",
+    "internal",
     "parse_scene",
     "read_scene",
     "scene_from_table",

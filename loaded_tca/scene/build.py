@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
-from loaded_tca.errors import named
+from loaded_tca.errors import named, require
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
@@ -15,7 +16,9 @@ from loaded_tca.flanks.spline import DEFAULT_POINTS, fitted, measured, smoothing
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
+from loaded_tca.pairs.tooth_deviations import ToothDeviations
 from loaded_tca.scene.flank_form import FITTED_DEGREE, FlankForm, Measurement
+from loaded_tca.scene.pitch import LARGEST_INDEX, Pitch
 from loaded_tca.scene.section import Section, as_table
 from loaded_tca.scene.sections import ElasticMaterial, GearSection
 from loaded_tca.tooth import ToothForm, ToothGeometry
@@ -27,8 +30,9 @@ def in_base_units(section: Section) -> dict[str, Any]:
 
     Examples
     --------
-    >>> in_base_units(ElasticMaterial(youngs_modulus_MPa=206000, poisson_ratio=0.3))
-    {'youngs_modulus': 206000.0, 'poisson_ratio': 0.3}
+    >>> from loaded_tca.scene import Load
+    >>> in_base_units(Load(pinion_torque_Nm=130.0))
+    {'pinion_torque': 130000.0}
     """
     return {
         without_unit(key): _scaled(value, UNITS[ending].factor) if (ending := ending_of(key)) else value
@@ -62,6 +66,31 @@ def build_rounding(gear: GearSection) -> EdgeRounding:
 def build_materials(materials: tuple[ElasticMaterial, ElasticMaterial]) -> tuple[Material, Material]:
     """Return the materials of both gears."""
     return Material(**in_base_units(materials[0])), Material(**in_base_units(materials[1]))
+
+
+def build_tooth_deviations(
+    pitch: Pitch | None, teeth: int, owner: str, module: float, tolerances: Callable[[int], tuple[float, float]]
+) -> ToothDeviations:
+    """Return the deviations of the teeth of a gear; InputError if one is larger than 0.05 modules.
+
+    ``tolerances`` has the single and the cumulative pitch tolerance [um] of a class.
+    """
+    if pitch is None:
+        return ToothDeviations(np.zeros(teeth))
+    with named(f"{owner}.pitch"):
+        index = UNITS["um"].factor * pitch.index(teeth, tolerances)
+    worst = int(np.abs(index).argmax())
+    limit = LARGEST_INDEX * module
+    require(
+        (
+            abs(index[worst]) <= limit,
+            f"{owner}.pitch: index deviation of tooth {worst}: found {1e3 * index[worst]:g} um; allowed up to "
+            f"{1e3 * limit:g} um, {LARGEST_INDEX} modules",
+        )
+    )
+    return ToothDeviations(
+        index, 0.5 * UNITS["um"].factor * pitch.runout_um, UNITS["deg"].factor * pitch.runout_phase_deg
+    )
 
 
 def described_gear(gear: Gear, form: FlankForm, owner: str, measured_side: int) -> Gear:
@@ -121,16 +150,16 @@ class DescribedTooth(ToothGeometry):
             if wanted.form == "bspline":
                 return fitted(flank, wanted.points or DEFAULT_POINTS, wanted.degree or FITTED_DEGREE)
             if wanted.measurement is not None and flank.side == self.measured_side:
-                data = build_topography(wanted.measurement)
+                data = build_topography(wanted.measurement, flank.frame.upwards)
                 counts = wanted.coefficients or smoothing_coefficients(data.radius.shape[:2], wanted.degree)
                 return measured(flank, data, degree=wanted.degree, coefficients=counts)
         return flank
 
 
-def build_topography(measurement: Measurement) -> Topography:
-    """Return the measured points, or deviations."""
+def build_topography(measurement: Measurement, upwards: int = 1) -> Topography:
+    """Return the measured points, or deviations; ``upwards`` is that of the frame of the flank."""
     values = in_base_units(measurement)
     notes = {"source": values["source"]}
     if measurement.x_mm is not None:
-        return MeasuredPoints(np.stack([values["x"], values["y"], values["z"]], axis=-1), notes)
-    return MeasuredDeviations(values["radius"], values["axial"], values["deviation"], notes)
+        return MeasuredPoints(np.stack([values["x"], values["y"], values["z"]], axis=-1) * (1, upwards, upwards), notes)
+    return MeasuredDeviations(values["radius"], upwards * np.asarray(values["axial"]), values["deviation"], notes)

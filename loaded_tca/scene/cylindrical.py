@@ -9,11 +9,12 @@ from typing import ClassVar, Literal
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
+from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, Whole, above_zero, key
@@ -195,7 +196,7 @@ class CylindricalScene(BlankScene):
             sense=sense,
         )
 
-    def _mounting(self, mesh: CylindricalMesh) -> Mounting:
+    def _mounting(self, mesh: CylindricalMesh | InternalMesh) -> Mounting:
         """Mounting errors, the misalignment in the plane of action as the axis error that makes it."""
         errors = in_base_units(self.mounting)
         width = common_face_width(mesh, self.mounting.axial_offset_mm)
@@ -209,6 +210,14 @@ class CylindricalScene(BlankScene):
             )
         )
         return Mounting(**errors)
+
+    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:
+        """Return f_pT and F_pT [um] times cos(alpha_t): from the reference circle to the line of action."""
+        mesh = self.mesh()
+        one = (mesh.pinion, mesh.wheel)[gear]
+        values = abs(one.teeth), one.normal_module, one.face_width, tolerance_class, one.helix_angle
+        tolerances, factor = flank_tolerances(*values), one.base_radius / one.reference_radius
+        return factor * tolerances.single_pitch, factor * tolerances.cumulative_pitch
 
     def active_starts(self) -> tuple[float, float]:
         """Return the roll lengths at which the active profiles of pinion and wheel start [mm]."""
@@ -285,14 +294,12 @@ class CylindricalScene(BlankScene):
         """Return centre distance, contact ratios and diameters."""
         mesh = self.mesh()
         path = mesh.path_of_contact
-        backlash, normal_backlash = _backlashes(mesh)
         return [
             ("working centre distance a_w [mm]", f"{mesh.working_centre_distance:.4f}"),
             ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
             ("base helix angle beta_b [deg]", f"{abs(math.degrees(mesh.pinion.base_helix_angle)):.4f}"),
             ("profile shift sum: given, without backlash", *(f"{value:.4f}" for value in _profile_shift_sums(mesh))),
-            ("backlash j_wt at the working circles [mm]", f"{backlash:.4f}"),
-            ("normal backlash j_bn [mm]", f"{normal_backlash:.4f}"),
+            *backlash_rows(mesh),
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
@@ -356,10 +363,14 @@ def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, 
     return section.form_factor, section.stress_correction_factor, helix
 
 
-def _backlashes(mesh: CylindricalMesh) -> tuple[float, float]:
+def backlash_rows(mesh: CylindricalMesh | InternalMesh) -> tuple[Row, Row]:
     """Backlash j_wt and j_bn [mm], zero where they are rounding."""
     rounding = abs(mesh.backlash) <= 1e-9 * mesh.pinion.normal_module
-    return (0.0, 0.0) if rounding else (mesh.backlash, mesh.normal_backlash)
+    along, normal = (0.0, 0.0) if rounding else (mesh.backlash, mesh.normal_backlash)
+    return (
+        ("backlash j_wt at the working circles [mm]", f"{along:.4f}"),
+        ("normal backlash j_bn [mm]", f"{normal:.4f}"),
+    )
 
 
 def _profile_shift_sums(mesh: CylindricalMesh) -> tuple[float, float]:

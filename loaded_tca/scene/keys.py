@@ -227,6 +227,33 @@ class List:
 
 
 @dataclass(frozen=True)
+class Either:
+    """A value of one of several kinds.
+
+    Examples
+    --------
+    >>> Either((Choice(("wheel",)), Whole(1, 9))).read(3)
+    3
+    """
+
+    kinds: tuple[Kind, ...]
+
+    @property
+    def allowed(self) -> str:
+        """All of them in words."""
+        return ", or ".join(kind.allowed for kind in self.kinds)
+
+    def read(self, value: Any) -> Any:
+        """Take what the first of them takes that does not refuse it."""
+        for kind in self.kinds:
+            try:
+                return kind.read(value)
+            except ValueError:
+                continue
+        raise _refusal(self, value)
+
+
+@dataclass(frozen=True)
 class Grid:
     """Numbers in lines of one length, as many lines and numbers as allowed."""
 

@@ -6,13 +6,18 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import product
 from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
-from loaded_tca.scene.build import build_rounding, described_gear, in_base_units
+from loaded_tca.pairs.tooth_deviations import ToothDeviations, ToothFlanks
+from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key, literal
+from loaded_tca.scene.lubrication import LubricantSection, Operation
+from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.section import (
     Rule,
     Section,
@@ -26,12 +31,21 @@ from loaded_tca.scene.section import (
     rule,
     subsection,
 )
-from loaded_tca.scene.sections import Analysis, ContactStandard, ElasticMaterial, GearSection, Load, Pair
+from loaded_tca.scene.sections import (
+    Analysis,
+    ContactStandard,
+    ElasticMaterial,
+    GearSection,
+    Load,
+    Pair,
+)
 from loaded_tca.scene.tolerance_class import scatter_of_class
 
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
 """Label and cells of a line of an overview."""
+_OF_FAMILIES = frozenset({"pair", "pair.type", "wheel", "wheel.teeth"})
+"""Keys whose change may make a scene one of another family or variant."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +68,10 @@ class Scene(Section, ABC):
         Of both gears; ``materials`` tells what holds for each.
     load : Load
     analysis : Analysis
+    operation : Operation or None
+    lubricant : LubricantSection or None
+    revolution : Revolution or None
+        Of whole revolutions; None: a turn of the wheel.
     """
 
     title: str = key(Line(), "stands over reports and plots", "")
@@ -66,6 +84,9 @@ class Scene(Section, ABC):
     )
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
+    operation: Operation | None = subsection(Operation, "speed and factors, for tribology", optional=True)
+    lubricant: LubricantSection | None = subsection(LubricantSection, "the oil, for tribology", optional=True)
+    revolution: Revolution | None = subsection(Revolution, "which pitches a whole revolution has", optional=True)
 
     vh_keys: ClassVar[tuple[str, str]]
     """Keys of the two mounting errors that a V-H check varies."""
@@ -110,7 +131,13 @@ class Scene(Section, ABC):
             )
             for place in ("material", "pinion.material", "wheel.material")
         ),
+        *REVOLUTION_RULES,
     )
+
+    @classmethod
+    def describes(cls, table: Mapping[str, Any]) -> bool:  # noqa: ARG003 (of families without variants)
+        """Whether a table is one of this class; asked of the variants of a family alone."""
+        return True
 
     @abstractmethod
     def mesh(self) -> Any:
@@ -210,6 +237,72 @@ class Scene(Section, ABC):
             wheel=described_gear(pair.wheel, self.wheel.flank, "wheel", side),
         )
         return described.rounded(build_rounding(self.pinion), build_rounding(self.wheel))
+
+    @property
+    def has_pitch_deviations(self) -> bool:
+        """Whether the teeth of a gear stand beside their places, or have flanks of their own."""
+        return any(gear.teeth_differ for gear in (self.pinion, self.wheel))
+
+    def tooth_flanks(self) -> ToothFlanks | None:
+        """Return which teeth have flanks of their own, and the gears with them; None if all are alike.
+
+        Raises
+        ------
+        InputError, GeometryError
+            As of :meth:`pair`, where flanks of single teeth cannot be made.
+        """
+        if not (self.pinion.tooth or self.wheel.tooth):
+            return None
+        numbered = [gear.kinds_of_teeth() for gear in (self.pinion, self.wheel)]
+        common = {"pinion.tooth": None, "wheel.tooth": None}
+        gears = {}
+        for (a, first), (b, second) in product(*(enumerate(changes) for _, changes in numbered)):
+            if (a, b) != (0, 0):
+                changes = {f"pinion.{name}": value for name, value in first.items()}
+                changes |= {f"wheel.{name}": value for name, value in second.items()}
+                gears[a, b] = self.with_changes(common | changes).pair()
+        return ToothFlanks((numbered[0][0], numbered[1][0]), gears)
+
+    def tooth_deviations(self, pair: GearPair) -> tuple[ToothDeviations, ToothDeviations]:
+        """Return index deviations and eccentricity of the teeth of pinion and wheel.
+
+        Parameters
+        ----------
+        pair : GearPair
+            Of the scene.
+
+        Raises
+        ------
+        InputError
+            If an index deviation is larger than 0.05 modules, or a tolerance class has no tolerances of the gear.
+        """
+        pinion, wheel = (
+            build_tooth_deviations(gear.pitch, teeth, name, pair.module, partial(self.pitch_tolerances, number))
+            for number, (name, gear, teeth) in enumerate(
+                zip(("pinion", "wheel"), (self.pinion, self.wheel), pair.teeth, strict=True)
+            )
+        )
+        return pinion, wheel
+
+    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:  # noqa: ARG002
+        """Return the single and the cumulative pitch tolerance of a gear [um], along the transverse line of action.
+
+        Parameters
+        ----------
+        gear : int
+            0 the pinion, 1 the wheel.
+        tolerance_class : int
+            Of ISO 1328-1:2013.
+
+        Raises
+        ------
+        InputError
+            Where the standard has none, as for bevel gears.
+        """
+        raise InputError(
+            f"tolerance_class: found {tolerance_class}; ISO 1328-1 has classes of cylindrical gears "
+            "alone; give index_um"
+        )
 
     def vh_steps(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Return three values of each key of ``vh_keys`` for a V-H check: none, and small errors of both signs.
@@ -392,7 +485,7 @@ class Scene(Section, ABC):
             scene.with_changes({"analysis.cells": (32, 32)})
         """
         # Sections without a change stay what they are, since they are checked; another family may have others.
-        table = contents(self) if {"pair", "pair.type"}.isdisjoint(changes) else as_table(self)
+        table = contents(self) if _OF_FAMILIES.isdisjoint(changes) else as_table(self)
         for path, value in changes.items():
             *sections, name = path.split(".")
             place = table
@@ -413,6 +506,9 @@ class Scene(Section, ABC):
 FAMILIES: dict[str, type[Scene]] = {}
 """Type of a gear pair, as files call it -> the scenes of its family; filled by ``family``."""
 
+VARIANTS: dict[type[Scene], dict[type[Scene], str]] = {}
+"""Class of a family -> its variants, which scenes of other keys are, and of what; filled by ``variant``."""
+
 SceneType = TypeVar("SceneType", bound=type[Scene])
 
 
@@ -421,6 +517,16 @@ def family(*types: str) -> Callable[[SceneType], SceneType]:
 
     def known(scene: SceneType) -> SceneType:
         FAMILIES.update(dict.fromkeys(types, scene))
+        return scene
+
+    return known
+
+
+def variant(scenes: type[Scene], about: str) -> Callable[[SceneType], SceneType]:
+    """Make a class known as a variant of a family, for the tables that it describes; ``about`` says when."""
+
+    def known(scene: SceneType) -> SceneType:
+        VARIANTS.setdefault(scenes, {})[scene] = about
         return scene
 
     return known
@@ -441,6 +547,7 @@ def scene_from_table(table: Mapping[str, Any]) -> Scene:
         scenes = FAMILIES[Choice(tuple(FAMILIES)).read(kind)]  # type: ignore[index]
     except ValueError as refused:
         raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
+    scenes = next((one for one in VARIANTS.get(scenes, {}) if one.describes(table)), scenes)
     values, problems = check(scenes, table)
     if problems:
         raise InputError(problems)

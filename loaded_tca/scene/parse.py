@@ -9,20 +9,20 @@ import os
 import re
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
 from loaded_tca.scene.keys import Key, literal, shown, shown_key
-from loaded_tca.scene.model import FAMILIES, Scene, scene_from_table
+from loaded_tca.scene.model import FAMILIES, VARIANTS, Scene, scene_from_table
 from loaded_tca.scene.section import Section, Subsection, entries
 
 LARGEST_FILE = 2**21
 """Bytes of a scene file; a full one has about 5000, one with two measured flanks of 100 x 100 points a million."""
 
-LEVELS_WITH_FILES = 3
+LEVELS_WITH_FILES = 4
 """Parts of the longest key that names a file."""
 
 MOST_DOTS = 2000
@@ -109,9 +109,11 @@ def _with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[
     for name, value in table.items():
         key = (*section, name)
         with_files[name] = value
-        if isinstance(value, dict) and len(key) < LEVELS_WITH_FILES:
+        tables = isinstance(value, list) and all(isinstance(one, dict) for one in value)
+        if (isinstance(value, dict) or tables) and len(key) < LEVELS_WITH_FILES:
             try:
-                with_files[name] = _with_files_from(folder, value, key)
+                inner = [_with_files_from(folder, one, key) for one in (value if tables else [value])]
+                with_files[name] = inner if tables else inner[0]
             except InputError as error:
                 problems += error.problems
         elif name == "file" and isinstance(value, str):
@@ -183,6 +185,11 @@ def describe_keys() -> str:
         for path, (section, about) in table.items():
             if path and path not in shared:
                 lines += _section_lines(path, section, f"{about} ({kinds})")
+        for own, when in VARIANTS.get(scene, {}).items():
+            of_family = {section for section, _ in table.values()}
+            for path, (section, about) in _sections(own, "", {}):
+                if path and section not in of_family:
+                    lines += _section_lines(path, section, f"{about} ({when})", {})
     for path, keys_of in shared.items():
         lines += _section_lines(path, *keys_of)
     return "\n".join(lines).strip() + "\n"
@@ -192,7 +199,7 @@ Found = tuple[type[Section], str]
 """A section and what it is about."""
 
 
-def _sections(section: type[Section], path: str) -> Iterator[tuple[str, Found]]:
+def _sections(section: type[Section], path: str, same_as: Mapping[str, str] = SAME_AS) -> Iterator[tuple[str, Found]]:
     """Path of every section -> what it is, the whole scene first."""
     if not path:
         yield "", (section, "Above all sections")
@@ -200,14 +207,16 @@ def _sections(section: type[Section], path: str) -> Iterator[tuple[str, Found]]:
         if isinstance(entry, Subsection):
             inner = f"{path}.{name}" if path else name
             yield inner, (entry.section, entry.about)
-            if inner not in SAME_AS:
-                yield from _sections(entry.section, inner)
+            if inner not in same_as:
+                yield from _sections(entry.section, inner, same_as)
 
 
-def _section_lines(path: str, section: type[Section], about: str) -> Iterator[str]:
+def _section_lines(
+    path: str, section: type[Section], about: str, same_as: Mapping[str, str] = SAME_AS
+) -> Iterator[str]:
     yield from ("", f"### `[{path}]`: {about}" if path else f"### {about}", "")
-    if path in SAME_AS:
-        yield f"Keys as in `[{SAME_AS[path]}]`."
+    if path in same_as:
+        yield f"Keys as in `[{same_as[path]}]`."
         return
     yield from ("| key | allowed | default | meaning |", "|---|---|---|---|")
     for name, (_, entry) in entries(section).items():

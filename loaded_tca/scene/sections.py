@@ -9,6 +9,9 @@ from dataclasses import dataclass
 from math import hypot, nan, prod
 from typing import ClassVar
 
+import numpy as np
+
+from loaded_tca.arrays import Indices
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.modification import NO_POLYNOMIAL
 from loaded_tca.flanks.rounding import LEAST_RADIUS
@@ -17,7 +20,8 @@ from loaded_tca.material import LARGEST_RATIO_IN_BENDING, SOFTEST, Material, con
 from loaded_tca.reference import iso6336
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, ZeroOr, above_zero, key
-from loaded_tca.scene.section import Rule, Section, subsection
+from loaded_tca.scene.pitch import Pitch
+from loaded_tca.scene.section import Rule, Section, Tables, subsection
 from loaded_tca.scene.shafts import ShaftSection
 from loaded_tca.scene.supports import SupportSection
 
@@ -177,6 +181,28 @@ class ElasticMaterial(Section):
     max_pressure_MPa: float | None = key(
         above_zero(1e7), "pressure at which the surface yields (plastic cap)", None, "elastic"
     )
+    conductivity_W_mK: float = key(above_zero(1000.0), "conductivity of heat, for flash temperatures", 50.0)
+    density_kg_m3: float = key(above_zero(30000.0), "density, likewise", 7850.0)
+    heat_capacity_J_kgK: float = key(above_zero(10000.0), "heat capacity, likewise", 484.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tooth(Section):
+    """[[pinion.tooth]], [[wheel.tooth]]: flanks of one tooth, instead of those of the gear."""
+
+    number: int = key(Whole(0, 9999), "number of the tooth, from 0")
+    modifications: Modifications | None = subsection(
+        Modifications, "material removed from its flanks, instead of that of the others", optional=True
+    )
+    flank: FlankForm | None = subsection(
+        FlankForm, "how its flanks are described, instead of those of the others", optional=True
+    )
+
+    @property
+    def own(self) -> dict[str, Section]:
+        """What it has instead of the gear, by the names of the gear's sections."""
+        sections = {"modifications": self.modifications, "flank": self.flank}
+        return {name: section for name, section in sections.items() if section is not None}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,6 +222,12 @@ class GearSection(Section):
     side_rounding_mm: float = key(
         ROUNDING_mm, "radius of the edges at both ends of the face, up to 0.3 normal modules; 0: sharp", 0.0
     )
+    roughness_Ra_um: float | None = key(
+        above_zero(10.0),
+        "arithmetic mean roughness Ra of the flanks, for tribology",
+        None,
+        "no film ratio, no friction",
+    )
     modifications: Modifications = subsection(Modifications, "material removed from the flanks")
     flank: FlankForm = subsection(FlankForm, "how the flanks are described")
     material: ElasticMaterial | None = subsection(
@@ -207,6 +239,31 @@ class GearSection(Section):
     support: SupportSection | None = subsection(
         SupportSection, "how far the gear gives way as a whole; without it, rigid", optional=True
     )
+    pitch: Pitch | None = subsection(
+        Pitch, "where the teeth stand beside their nominal places, in whole revolutions", optional=True
+    )
+    tooth: tuple[Tooth, ...] | None = key(
+        Tables(Tooth, 0, 10000),
+        "teeth whose flanks differ from the others, in whole revolutions: `[[pinion.tooth]]`, `[[wheel.tooth]]` with "
+        "`number`, from 0, and sections `modifications` or `flank` in place of those of the gear",
+        None,
+        "all teeth have the flanks of the gear",
+    )
+
+    @property
+    def teeth_differ(self) -> bool:
+        """Whether a tooth has a place or flanks of its own."""
+        return bool(self.tooth) or (self.pitch is not None and self.pitch.is_given)
+
+    def kinds_of_teeth(self) -> tuple[Indices, list[dict[str, Section]]]:
+        """Kind of every tooth (teeth,), 0 where it is as the others, and the sections that each kind has of its own."""
+        kinds: list[dict[str, Section]] = [{}]
+        of_teeth = np.zeros(abs(self.teeth), dtype=int)
+        for tooth in self.tooth or ():
+            if tooth.own not in kinds:
+                kinds.append(tooth.own)
+            of_teeth[tooth.number] = kinds.index(tooth.own)
+        return of_teeth, kinds
 
 
 @dataclass(frozen=True, kw_only=True)

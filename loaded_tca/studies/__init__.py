@@ -7,9 +7,11 @@ variant, writes down each one that is done, and goes on where it stopped when it
 from loaded_tca.studies.design import DesignModel, DesignResult, load_design, optimise, robustness
 from loaded_tca.studies.ranking import figures, rank_combinations, rank_variants, study_summary
 from loaded_tca.studies.read import parse_study, read_study, vh_study
+from loaded_tca.studies.revolution import revolution_figures
 from loaded_tca.studies.rows import load_study
 from loaded_tca.studies.run import process_pool, run_study
 from loaded_tca.studies.study import Study
+from loaded_tca.studies.tribology import tribology_figures
 
 __all__ = [
     "DesignModel",
@@ -24,8 +26,10 @@ __all__ = [
     "rank_combinations",
     "rank_variants",
     "read_study",
+    "revolution_figures",
     "robustness",
     "run_study",
     "study_summary",
+    "tribology_figures",
     "vh_study",
 ]

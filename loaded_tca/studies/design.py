@@ -94,7 +94,7 @@ def optimise(
         From 0 to 100.
     figure : str
         "span_um", "smooth_span_um" (which has derivatives everywhere), "mean_transmission_error_um", "pressure_MPa",
-        "edge_pressure_norm_MPa", "face_load_factor"; with ``analysis.root_stress`` also
+        "edge_pressure_norm_MPa", "face_load_factor", "loss_factor"; with ``analysis.root_stress`` also
         "pinion_root_tension_norm_MPa" and "wheel_root_tension_norm_MPa".
     starts : int
         Designs to start from: that of the scene, then points of a scrambled Sobol sequence within the ranges.

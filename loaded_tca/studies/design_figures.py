@@ -20,6 +20,7 @@ from loaded_tca.compliance import RootStress
 from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.held_contacts import HeldContacts
 from loaded_tca.loaded.sensitivity import LoadedGrid
+from loaded_tca.pairs.kinematics import surface_motions
 from loaded_tca.results.face_slopes import face_load_factor_slopes
 from loaded_tca.results.figure_slopes import EXPONENT, pressure_norm
 from loaded_tca.results.files import FilePath, Part, read_dataset, write_dataset
@@ -61,6 +62,28 @@ def face_load_factor(_: Roots, held: HeldContacts, positions: Positions) -> tupl
     factor = float(load_factors(held.pair, path, (closed,), math.nan)[0][0])
     slopes = face_load_factor_slopes(held.pair, path, closed)
     return factor, [one for row in slopes for one in row if one is not None]
+
+
+def loss_factor(_: Roots, held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+    """Load loss factor H_VL, the mean over the positions, and its derivatives: the sliding velocities of the cells."""
+    grids = [grid for position in positions for grid in position]
+    origins, axes = (
+        np.array([getattr(grid.separation, name) for grid in grids]).reshape(-1, *shape)
+        for name, shape in (("origin", (3,)), ("axes", (3, 3)))
+    )
+    pinion, wheel = surface_motions(held.pair, origins, axes)
+    sliding, number, loss, slopes = pinion.less(wheel, held.pair.ratio), 0, 0.0, []
+    for position in positions:
+        forces = [grid.pressure * math.prod(grid.separation.spacing) for grid in position]
+        levers = [abs(grid.contact.pinion_lever) for grid in position]
+        torque = sum(lever * float(force.sum()) for lever, force in zip(levers, forces, strict=True))
+        for grid, force in zip(position, forces, strict=True):
+            across = sliding.across(number, grid.separation.y)
+            speed = np.hypot(across, sliding.along(number, grid.separation.x)[:, None])
+            slopes.append(speed / (torque * len(positions)))
+            loss += float((force * slopes[-1]).sum())
+            number += 1
+    return loss, slopes
 
 
 def root_tension(gear: int, roots: Roots, held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
@@ -208,6 +231,7 @@ FIGURES: dict[str, FigureOfErrors | FigureOfForces] = {
         "MPa", "norm of the pressure beside the ends of the flanks", edge_pressure, is_confirmed=False
     ),
     "face_load_factor": FigureOfForces("1", "K_Hbeta", face_load_factor),
+    "loss_factor": FigureOfForces("1", "load loss factor H_VL", loss_factor, is_confirmed=False),
     **{
         f"{name}_root_tension_norm_MPa": FigureOfForces(
             "MPa", f"root tension of the {name}, smooth maximum", partial(root_tension, gear), is_of_roots=True

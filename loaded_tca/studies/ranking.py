@@ -24,6 +24,7 @@ from loaded_tca.scene import Scene
 from loaded_tca.scene.keys import did_you_mean, nearest
 from loaded_tca.scene.parse import parse_scene
 from loaded_tca.scene.section import as_table
+from loaded_tca.studies.tribology import tribology_figures
 
 if TYPE_CHECKING:
     import pandas
@@ -228,7 +229,8 @@ def figures(scene: Scene) -> dict[str, Array]:
     Returns
     -------
     dict of str to (torques,) array
-        By the names of :meth:`MeshCycle.key_figures`, which end in their unit; NaN: not known.
+        By the names of :meth:`MeshCycle.key_figures`, which end in their unit; NaN: not known. Scenes with [operation]
+        or [lubricant] have those of :func:`tribology_figures`, too.
 
     Raises
     ------
@@ -248,9 +250,10 @@ def figures(scene: Scene) -> dict[str, Array]:
 
 
 def figures_of(result: MeshCycle) -> dict[str, Array]:
-    """Key figures of a result, (torques,) each."""
+    """Key figures of a result, (torques,) each, and those of tribology where its scene says how the pair runs."""
     rows = result.key_figures()
-    return {name: np.array([row[name] for row in rows], dtype=float) for name in rows[0]}
+    figures = {name: np.array([row[name] for row in rows], dtype=float) for name in rows[0]}
+    return figures | tribology_figures(result)
 
 
 MAIN = declared(lambda figure: figure.is_scattered)

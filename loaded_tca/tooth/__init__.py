@@ -11,6 +11,7 @@ from loaded_tca.tooth.families import (
     ToothGeometry,
 )
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, RackFillet
+from loaded_tca.tooth.ring import InvertedPlanes, RingFillet, RingTooth
 from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
 from loaded_tca.tooth.surface import PATCHES, ToothSurface, TriangleMesh
 
@@ -23,8 +24,11 @@ __all__ = [
     "FaceMilledTooth",
     "Fillet",
     "FilletCurve",
+    "InvertedPlanes",
     "RackFillet",
     "Resolution",
+    "RingFillet",
+    "RingTooth",
     "RootCone",
     "RootCylinder",
     "Sections",

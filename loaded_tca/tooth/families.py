@@ -25,6 +25,7 @@ from loaded_tca.gears import BevelGear, CylindricalGear, FaceMilledGear
 from loaded_tca.gears.cylindrical_mesh import ActiveProfile
 from loaded_tca.gears.face_milled import BLADE_SIGNS
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, RackFillet
+from loaded_tca.tooth.held import Bore, Held
 from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
 
 
@@ -44,6 +45,8 @@ class ToothForm:
     fillet : Fillet
     largest_that_fits : bool
         Whether an arc that does not fit into the space is made smaller, instead of an error.
+    held : Held
+        What the gear is held by.
     """
 
     teeth: int
@@ -52,6 +55,7 @@ class ToothForm:
     root_radius: Callable[[Array], Array]
     fillet: Fillet
     largest_that_fits: bool = False
+    held: Held = Bore()
 
     def with_arc(self, radius: float) -> ToothForm:
         """The form with arcs of a radius [mm], at the mean section, instead of the fillet that belongs to the gear.

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize.elementwise import find_root
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank
-from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.tooth.sections import Sections
 
 SAME_SECTION = 1e-9
@@ -235,6 +236,20 @@ def _into_space(tangent: Array) -> Array:
     return np.stack([tangent[..., 1], -tangent[..., 0]], axis=-1)
 
 
+class CutRoot(Protocol):
+    """A gear whose fillets are the curves that its cutter leaves, as :class:`CylindricalGear` has them."""
+
+    @property
+    def is_undercut(self) -> bool:
+        """Whether flank and fillet meet in a corner."""
+
+    def root_fillet(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Radii [mm] and half thickness angles [rad] (points,), from the flank to the root circle."""
+
+    def root_fillet_tangent(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Radial and circumferential parts (points,) of the unit tangents, towards the root circle."""
+
+
 @dataclass(frozen=True)
 class RackFillet(Fillet):
     """Trochoid that the rounded tip of the basic rack cuts into a cylindrical gear.
@@ -251,7 +266,7 @@ class RackFillet(Fillet):
     ISO 53:1998 (basic rack); :meth:`CylindricalGear.root_fillet`.
     """
 
-    gear: CylindricalGear
+    gear: CutRoot
 
     def curve(self, profile: Profile, root_radius: Array, count: int) -> FilletCurve:  # noqa: ARG002 (of the gear)
         """The trochoid of the gear, turned to each section."""

@@ -23,7 +23,15 @@ from loaded_tca.arrays import Array
 
 
 class Sections(ABC):
-    """A family of sections, told apart by a lengthwise ``coordinate``; all arrays broadcast against each other."""
+    """A family of sections, told apart by a lengthwise ``coordinate``; all arrays broadcast against each other.
+
+    Attributes
+    ----------
+    outwards : int
+        +1 where teeth point away from the axis, -1 where they point towards it. In the images they point outwards.
+    """
+
+    outwards: int = 1
 
     @abstractmethod
     def coordinate(self, rho: Array, z: Array) -> Array:
@@ -43,7 +51,11 @@ class Sections(ABC):
 
     @abstractmethod
     def radius_beyond(self, radius: Array, coordinate: Array, distance: Array) -> Array:
-        """Radius of the image after a distance along the meridian, away from the axis [mm]."""
+        """Radius of the image after a distance along the meridian, away from the root [mm]."""
+
+    def in_true_size(self, radius: Array, coordinate: Array) -> Array:  # noqa: ARG002 (images have the true size)
+        """Radius in a plane in which one section has its true size [mm], nearly so where it is no plane."""
+        return radius
 
 
 def in_space(sections: Sections, radius: Array, angle: Array, coordinate: Array) -> Array:

@@ -175,10 +175,16 @@ def tooth_cycle(pair: GearPair) -> ToothCycle:
     return ToothCycle(pair, int(index[0]), *height_and_slope(pair, index * (pair.pitch / SAMPLES)))
 
 
-def reach(pair: GearPair) -> tuple[float, float]:
+def reach(pair: GearPair, farthest: float = REACH) -> tuple[float, float]:
     """Own pinion angles [rad] between which a tooth pair can be within reach of the leading one, and a step more.
 
     A coarse scan of the flank is enough: it misses the height of the first touch by far less than the reach.
+
+    Parameters
+    ----------
+    pair : GearPair
+    farthest : float
+        Initial separation up to which a pair is within reach, as a length at r_b2 over the module.
 
     Raises
     ------
@@ -189,7 +195,7 @@ def reach(pair: GearPair) -> tuple[float, float]:
     height, common = _scan(pair, range(first, last + 1))
     while True:
         best = height.max(axis=0)
-        near = (np.isfinite(height) if np.isfinite(best).any() else common) & (height >= best - REACH * pair.module)
+        near = (np.isfinite(height) if np.isfinite(best).any() else common) & (height >= best - farthest * pair.module)
         if not near[[0, -1]].any():
             break
         first, last = first - 1, last + 1

@@ -11,6 +11,7 @@ from loaded_tca.errors import InputError
 from tests.plots import test_design, test_first_order, test_loaded_vh_check
 from tests.samples.pictures import told
 from tests.samples.results import result
+from tests.samples.tribology import known
 
 CALLED_WITH = {
     "result": lambda: [result("mesh_cycle_spur", positions=3, torques=(40.0, 130.0))],
@@ -19,6 +20,7 @@ CALLED_WITH = {
     "design": lambda: [test_design.design()],
 }
 OWN = {
+    "plot_over_flank": lambda: [known(CALLED_WITH["result"]()[0]), "pressure"],
     "plot_all": lambda: [CALLED_WITH["result"]()[0], "nowhere"],
     "plot_first_order_scatter": lambda: [test_first_order.found(), test_first_order.study()],
     "plot_loaded_vh_check": lambda: [test_loaded_vh_check.study(), dict(enumerate([test_loaded_vh_check.cycle()] * 6))],

@@ -15,7 +15,7 @@ PAGE = (ROOT / "docs" / "guide" / "scene_files.md").read_text(encoding="utf-8")
 
 
 def test_shortest_scenes_are_scenes():
-    cylindrical, bevel, blank, face_milled = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    cylindrical, bevel, blank, face_milled, _ = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     assert parse_scene(cylindrical).hands[0] == "right"
     assert parse_scene(bevel).contact_sides == ("concave", "convex")
     rest = "[pinion]" + bevel.partition("[pinion]")[2]
@@ -51,6 +51,18 @@ def test_reference_describes_each_section_once_for_each_family():
     assert len(set(titles)) == len(titles)
     for name in ("pair", "pinion", "mounting"):
         assert sum(f"`[{name}]`" in title for title in titles) == len({*FAMILIES.values()})
-    for name in ("wheel", "pinion.modifications", "material", "load", "analysis"):
+    for name in ("pinion.modifications", "material", "load", "analysis", "wheel.cutter"):
         assert sum(f"`[{name}]`" in title for title in titles) == 1
+    assert sum("`[wheel]`" in title for title in titles) == 2  # that of rings, too
     assert all(any(f"`{name}`" in title for title in titles) for name in FAMILIES)
+
+
+def test_measured_gear_of_the_guide_has_the_allowance_that_it_says():
+    """The high-speed stage of the 5 MW gearbox, whose report has the span 154.045 mm at A_sn = -0.130 mm."""
+    *_, measured = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    common = 'pair = { type = "cylindrical", normal_module_mm = 14.0, helix_angle_deg = 10.0 }\n'
+    rest = "[wheel]\nteeth = 95\nface_width_mm = 360.0\nprofile_shift = 0.6691\n[load]\npinion_torque_Nm = 1000.0\n"
+    material = "[material]\nyoungs_modulus_MPa = 206000.0\npoisson_ratio = 0.3\n"
+    gear = parse_scene(common + measured + rest + material).mesh().pinion
+    assert round(gear.thickness_allowance, 3) == -0.130
+    assert round(2.0 * gear.tip_radius, 2) == 380.75

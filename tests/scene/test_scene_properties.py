@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.scene import Scene, parse_scene, read_scene, scene_from_table
-from loaded_tca.scene.keys import Choice, Grid, Key, Line, List, Number, Whole, ZeroOr
+from loaded_tca.scene.keys import Choice, Either, Grid, Key, Line, List, Number, Whole, ZeroOr
 from loaded_tca.scene.model import FAMILIES
 from loaded_tca.scene.section import Subsection, Tables, as_table, entries
 
@@ -170,6 +170,10 @@ def sound_values(kind):
         return st.integers(kind.low, kind.high)
     if isinstance(kind, Choice):
         return st.sampled_from(kind.options)
+    if isinstance(kind, Either):
+        return st.one_of(*map(sound_values, kind.kinds))
+    if isinstance(kind, Tables):
+        return st.lists(sound_tables(kind.section), max_size=2)
     if isinstance(kind, Line):
         return st.text(st.characters(exclude_categories=["Cc", "Cs", "Zl", "Zp"]), max_size=kind.longest)
     if isinstance(kind, Grid):

@@ -175,6 +175,18 @@ def test_samples_of_distributions_are_those_of_a_study_about_their_medians():
     assert_allclose(half, [1.0 + 0.5 * (value - 1.0) for value in drawn])
 
 
+def test_gears_of_a_tolerance_class_deviate_from_the_slopes_of_the_design():
+    """f_HbetaT of class 6: 9.0 um of the pinion, a standard deviation of 3 um; two of four samples are below."""
+    sloped = SCENE.with_changes({SLOPE: 4.0})
+    one = model(scene=sloped, scatter=sloped.scatter_of_class(6, deviations=True), samples=4, seed=3)
+    pinion, wheel = "pinion.modifications.helix_slope_um", SLOPE
+    assert sorted(each[pinion] > 0.0 for each in one.deviations) == [False, False, True, True]
+    assert max(abs(each[pinion]) for each in one.deviations) < 9.0
+    design = dict(zip(one.keys, one.start.tolist(), strict=True))
+    slopes = [value_at(scene, wheel) for scene in one.scenes(design)]
+    assert_allclose(slopes, [4.0 + each[wheel] for each in one.deviations], rtol=1e-12)
+
+
 def test_root_tension_is_designed_and_limited():
     """A helix slope takes the load off the end of the face to which the misalignment brings it."""
     scene, name = SCENE.with_changes({"analysis.root_stress": True}), "pinion_root_tension_norm_MPa"

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.tooth import ApexSpheres, TransversePlanes
+from loaded_tca.tooth import ApexSpheres, InvertedPlanes, TransversePlanes
 
-FAMILIES = [TransversePlanes(), ApexSpheres()]
+FAMILIES = [TransversePlanes(), ApexSpheres(), InvertedPlanes(40.0)]
 ROUNDING = 1e-13  # of a few functions: 6e-16 seen, at lengths near zero 3e-15 mm
 DIFFERENCE = 1e-8  # central differences over 1e-4 mm
 
@@ -64,3 +64,12 @@ def test_circle_on_a_sphere_has_a_circle_as_image():
     # the square of a length in squared mm: a place to 1e-9 of the distance, 2e-24 seen
     assert residual[0] < 1e-18 * distance**4
     assert np.isfinite(solution).all()
+
+
+def test_planes_of_a_ring_have_their_roots_inside_and_their_tips_outside():
+    planes = InvertedPlanes(40.0)
+    image = planes.radius(np.array([50.0, 40.0, 30.0]), np.zeros(3))
+    assert (np.diff(image) > 0.0).all()
+    assert image[1] == 40.0
+    assert_allclose(planes.in_true_size(image, np.zeros(3)), [50.0, 40.0, 30.0])
+    assert np.isfinite(planes.point(np.array(0.0), np.array(0.0))[0])  # the middle of the image is infinitely far

@@ -6,15 +6,21 @@ off by one. The two angles are those of a duplex taper with the unrounded c_ham 
 
 SpyGO: m_et 4.169, b 36.83, Sigma 95, beta_m 35, k_hap 1, k_hfp 1.25, x_hm1 0.05, standard taper. Its machine centre to
 back of the pinion, -0.001306 mm, brings the apex of the root cone to the machine centre, so it is t_zR1.
+
+The same sample as a scene of its own (examples/scenes/spiral_bevel_blank.toml), whose contact ratios and forces
+ISO/TR 10300-30:2024 prints.
 """
 
 from collections.abc import Iterable
 from math import degrees, radians
+from pathlib import Path
 
 from loaded_tca.gears.bevel_blank import BevelBlank, crown_gear_factors
 from loaded_tca.gears.blank_gear import BlankGear
+from loaded_tca.scene import read_scene
 from validation.table import Row
 
+EXAMPLE = Path(__file__).parents[2] / "examples" / "scenes" / "spiral_bevel_blank.toml"
 SAMPLE = "ISO 23509 14 x 39"
 SPYGO = "SpyGO 19 x 62"
 LENGTH, ANGLE, MODULE = 1e-3, 1e-3, 1e-4  # a unit of the last printed digit
@@ -65,7 +71,19 @@ def spygo() -> BevelBlank:
 
 def rows() -> list[Row]:
     """Compare every printed number."""
-    return [*_sample_rows(), *_taper_rows(), *_spygo_rows()]
+    return [*_sample_rows(), *_taper_rows(), *_spygo_rows(), *_scene_rows()]
+
+
+def _scene_rows() -> Iterable[Row]:
+    """The sample as a scene: contact ratios and forces of ISO/TR 10300-30:2024, sample 1 (T1 300 N m)."""
+    scene = read_scene(EXAMPLE)
+    blanks = scene.blanks()
+    profile, lengthwise = blanks.virtual_contact_ratios
+    yield _row("eps_va, scene", 1.165, profile, LENGTH)
+    yield _row("eps_vb, scene", 1.227, lengthwise, LENGTH)
+    forces = {label: float(cells[0]) for label, *cells in scene.force_rows(scene.torques)}
+    yield _row("F_mt, scene [N]", 10925.3, forces["mean tangential force F_mt [N]"], 0.1)
+    yield _row("F_n, scene [N]", 14193.3, forces["normal force F_n [N]"], 0.1)
 
 
 def _sample_rows() -> Iterable[Row]:

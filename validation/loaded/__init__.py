@@ -1,6 +1,7 @@
 """The loaded mesh cycle by itself; ``validation.calculix`` has it beside finite elements.
 
 - ``limits``: balance, energy, no load, conjugate teeth, published stiffnesses;
+- ``revolution``: whole revolutions beside one pitch, flanks really turned, eccentric axes, stiffnesses of single teeth;
 - ``cut_contacts``: scatter of contacts that end at faces and tips;
 - ``mesh_stiffness``: beside ISO 6336-1, over helix angle, bore, face width, torque and crowning;
 - ``bending_line``: a helical pair whose pressure leaves the axis of its grid, beside repeated analyses;
@@ -8,6 +9,7 @@
   worth, over random scenes of all families, in minutes;
 - ``face_ends``: K_Hbeta of half-spaces at sharp face ends, beside fine cells, in minutes;
 - ``local_term``: how far the local term of a tooth reaches along the face;
+- ``ring_teeth``: deflection and root stress of teeth of rings beside plane-strain finite elements of their own;
 - ``root_stress``: tooth root stress beside a plane reference, convergence, time and memory of its model;
 - ``root_stress_families``: that of helical, bevel and face-milled gears beside finer meshes, in minutes;
   ``root_stress_models``: what both share;

@@ -128,7 +128,8 @@ def plane_curves(gear: Gear, density: MeshDensity, radii: Array, tooth: int = 0)
     """
     nodes = gear_nodes(gear, density, OUTLINE)
     layout, middle = nodes.layout, nodes.radius.shape[2] // 2
-    mesh = discretise(polar(nodes.radius[:, :, middle], nodes.angle[:, :, middle]), layout.elements)
+    radius = nodes.sections.in_true_size(nodes.radius[:, :, middle], nodes.coordinate[middle])
+    mesh = discretise(polar(radius, nodes.angle[:, :, middle]), layout.elements)
     factor, _ = factorised(mesh, gear.material, mesh.number[:, 0])
     found = factor.solve(_plane_loads(gear, nodes, mesh, radii, tooth))
     which = {tuple(place): n for n, place in enumerate(mesh.lowest.tolist())}
@@ -162,8 +163,9 @@ def _plane_loads(gear: Gear, nodes, mesh, radii: Array, tooth: int) -> Array:
     normal = np.stack(
         [radial * np.cos(theta) - hoop * np.sin(theta), radial * np.sin(theta) + hoop * np.cos(theta)], axis=-1
     )
-    edge = np.minimum((density.flank * (radii - radius[0]) / (radius[-1] - radius[0])).astype(int), density.flank - 1)
-    part = density.flank * (radii - radius[0]) / (radius[-1] - radius[0]) - edge
+    height = (nodes.sections.radius(radii, 0.0 * radii) - radius[0]) / (radius[-1] - radius[0])
+    edge = np.minimum((density.flank * height).astype(int), density.flank - 1)
+    part = density.flank * height - edge
     shares = np.stack([(1.0 - part) * (1.0 - 2.0 * part), 4.0 * part * (1.0 - part), part * (2.0 * part - 1.0)])
     loads = np.zeros((*mesh.points.shape, len(radii)))
     for n, share in enumerate(shares):

@@ -1,6 +1,7 @@
 """Unloaded contact of cylindrical pairs against closed forms, published tables and other methods.
 
 - ``involute_pairs``: unmodified, aligned pairs have no transmission error;
+- ``internal_pairs``: random pairs of a pinion and a ring, conjugate without modifications, certified with them;
 - ``reduced_tca_misalignment``, ``reduced_tca_tables``: the helical pair 40/37 of the reduced-TCA dissertation;
 - ``mounting_errors``, with ``mounting_error_pairs``, ``mounting_error_trends``, ``spur_trends``, ``helical_trends`` and
   ``mounting_error_figures``: what each error does, and which statements and numbers of the dissertation hold; writes a

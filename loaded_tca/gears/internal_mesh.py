@@ -1,0 +1,451 @@
+"""The mesh of a pinion and a ring gear on parallel axes: working circles, active profiles, interferences (ISO 21771).
+
+Radii, the centre distance and the gear ratio are positive here, where ISO 21771 counts those of internal pairs
+negative. Both base circles are touched by the line of action on the same side: roll lengths of the ring are those of
+the pinion and the length T1T2. Lengths are in mm, angles in rad; the path of contact is that of the transverse section.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import acos, atan, cos, degrees, inf, isclose, pi, sin, sqrt, tan
+
+import numpy as np
+
+from loaded_tca.errors import GeometryError, require
+from loaded_tca.gears.cylindrical import CylindricalGear
+from loaded_tca.gears.cylindrical_mesh import ROUNDING, ActiveProfile, PathOfContact, Room, interferences
+from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.ring import RingGear
+
+_EQUAL = 1e-12
+PROFILE_POINTS = 41
+"""Points along flank and tip land of a tooth between which radial assembly is looked at."""
+
+
+@dataclass(frozen=True)
+class InternalMesh:
+    """A pinion inside a ring gear.
+
+    Parameters
+    ----------
+    pinion : CylindricalGear
+    ring : RingGear
+        Of the normal module, normal pressure angle and **same** hand of the pinion, with more teeth.
+    centre_distance : float [mm], optional
+        abs(a); None: the one without backlash. Never refused for its backlash.
+
+    Raises
+    ------
+    InputError
+        If the gears do not fit each other.
+    GeometryError
+        If the centre distance leaves no common flank, or the tip of the ring reaches beyond the pinion's base circle.
+
+    References
+    ----------
+    ISO 21771:2007, Gears - Cylindrical involute gears and gear pairs - Concepts and geometry. Overlap of the tips and
+    radial assembly are derived here.
+
+    Examples
+    --------
+    >>> from math import degrees
+    >>> pinion = CylindricalGear(teeth=25, normal_module=3.0, face_width=25.0)
+    >>> mesh = InternalMesh(pinion, RingGear(teeth=-60, normal_module=3.0, face_width=25.0))
+    >>> round(mesh.working_centre_distance, 6), round(mesh.transverse_contact_ratio, 4)
+    (52.5, 1.7962)
+    >>> mesh.involute_interference, round(mesh.overlap_clearance, 3), mesh.radial_assembly_clearance
+    (False, 1.209, 0.0)
+    """
+
+    pinion: CylindricalGear
+    ring: RingGear
+    centre_distance: float | None = None
+
+    def __post_init__(self) -> None:
+        pinion, ring, distance = self.pinion, self.ring, self.centre_distance
+        module = pinion.normal_module, ring.normal_module
+        angles = (
+            (key, degrees(getattr(pinion, key)), degrees(getattr(ring, key)))
+            for key in ("pressure_angle", "helix_angle")
+        )
+        require(
+            (isclose(*module, rel_tol=_EQUAL), f"normal_module: {module[0]} and {module[1]} mm must be equal"),
+            *(
+                (
+                    isclose(one, other, rel_tol=_EQUAL, abs_tol=_EQUAL),
+                    f"{key}: {one:.6g} and {other:.6g} deg must be equal, the hand included",
+                )
+                for key, one, other in angles
+            ),
+            (
+                pinion.teeth < ring.tooth_count,
+                f"teeth: {pinion.teeth} of the pinion is not below {ring.tooth_count}, the teeth of the ring",
+            ),
+            (distance is None or 0.0 < distance < inf, f"centre_distance: {distance} mm is not positive and finite"),
+        )
+        self._check_centre_distance()
+        self._check_flanks()
+
+    def _check_centre_distance(self) -> None:
+        """Refuse base circles that overlap or only touch."""
+        smallest = self._base_difference
+        if self.centre_distance is None and self._involute_without_backlash <= 0.0:
+            raise GeometryError(
+                f"profile_shift: {self.pinion.profile_shift:.6g} of the pinion and {self.ring.profile_shift:.6g} of "
+                f"the ring, together {self._profile_shift_sum:.6g}, leave no centre distance without backlash; the sum "
+                f"must be below {self._largest_shift_sum:.6g}, or give a centre_distance above {smallest:.4f} mm"
+            )
+        if self.working_centre_distance <= smallest:
+            raise GeometryError(
+                f"centre_distance: {self.working_centre_distance:.6g} mm is not above {smallest:.4f} mm, the base "
+                "radius of the ring less that of the pinion"
+            )
+
+    def _check_flanks(self) -> None:
+        """Refuse a ring whose tip leaves the line of action, and flanks that do not meet on it."""
+        pinion, ring, path = self.pinion, self.ring, self.path_of_contact
+        if self.involute_interference:
+            least = ring.radius_at_roll_length(self._line_of_action)
+            raise GeometryError(
+                f"involute interference: the tip of the {ring.name}, diameter {2.0 * ring.tip_radius:.4f} mm, lies "
+                f"{self._line_of_action - ring.roll_length(ring.tip_radius):.4f} mm beyond the base circle of the "
+                f"{pinion.name} on the line of action; a tip_diameter of the ring of {2.0 * least:.4f} mm or more "
+                "avoids it"
+            )
+        if pinion.is_undercut and pinion.form_radius > pinion.radius_at_roll_length(max(0.0, self._ring_tip_roll)) * (
+            1.0 + 1e-6
+        ):
+            raise GeometryError(
+                f"{pinion.name}: undercut up to diameter {2.0 * pinion.form_radius:.4f} mm, where the tip of the "
+                f"{ring.name} needs the flank; a profile_shift of at least "
+                f"{pinion.smallest_profile_shift:.4f} avoids it"
+            )
+        if path.AE <= 0.0:
+            raise GeometryError(
+                f"{pinion.name} and {ring.name}: no common flank at centre distance "
+                f"{self.working_centre_distance:.6g} mm: on the line of action the usable flanks end "
+                f"{-path.AE:.4f} mm apart"
+            )
+
+    @property
+    def wheel(self) -> RingGear:
+        """The ring."""
+        return self.ring
+
+    @property
+    def _base_difference(self) -> float:
+        return self.ring.base_radius - self.pinion.base_radius
+
+    @property
+    def _line_of_action(self) -> float:
+        """T1T2 = abs(a) sin(alpha_wt) [mm], without the loss of digits of the sine near alpha_wt = 0."""
+        base, distance = self._base_difference, self.working_centre_distance
+        return sqrt((distance - base) * (distance + base))
+
+    @property
+    def _ring_tip_roll(self) -> float:
+        """Roll length on the pinion where the tip of the ring touches; negative beyond the base circle [mm]."""
+        return self.ring.roll_length(self.ring.tip_radius) - self._line_of_action
+
+    @property
+    def _profile_shift_sum(self) -> float:
+        return self.pinion.profile_shift + self.ring.profile_shift
+
+    @property
+    def _teeth_difference(self) -> int:
+        return self.ring.tooth_count - self.pinion.teeth
+
+    @property
+    def _involute_without_backlash(self) -> float:
+        """inv(alpha_wt) at which the profile shifts leave no backlash [rad]."""
+        shift = 2.0 * self._profile_shift_sum * tan(self.pinion.pressure_angle) / self._teeth_difference
+        return involute(self.pinion.transverse_pressure_angle) - shift
+
+    @property
+    def _largest_shift_sum(self) -> float:
+        """x1 + x2 at which alpha_wt without backlash is zero."""
+        rest = involute(self.pinion.transverse_pressure_angle) * self._teeth_difference
+        return 0.5 * rest / tan(self.pinion.pressure_angle)
+
+    @property
+    def gear_ratio(self) -> float:
+        """Gear ratio abs(u) = abs(z2)/z1."""
+        return self.ring.tooth_count / self.pinion.teeth
+
+    @cached_property
+    def working_centre_distance(self) -> float:
+        """Centre distance abs(a) as given, or without backlash from the profile shifts [mm]."""
+        if self.centre_distance is not None:
+            return self.centre_distance
+        return self._base_difference / cos(inverse_involute(self._involute_without_backlash))
+
+    @property
+    def working_pressure_angle(self) -> float:
+        """Transverse working pressure angle alpha_wt, cos(alpha_wt) = (r_b2 - r_b1)/abs(a) [rad]."""
+        return atan(self._line_of_action / self._base_difference)
+
+    @property
+    def profile_shift_sum_without_backlash(self) -> float:
+        """x1 + x2 that would leave no backlash at this centre distance."""
+        return internal_profile_shift_sum(self.pinion, self.ring, self.working_centre_distance)
+
+    @property
+    def pinion_working_radius(self) -> float:
+        """r_w1 = abs(a)/(abs(u) - 1) [mm]."""
+        return self.working_centre_distance / (self.gear_ratio - 1.0)
+
+    @property
+    def wheel_working_radius(self) -> float:
+        """abs(r_w2) = abs(a) abs(u)/(abs(u) - 1) [mm]."""
+        return self.working_centre_distance * self.gear_ratio / (self.gear_ratio - 1.0)
+
+    @property
+    def backlash(self) -> float:
+        """Circumferential backlash j_wt at the working circles; negative where the teeth overlap [mm]."""
+        return self.backlash_at(self.working_centre_distance)
+
+    def backlash_at(self, centre_distance: float) -> float:
+        """Backlash at another centre distance, above the difference of the base radii [mm]."""
+        pinion_radius = centre_distance / (self.gear_ratio - 1.0)
+        ring_radius = pinion_radius * self.gear_ratio
+        space = 2.0 * ring_radius * self.ring.space_angle_at(ring_radius)
+        return space - self.pinion.tooth_thickness_at(pinion_radius)
+
+    @property
+    def normal_backlash(self) -> float:
+        """Normal backlash j_bn = j_wt cos(alpha_wt) cos(beta_b): shortest way between the back flanks [mm]."""
+        return self.backlash * cos(self.working_pressure_angle) * cos(self.pinion.base_helix_angle)
+
+    @property
+    def room(self) -> Room:
+        """Room that the whole gears leave each other."""
+        pinion, ring = self.pinion, self.ring
+        below_form = (
+            self._ring_tip_roll - pinion.roll_length(pinion.form_radius),
+            ring.roll_length(ring.form_radius) - self._line_of_action - pinion.roll_length(pinion.tip_radius),
+        )
+        return Room(self.backlash, below_form, self.tip_clearances)
+
+    @property
+    def tip_clearances(self) -> tuple[float, float]:
+        """Radial clearance between the roots of pinion and ring and the mating gear's tip c [mm]."""
+        distance = self.working_centre_distance
+        return (
+            self.ring.tip_radius - distance - self.pinion.root_radius,
+            self.ring.root_radius - distance - self.pinion.tip_radius,
+        )
+
+    @property
+    def involute_interference(self) -> bool:
+        """Whether the tip of the ring reaches beyond the end T1 of the line of action, off the pinion's flank."""
+        return self._ring_tip_roll < 0.0
+
+    @property
+    def overlap_clearance(self) -> float:
+        r"""Clearance of the tip corners where the tip circles cross, along the ring's tip circle [mm].
+
+        Negative: the corners run into each other off the line of action (overlap interference). With the angles at
+        which the tip circles cross, counted from the line of centres,
+
+        .. math:: \cos\theta_1 = \frac{r_{a2}^2 - r_{a1}^2 - a^2}{2 a r_{a1}}, \qquad
+                  \cos\theta_2 = \frac{r_{a2}^2 + a^2 - r_{a1}^2}{2 a r_{a2}},
+
+        the corner of the pinion is there so much later than that of the ring:
+        :math:`(z_1/z_2)(\theta_1 + \mathrm{inv}\,\alpha_{a1} - \mathrm{inv}\,\alpha_w) - (\theta_2 + \mathrm{inv}\,
+        \alpha_{a2} - \mathrm{inv}\,\alpha_w)`. inf where the tip circles do not cross.
+        """
+        pinion, ring, distance = self.pinion, self.ring, self.working_centre_distance
+        first, second = pinion.tip_radius, ring.tip_radius
+        cosines = (
+            (second**2 - first**2 - distance**2) / (2.0 * distance * first),
+            (second**2 + distance**2 - first**2) / (2.0 * distance * second),
+        )
+        if max(map(abs, cosines)) > 1.0:
+            return inf
+        working = involute(self.working_pressure_angle)
+        of_pinion = acos(cosines[0]) + _involute_at(pinion, first) - working
+        of_ring = acos(cosines[1]) + _involute_at(ring, second) - working
+        return second * (of_pinion / self.gear_ratio - of_ring)
+
+    @cached_property
+    def radial_assembly_clearance(self) -> float:
+        """Least clearance across the teeth while the pinion is pushed radially into its place [mm].
+
+        Negative: the gears go together along the axis alone. The pinion does not turn on its way; of the two places in
+        which it stands symmetrically, a tooth or a space towards the ring, the better one counts. Along circles about
+        the axis of the ring, for one flank of a tooth that stands in the middle of its space; zero, but for rounding,
+        where the teeth touch in mesh alone. inf where no teeth reach between each other.
+        """
+        clearance = max(self._assembly_clearance(turn) for turn in (0.0, 0.5))
+        return 0.0 if abs(clearance) < ROUNDING * self.pinion.normal_module else clearance
+
+    def _assembly_clearance(self, turn: float) -> float:
+        """The same of a pinion that stands so many pitches off a tooth towards the ring."""
+        pinion, ring = self.pinion, self.ring
+        final = self.working_centre_distance
+        tip = pinion.tip_radius
+        start = max(0.0, ring.tip_radius - tip)
+        if start >= final:
+            return inf
+        radius = np.linspace(max(pinion.form_radius, pinion.base_radius), tip, PROFILE_POINTS)
+        roll = np.sqrt(np.maximum(radius**2 - pinion.base_radius**2, 0.0)) / pinion.base_radius
+        half = pinion.half_thickness_angle_at_base - (roll - np.arctan(roll))
+        quarter = pinion.teeth // 4 + 1
+        tooth = 2.0 * pi / pinion.teeth * (np.arange(-quarter, quarter + 1) + turn)
+        across = tooth[:, None] + half  # flanks away from the middle of the gear, by symmetry both
+        distance = np.linspace(start, final, PROFILE_POINTS)[1:, None, None]
+        x, y = distance + radius * np.cos(across), radius * np.sin(across)
+        reach, azimuth = np.hypot(x, y), np.arctan2(y, x)
+        inside = (reach > ring.tip_radius) & (azimuth > 0.0) & (x > 0.0)
+        reach = np.clip(reach, ring.tip_radius, ring.form_radius)
+        roll = np.sqrt(np.maximum(reach**2 - ring.base_radius**2, 0.0)) / ring.base_radius
+        thickness = ring.half_thickness_angle_at_base + roll - np.arctan(roll)
+        # A tooth of the ring stands half a pitch beside the tooth of the pinion that points to it.
+        pitch = 2.0 * pi / ring.tooth_count
+        middle = pitch * (np.arange(-quarter, quarter + 1) + turn + 0.5)
+        clearance = reach * (middle[:, None] - thickness - azimuth)
+        return float(clearance[inside].min()) if inside.any() else inf
+
+    @property
+    def pinion_active_profile(self) -> ActiveProfile:
+        """Part of the pinion's flank that the ring uses."""
+        pinion = self.pinion
+        form, wanted = pinion.roll_length(pinion.form_radius), self._ring_tip_roll
+        start = max(form, wanted)
+        return ActiveProfile(
+            start_radius=pinion.radius_at_roll_length(start),
+            end_radius=pinion.tip_radius,
+            start_roll_length=start,
+            end_roll_length=pinion.roll_length(pinion.tip_radius),
+            fillet_interference=wanted < form,
+        )
+
+    @property
+    def wheel_active_profile(self) -> ActiveProfile:
+        """Part of the ring's flank that the pinion uses; it starts at the larger diameter, towards the root."""
+        ring = self.ring
+        form = ring.roll_length(ring.form_radius)
+        wanted = self.pinion.roll_length(self.pinion.tip_radius) + self._line_of_action
+        start = min(form, wanted)
+        return ActiveProfile(
+            start_radius=ring.radius_at_roll_length(start),
+            end_radius=ring.tip_radius,
+            start_roll_length=start,
+            end_roll_length=ring.roll_length(ring.tip_radius),
+            fillet_interference=wanted > form,
+        )
+
+    @property
+    def path_of_contact(self) -> PathOfContact:
+        """Points T2, T1, A, B, C, D, E on the line of action, counted from T1; T2 lies before T1."""
+        line = self._line_of_action
+        start, end = self.pinion_active_profile.start_roll_length, self.wheel_active_profile.start_roll_length - line
+        return PathOfContact(
+            A=start,
+            B=end - self.pinion.base_pitch,
+            C=line / (self.gear_ratio - 1.0),
+            D=start + self.pinion.base_pitch,
+            E=end,
+            T2=-line,
+        )
+
+    @property
+    def common_face_width(self) -> float:
+        """Face width that both gears cover, mid-faces together [mm]."""
+        return min(self.pinion.face_width, self.ring.face_width)
+
+    @property
+    def transverse_contact_ratio(self) -> float:
+        """eps_alpha = g_alpha/p_et."""
+        return self.path_of_contact.AE / self.pinion.base_pitch
+
+    @property
+    def overlap_ratio(self) -> float:
+        """eps_beta = b sin(abs(beta))/(pi m_n), b the common face width."""
+        return self.common_face_width * sin(abs(self.pinion.helix_angle)) / (pi * self.pinion.normal_module)
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """eps_gamma = eps_alpha + eps_beta."""
+        return self.transverse_contact_ratio + self.overlap_ratio
+
+    def base_tangential_force(self, pinion_torque: float) -> float:
+        """F_bt = T1/r_b1, along the line of action in the transverse section [N]; torque in N mm."""
+        return pinion_torque / self.pinion.base_radius
+
+    def normal_force(self, pinion_torque: float) -> float:
+        """F_bn = F_bt/cos(beta_b), the force normal to the flanks [N]; torque in N mm."""
+        return self.base_tangential_force(pinion_torque) / cos(self.pinion.base_helix_angle)
+
+
+def _involute_at(gear: CylindricalGear | RingGear, radius: float) -> float:
+    tangent = gear.roll_length(radius) / gear.base_radius
+    return tangent - atan(tangent)
+
+
+def internal_profile_shift_sum(pinion: CylindricalGear, ring: RingGear, centre_distance: float) -> float:
+    r"""Sum of the profile shift coefficients that leaves no backlash at a centre distance, whatever the gears have.
+
+    .. math:: x_1 + x_2 = \frac{(|z_2| - z_1)(\mathrm{inv}\,\alpha_t - \mathrm{inv}\,\alpha_{wt})}{2 \tan\alpha_n},
+              \qquad \cos\alpha_{wt} = (r_{b2} - r_{b1})/|a|
+
+    Parameters
+    ----------
+    pinion : CylindricalGear
+    ring : RingGear
+    centre_distance : float [mm]
+
+    Raises
+    ------
+    GeometryError
+        If the base circles reach each other.
+
+    References
+    ----------
+    ISO 21771:2007, 5.4.4 and 5.5.
+
+    Examples
+    --------
+    >>> pinion = CylindricalGear(teeth=25, normal_module=3.0, face_width=25.0)
+    >>> ring = RingGear(teeth=-60, normal_module=3.0, face_width=25.0)
+    >>> round(internal_profile_shift_sum(pinion, ring, 52.0), 4)
+    0.1605
+    """
+    base = ring.base_radius - pinion.base_radius
+    if not centre_distance > base:
+        raise GeometryError(
+            f"centre_distance: {centre_distance:.6g} mm is not above {base:.4f} mm, the base radius of the ring less "
+            "that of the pinion"
+        )
+    working = atan(sqrt((centre_distance - base) * (centre_distance + base)) / base)
+    difference = involute(pinion.transverse_pressure_angle) - involute(working)
+    return 0.5 * (ring.tooth_count - pinion.teeth) * difference / tan(pinion.pressure_angle)
+
+
+def internal_interferences(mesh: InternalMesh, place: str, *, nominal: bool = False) -> Sequence[str]:
+    """Sentences on what jams a pinion and a ring that turn all the same where their teeth give way.
+
+    Parameters
+    ----------
+    mesh : InternalMesh
+    place : str
+        Where that is, for instance a centre distance.
+    nominal : bool
+        As for ``interferences`` of external gears.
+
+    Raises
+    ------
+    GeometryError
+        If nothing can turn: teeth overlap by more than 0.2 modules, tips reach into roots or run into each other.
+    """
+    clearance, module = mesh.overlap_clearance, mesh.pinion.normal_module
+    if clearance < -ROUNDING * module:
+        raise GeometryError(
+            f"the gears cannot turn {place}: overlap interference: off the line of action the tips of pinion and ring "
+            f"run into each other by {-clearance:.4f} mm along the ring's tip circle; shorten either tip: a smaller "
+            "pinion.tip_diameter_mm, or a larger wheel.tip_diameter_mm"
+        )
+    return interferences(mesh.room, module, place, nominal=nominal)

@@ -1,0 +1,89 @@
+"""What the tooth pairs carry over a whole revolution, some pitches at a time: no contact is kept beyond its turn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+
+from loaded_tca.arrays import Array
+from loaded_tca.compliance.model import BendingModel
+from loaded_tca.loaded.cycle import Progress, torques_shared
+from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair
+from loaded_tca.loaded.sensitivity import LoadedGrid, loaded_states
+from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.unloaded.revolution import RevolutionPath
+
+STATES_AT_A_TIME = 128
+"""Positions times torques that are solved together: stacks are full, and memory does not grow with the revolution."""
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedPart:
+    """What the tooth pairs carry at some positions.
+
+    Attributes
+    ----------
+    positions : range
+        Of the revolution.
+    shared : dict of SharedLoad
+        By the indices of torque and position, that counted from the first one of the part.
+    stiffness : (torques, positions) array [N mm/rad]
+        Tangent of the pinion torque over the rotation of the wheel.
+    """
+
+    positions: range
+    shared: dict[tuple[int, int], SharedLoad]
+    stiffness: Array
+
+
+def carried_over_revolution(
+    path: RevolutionPath,
+    torques: Array,
+    grid: GridChoice,
+    bending: BendingModel | None = None,
+    progress: Progress | None = None,
+) -> Iterator[CarriedPart]:
+    """Let all tooth pairs in contact share the load, position by position of a revolution.
+
+    Parameters
+    ----------
+    path : RevolutionPath
+    torques : (m,) array [N mm]
+        Of the pinion.
+    grid : GridChoice
+    bending : BendingModel, optional
+        Of the teeth beneath the contacts; default: none.
+    progress : callable, optional
+        Called with the states that are done, and how many there are.
+
+    Yields
+    ------
+    CarriedPart
+    """
+    pair, count, whole = path.pair, max(1, STATES_AT_A_TIME // len(torques)), len(path) * len(torques)
+    for first in range(0, len(path), count):
+        positions = range(first, min(first + count, len(path)))
+        before = first * len(torques)
+        report = None if progress is None else partial(_report, progress, before, whole)
+        at = [(float(path.pinion_angle[n]), tooth_pairs_of(path, n)) for n in positions]
+        shared = torques_shared(pair, at, torques, grid, bending, report)
+        states = [[LoadedGrid.of(one.tooth_pair.pair, one.loaded) for one in each.shares] for each in shared.values()]
+        stiffness = loaded_states(states, bending).stiffness.reshape(len(torques), len(positions))
+        yield CarriedPart(positions, shared, stiffness)
+
+
+def _report(progress: Progress, before: int, whole: int, done: int, _: int) -> None:
+    progress(before + done, whole)
+
+
+def tooth_pairs_of(path: RevolutionPath, position: int) -> tuple[ToothPair, ...]:
+    """Tooth pairs that can be in contact at a position of a revolution."""
+    return tuple(ToothPair(*one) for one in path.pairs_at(position))
+
+
+def pitches_apart(path: RevolutionPath) -> int:
+    """How many pitches two tooth pairs that can be in contact at the same position are apart."""
+    return max(
+        max(numbers) - min(numbers) for n in range(len(path)) if (numbers := [one[0] for one in path.pairs_at(n)])
+    )

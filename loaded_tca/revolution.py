@@ -1,0 +1,261 @@
+"""Whole revolutions in one function: from a scene to what every tooth carries, each at its own place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import version
+
+import numpy as np
+
+import loaded_tca.warning_kinds as kinds
+from loaded_tca.analysis import Effort, expected_effort, roots_of
+from loaded_tca.arrays import Array
+from loaded_tca.compliance import RootStress, model_of
+from loaded_tca.compliance.body import body_torsion
+from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
+from loaded_tca.loaded.cycle import Progress
+from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.revolution import STATES_AT_A_TIME, CarriedPart, carried_over_revolution, pitches_apart
+from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.collect import Place, numbers_and_maps
+from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.revolution import Revolution, open_turns, revolution_dataset
+from loaded_tca.results.root_stress import root_stress_of_gear
+from loaded_tca.results.warnings import at_places, place_of, reasons_of, rotation_reasons, warn_of_gears
+from loaded_tca.scene import Scene
+from loaded_tca.scene.pitch import Revolution as RevolutionSection
+from loaded_tca.threads import one_blas_thread
+from loaded_tca.unloaded.revolution import RevolutionPath, trace_revolution
+
+KEPT = "normal_force", "peak_pressure", "on_edge"
+"""Numbers of single contacts that a revolution keeps."""
+
+
+def expected_revolution_effort(scene: Scene) -> Effort:
+    """Estimate what a whole revolution takes; see :func:`loaded_tca.analysis.expected_effort`.
+
+    The time is that of the states of all its positions; the memory that of those which are solved together.
+    """
+    asked, torques = _asked(scene), len(scene.torques)
+    states = asked.count((scene.pinion.teeth, abs(scene.wheel.teeth))) * asked.positions_per_pitch
+    some = max(1, min(states, STATES_AT_A_TIME // torques))
+    one, part = (
+        expected_effort(scene.with_changes({"analysis.positions": count, "analysis.load_sharing": True}))
+        for count in (1, max(2, some))
+    )
+    each = (part.seconds - one.seconds) / (max(2, some) - 1)
+    seconds = one.seconds + each * (states - 1)
+    return Effort(2 * states * torques, part.cells, seconds, part.memory, certain=part.certain)
+
+
+def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: Sequence[int] = ()) -> Revolution:
+    """Analyse a whole revolution: at every position of every pitch all tooth pairs in contact share the load.
+
+    Index deviations and runout of ``[pinion.pitch]`` and ``[wheel.pitch]`` separate the tooth pairs before the load
+    does; ``[revolution]`` says which pitches follow each other, by default those of a turn of the wheel.
+
+    Parameters
+    ----------
+    scene : Scene
+    progress : callable, optional
+        Called as ``progress(done, total)`` with the states, torques times positions.
+    maps : sequence of int
+        Positions whose pressure maps the result keeps, as indices.
+
+    Returns
+    -------
+    Revolution
+
+    Raises
+    ------
+    InputError, GeometryError
+        As of :func:`loaded_tca.analyse`, and if an index deviation is larger than 0.05 modules, or load sharing is off.
+    ConvergenceError
+        If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
+
+    Warns
+    -----
+    AccuracyWarning
+        As of :func:`loaded_tca.analyse`, and if the revolution is no whole turn of a gear whose teeth deviate.
+
+    Examples
+    --------
+    >>> from loaded_tca import read_scene
+    >>> changes = {"analysis.compliance": "contact", "analysis.torques_Nm": [20.0], "wheel.pitch.runout_um": 10.0}
+    >>> changes |= {"revolution.pitches": 1, "revolution.positions_per_pitch": 2}
+    >>> scene = read_scene("examples/scenes/mesh_cycle_spur.toml").with_changes(changes)
+    >>> import warnings
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore")
+    ...     revolution = analyse_revolution(scene)
+    >>> revolution.dataset["transmission_error"].shape
+    (1, 2)
+    """
+    with one_blas_thread():
+        with noted_accuracy_warnings() as warned:
+            pair, wanted, asked = scene.pair(), scene.analysis, _asked(scene)
+            require(
+                (wanted.load_sharing, "analysis.load_sharing: found false; allowed true in a whole revolution"),
+                (not scene.is_supported, "pinion.support, wheel.support: allowed none in a whole revolution"),
+                (not (effort := expected_revolution_effort(scene)).is_refused, f"analysis.cells: {effort}"),
+            )
+            pitches = asked.count(pair.teeth)
+            count = pitches * asked.positions_per_pitch
+            wrong = [n for n in maps if not (isinstance(n, int | np.integer) and 0 <= n < count)]
+            require((not wrong, f"maps: {wrong[:3]} are no positions; allowed 0 to {count - 1}"))
+            warn_of_gears(scene, pair, whole_revolution=True)
+            for gear in open_turns(scene, pitches):
+                give_accuracy_warning(kinds.OPEN_REVOLUTION.sentence(pitches=pitches, gear=gear))
+            path = trace_revolution(
+                pair,
+                scene.tooth_deviations(pair),
+                pitches,
+                asked.positions_per_pitch,
+                asked.first_teeth(pair.teeth),
+                scene.tooth_flanks(),
+            )
+            grid = GridChoice(
+                cells=None if wanted.cells is None else (wanted.cells[0], wanted.cells[1]),
+                accuracy=wanted.accuracy,
+                tolerance=wanted.tolerance,
+                free_edges=wanted.free_edges,
+            )
+            roots = roots_of(scene, pair)
+            bending = model_of(scene, pair, pitches_apart(path))
+            numbers = _Numbers(pair, path, np.asarray(scene.torques), grid, roots, frozenset(maps))
+            for part in carried_over_revolution(path, numbers.torques, grid, bending, progress):
+                numbers.add(part)
+            torsion = 0.0 if bending is None else sum(body_torsion(pair))
+            for sentence in numbers.sentences(torsion):
+                give_accuracy_warning(sentence)
+        about = {
+            "version": version("loaded_tca"),
+            "date": datetime.now(UTC).isoformat(timespec="seconds"),
+            "warnings": "\n".join(dict.fromkeys(warned)),
+        }
+        return Revolution(scene=scene, dataset=revolution_dataset(numbers.whole(), **about), maps=numbers.maps)
+
+
+def _asked(scene: Scene) -> RevolutionSection:
+    return scene.revolution or RevolutionSection()
+
+
+@dataclass(eq=False)
+class _Numbers:
+    """Numbers of a revolution, filled part by part."""
+
+    pair: GearPair
+    path: RevolutionPath
+    torques: Array
+    grid: GridChoice
+    roots: tuple[RootStress, ...]
+    wanted_maps: frozenset[int]
+    maps: dict[tuple[int, int], tuple[PressureMap | None, ...]] = field(default_factory=dict)
+    places: dict[str, list[str]] = field(default_factory=dict)
+    solved: int = 0
+
+    def __post_init__(self) -> None:
+        shape = len(self.torques), len(self.path), len(self.path.pairs)
+        cycle, gears = shape[:2], (*shape[:2], 2)
+        self.arrays: dict[str, Array] = {
+            "rotation": np.full(cycle, math.nan),
+            "stiffness": np.full(cycle, math.nan),
+            "load_share": np.zeros(shape),
+            "normal_force": np.zeros(shape),
+            "peak_pressure": np.full(shape, math.nan),
+            "tooth_deflection": np.full(shape, math.nan),
+            "on_edge": np.zeros(shape, dtype=bool),
+        }
+        if self.roots:
+            self.arrays |= {name: np.full(gears, math.nan) for name in ("root_tension", "root_compression")}
+            self.arrays["root_tension_tooth"] = np.full(gears, -1)
+
+    def add(self, part: CarriedPart) -> None:
+        """Take what a part of the positions has of each contact, and let the contacts go."""
+        begin, shape = part.positions.start, (len(self.torques), len(part.positions), len(self.path.pairs))
+        rows = slice(begin, part.positions.stop)
+        contacts: dict[Place, LoadedContact | None] = dict.fromkeys(np.ndindex(shape))
+        by_gears: dict[int, tuple[GearPair, dict[Place, LoadedContact | None]]] = {}
+        columns = {number: column for column, number in enumerate(self.path.pairs.tolist())}
+        for (t, n), shared in part.shared.items():
+            self.arrays["rotation"][t, begin + n] = shared.rotation
+            for share in shared.shares:
+                k = columns[share.tooth_pair.pair]
+                contacts[t, n, k] = share.loaded
+                gears = share.tooth_pair.gears or self.pair
+                by_gears.setdefault(id(gears), (gears, {}))[1][t, n, k] = share.loaded
+                at = t, begin + n, k
+                self.arrays["load_share"][at] = share.torque / self.torques[t] if shared.torque > 0.0 else 1.0
+                self.arrays["tooth_deflection"][at] = share.tooth_deflection
+        self.arrays["stiffness"][:, rows] = part.stiffness
+        maps: dict[Place, PressureMap | None] = dict.fromkeys(contacts)
+        for pair, own in by_gears.values():
+            numbers, own_maps = numbers_and_maps([pair] * shape[0], own, dict.fromkeys(own), shape)
+            maps |= own_maps
+            known = ~np.isnan(numbers["normal_force"])
+            for name in KEPT:
+                self.arrays[name][:, rows][known] = numbers[name][known]
+        self._note(contacts, begin)
+        for t in range(shape[0]):
+            for n in self.wanted_maps & set(part.positions):
+                self.maps[t, n] = tuple(maps[t, n - begin, k] for k in range(shape[2]))
+        if self.roots:
+            stacked = tuple(
+                tuple(tuple(maps[t, n, k] for k in range(shape[2])) for n in range(shape[1])) for t in range(shape[0])
+            )
+            self._add_roots(rows, stacked)
+
+    def _note(self, contacts: dict[Place, LoadedContact | None], begin: int) -> None:
+        """Note what limits the accuracy of each contact."""
+        for (t, n, k), loaded in contacts.items():
+            if loaded is None:
+                continue
+            self.solved += 1
+            angle = float(self.path.pinion_angle[begin + n])
+            for reason in reasons_of(self.pair, self.grid, loaded):
+                place = place_of(float(self.torques[t]), angle, int(self.path.pairs[k]))
+                self.places.setdefault(reason, []).append(place)
+
+    def _add_roots(self, rows: slice, maps: tuple[tuple[tuple[PressureMap | None, ...], ...], ...]) -> None:
+        """Root stress of both gears at some positions: a tooth's number counts from that of tooth pair 0."""
+        known = np.ones((len(self.torques), rows.stop - rows.start), dtype=bool)
+        numbers, zero = self.path.pairs.tolist(), self.path.pairs.tolist().index(0)
+        for gear, model in enumerate(self.roots):
+            found = root_stress_of_gear(self.pair, gear, model, numbers, known, maps)
+            for name in ("root_tension", "root_compression"):
+                self.arrays[name][:, rows, gear] = found[name]
+            tooth = (self.path.pinion_tooth, self.path.wheel_tooth)[gear][rows, zero]
+            steps = -self.pair.sense if gear == 0 else self.pair.sense
+            counted = tooth + steps * found["root_tension_place"][..., 0]
+            self.arrays["root_tension_tooth"][:, rows, gear] = counted % self.pair.teeth[gear]
+
+    def sentences(self, body_torsion: float) -> Iterator[str]:
+        """Accuracy warnings of all contacts."""
+        for torque, forces in zip(self.torques.tolist(), self.arrays["normal_force"], strict=True):
+            if torque > 0.0 and not forces.any():
+                yield kinds.NO_TORQUE.sentence(torque=1e-3 * torque)
+        yield from (at_places(reason, at, self.solved) for reason, at in self.places.items())
+        yield from rotation_reasons(self.pair, self.torques, self.arrays["rotation"], body_torsion)
+
+    def whole(self) -> dict[str, Array]:
+        """Arrays of ``REVOLUTION_QUANTITIES``, and of ``ROOTS`` if asked for."""
+        pair, path, arrays = self.pair, self.path, dict(self.arrays)
+        rotation, stiffness = arrays.pop("rotation"), arrays.pop("stiffness")
+        lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
+        return arrays | {
+            "torque": self.torques,
+            "pinion_angle": path.pinion_angle,
+            "pair": path.pairs,
+            "wheel_base_radius": np.float64(pair.base_radii[1]),
+            "face_width": np.float64(pair.face_width),
+            "pinion_tooth": path.pinion_tooth,
+            "wheel_tooth": path.wheel_tooth,
+            "rigid_transmission_error": path.transmission_error,
+            "transmission_error": path.transmission_error - pair.driving * rotation,
+            "mesh_stiffness": stiffness / lengths,
+            "loaded_pairs": (arrays["normal_force"] > 0.0).sum(axis=-1),
+        }

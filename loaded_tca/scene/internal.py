@@ -1,0 +1,300 @@
+"""Scenes of a pinion and a ring gear: type "cylindrical" with a negative number of teeth of the wheel."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+from loaded_tca.errors import GeometryError, require
+from loaded_tca.gears import CylindricalGear, InternalMesh, PinionCutter, RingGear
+from loaded_tca.gears.cylindrical_mesh import ROUNDING
+from loaded_tca.gears.internal_mesh import internal_interferences, internal_profile_shift_sum
+from loaded_tca.pairs.cylindrical import common_face_width
+from loaded_tca.pairs.gear_pair import GearPair, Sense
+from loaded_tca.pairs.internal import internal_pair
+from loaded_tca.scene.blank import BlankGearSection
+from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
+from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
+from loaded_tca.scene.keys import Choice, Number, Whole, key
+from loaded_tca.scene.model import Hand, Row, Scene, variant
+from loaded_tca.scene.section import Rule, Section, rule, subsection
+from loaded_tca.scene.sections import ContactStandard, DIAMETER_mm, below
+from loaded_tca.scene.thickness import as_measured
+
+
+@dataclass(frozen=True, kw_only=True)
+class CutterSection(Section):
+    """[wheel.cutter] of a ring gear."""
+
+    teeth: int = key(Whole(3, 10000), "number of teeth z_0 of the cutter, below that of the ring")
+    profile_shift: float = key(Number(-5.0, 5.0), "profile shift coefficient x_0", 0.0)
+    tip_radius_coefficient: float = key(
+        Number(0.0, 1.0), "rounding of the tip in normal modules, rho_a0/m_n, at most what fits", 0.3
+    )
+
+
+def _above(larger_key: str, smaller_key: str) -> Rule:
+    """Rule: a diameter, where it is given, lies above another one."""
+
+    def complain(larger: float | None, smaller: float | None) -> str | None:
+        if larger and smaller is not None and larger < smaller:
+            return f"found {larger:g}; allowed from {smaller_key} = {smaller:g} on: a ring's tip lies inside"
+        return None
+
+    return Rule((larger_key, smaller_key), complain)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RingSection(BlankGearSection):
+    """[wheel] of an internal pair: a ring gear."""
+
+    teeth: int = key(Whole(-10000, -3), "number of teeth z2 of the ring, negative as in ISO 21771")
+    hand: Hand | None = key(
+        Choice(("right", "left")), "hand of the helix (without meaning for straight teeth)", None, "that of the pinion"
+    )
+    profile_shift: float | None = key(  # type: ignore[assignment]
+        Number(-5.0, 5.0),
+        "profile shift coefficient x with the sign of ISO 21771: positive ones thicken the teeth of the ring and move "
+        "them towards the axis; of one gear where the centre distance is given: the other has what leaves no backlash",
+        None,
+        "0, or what leaves no backlash",
+    )
+    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a, positive", None, "d - 2 m_n (1 + x)")
+    root_diameter_mm: float | None = key(DIAMETER_mm, "root diameter d_f, positive", None, "d + 2 m_n (h_fP - x)")
+    outer_diameter_mm: float | None = key(
+        DIAMETER_mm, "outer diameter, held rigid where teeth bend", None, "root diameter + 14 m_n"
+    )
+    cutter: CutterSection | None = subsection(
+        CutterSection, "pinion-type cutter of the ring; without it its fillets are arcs", optional=True
+    )
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *BlankGearSection.rules,
+        rule(
+            ("bore_diameter_mm",),
+            lambda bore: bore is None,
+            "found {0:g}; a ring gear has none, it is held at its outside: give outer_diameter_mm",
+        ),
+        below("tip_diameter_mm", "root_diameter_mm"),
+        below("tip_diameter_mm", "outer_diameter_mm"),
+        below("root_diameter_mm", "outer_diameter_mm"),
+        _above("modifications.tip_relief_start_mm", "tip_diameter_mm"),
+        _above("modifications.root_relief_start_mm", "tip_diameter_mm"),
+    )
+
+
+def _same_hands(wheel: Hand | None, pinion: Hand | None) -> str | None:
+    if wheel is None or pinion is None or wheel == pinion:
+        return None
+    return f'found "{wheel}" and "{pinion}" of the pinion; allowed "{pinion}": gears of an internal pair have one hand'
+
+
+@variant(CylindricalScene, "an internal pair: `wheel.teeth` is negative")
+@dataclass(frozen=True, kw_only=True)
+class InternalScene(CylindricalScene):
+    """A scene of a pinion and a ring gear.
+
+    Attributes
+    ----------
+    geometry : cylindrical.Geometry
+    pinion : cylindrical.GearSection
+    wheel : internal.RingSection
+    mounting : cylindrical.MountingErrors
+    title, material, load, analysis
+        As for every ``Scene``.
+
+    Examples
+    --------
+    >>> from loaded_tca.scene import ElasticMaterial, Load
+    >>> scene = InternalScene(
+    ...     geometry=Geometry(type="cylindrical", normal_module_mm=3.0),
+    ...     pinion=GearSection(teeth=25, face_width_mm=25.0),
+    ...     wheel=RingSection(teeth=-60, face_width_mm=25.0),
+    ...     material=ElasticMaterial(youngs_modulus_MPa=206000.0, poisson_ratio=0.3),
+    ...     load=Load(pinion_torque_Nm=130.0),
+    ... )
+    >>> scene.pair()
+    GearPair(25/60, module 3 mm, face 25 mm)
+    """
+
+    geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
+    pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
+    wheel: RingSection = subsection(RingSection, "its ring gear")  # type: ignore[assignment]
+    mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *Scene.rules,
+        Rule(("wheel.hand", "pinion.hand"), _same_hands),
+        Rule(
+            ("wheel.teeth", "pinion.teeth"),
+            lambda ring, pinion: (
+                f"found {ring}; allowed below {-pinion}: a ring has more teeth than its pinion"
+                if -ring <= pinion
+                else None
+            ),
+        ),
+    )
+
+    @classmethod
+    def describes(cls, table: Any) -> bool:
+        """Whether the wheel has a negative number of teeth."""
+        wheel = table.get("wheel")
+        teeth = wheel.get("teeth") if hasattr(wheel, "get") else getattr(wheel, "teeth", None)
+        return isinstance(teeth, int | float) and teeth < 0
+
+    @property
+    def hands(self) -> tuple[Hand, Hand]:
+        """Hands of pinion and ring, which are equal: as one of them is given, else right."""
+        hand: Hand = self.pinion.hand or self.wheel.hand or "right"
+        return hand, hand
+
+    @property
+    def hand_signs(self) -> tuple[int, int]:
+        """+1 for the right hand, -1 for the left one, of pinion and ring."""
+        sign = 1 if self.hands[0] == "right" else -1
+        return sign, sign
+
+    def mesh(self) -> InternalMesh:  # type: ignore[override]
+        """Return the macro geometry: diameters, contact ratios, path of contact."""
+        distance, sign = self.geometry.centre_distance_mm, self.hand_signs[0]
+        cutter = self.wheel.cutter
+        cut_by = None if cutter is None else PinionCutter(**parameters_of(PinionCutter, cutter))
+
+        def gears(shifts: list[float | None]) -> tuple[CylindricalGear, RingGear]:
+            of_pinion = parameters_of(CylindricalGear, self.geometry, self.pinion)
+            of_ring = parameters_of(RingGear, self.geometry, self.wheel) | {"cutter": cut_by}
+            for values, shift in ((of_pinion, shifts[0]), (of_ring, shifts[1])):
+                values["helix_angle"] *= sign
+                values["profile_shift"] = shift or 0.0
+            pinion = as_measured(CylindricalGear(**of_pinion, name="pinion"), self.pinion)
+            return pinion, RingGear(**of_ring, name="wheel")
+
+        shifts = [self.pinion.profile_shift, self.wheel.profile_shift]
+        pinion, ring = gears(shifts)
+        if distance is not None and shifts.count(None) == 1:
+            rest = internal_profile_shift_sum(pinion, ring, distance) - sum(x for x in shifts if x is not None)
+            pinion, ring = gears([rest if shift is None else shift for shift in shifts])
+        return InternalMesh(pinion, ring, centre_distance=distance)
+
+    def analytic_pair(self, sense: Sense) -> GearPair:
+        """Return the two involute flanks in space."""
+        mesh = self.mesh()
+        return internal_pair(
+            mesh,
+            modifications=build_modifications(self.pinion, self.wheel),
+            mounting=self._mounting(mesh),
+            materials=build_materials(self.materials),
+            driving=self.geometry.driving,
+            sense=sense,
+        )
+
+    def active_starts(self) -> tuple[float, float]:
+        """Return where the active profiles start [mm]: roll lengths, that of the ring with a minus."""
+        mesh = self.mesh()
+        return mesh.pinion_active_profile.start_roll_length, -mesh.wheel_active_profile.start_roll_length
+
+    @property
+    def contact_standard(self) -> ContactStandard:
+        """Contact factors and stiffnesses of ISO 6336 are left out: not defined for internal gears here."""
+        return ContactStandard()
+
+    @property
+    def nominal_root_stress(self) -> tuple[float, float]:
+        """NaN: method B of ISO 6336-3 is left out for internal pairs."""
+        return math.nan, math.nan
+
+    @property
+    def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """NaN, as :attr:`nominal_root_stress`."""
+        unknown = math.nan, math.nan, math.nan
+        return unknown, unknown
+
+    @property
+    def tooth_height_over_width(self) -> float:
+        """NaN: factors of ISO 6336-3 are left out for internal pairs."""
+        return math.nan
+
+    def geometry_rows(self) -> Sequence[Row]:
+        """Return centre distance, contact ratios, diameters, and the three interferences with their room."""
+        mesh = self.mesh()
+        pinion, ring, path = mesh.pinion, mesh.ring, mesh.path_of_contact
+        ring_tip = ring.roll_length(ring.tip_radius) - (path.T1 - path.T2)
+        assembly = mesh.radial_assembly_clearance
+        shifts = pinion.profile_shift + ring.profile_shift, mesh.profile_shift_sum_without_backlash
+        return [
+            ("working centre distance |a_w| [mm]", f"{mesh.working_centre_distance:.4f}"),
+            ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
+            ("base helix angle beta_b [deg]", f"{abs(math.degrees(pinion.base_helix_angle)):.4f}"),
+            ("profile shift sum: given, without backlash", *(f"{round(value, 4) + 0.0:.4f}" for value in shifts)),
+            *backlash_rows(mesh),
+            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
+            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
+            ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
+            ("path of contact: length AE, approach AC [mm]", f"{path.AE:.4f}", f"{path.AC:.4f}"),
+            ("common face width b [mm]", f"{common_face_width(mesh, self.mounting.axial_offset_mm):.4f}"),
+            ("involute interference: ring's tip to T1 [mm]", f"{ring_tip:.4f} free"),
+            ("overlap interference at the tips [mm]", _room_cell(mesh.overlap_clearance)),
+            (
+                "radial assembly [mm]",
+                _room_cell(assembly) if assembly >= 0.0 else f"{-assembly:.4f} overlap: along the axis only",
+            ),
+            ("", "pinion", "wheel (ring)"),
+            ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
+            ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
+            *_diameter_rows(mesh),
+            ("tip clearance of the mating gear c [mm]", *(f"{clearance:.4f}" for clearance in mesh.tip_clearances)),
+        ]
+
+    def interferences(self) -> Sequence[str]:
+        """Return how the whole gears interfere at their centre distance, its error included.
+
+        A positive error makes the centre distance of an internal pair smaller.
+        """
+        mesh, error = self.mesh(), self.mounting.centre_distance_error_mm
+        distance = mesh.working_centre_distance - error
+        place = f"at the {'mounted ' if error else ''}centre distance of {distance:.4f} mm"
+        nominal = abs(mesh.backlash) <= ROUNDING * mesh.pinion.normal_module
+        require((distance > 0.0, f"mounting.centre_distance_error_mm: found {error:g}; it leaves no centre distance"))
+        try:
+            mounted = replace(mesh, centre_distance=distance) if error else mesh
+        except GeometryError as problem:
+            raise GeometryError(f"{place}: {problem}") from None
+        return internal_interferences(mounted, place, nominal=nominal)
+
+
+def _room_cell(clearance: float) -> str:
+    """A clearance in words."""
+    return "free" if math.isinf(clearance) else f"{clearance:.4f} free"
+
+
+def _diameter_rows(mesh: InternalMesh) -> list[Row]:
+    """Diameters of both gears from the reference circle to the outside, and whether tips reach into fillets."""
+    pinion, ring, path = mesh.pinion, mesh.ring, mesh.path_of_contact
+    active = mesh.pinion_active_profile, mesh.wheel_active_profile
+    radii: dict[str, tuple[float, float]] = {
+        "reference diameter d [mm]": (pinion.reference_radius, ring.reference_radius),
+        "base diameter d_b [mm]": (pinion.base_radius, ring.base_radius),
+        "working diameter d_w [mm]": (mesh.pinion_working_radius, mesh.wheel_working_radius),
+        "tip diameter d_a [mm]": (pinion.tip_radius, ring.tip_radius),
+    }
+    if 1.0 <= mesh.transverse_contact_ratio < 2.0:  # elsewhere always two tooth pairs touch, or none
+        first, second = (
+            (pinion.radius_at_roll_length(point), ring.radius_at_roll_length(point - path.T2))
+            for point in (path.B, path.D)
+        )
+        radii["highest single tooth contact (D | B) [mm]"] = second[0], first[1]
+        radii["lowest single tooth contact (B | D) [mm]"] = first[0], second[1]
+    radii |= {
+        "start of active profile d_Nf [mm]": (active[0].start_radius, active[1].start_radius),
+        "root form diameter d_Ff [mm]": (pinion.form_radius, ring.form_radius),
+        "root diameter d_f [mm]": (pinion.root_radius, ring.root_radius),
+    }
+    interference = ("yes" if profile.fillet_interference else "no" for profile in active)
+    rows = [(label, *(f"{2.0 * radius:.4f}" for radius in both)) for label, both in radii.items()]
+    return [
+        *rows,
+        ("outer diameter of the ring [mm]", "", f"{2.0 * ring.outer_radius:.4f}"),
+        ("mating tip reaches beyond d_Ff", *interference),
+    ]

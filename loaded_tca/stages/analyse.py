@@ -1,0 +1,216 @@
+"""Planetary stages in one function: two mesh cycles under several torques, and the balance of all planets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from loaded_tca.analysis import analyse
+from loaded_tca.arrays import Array
+from loaded_tca.errors import noted_accuracy_warnings, require
+from loaded_tca.results import MeshCycle
+from loaded_tca.scene import Scene
+from loaded_tca.stages.balance import Deflections, Shares, balance, directions_of, pin_errors
+from loaded_tca.stages.kinematics import mesh_phases
+from loaded_tca.stages.result import StageResult, stage_dataset
+from loaded_tca.stages.sections import Stage
+
+PARTS = 0.15, 0.5, 1.6
+"""Forces of the mesh cycles over an even share, beside it and the whole force: where planets may come to."""
+NEAR = 0.15
+"""Relative difference of two forces of which one is enough, unless it is an even share."""
+Progress = Callable[[int, int], None]
+
+
+def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult:
+    """Analyse a planetary stage: how its planets share the torque over a pitch of the sun, and what that does.
+
+    Parameters
+    ----------
+    stage : Stage
+    progress : callable, optional
+        Called as ``progress(done, total)`` with the states of both meshes.
+
+    Returns
+    -------
+    StageResult
+
+    Raises
+    ------
+    InputError, GeometryError
+        As of :func:`loaded_tca.analyse` for both meshes, and if the planets cannot be put in or touch each other.
+    ConvergenceError
+        As of :func:`loaded_tca.analyse`, and if the planets do not come into balance.
+
+    Warns
+    -----
+    AccuracyWarning
+        As of :func:`loaded_tca.analyse`, of both meshes.
+    """
+    stage.require_assembly()
+    torques = np.asarray(stage.sun_torques)
+    require((bool((torques > 0.0).all()), "load.sun_torque_Nm: found 0; a stage shares a torque above 0"))
+    sun_mesh, planets = stage.sun_scene.mesh(), len(stage.stage.angles)
+    base_radius, planet_radius = sun_mesh.pinion.base_radius, sun_mesh.wheel.base_radius
+    forces = _forces(torques / base_radius, planets)
+    count = len(forces) * stage.analysis.positions
+    with noted_accuracy_warnings() as warned:
+        of_sun = analyse(_under(stage.sun_scene, forces * base_radius), _part_of(progress, 0, 2 * count))
+        of_ring = analyse(_under(stage.ring_scene, forces * planet_radius), _part_of(progress, count, 2 * count))
+    arrays = _shared(stage, torques, forces, (of_sun, of_ring))
+    about = {
+        "version": version("loaded_tca"),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "warnings": "\n".join(dict.fromkeys(warned)),
+    }
+    return StageResult(stage=stage, dataset=stage_dataset(arrays, **about), sun_mesh=of_sun, ring_mesh=of_ring)
+
+
+OF_BALANCE = frozenset(
+    f"stage.{name}" for name in ("pin_tangential_um", "pin_radial_um", "floating_sun", "sun_support_stiffness_N_per_um")
+)
+"""Keys that change the balance of the planets alone."""
+
+
+def rebalanced(result: StageResult, changes: Mapping[str, Any]) -> StageResult:
+    """The result of a stage with other pins, or another support of the sun: both meshes stay what they are.
+
+    For studies: a balance takes milliseconds a position, where the meshes take seconds.
+
+    Parameters
+    ----------
+    result : StageResult
+    changes : mapping
+        Keys ``stage.pin_tangential_um``, ``stage.pin_radial_um``, ``stage.floating_sun`` and
+        ``stage.sun_support_stiffness_N_per_um``.
+
+    Returns
+    -------
+    StageResult
+
+    Raises
+    ------
+    InputError
+        If a key changes more than the balance.
+    """
+    require(*((name in OF_BALANCE, f"{name}: needs other meshes; analyse the changed stage") for name in changes))
+    stage = result.stage.with_changes(changes)
+    cycles = result.sun_mesh, result.ring_mesh
+    forces = cycles[0].dataset["torque"].values / cycles[0].gear_pair.base_radii[0]
+    about = {name: str(value) for name, value in result.dataset.attrs.items()}
+    arrays = _shared(stage, result.dataset["torque"].values, forces, cycles)
+    return replace(result, stage=stage, dataset=stage_dataset(arrays, **about))
+
+
+def _part_of(progress: Progress | None, begin: int, total: int) -> Progress | None:
+    return None if progress is None else lambda done, _: progress(begin + done, total)
+
+
+def states_of(stage: Stage) -> int:
+    """How many states of both meshes an analysis of a stage has."""
+    forces = _forces(np.asarray(stage.sun_torques), len(stage.stage.angles))
+    return 2 * len(forces) * stage.analysis.positions
+
+
+def _forces(whole: Array, planets: int) -> Array:
+    """Forces at the base circles [N] of the mesh cycles: parts of even shares, up to the whole ones."""
+    even = whole / planets
+    kept = [*even.tolist(), float(whole.max())]
+    for force in np.sort(np.outer(even, [part for part in PARTS if part < planets]).ravel())[::-1].tolist():
+        if all(abs(force / other - 1.0) > NEAR for other in kept):
+            kept.append(force)
+    return np.unique(kept)
+
+
+def _under(scene: Scene, torques: Array) -> Scene:
+    """A scene under pinion torques [N mm]."""
+    return replace(scene, analysis=replace(scene.analysis, torques_Nm=tuple((1e-3 * torques).tolist())))
+
+
+def deflections_of(cycle: MeshCycle, forces: Array) -> Deflections:
+    """How far the flanks of a mesh give way, from its loaded and unloaded transmission error at the base circle.
+
+    Parameters
+    ----------
+    cycle : MeshCycle
+        Over one pitch, both ends included, the pitch point in the middle.
+    forces : (k,) array [N]
+        Of its torques, at the base circle.
+    """
+    pair = cycle.gear_pair
+    length = -pair.driving * pair.base_radii[1]
+    unloaded = cycle.dataset["unloaded_transmission_error"].values
+    errors = length * np.concatenate([unloaded[None], cycle.dataset["transmission_error"].values])
+    start = float(cycle.dataset["pinion_angle"].values[0]) / pair.pitch
+    return Deflections(np.append(0.0, forces), errors[:, :-1], start)
+
+
+def _shared(stage: Stage, torques: Array, forces: Array, cycles: tuple[MeshCycle, MeshCycle]) -> dict[str, Array]:
+    """Arrays of the result."""
+    asked, sun_drives = stage.stage, stage.stage.driving == "sun"
+    angles, planets = asked.angles, len(asked.angles)
+    sun_mesh, ring_mesh = stage.sun_scene.mesh(), stage.ring_scene.mesh()
+    base_radius = sun_mesh.pinion.base_radius
+    pressure_angles = sun_mesh.working_pressure_angle, ring_mesh.working_pressure_angle
+    phases = mesh_phases(sun_mesh, ring_mesh, angles, sun_drives)
+    tables = [deflections_of(cycle, forces) for cycle in cycles]
+    # as many positions as are a multiple of the planets: those of one planet are those of the next
+    positions = planets * math.ceil((stage.analysis.positions - 1) / planets)
+    cycle = np.arange(positions) / positions
+    given = [tables[k].at(cycle[:, None] + phases[k]) for k in range(2)]  # (k, position, planet)
+    total = given[0] + given[1]
+    tangential, radial = (
+        1e-3 * np.asarray(values or np.zeros(planets)) for values in (asked.pin_tangential_um, asked.pin_radial_um)
+    )
+    errors = pin_errors(tangential, radial, pressure_angles, sun_drives)
+    directions = directions_of(angles, pressure_angles[0], sun_drives)
+    sign = -1.0 if sun_drives else 1.0
+    shape = len(torques), positions
+    shares, motion = np.zeros((*shape, planets)), np.zeros((*shape, 2))
+    rotation, alone = np.zeros(shape), np.zeros(shape)
+    for t, torque in enumerate(torques):
+        whole = torque / base_radius
+        for n in range(positions):
+            state: Shares = balance(tables[0].force, total[:, n].T, directions, errors, whole, asked.support_stiffness)
+            shares[t, n], motion[t, n] = state.force / state.force.sum(), state.motion
+            rotation[t, n] = state.rotation
+            alone[t, n] = PchipInterpolator(tables[0].force, total[:, n, 0])(whole / planets)
+    factor = planets * shares.max(axis=(1, 2))
+    largest = factor * torques / base_radius / planets
+    arrays = {
+        "torque": torques,
+        "sun_angle": cycle * 2.0 * math.pi / stage.sun.teeth,
+        "planet": np.arange(planets),
+        "planet_angle": np.asarray(angles),
+        "sun_mesh_phase": phases[0],
+        "ring_mesh_phase": phases[1],
+        "sun_base_radius": np.float64(base_radius),
+        "transmission_error": sign * rotation / base_radius,
+        "one_path_transmission_error": sign * alone / base_radius,
+        "planet_share": shares,
+        "sun_motion": motion,
+        "mesh_load_factor": factor,
+        "sun_mesh_peak_pressure": _largest(cycles[0], "peak_pressure", forces, largest),
+        "ring_mesh_peak_pressure": _largest(cycles[1], "peak_pressure", forces, largest),
+    }
+    if stage.analysis.root_stress:
+        names = ("sun_root_tension", "planet_root_tension_at_sun"), ("planet_root_tension_at_ring", "ring_root_tension")
+        for mesh, of_gears in zip(cycles, names, strict=True):
+            for gear, name in enumerate(of_gears):
+                arrays[name] = _largest(mesh, "root_tension", forces, largest, gear)
+    return arrays
+
+
+def _largest(cycle: MeshCycle, name: str, forces: Array, wanted: Array, gear: int | None = None) -> Array:
+    """Largest value over a mesh cycle under forces (m,) [N], between those of the cycle."""
+    values = cycle.dataset[name].values
+    values = values if gear is None else values[..., gear]
+    largest = np.nanmax(values.reshape(len(forces), -1), axis=1)
+    return np.asarray(PchipInterpolator(np.append(0.0, forces), np.append(0.0, largest))(wanted))

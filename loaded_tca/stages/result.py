@@ -1,0 +1,247 @@
+"""The result of a stage: shares of the planets over the mesh, motion of the sun, transmission error, both meshes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.results import MeshCycle
+from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replace_together, variables_of
+from loaded_tca.results.summary import shown
+from loaded_tca.stages.kinematics import neutralised
+from loaded_tca.stages.sections import Stage, parse_stage
+
+if TYPE_CHECKING:
+    import xarray
+
+KIND = "stage"
+FILES = "stage.nc", "sun_mesh.nc", "ring_mesh.nc"
+"""Names of the files of a result: the stage, and the mesh cycles of its two meshes."""
+MOST_ORDERS = 6
+CYCLE = "torque", "position"
+
+QUANTITIES: dict[str, Part] = {
+    "torque": (("torque",), "N mm", "torque of the sun"),
+    "sun_angle": (("position",), "rad", "angle of the sun against the carrier, over one pitch of the sun"),
+    "planet": (("planet",), "1", "planet, from 0"),
+    "planet_angle": (("planet",), "rad", "angle of the planet on the carrier"),
+    "sun_mesh_phase": (("planet",), "1", "phase of the mesh of sun and planet, in mesh cycles"),
+    "ring_mesh_phase": (("planet",), "1", "phase of the mesh of planet and ring, in mesh cycles"),
+    "sun_base_radius": ((), "mm", "base radius of the sun"),
+    "transmission_error": (CYCLE, "rad", "transmission error, counted at the sun"),
+    "one_path_transmission_error": (CYCLE, "rad", "the same of planet 0 alone under an even part of the torque"),
+    "planet_share": ((*CYCLE, "planet"), "1", "part of the torque that a planet carries"),
+    "sun_motion": ((*CYCLE, "axis"), "mm", "motion of the sun's axis in the frame of the carrier"),
+    "mesh_load_factor": (("torque",), "1", "mesh load factor K_gamma: the largest share of a planet over an even one"),
+    "sun_mesh_peak_pressure": (("torque",), "MPa", "peak pressure of sun and planet under the largest share"),
+    "ring_mesh_peak_pressure": (("torque",), "MPa", "peak pressure of planet and ring under the largest share"),
+}
+ROOTS: dict[str, Part] = {
+    "sun_root_tension": (("torque",), "MPa", "root tension of the sun under the largest share"),
+    "planet_root_tension_at_sun": (("torque",), "MPa", "root tension of a planet by the sun under the largest share"),
+    "planet_root_tension_at_ring": (("torque",), "MPa", "root tension of a planet by the ring under the largest share"),
+    "ring_root_tension": (("torque",), "MPa", "root tension of the ring under the largest share"),
+}
+"""Those of stages that ask for root stress."""
+COORDINATES = "torque", "sun_angle", "planet"
+
+
+@dataclass(frozen=True)
+class Order:
+    """An order of the mesh.
+
+    Attributes
+    ----------
+    order : int
+    stage, one_path : float [um]
+        Amplitude of the transmission error of the stage, and of one planet alone, at the base circle of the sun.
+    torsion_cancels, translation_cancels : bool
+        Whether equal planets cancel it in the rotation, and in the forces on the sun's axis.
+    """
+
+    order: int
+    stage: float
+    one_path: float
+    torsion_cancels: bool
+    translation_cancels: bool
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class StageResult:
+    """Planets of a stage over one pitch of the sun, under each torque.
+
+    Attributes
+    ----------
+    stage : Stage
+        What was analysed.
+    dataset : xarray.Dataset
+        Numbers of ``QUANTITIES`` with their units, over torque [N mm], position (``sun_angle`` [rad]) and planet.
+    sun_mesh, ring_mesh : MeshCycle
+        Of one planet with sun and ring, under torques from a small part of an even share to the whole.
+    """
+
+    stage: Stage
+    dataset: xarray.Dataset
+    sun_mesh: MeshCycle
+    ring_mesh: MeshCycle
+
+    def __repr__(self) -> str:
+        sizes = self.dataset.sizes
+        return f"StageResult({sizes['planet']} planets, {sizes['torque']} torques, {sizes['position']} positions)"
+
+    def __getattr__(self, name: str) -> Array:
+        """Values of a quantity of the dataset."""
+        if name.startswith("_") or name not in {**QUANTITIES, **ROOTS}:
+            raise AttributeError(f"StageResult has no {name}")
+        return np.asarray(self.dataset[name].values)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences of the accuracy warnings of both meshes."""
+        return tuple(str(self.dataset.attrs.get("warnings", "")).splitlines())
+
+    def error_um(self, torque: int, *, one_path: bool = False) -> Array:
+        """Transmission error (n,) [um] at the base circle of the sun, of the stage or of one planet alone."""
+        name = "one_path_transmission_error" if one_path else "transmission_error"
+        return np.asarray(1e3 * self.dataset[name].values[torque] * float(self.dataset["sun_base_radius"]))
+
+    def orders(self, torque: int = -1) -> tuple[Order, ...]:
+        """Orders of the mesh under a torque, by its index; default: the last one."""
+        of_stage, of_path = (
+            2.0 / len(curve) * np.abs(np.fft.rfft(curve))
+            for curve in (self.error_um(torque), self.error_um(torque, one_path=True))
+        )
+        count = min(MOST_ORDERS, (self.dataset.sizes["position"] - 1) // 2)
+        angles = self.stage.stage.angles
+        return tuple(
+            Order(k, float(of_stage[k]), float(of_path[k]), *neutralised(k, angles, self.stage.sun.teeth))
+            for k in range(1, count + 1)
+        )
+
+    @cached_property
+    def neutralised_orders(self) -> tuple[int, ...]:
+        """Orders of the mesh, up to six, that equal planets cancel in the rotation of the sun."""
+        angles, teeth = self.stage.stage.angles, self.stage.sun.teeth
+        return tuple(k for k in range(1, MOST_ORDERS + 1) if neutralised(k, angles, teeth)[0])
+
+    def key_figures(self) -> tuple[dict[str, float], ...]:
+        """Figures of each torque, by names that end in their unit."""
+        figures = []
+        for t, torque in enumerate(self.torque.tolist()):
+            shares = self.planet_share[t]
+            row = {
+                "sun_torque_Nm": 1e-3 * torque,
+                "mesh_load_factor": float(self.mesh_load_factor[t]),
+                "least_planet_share": float(shares.min()),
+                "largest_planet_share": float(shares.max()),
+                "transmission_error_peak_to_peak_um": float(np.ptp(self.error_um(t))),
+                "one_path_peak_to_peak_um": float(np.ptp(self.error_um(t, one_path=True))),
+                "sun_motion_largest_um": 1e3 * float(np.hypot(*self.sun_motion[t].T).max()),
+                "sun_mesh_peak_pressure_MPa": float(self.sun_mesh_peak_pressure[t]),
+                "ring_mesh_peak_pressure_MPa": float(self.ring_mesh_peak_pressure[t]),
+            }
+            figures.append(
+                row | {f"{name}_MPa": float(getattr(self, name)[t]) for name in ROOTS if name in self.dataset}
+            )
+        return tuple(figures)
+
+    def to_table(self) -> dict[str, list[float]]:
+        """Columns of a table with a row for each torque and position."""
+        columns: dict[str, list[float]] = {}
+        planets, positions = self.dataset.sizes["planet"], self.dataset.sizes["position"]
+        for t, torque in enumerate(self.torque.tolist()):
+            values = {
+                "sun_torque_Nm": np.full(positions, 1e-3 * torque),
+                "sun_angle_deg": np.degrees(self.sun_angle),
+                "transmission_error_arcsec": np.degrees(self.transmission_error[t]) * 3600.0,
+                "transmission_error_um": self.error_um(t),
+                **{f"planet_{i}_share": self.planet_share[t, :, i] for i in range(planets)},
+                "sun_motion_x_um": 1e3 * self.sun_motion[t, :, 0],
+                "sun_motion_y_um": 1e3 * self.sun_motion[t, :, 1],
+            }
+            for name, column in values.items():
+                columns.setdefault(name, []).extend(column.tolist())
+        return columns
+
+    def summary(self) -> str:
+        """The figures as a text, a line each and a column for each torque."""
+        z_s, z_p, z_r = self.stage.teeth
+        figures = self.key_figures()
+        degrees = ", ".join(f"{math.degrees(angle):.4g}" for angle in self.stage.stage.angles)
+        lines = [
+            *([self.stage.title] if self.stage.title else []),
+            f"sun {z_s}, planets {z_p} at {degrees} deg, ring {z_r}; the {self.stage.stage.driving} drives; "
+            f"{self.dataset.sizes['position']} positions of a pitch",
+            _line("phases of the sun's meshes", *(f"{phase:.4f}" for phase in self.sun_mesh_phase)),
+            _line("phases of the ring's meshes", *(f"{phase:.4f}" for phase in self.ring_mesh_phase)),
+            _line("orders that equal planets cancel", ", ".join(map(str, self.neutralised_orders)) or "none"),
+        ]
+        lines += [_line(name, *(shown(row[name], name) for row in figures)) for name in figures[0]]
+        lines.append(_line("order of the mesh", "stage [um]", "one path [um]"))
+        lines += [
+            _line(
+                f"  {one.order}{', cancelled' if one.torsion_cancels else ''}",
+                f"{one.stage:.4g}",
+                f"{one.one_path:.4g}",
+            )
+            for one in self.orders()
+        ]
+        return "\n".join([*lines, *(f"warning: {sentence}" for sentence in self.warnings)])
+
+    def save(self, directory: FilePath) -> tuple[Path, ...]:
+        """Write ``stage.nc``, ``sun_mesh.nc`` and ``ring_mesh.nc`` into a directory, all or none.
+
+        Raises
+        ------
+        InputError
+            If they cannot be written.
+        """
+        return replace_together(directory, self.contents())
+
+    def contents(self) -> dict[str, bytes | bytearray]:
+        """Names and contents of the files that ``save`` writes."""
+        about = {"kind": KIND, "title": self.stage.title, "stage_toml": self.stage.to_toml()}
+        content = netcdf_of(self.dataset.assign_attrs(about))
+        return dict(zip(FILES, (content, self.sun_mesh.to_netcdf(), self.ring_mesh.to_netcdf()), strict=True))
+
+    @classmethod
+    def load(cls, directory: FilePath) -> StageResult:
+        """Read the files that ``save`` wrote into a directory.
+
+        Raises
+        ------
+        InputError
+            If one cannot be read, is damaged, or is no such file.
+        """
+        place = Path(directory)
+        file = read_dataset(place / FILES[0])
+        if file.attrs.get("kind") != KIND:
+            raise InputError(f"{place / FILES[0]}: not the result of a stage")
+        stage = parse_stage(str(file.attrs["stage_toml"]), source=str(place / FILES[0]))
+        parts = {**QUANTITIES, **(ROOTS if stage.analysis.root_stress else {})}
+        about = {name: file.attrs[name] for name in ("version", "date", "warnings") if name in file.attrs}
+        return cls(
+            stage=stage,
+            dataset=stage_dataset(arrays_of(file, parts), **about),
+            sun_mesh=MeshCycle.load(place / FILES[1]),
+            ring_mesh=MeshCycle.load(place / FILES[2]),
+        )
+
+
+def _line(label: str, *cells: str) -> str:
+    return f"{label:<44}" + "".join(f"{cell:>16}" for cell in cells)
+
+
+def stage_dataset(arrays: dict[str, Array], **about: str) -> xarray.Dataset:
+    """Dataset of the arrays of ``QUANTITIES``, and of ``ROOTS`` where they are known."""
+    import xarray
+
+    parts = {name: part for name, part in {**QUANTITIES, **ROOTS}.items() if name in arrays}
+    return xarray.Dataset(variables_of(parts, arrays), attrs=about).set_coords(COORDINATES)

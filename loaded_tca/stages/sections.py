@@ -1,0 +1,357 @@
+"""Stage files: a sun, equal planets and a ring, with what holds them, as sections that check every key."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar, Literal
+
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.input_files import read_text
+from loaded_tca.pairs.gear_pair import Driving
+from loaded_tca.scene import cylindrical
+from loaded_tca.scene.blank import OTHER
+from loaded_tca.scene.cylindrical import CylindricalScene
+from loaded_tca.scene.internal import InternalScene, RingSection
+from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, above_zero, key
+from loaded_tca.scene.model import _lines
+from loaded_tca.scene.parse import LARGEST_FILE, toml_table
+from loaded_tca.scene.section import Rule, Section, as_table, check, contents, made, subsection
+from loaded_tca.scene.sections import Analysis, DIAMETER_mm, ElasticMaterial, Load, TORQUE_Nm
+from loaded_tca.stages.kinematics import spacing_problems
+
+# ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
+
+
+MOST_PLANETS = 12
+SAME_DISTANCE = 1e-3
+"""Difference of the centre distances of both meshes, in modules, that counts as none."""
+PIN_um = List(Number(-10000.0, 10000.0), 1, MOST_PLANETS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanetaryStage(Section):
+    """[stage]: planets, what drives, how the sun is held, where the pins stand."""
+
+    type: Literal["planetary"] = key(Choice(("planetary",)), "kind of stage: the ring stands still", "planetary")
+    planets: int | None = key(Whole(1, MOST_PLANETS), "number of planets, evenly spaced", None, "`planet_angles_deg`")
+    planet_angles_deg: tuple[float, ...] | None = key(
+        List(Number(-360.0, 360.0), 1, MOST_PLANETS), "or the angles of the planets on the carrier", None, "even ones"
+    )
+    driving: Literal["sun", "carrier"] = key(Choice(("sun", "carrier")), "the member that drives", "sun")
+    floating_sun: bool = key(Choice((False, True)), "whether the sun is held by its planets alone", False)
+    sun_support_stiffness_N_per_um: float | None = key(
+        Number(0.0, 1e9), "or the radial stiffness of the sun's support; 0: it floats", None, "rigid"
+    )
+    pin_tangential_um: tuple[float, ...] | None = key(
+        PIN_um, "displacement of each pin in the sense of rotation of the sun", None, "0 of all"
+    )
+    pin_radial_um: tuple[float, ...] | None = key(PIN_um, "displacement of each pin outwards", None, "0 of all")
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(
+            ("planets", "planet_angles_deg"),
+            lambda count, angles: (
+                None
+                if (count is None) != (angles is None)
+                else "missing; give it or planet_angles_deg"
+                if count is None
+                else f"found {count} beside planet_angles_deg; give one of them"
+            ),
+        ),
+        Rule(
+            ("sun_support_stiffness_N_per_um", "floating_sun"),
+            lambda stiffness, floating: (
+                f"found {stiffness:g} beside floating_sun = true; give one of them"
+                if floating and stiffness is not None
+                else None
+            ),
+        ),
+        *(
+            Rule(
+                (name, "planets", "planet_angles_deg"),
+                lambda values, count, angles: (
+                    f"found {len(values)} values; allowed {count or len(angles)}, one for each planet"
+                    if values is not None and (count or angles) and len(values) != (count or len(angles))
+                    else None
+                ),
+            )
+            for name in ("pin_tangential_um", "pin_radial_um")
+        ),
+        Rule(
+            ("floating_sun", "sun_support_stiffness_N_per_um", "planets", "planet_angles_deg"),
+            lambda floating, stiffness, count, angles: (
+                "found a sun that floats beside one planet; allowed from two planets on, which hold it"
+                if (floating or stiffness == 0.0) and (count or len(angles or ())) == 1
+                else None
+            ),
+        ),
+    )
+
+    @property
+    def angles(self) -> tuple[float, ...]:
+        """Angles of the planets on the carrier [rad]."""
+        if self.planet_angles_deg is not None:
+            return tuple(math.radians(angle) for angle in self.planet_angles_deg)
+        assert self.planets is not None
+        return tuple(2.0 * math.pi * number / self.planets for number in range(self.planets))
+
+    @property
+    def support_stiffness(self) -> float:
+        """Radial stiffness of the sun's support [N/mm]; inf: rigid, 0: it floats."""
+        if self.floating_sun:
+            return 0.0
+        stiffness = self.sun_support_stiffness_N_per_um
+        return math.inf if stiffness is None else 1e3 * stiffness
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageGeometry(Section):
+    """[pair]: what all gears of a stage have in common."""
+
+    normal_module_mm: float = key(above_zero(1000.0), "normal module m_n")
+    pressure_angle_deg: float = key(Number(1.0, 44.0), "normal pressure angle alpha_n", 20.0)
+    helix_angle_deg: float = key(
+        Number(0.0, 59.0), "helix angle beta at the reference circle; its sign is in `sun.hand`", 0.0
+    )
+    centre_distance_mm: float | None = key(
+        DIAMETER_mm, "centre distance of sun and planets", None, "follows from the profile shifts, without backlash"
+    )
+    dedendum_coefficient: float = key(above_zero(5.0), "dedendum of the basic rack in modules, h_fP/m_n", 1.25)
+    root_radius_coefficient: float = key(Number(0.0, 1.0), "root radius of the basic rack in modules, rho_fP/m_n", 0.38)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageLoad(Section):
+    """[load] of a stage."""
+
+    sun_torque_Nm: float = key(TORQUE_Nm, "magnitude of the torque on the sun")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stage(Section):
+    """A planetary stage in the engineer's units, as read from a stage file.
+
+    Attributes
+    ----------
+    title : str
+    stage : PlanetaryStage
+        Section [stage].
+    geometry : StageGeometry
+        Section [pair].
+    sun, planet : cylindrical.GearSection
+    ring : internal.RingSection
+    material : ElasticMaterial or None
+    load : StageLoad
+    analysis : Analysis
+        ``torques_Nm`` are torques of the sun.
+    """
+
+    title: str = key(Line(), "stands over reports and plots", "")
+    stage: PlanetaryStage = subsection(PlanetaryStage, "planets, pins, and how the sun is held")
+    geometry: StageGeometry = subsection(StageGeometry, "what all gears have in common", name="pair")
+    sun: cylindrical.GearSection = subsection(cylindrical.GearSection, "the sun, which turns about +z")
+    planet: cylindrical.GearSection = subsection(cylindrical.GearSection, "every planet")
+    ring: RingSection = subsection(RingSection, "the ring, which stands still")
+    material: ElasticMaterial | None = subsection(
+        ElasticMaterial, "material of all gears; needed unless each has its own", optional=True
+    )
+    load: StageLoad = subsection(StageLoad, "what the sun carries")
+    analysis: Analysis = subsection(Analysis, "how finely both meshes are computed")
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(
+            ("planet.hand",),
+            lambda hand: None if hand is None else f'found "{hand}"; not allowed: sun.hand gives the hands of all',
+        ),
+        Rule(
+            ("ring.hand",),
+            lambda hand: None if hand is None else f'found "{hand}"; not allowed: sun.hand gives the hands of all',
+        ),
+        Rule(
+            ("analysis.load_sharing",),
+            lambda sharing: None if sharing else "found false; allowed true: the meshes of a stage share the load",
+        ),
+        Rule(
+            ("analysis.positions",),
+            lambda count: None if count >= 5 else f"found {count}; allowed from 5 on: shares are taken between them",
+        ),
+    )
+
+    @property
+    def teeth(self) -> tuple[int, int, int]:
+        """Numbers of teeth of sun, planet and ring, that of the ring positive."""
+        return self.sun.teeth, self.planet.teeth, -self.ring.teeth
+
+    @property
+    def sun_torques(self) -> tuple[float, ...]:
+        """Torques of the sun [N mm]."""
+        several = self.analysis.torques_Nm
+        return tuple(1e3 * torque for torque in (several or (self.load.sun_torque_Nm,)))
+
+    @cached_property
+    def centre_distance(self) -> float:
+        """Centre distance of both meshes [mm].
+
+        Raises
+        ------
+        GeometryError
+            If it is not given and the meshes have different ones without backlash.
+        """
+        if self.geometry.centre_distance_mm is not None:
+            return self.geometry.centre_distance_mm
+        first, second = (scene.mesh().working_centre_distance for scene in self._meshes(None))
+        if abs(first - second) > SAME_DISTANCE * self.geometry.normal_module_mm:
+            raise GeometryError(
+                f"ring.teeth: without backlash sun and planet have the centre distance {first:.4f} mm, planet and ring "
+                f"{second:.4f} mm; numbers of teeth and profile shifts must give the same, or pair.centre_distance_mm "
+                "one that leaves both some backlash"
+            )
+        return first
+
+    @cached_property
+    def sun_scene(self) -> CylindricalScene:
+        """Scene of the sun and a planet: the sun is the pinion; the torque is a planet's part of the first torque."""
+        return self._meshes(self.centre_distance)[0]
+
+    @cached_property
+    def ring_scene(self) -> InternalScene:
+        """Scene of a planet and the ring: the planet is the pinion, turning the other way."""
+        return self._meshes(self.centre_distance)[1]
+
+    def _meshes(self, distance: float | None) -> tuple[CylindricalScene, InternalScene]:
+        """Scenes of both meshes under a planet's part of the first torque; problems have the names of the stage."""
+        common = {**contents(self.geometry), "type": "cylindrical", "centre_distance_mm": distance}
+        driving: Driving = "pinion" if self.stage.driving == "sun" else "wheel"
+        planets, torque = len(self.stage.angles), 1e-3 * self.sun_torques[0]
+        other = OTHER[self.sun.hand or "right"]
+        shared: dict[str, Any] = {"material": self.material, "analysis": replace(self.analysis, torques_Nm=None)}
+        try:
+            of_sun = CylindricalScene(
+                title=f"{self.title}: sun and planet".strip(": "),
+                geometry=cylindrical.Geometry(**common, driving=driving),
+                pinion=self.sun,
+                wheel=self.planet,
+                load=Load(pinion_torque_Nm=torque / planets),
+                **shared,
+            )
+            of_ring = InternalScene(
+                title=f"{self.title}: planet and ring".strip(": "),
+                geometry=cylindrical.Geometry(**common, driving=driving, sense="negative"),
+                pinion=replace(self.planet, hand=other),
+                wheel=self.ring,
+                load=Load(pinion_torque_Nm=torque * self.planet.teeth / self.sun.teeth / planets),
+                **shared,
+            )
+        except InputError as error:
+            raise InputError(_renamed(problem) for problem in error.problems) from None
+        return of_sun, of_ring
+
+    def require_assembly(self) -> None:
+        """Refuse planets that cannot be put in, or touch each other.
+
+        Raises
+        ------
+        GeometryError
+            With every problem, and the nearest angles that are possible.
+        """
+        planet = self.sun_scene.mesh().wheel
+        problems = spacing_problems(self.stage.angles, self.teeth, self.centre_distance, 2.0 * planet.tip_radius)
+        if problems:
+            raise GeometryError("; ".join(problems))
+
+    def with_changes(self, changes: Mapping[str, Any]) -> Stage:
+        """Return a stage with other values, all checked; keys with dots as in a file, None: not given."""
+        table = as_table(self)
+        for path, value in changes.items():
+            *sections, name = path.split(".")
+            place = table
+            for section in sections:
+                place = place.setdefault(section, {})
+            if value is None:
+                place.pop(name, None)
+            else:
+                place[name] = value
+        return stage_from_table(table)
+
+    def to_toml(self) -> str:
+        """Return a stage file with every key; ``parse_stage`` makes the same stage of it."""
+        return "\n".join(_lines(self, "")) + "\n"
+
+
+def _renamed(problem: str) -> str:
+    """A problem of a scene in the words of the stage."""
+    return re.sub(r"\bload\.pinion_torque_Nm\b", "load.sun_torque_Nm", problem)
+
+
+def stage_from_table(table: Mapping[str, Any]) -> Stage:
+    """Return the stage that nested dictionaries describe, as TOML would give them.
+
+    Raises
+    ------
+    InputError
+        Every problem at once.
+    """
+    values, problems = check(Stage, table)
+    if problems:
+        raise InputError(problems)
+    return made(Stage, values)
+
+
+def parse_stage(text: str, source: str = "stage") -> Stage:
+    r"""Make a stage of the text of a stage file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    source : str
+        What messages call the text.
+
+    Raises
+    ------
+    InputError
+        If the text is not TOML, or with every problem that it holds.
+
+    Examples
+    --------
+    >>> parse_stage("[stage]\nplanets = 13")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    loaded_tca.errors.InputError: stage.planets: found 13; allowed a whole number from 1 to 12
+    ...
+    """
+    table = toml_table(text, source)
+    if "stage" not in table and ("pinion" in table or "wheel" in table):
+        raise InputError(f"{source}: not a stage but the scene of a pair; run it with 'loaded-tca run'")
+    return stage_from_table(table)
+
+
+def read_stage(path: str | os.PathLike[str]) -> Stage:
+    """Read a stage file.
+
+    Parameters
+    ----------
+    path : str or path
+        A TOML file in UTF-8.
+
+    Returns
+    -------
+    Stage
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or with every problem that it holds, one per line.
+
+    Examples
+    --------
+    >>> stage = read_stage("examples/stages/wind_spur.toml")
+    >>> stage.teeth, stage.centre_distance
+    ((18, 36, 93), 584.0)
+    """
+    return parse_stage(read_text(path, LARGEST_FILE), source=os.fspath(path))

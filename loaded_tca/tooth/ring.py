@@ -1,0 +1,206 @@
+r"""Teeth of ring gears, as external teeth seen through an inversion.
+
+With the root radius c of the ring the image of a point at the radius rho has the radius
+
+.. math:: r = c^2/\rho .
+
+Angles are kept and circles stay circles: in the image a tooth of a ring grows from its root circle outwards to its
+tip, and the outside of the ring is a bore. Whatever is drawn in the images of sections, complete teeth, arcs and the
+nodes of finite elements, holds for rings so. The inversion mirrors; sections that are counted along -z mirror back, and
+surfaces keep their outside.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.modification import FlankModifications, modified
+from loaded_tca.flanks.ring import RingFlank
+from loaded_tca.gears.cylindrical_mesh import ActiveProfile
+from loaded_tca.gears.ring import RingGear
+from loaded_tca.tooth.families import RootCylinder, ToothForm, ToothGeometry
+from loaded_tca.tooth.fillet import Fillet, FilletCurve, Profile, RackFillet
+from loaded_tca.tooth.held import Held
+from loaded_tca.tooth.sections import Sections
+
+FARTHEST = 1e3
+"""Images nearer to the middle than those of this many root radii are taken for theirs."""
+SMALLEST_OUTSIDE, LARGEST_OUTSIDE = 1.02, 20.0
+"""Outer diameters over the largest root diameter: a smaller one leaves no rim."""
+
+
+@dataclass(frozen=True)
+class InvertedPlanes(Sections):
+    """Planes z = const of a ring gear, each seen through the inversion at its root circle.
+
+    The coordinate that tells them apart is that of the ring's lengthwise modifications, -z.
+
+    Parameters
+    ----------
+    root_radius : float [mm]
+        c, the radius that stays what it is.
+
+    Examples
+    --------
+    >>> planes = InvertedPlanes(50.0)
+    >>> float(planes.radius(np.array(40.0), np.array(3.0))), float(planes.coordinate(np.array(40.0), np.array(3.0)))
+    (62.5, -3.0)
+    """
+
+    root_radius: float
+
+    outwards = -1
+
+    def coordinate(self, rho: Array, z: Array) -> Array:
+        """Return -z."""
+        return 0.0 * rho - z
+
+    def radius(self, rho: Array, z: Array) -> Array:
+        """Return c^2/rho."""
+        return self.root_radius**2 / rho + 0.0 * z
+
+    def point(self, radius: Array, coordinate: Array) -> tuple[Array, Array]:
+        """Return (c^2/r, -coordinate)."""
+        image = np.maximum(radius, self.root_radius / FARTHEST)
+        rho, z = np.broadcast_arrays(self.root_radius**2 / image, -coordinate)
+        return rho, z
+
+    def direction(self, radius: Array, coordinate: Array) -> tuple[Array, Array]:
+        """Return (-c^2/r^2, 0)."""
+        nought = 0.0 * (radius + coordinate)
+        return nought - (self.root_radius / radius) ** 2, nought
+
+    def radius_beyond(self, radius: Array, coordinate: Array, distance: Array) -> Array:
+        """Return c^2/(c^2/r - distance), at most the image of a thousandth of the root radius."""
+        rho = np.maximum(self.root_radius**2 / radius - distance, self.root_radius / FARTHEST)
+        return self.root_radius**2 / rho + 0.0 * coordinate
+
+    def in_true_size(self, radius: Array, coordinate: Array) -> Array:
+        """Return c^2/r: a plane is its own section."""
+        return self.point(radius, coordinate)[0]
+
+
+@dataclass(frozen=True)
+class _ImageOfRoot:
+    """The fillet of a ring in the image, as :class:`RackFillet` takes those of external gears.
+
+    The tangents towards the root are mirrored at the circle.
+    """
+
+    gear: RingGear
+
+    is_undercut = False
+
+    def root_fillet(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Radii of the image [mm], and angles from the middle of the tooth [rad]."""
+        radius, angle = self.gear.root_fillet(points)
+        return self.gear.root_radius**2 / radius, angle
+
+    def root_fillet_tangent(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Radial and circumferential parts of the unit tangents of the image."""
+        radial, circumferential = self.gear.root_fillet_tangent(points)
+        return -radial, circumferential
+
+
+@dataclass(frozen=True)
+class RingFillet(Fillet):
+    """Arc, or what a pinion-type cutter cuts, at the root of a ring.
+
+    Parameters
+    ----------
+    gear : RingGear
+    """
+
+    gear: RingGear
+
+    def curve(self, profile: Profile, root_radius: Array, count: int) -> FilletCurve:
+        """The image of the curve, turned to each section."""
+        return RackFillet(_ImageOfRoot(self.gear)).curve(profile, root_radius, count)
+
+
+@dataclass(frozen=True)
+class Outside(Held):
+    """The outside of a ring.
+
+    Parameters
+    ----------
+    default_radius : float [mm]
+        Where none is given.
+    """
+
+    default_radius: float
+
+    def radius(self, diameter: float | None, root: Array) -> Array:
+        """Radius (k,) of the outside [mm]."""
+        outer, largest = 2.0 * self.default_radius if diameter is None else diameter, 2.0 * float(root.max())
+        if not SMALLEST_OUTSIDE * largest <= outer <= LARGEST_OUTSIDE * largest:
+            raise InputError(
+                f"outer_diameter: {outer:.6g} mm is not between {SMALLEST_OUTSIDE:g} and {LARGEST_OUTSIDE:g} times the "
+                f"root diameter, {largest:.6g} mm: where it is smaller no rim is left outside the teeth"
+            )
+        return np.full_like(root, 0.5 * outer)
+
+
+@dataclass(frozen=True)
+class RingTooth(ToothGeometry):
+    """Involute teeth of a ring gear.
+
+    Parameters
+    ----------
+    gear : RingGear
+    working_radius : float [mm]
+        Radius of the working circle, where Theta = 0 at mid-face.
+    active : ActiveProfile
+        Over which profile modifications run.
+    modifications : FlankModifications
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear, InternalMesh
+    >>> pinion = CylindricalGear(teeth=25, normal_module=3.0, face_width=25.0)
+    >>> mesh = InternalMesh(pinion, RingGear(teeth=-60, normal_module=3.0, face_width=25.0))
+    >>> form = RingTooth(mesh.ring, mesh.wheel_working_radius, mesh.wheel_active_profile).form()
+    >>> round(form.half_thickness_angle * 60, 6)  # without profile shift half a tooth is a quarter of a pitch
+    1.570796
+    """
+
+    gear: RingGear
+    working_radius: float
+    active: ActiveProfile
+    modifications: FlankModifications = FlankModifications()
+
+    @property
+    def unmodified(self) -> ToothGeometry:
+        """The same teeth without modifications."""
+        return replace(self, modifications=FlankModifications())
+
+    def nominal(self, side: int) -> Flank:
+        """Involute flank of a side."""
+        gear = self.gear
+        radii = gear.form_radius, gear.tip_radius
+        return RingFlank(gear.base_radius, gear.base_helix_angle, side, self.working_radius, radii, gear.face_width)
+
+    def modified(self, nominal: Flank) -> Flank:
+        """The flank with its modifications; profile modifications run over the roll length."""
+        return modified(
+            nominal,
+            self.modifications,
+            self.gear.face_width,
+            (2.0 * self.active.start_radius, 2.0 * self.active.end_radius),
+            lambda diameter: -self.gear.roll_length(0.5 * diameter),
+            owner=self.gear.name,
+        )
+
+    def form(self) -> ToothForm:
+        """Transverse sections through the inversion, root cylinder, and the fillet of the ring."""
+        gear = self.gear
+        half_angle = 0.5 * gear.tooth_thickness_at(self.working_radius) / self.working_radius
+        root = gear.root_radius
+        sections, held = InvertedPlanes(root), Outside(gear.outer_radius)
+        return ToothForm(gear.tooth_count, half_angle, sections, RootCylinder(root), RingFillet(gear), held=held)

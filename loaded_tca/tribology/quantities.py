@@ -1,0 +1,138 @@
+"""What tribology finds: name, dimensions, unit, long name, and what each number needs."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+TORQUE = ("torque",)
+CYCLE = ("torque", "position")
+PAIRS = ("torque", "position", "pair")
+GEARS = ("torque", "position", "pair", "gear")
+
+NEEDS = {
+    "load_sharing": "of one tooth pair alone no mesh is known; set analysis.load_sharing = true and run the scene",
+    "positions": "a mean over a pitch takes more than one position; raise analysis.positions and run the scene",
+    "speed": "needs pinion_speed_rpm, or operation.pinion_speed_rpm in the scene",
+    "lubricant": "needs lubricant, or [lubricant] in the scene",
+    "roughness": "needs roughness_um, or pinion.roughness_Ra_um and wheel.roughness_Ra_um in the scene",
+    "friction": 'needs friction: "local", "Xu-Kahraman" or a number; ISO/TS 6336-22 has one of cylindrical gears alone',
+    "bulk": "needs bulk_temperature_C: the standard computes it of cylindrical gears alone",
+    "load_stage": "needs scuffing_load_stage, or lubricant.scuffing_load_stage in the scene",
+    "permissible": "needs permissible_film_ratio, or lubricant.permissible_film_ratio in the scene",
+}
+"""What a number may lack, in the order in which it is told -> what the error says."""
+
+
+class Quantity(NamedTuple):
+    """A number of tribology.
+
+    Attributes
+    ----------
+    dims : tuple of str
+    unit, text : str
+    needs : frozenset of str
+        Of ``NEEDS``; those that follow from the arguments are added when it is asked for.
+    over_speed : bool
+        Whether it has the dimension speed where several are given.
+    """
+
+    dims: tuple[str, ...]
+    unit: str
+    text: str
+    needs: frozenset[str] = frozenset()
+    over_speed: bool = True
+
+
+MEAN = frozenset({"load_sharing", "positions"})
+SPEED = frozenset({"speed"})
+FRICTION = frozenset({"friction"})
+FLASH = SPEED | FRICTION
+BULK = frozenset({"bulk"})
+HOT = FLASH | BULK
+FILM = HOT | {"lubricant"}
+
+EXTREMES = {
+    "largest_flash_temperature": "flash_temperature",
+    "largest_contact_temperature": "contact_temperature",
+    "least_film_thickness": "film_thickness",
+    "least_film_ratio": "film_ratio",
+    "pressure_velocity": "pressure_velocity",
+}
+"""Number under a torque -> number of slices whose extreme it is; least ones begin so, the others are largest."""
+
+QUANTITIES: dict[str, Quantity] = {
+    "loss_factor": Quantity(TORQUE, "1", "load loss factor H_VL", MEAN, over_speed=False),
+    "mean_friction": Quantity(TORQUE, "1", "mean coefficient of friction, weighted with the loss", MEAN | FRICTION),
+    "bulk_temperature": Quantity(TORQUE, "°C", "bulk temperature of the teeth", BULK),
+    "mean_friction_power": Quantity(TORQUE, "W", "friction power, mean over a pitch", MEAN | FLASH),
+    "efficiency": Quantity(TORQUE, "1", "1 less friction power over the power at the pinion", MEAN | FRICTION),
+    "largest_flash_temperature": Quantity(TORQUE, "K", "largest flash temperature", FLASH),
+    "largest_contact_temperature": Quantity(TORQUE, "°C", "largest contact temperature", HOT),
+    "least_film_thickness": Quantity(TORQUE, "um", "least film thickness", FILM),
+    "least_film_ratio": Quantity(TORQUE, "1", "least film ratio lambda_GF", FILM | {"roughness"}),
+    "pressure_velocity": Quantity(TORQUE, "MPa m/s", "largest product of pressure and sliding velocity", SPEED),
+    "scuffing_safety": Quantity(
+        TORQUE, "1", "safety against scuffing by the contact temperature, S_B", HOT | {"lubricant", "load_stage"}
+    ),
+    "micropitting_safety": Quantity(
+        TORQUE, "1", "safety against micropitting, S_lambda", FILM | {"roughness", "permissible"}
+    ),
+    "friction_power": Quantity(CYCLE, "W", "friction power of all tooth pairs", FLASH),
+    "sliding_velocity": Quantity(PAIRS, "m/s", "largest sliding velocity of the tooth pair", SPEED),
+    "sum_velocity": Quantity(PAIRS, "m/s", "sum of both rolling velocities there", SPEED),
+    "friction": Quantity(PAIRS, "1", "largest coefficient of friction", FRICTION),
+    "flash_temperature": Quantity(PAIRS, "K", "largest flash temperature", FLASH),
+    "contact_temperature": Quantity(PAIRS, "°C", "largest contact temperature", HOT),
+    "film_thickness": Quantity(PAIRS, "um", "least film thickness", FILM),
+    "isothermal_film_thickness": Quantity(
+        PAIRS, "um", "least film thickness without the thinning by the heat of sliding, S_GF = 1", FILM
+    ),
+    "film_ratio": Quantity(PAIRS, "1", "least film ratio lambda_GF", FILM | {"roughness"}),
+    "rolling_velocity": Quantity(GEARS, "m/s", "rolling velocity of each gear where the pair slides most", SPEED),
+    "specific_sliding": Quantity(
+        GEARS, "1", "specific sliding of each gear where the pair slides most", over_speed=False
+    ),
+    "friction_torque": Quantity(
+        GEARS, "N mm", "torque of friction on each gear, positive in its sense of motion", FRICTION
+    ),
+}
+"""Names in ``Tribology.dataset``, and what each is."""
+PLACES: dict[str, tuple[str, str]] = {
+    "position": ("1", "position, an index"),
+    "pair": ("1", "tooth pair"),
+    "radius": ("mm", "radius on the pinion"),
+    "axial": ("mm", "axial coordinate on the pinion"),
+}
+"""Ends of the names of the places of extremes, as ``least_film_ratio_radius``: unit and long name."""
+
+COLUMNS: dict[str, tuple[str, str, frozenset[str]]] = {
+    "position": ("1", "position, an index", frozenset()),
+    "pair": ("1", "tooth pair", frozenset()),
+    "pinion_radius": ("mm", "radius on the pinion", frozenset()),
+    "pinion_axial": ("mm", "axial coordinate on the pinion", frozenset()),
+    "wheel_radius": ("mm", "radius on the wheel", frozenset()),
+    "wheel_axial": ("mm", "axial coordinate on the wheel", frozenset()),
+    "roll_length": ("mm", "from T1 along the common normal, in the transverse plane", frozenset()),
+    "line_load": ("N/mm", "line load", frozenset()),
+    "pressure": ("MPa", "pressure of a line contact, without K_A and K_v", frozenset()),
+    "half_width": ("mm", "half width of a line contact", frozenset()),
+    "relative_radius": ("mm", "radius of relative curvature across", frozenset()),
+    "on_edge": ("1", "whether the slice reaches the end of a flank", frozenset()),
+    "pinion_specific_sliding": ("1", "specific sliding of the pinion", frozenset()),
+    "wheel_specific_sliding": ("1", "specific sliding of the wheel", frozenset()),
+    "pinion_wear": ("N/mm", "wear of the pinion at each mesh, over the coefficient of wear", frozenset()),
+    "wheel_wear": ("N/mm", "wear of the wheel at each mesh, over the coefficient of wear", frozenset()),
+    "pinion_rolling_velocity": ("m/s", "rolling velocity of the pinion", SPEED),
+    "wheel_rolling_velocity": ("m/s", "rolling velocity of the wheel", SPEED),
+    "sliding_velocity": ("m/s", "sliding velocity", SPEED),
+    "sum_velocity": ("m/s", "sum of both rolling velocities", SPEED),
+    "pressure_velocity": ("MPa m/s", "pressure times sliding velocity", SPEED),
+    "friction": ("1", "coefficient of friction", FRICTION),
+    "friction_power": ("W", "friction power of the slice", FLASH),
+    "flash_temperature": ("K", "flash temperature", FLASH),
+    "contact_temperature": ("°C", "contact temperature", HOT),
+    "film_thickness": ("um", "film thickness", FILM),
+    "isothermal_film_thickness": ("um", "film thickness without the thinning by heat", FILM),
+    "film_ratio": ("1", "film ratio lambda_GF", FILM | {"roughness"}),
+}
+"""Columns of the table of slices: unit, long name, needs."""

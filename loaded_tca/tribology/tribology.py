@@ -1,0 +1,474 @@
+"""Tribology of a result under a speed, an oil and a roughness: numbers of the mesh, of tooth pairs and of slices."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from loaded_tca.arrays import Array, Indices, index_checks
+from loaded_tca.errors import NotAskedError, require
+from loaded_tca.reference.iso6336_20 import scuffing_safety, scuffing_temperature
+from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replacing
+from loaded_tca.results.numbers import CycleNumbers
+from loaded_tca.results.summary import shown_torque
+from loaded_tca.tribology.conditions import MEAN, Conditions
+from loaded_tca.tribology.evaluate import Evaluation, pitch_weights
+from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, NEEDS, PLACES, QUANTITIES
+from loaded_tca.tribology.slices import Slices, slices_of
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+GearName = Literal["pinion", "wheel"]
+CELLS = (24, 32)
+"""Of the grid of a flank along the profile and lengthwise."""
+LEAST = {"film_thickness", "isothermal_film_thickness", "film_ratio"}
+"""Numbers of slices whose extreme is the least one."""
+MILLI = 1e-3
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Tribology:
+    """Loss, temperatures, films and safeties of a result; every name of ``QUANTITIES`` is an attribute.
+
+    With a list of speeds arrays that depend on the speed have it as their first axis. NaN where a pair carries nothing.
+    What lacks an input is no part of the dataset; as an attribute it raises a NotAskedError that names the input.
+
+    Attributes
+    ----------
+    result : MeshCycle
+    conditions : Conditions
+        Speed, oil, roughness and factors, as given or from the scene.
+    """
+
+    result: CycleNumbers
+    conditions: Conditions
+    _kept: dict[str, Array] = field(default_factory=dict)
+    _extremes: dict[str, tuple[Array, Indices]] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        speeds = f"{self.conditions.speeds.size} speeds" if self.conditions.several else "one speed"
+        return f"Tribology({len(self.sweep)} slices, {len(self.result.torque)} torques, {speeds})"
+
+    @cached_property
+    def sweep(self) -> Slices:
+        """The slices of the result, for one rad/s of the pinion."""
+        return slices_of(self.result)
+
+    @cached_property
+    def _numbers(self) -> Evaluation:
+        return Evaluation(self.result, self.sweep, self.conditions)
+
+    def __getattr__(self, name: str) -> Any:
+        if name in QUANTITIES:
+            self._require(name, QUANTITIES[name].needs)
+            return self._shaped(name)
+        extreme, end = _place_of(name)
+        if extreme:
+            self._require(name, QUANTITIES[extreme].needs)
+            return self._place(extreme, end)
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *QUANTITIES, *(f"{name}_{end}" for name in EXTREMES for end in PLACES)]
+
+    @cached_property
+    def missing(self) -> frozenset[str]:
+        """Which of ``NEEDS`` the result and the arguments lack."""
+        given, analysis = self.conditions, self.result.scene.analysis
+        cylindrical = bool(self.result.scene.path_points)
+        lacks = {
+            "load_sharing": not analysis.load_sharing,
+            "positions": len(self.result.path) < 2,
+            "speed": not np.isfinite(given.speeds).all(),
+            "lubricant": given.lubricant is None,
+            "roughness": given.roughness is None,
+            "friction": given.friction is None,
+            "bulk": given.bulk_temperature is None and not cylindrical,
+            "load_stage": given.load_stage is None,
+            "permissible": given.permissible_film_ratio is None,
+        }
+        return frozenset(name for name, lack in lacks.items() if lack)
+
+    def lacking(self, name: str) -> str:
+        """What a number of ``QUANTITIES`` lacks, as its error says it; nothing if it is known."""
+        return self._lacking(QUANTITIES[name].needs)
+
+    def by_speed(self, name: str) -> Array:
+        """A number under each torque, or a place of one, (speed, torque), whatever it depends on."""
+        values = np.asarray(getattr(self, name), dtype=float)
+        return np.broadcast_to(values, (self.conditions.speeds.size, len(self.result.torque)))
+
+    def knows(self, name: str) -> bool:
+        """Whether a number of ``QUANTITIES`` is known: it lacks no input, and there is load."""
+        return not self.lacking(name) and len(self.sweep) > 0
+
+    def on_flanks(self, name: str, torque: int, speed: int) -> tuple[Array, Array, Array]:
+        """A column of the slices under one torque, with their middles and half their lengths in the fixed frame."""
+        self.check(torque, speed)
+        require((name in COLUMNS, f"name: {name!r:.60}; allowed {', '.join(COLUMNS)}"))
+        self._require(name, COLUMNS[name][2])
+        some = self.sweep.of_torque(torque)
+        return self._column(name, speed)[some].astype(float), self.sweep.point[some], self.sweep.tangent[some]
+
+    def extreme_on_edge(self, name: str) -> bool:
+        """Whether an extreme of ``EXTREMES`` lies in a slice at an edge of a flank, under any torque and speed."""
+        _, places = self._extreme(name)
+        return bool(self.sweep.on_edge[places[places >= 0]].any())
+
+    def with_speeds(self, name: str) -> Array:
+        """A number of ``QUANTITIES`` that depends on the speed, with that as its first axis even of one speed."""
+        self._require(name, QUANTITIES[name].needs)
+        values = self._shaped(name)
+        return values if self.conditions.several else values[None]
+
+    def _lacking(self, needs: frozenset[str]) -> str:
+        """What a number with these needs lacks, as the error says it; nothing if it lacks none."""
+        needs = needs | self._of_arguments(needs)
+        return next((sentence for need, sentence in NEEDS.items() if need in needs & self.missing), "")
+
+    def _of_arguments(self, needs: frozenset[str]) -> frozenset[str]:
+        """Needs that follow from those by the arguments: of the coefficient of friction, of a bulk temperature."""
+        follow: set[str] = set()
+        if "bulk" in needs and self.conditions.bulk_temperature is None:
+            follow |= {"speed", "lubricant", "friction", "load_sharing", "positions"}
+        if "friction" in needs | follow and isinstance(self.conditions.friction, str):
+            follow |= {"speed", "lubricant", "roughness"}
+        return frozenset(follow)
+
+    def _require(self, name: str, needs: frozenset[str]) -> None:
+        if sentence := self._lacking(needs):
+            raise NotAskedError(f"{name}: {sentence}")
+
+    def _shaped(self, name: str) -> Array:
+        """A number of ``QUANTITIES``, with the axis of speeds where several are given."""
+        quantity = QUANTITIES[name]
+        if name not in self._kept:
+            self._kept[name] = self._found(name)
+        values = self._kept[name]
+        return values if self.conditions.several or not quantity.over_speed else values[0]
+
+    def _found(self, name: str) -> Array:
+        """A number of ``QUANTITIES``, with the axis of speeds where it depends on them."""
+        numbers, parts = self._numbers, self.sweep
+        if name in EXTREMES:
+            return self._extreme(name)[0]
+        if name in self._of_mesh:
+            return np.asarray(self._of_mesh[name]())
+        if name == "friction_torque":
+            rows = numbers.friction[None] * parts.torques[:, None]
+            return np.stack([self._per_pair(np.add.reduceat(row, parts.starts, axis=-1)) for row in rows], axis=-1)
+        if name in ("sum_velocity", "rolling_velocity", "specific_sliding"):
+            found: dict[str, Callable[[], Array]] = {
+                "sum_velocity": lambda: numbers.sum_velocity[:, self._sliding_most],
+                "rolling_velocity": lambda: numbers.rolling[:, :, self._sliding_most],
+                "specific_sliding": lambda: parts.specific_sliding[:, None, self._sliding_most],
+            }
+            values = found[name]()
+            if values.ndim == 2:
+                return self._per_pair(values)
+            both = np.stack([self._per_pair(rows) for rows in values], axis=-1)
+            return both if QUANTITIES[name].over_speed else both[0]
+        values = getattr(numbers, name)
+        reduced = np.fmin if name in LEAST else np.fmax
+        return self._per_pair(reduced.reduceat(values, parts.starts, axis=-1) if len(parts) else values)
+
+    @property
+    def _of_mesh(self) -> dict[str, Any]:
+        """Numbers of the whole mesh -> what finds them."""
+        numbers, given, torque = self._numbers, self.conditions, self.result.torque
+        return {
+            "loss_factor": lambda: numbers.mean_loss,
+            "mean_friction": lambda: numbers.mean_friction,
+            "bulk_temperature": lambda: numbers.bulk_temperature,
+            "mean_friction_power": lambda: MILLI * numbers.omega * numbers.mean_friction_work * torque,
+            "efficiency": lambda: 1.0 - numbers.mean_friction_work,
+            "friction_power": lambda: MILLI * numbers.omega[..., None] * numbers.friction_work,
+            "scuffing_safety": lambda: scuffing_safety(
+                self.scuffing_temperature, numbers.oil.oil_temperature, self._extreme("largest_contact_temperature")[0]
+            ),
+            "micropitting_safety": lambda: self._extreme("least_film_ratio")[0] / (given.permissible_film_ratio or 1.0),
+        }
+
+    @property
+    def scuffing_temperature(self) -> float:
+        """Scuffing temperature of the oil by its load stage, ISO/TR 13989-1 [C].
+
+        Raises
+        ------
+        NotAskedError
+            Without lubricant or load stage.
+        """
+        self._require("scuffing_temperature", frozenset({"lubricant", "load_stage"}))
+        oil = self._numbers.oil
+        viscosity = float(oil.viscosity(oil.oil_temperature))
+        return scuffing_temperature(self.conditions.load_stage or 0.0, viscosity, oil.friction_factor)
+
+    @cached_property
+    def _sliding_most(self) -> Indices:
+        """Slice of each contact that slides most."""
+        ends = np.append(self.sweep.starts[1:], len(self.sweep))
+        pieces = zip(self.sweep.starts.tolist(), ends.tolist(), strict=True)
+        return np.array([begin + int(self.sweep.sliding[begin:end].argmax()) for begin, end in pieces], dtype=int)
+
+    def _per_pair(self, values: Array) -> Array:
+        """Values (s, contacts) as an array (s, torque, position, pair), NaN where a pair carries nothing."""
+        parts = self.sweep
+        whole = np.full((values.shape[0], *self.result.load_share.shape), math.nan)
+        first = parts.starts
+        whole[:, parts.torque[first], parts.position[first], parts.column[first]] = values
+        return whole
+
+    def _extreme(self, name: str) -> tuple[Array, Indices]:
+        """Extreme under each torque (s, torque), and its slice; NaN and -1 without load."""
+        if name in self._extremes:
+            return self._extremes[name]
+        values, torques = getattr(self._numbers, EXTREMES[name]), len(self.result.torque)
+        worst = -values if EXTREMES[name] in LEAST else values
+        extremes = np.full((len(values), torques), math.nan)
+        places = np.full(extremes.shape, -1)
+        for torque in range(torques):
+            some = self.sweep.of_torque(torque)
+            if some.size and np.isfinite(worst[:, some]).any(axis=1).all():
+                places[:, torque] = some[np.nanargmax(worst[:, some], axis=1)]
+                extremes[:, torque] = np.take_along_axis(values, places[:, torque, None], axis=1)[:, 0]
+        self._extremes[name] = extremes, places
+        return extremes, places
+
+    def _place(self, extreme: str, end: str) -> Array:
+        """Where an extreme lies: position, pair, radius or axial coordinate, of each torque."""
+        _, places = self._extreme(extreme)
+        parts = self.sweep
+        of_slices = {"position": parts.position, "radius": parts.radius, "axial": parts.axial}.get(end)
+        of_slices = self.result.pair[parts.column] if of_slices is None else of_slices
+        values = np.where(places >= 0, np.append(of_slices, math.nan).astype(float)[places], math.nan)
+        return values if self.conditions.several else values[0]
+
+    @cached_property
+    def dataset(self) -> xarray.Dataset:
+        """All numbers that are known, with their units, as ``MeshCycle.dataset`` has those of the contact."""
+        import xarray
+
+        variables: dict[str, Any] = {}
+        for name, quantity in QUANTITIES.items():
+            if self.lacking(name):
+                continue
+            before = ("speed",) if self.conditions.several and quantity.over_speed else ()
+            about = {"units": quantity.unit, "long_name": quantity.text}
+            variables[name] = (before + quantity.dims, self._shaped(name), about)
+            for end, (unit, text) in PLACES.items() if name in EXTREMES else ():
+                place = {"units": unit, "long_name": f"{text} of the {quantity.text}"}
+                variables[f"{name}_{end}"] = (before + quantity.dims, self._place(name, end), place)
+        own = self.result.dataset
+        coordinates: dict[str, Any] = {name: own[name] for name in ("torque", "pinion_angle", "pair")}
+        coordinates["gear"] = ("gear", ["pinion", "wheel"])
+        if self.conditions.several:
+            speed = {"units": "1/min", "long_name": "speed of the pinion"}
+            coordinates["speed"] = ("speed", self.conditions.speeds, speed)
+        return xarray.Dataset(variables, coordinates, {"title": self.result.scene.title})
+
+    def slices(self, torque: int = 0, speed: int = 0) -> pandas.DataFrame:
+        """Table of all slices under one torque.
+
+        Parameters
+        ----------
+        torque, speed : int
+            Indices; the speed of a list.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each slice; of ``COLUMNS`` those that are known. Pressure is that of the nominal torque; films and
+            flash temperatures take it times the root of K_A K_v.
+
+        Raises
+        ------
+        InputError
+            If there is no such torque or speed.
+        """
+        import pandas
+
+        self.check(torque, speed)
+        some = self.sweep.of_torque(torque)
+        known = {name: self._column(name, speed)[some] for name in COLUMNS if not self._lacking(COLUMNS[name][2])}
+        return pandas.DataFrame(known)
+
+    def check(self, torque: int, speed: int) -> None:
+        """Refuse indices of a torque and a speed that there are not."""
+        counts = {"torque": len(self.result.torque), "speed": self.conditions.speeds.size}
+        given = {"torque": torque, "speed": speed}
+        require(*index_checks(**{name: (given[name], count) for name, count in counts.items()}))
+
+    def _column(self, name: str, speed: int) -> Array:
+        """A column of the table of slices, of all torques."""
+        parts = self.sweep
+        gear = 0 if name.startswith("pinion") else 1
+        own: dict[str, Callable[[], Array]] = {
+            "pair": lambda: self.result.pair[parts.column],
+            "pinion_radius": lambda: parts.radius,
+            "pinion_axial": lambda: parts.axial,
+            "pinion_specific_sliding": lambda: parts.specific_sliding[0],
+            "wheel_specific_sliding": lambda: parts.specific_sliding[1],
+            "pinion_wear": lambda: parts.line_load * np.abs(parts.specific_sliding[0]),
+            "wheel_wear": lambda: parts.line_load * np.abs(parts.specific_sliding[1]),
+            "pinion_rolling_velocity": lambda: self._numbers.rolling[gear][speed],
+            "wheel_rolling_velocity": lambda: self._numbers.rolling[gear][speed],
+        }
+        if name in own:
+            return np.asarray(own[name]())
+        return np.asarray(getattr(parts, name) if hasattr(parts, name) else getattr(self._numbers, name)[speed])
+
+    def over_flank(
+        self, name: str, torque: int = 0, gear: GearName = "pinion", *, speed: int = 0, cells: tuple[int, int] = CELLS
+    ) -> xarray.DataArray:
+        """Extreme that each place of a flank sees over the mesh: the least of films, the largest of all others.
+
+        Parameters
+        ----------
+        name : str
+            Of ``COLUMNS``; of ``friction_power`` the mean over the pitch of all that falls into a cell.
+        torque : int
+            Index.
+        gear : {"pinion", "wheel"}
+        speed : int
+            Index of the speed of a list.
+        cells : (int, int)
+            Of the grid along the profile and lengthwise.
+
+        Returns
+        -------
+        xarray.DataArray
+            Over ``height`` and ``lengthwise``, the coordinates of the flank in pictures: diameter and axial place of
+            cylindrical gears. NaN where no slice passes.
+
+        Raises
+        ------
+        InputError
+            For another name, gear, torque or number of cells.
+        NotAskedError
+            If it lacks an input.
+        """
+        import xarray
+
+        self.check(torque, speed)
+        require(
+            (name in COLUMNS, f"name: {name!r:.60}; allowed {', '.join(COLUMNS)}"),
+            (gear in ("pinion", "wheel"), f"gear: {gear!r:.60}; allowed 'pinion' or 'wheel'"),
+            (min(cells) >= 1, f"cells: {cells!r:.60}; allowed two numbers from 1 on"),
+        )
+        self._require(name, COLUMNS[name][2])
+        parts, some = self.sweep, self.sweep.of_torque(torque)
+        flank = getattr(self.result.gear_pair, gear).flank
+        rho, z = (parts.radius, parts.axial) if gear == "pinion" else (parts.wheel_radius, parts.wheel_axial)
+        along, height = flank.frame.to_picture(rho[some], z[some])
+        outline = flank.frame.to_picture(*flank.grid(9, 9))
+        edges = [np.linspace(one.min(), one.max(), n + 1) for one, n in zip(outline[::-1], cells, strict=True)]
+        index = tuple(
+            np.clip(np.searchsorted(edge, values, "right") - 1, 0, count - 1)
+            for edge, values, count in zip(edges, (height, along), cells, strict=True)
+        )
+        values = self._column(name, speed)[some]
+        if name == "friction_power":
+            grid = np.zeros(cells)
+            weights = pitch_weights(len(self.result.path))
+            np.add.at(grid, index, values * weights[parts.position[some]])
+            reached = np.zeros(cells, dtype=bool)
+            reached[index] = True
+            grid = np.where(reached, grid, math.nan)
+        else:
+            grid = np.full(cells, math.nan)
+            (np.fmin if name in LEAST else np.fmax).at(grid, index, values.astype(float))
+        middles = [0.5 * (edge[:-1] + edge[1:]) for edge in edges]
+        about = {"units": COLUMNS[name][0], "long_name": COLUMNS[name][1]}
+        coordinates = {"height": middles[0], "lengthwise": middles[1]}
+        return xarray.DataArray(grid, coordinates, ("height", "lengthwise"), name, about)
+
+    def summary(self, speed: int = 0) -> str:
+        """Return what the mesh comes to under each torque, in a few lines, and what is missing for more.
+
+        Parameters
+        ----------
+        speed : int
+            Index of the speed of a list.
+        """
+        rows = self.rows(speed)
+        width, longest = max(len(cell) for _, *cells in rows for cell in cells) + 2, max(len(row[0]) for row in rows)
+        table = [f"{head:<{longest}}" + "".join(f"{cell:>{width}}" for cell in cells) for head, *cells in rows]
+        lacking = {name: self.lacking(name) for name in SUMMARY}
+        reasons: dict[str, list[str]] = {}
+        for name, reason in lacking.items():
+            if reason:
+                reasons.setdefault(reason, []).append(SUMMARY[name])
+        notes = [f"not known: {', '.join(names)}: {reason}" for reason, names in reasons.items()]
+        return "\n".join([self.result.scene.title or "Tribology", self._about(speed), *table, *notes])
+
+    def rows(self, speed: int = 0) -> list[tuple[str, ...]]:
+        """Lines of the summary: the torques, and each number that is known under them."""
+        self.check(0, speed)
+        rows = [("pinion torque [N m]", *(shown_torque(one).split()[0] for one in self.result.torque))]
+        for name in (name for name in SUMMARY if not self.lacking(name)):
+            values, unit = self.by_speed(name)[speed], QUANTITIES[name].unit
+            label = SUMMARY[name] + (f" [{unit}]" if unit != "1" else "")
+            rows.append((label, *("-" if math.isnan(one) else f"{one:.4g}" for one in values)))
+        return rows
+
+    def _about(self, speed: int) -> str:
+        """Speed, oil and friction in words."""
+        given = self.conditions
+        oil, rpm = given.lubricant, given.speeds[speed]
+        friction = (
+            given.friction if isinstance(given.friction, str) else f"{given.friction:g}" if given.friction else ""
+        )
+        parts = [
+            "no speed" if math.isnan(rpm) else f"pinion at {rpm:g} rpm",
+            "no oil" if oil is None else f"{oil.base} oil of {oil.viscosity_40:g} mm2/s at {oil.oil_temperature:g} C",
+            "no roughness" if given.roughness is None else "Ra {:g} and {:g} um".format(*given.roughness),
+            f"friction: {'mean of ' if friction == MEAN else ''}{friction}" if friction else "no friction",
+            f"K_A {given.application_factor:g}, K_v {given.dynamic_factor:g}",
+        ]
+        return ", ".join(parts)
+
+    def save(self, path: FilePath) -> None:
+        """Write the dataset to a NetCDF-3 file, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        content = self.to_netcdf()
+        with replacing(path) as temporary:
+            temporary.write_bytes(content)
+
+    def to_netcdf(self) -> Buffer:
+        """Return the bytes of the file that ``save`` writes; in it gears are 0, the pinion, and 1, the wheel."""
+        return netcdf_of(self.dataset.drop_vars("gear").assign_attrs(kind="tribology"))
+
+
+SUMMARY = {
+    "loss_factor": "loss factor H_VL",
+    "mean_friction": "mean coefficient of friction",
+    "mean_friction_power": "friction power, mean",
+    "efficiency": "efficiency of the mesh",
+    "bulk_temperature": "bulk temperature",
+    "largest_flash_temperature": "largest flash temperature",
+    "largest_contact_temperature": "largest contact temperature",
+    "scuffing_safety": "safety against scuffing S_B",
+    "least_film_thickness": "least film thickness",
+    "least_film_ratio": "least film ratio",
+    "micropitting_safety": "safety against micropitting S_lambda",
+    "pressure_velocity": "largest pressure times sliding velocity",
+}
+"""Names of the lines of the summary, and their labels."""
+
+
+def _place_of(name: str) -> tuple[str, str]:
+    """Extreme and end of the name of a place; empty where it is none."""
+    extreme, _, end = name.rpartition("_")
+    return (extreme, end) if extreme in EXTREMES and end in PLACES else ("", "")

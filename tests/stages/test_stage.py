@@ -1,0 +1,165 @@
+"""Stages: files and their refusals, shares and orders, saved and read again."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.scene import InternalScene
+from loaded_tca.stages import StageResult, analyse_stage, parse_stage, read_stage, rebalanced
+from tests.refusals import refused_calls
+from tests.samples.root_stress import coarsely
+
+EXAMPLES = Path(__file__).parents[2] / "examples" / "stages"
+QUICK = {"analysis.compliance": "contact", "analysis.free_edges": False, "analysis.accuracy": 0.1}
+TEXT = (EXAMPLES / "helical_automotive.toml").read_text(encoding="utf-8")
+
+pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
+
+
+@pytest.fixture(scope="module")
+def stage():
+    changes = {**QUICK, "stage.pin_tangential_um": None, "analysis.positions": 9, "analysis.torques_Nm": [100.0, 300.0]}
+    return parse_stage(TEXT).with_changes(changes)
+
+
+@pytest.fixture(scope="module")
+def result(stage):
+    return analyse_stage(stage)
+
+
+def changed(**keys):
+    return parse_stage(TEXT).with_changes({name.replace("__", "."): value for name, value in keys.items()})
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_example_is_sound_and_written_back(path):
+    stage = read_stage(path)
+    assert stage.title
+    assert parse_stage(stage.to_toml()) == stage
+    stage.require_assembly()
+    assert list(stage.sun_scene.interferences()) == []
+    assert list(stage.ring_scene.interferences()) == []
+
+
+def test_scenes_of_both_meshes_have_the_flanks_of_the_stage(stage):
+    assert isinstance(stage.ring_scene, InternalScene)
+    assert stage.sun_scene.hands == ("right", "left")
+    assert stage.ring_scene.hands == ("left", "left")
+    assert_allclose(stage.sun_scene.mesh().working_centre_distance, stage.ring_scene.mesh().working_centre_distance)
+    sides = stage.sun_scene.pair().wheel.flank.side, stage.ring_scene.pair().pinion.flank.side
+    assert sides[0] == -sides[1]  # a planet presses sun and ring with opposite flanks
+    forces = [scene.torques[0] / scene.pair().base_radii[0] for scene in (stage.sun_scene, stage.ring_scene)]
+    assert_allclose(forces[0], forces[1])
+
+
+def test_shares_add_up_and_orders_of_equal_planets_cancel(result):
+    assert_allclose(result.planet_share.sum(axis=-1), 1.0, rtol=1e-9)
+    assert result.neutralised_orders == (1, 3, 5)
+    orders = result.orders()
+    largest = max(one.one_path for one in orders)
+    for one in orders:
+        if one.torsion_cancels:
+            assert one.stage < 1e-6 * largest
+    assert_allclose(result.mesh_load_factor, len(result.planet) * result.planet_share.max(axis=(1, 2)))
+
+
+def test_stage_in_phase_has_the_ripple_of_one_path():
+    stage = read_stage(EXAMPLES / "wind_spur.toml").with_changes(
+        {**QUICK, "stage.pin_tangential_um": None, "analysis.positions": 7, "analysis.torques_Nm": [100e3]}
+    )
+    result = analyse_stage(stage)
+    assert_allclose(np.ptp(result.error_um(0)), np.ptp(result.error_um(0, one_path=True)), rtol=1e-6)
+    assert (result.transmission_error > 0.0).all()  # the carrier drives, and load makes it lead
+    assert result.neutralised_orders == ()
+
+
+def test_factor_falls_with_torque_and_rises_with_the_pin_error(result):
+    small, large = (rebalanced(result, {"stage.pin_tangential_um": [amount, 0.0, 0.0, 0.0]}) for amount in (2.0, 5.0))
+    assert small.mesh_load_factor[1] < small.mesh_load_factor[0]
+    assert (small.mesh_load_factor < large.mesh_load_factor).all()
+    assert_allclose(rebalanced(result, {}).planet_share, result.planet_share, rtol=1e-12)
+
+
+def test_planet_whose_pin_is_far_off_is_slack(result):
+    slack = rebalanced(result, {"stage.pin_tangential_um": [500.0, 0.0, 0.0, 0.0], "stage.floating_sun": False})
+    assert (slack.planet_share[..., 0] == 0.0).all()
+    assert not slack.sun_motion.any()
+
+
+def test_pins_that_turn_the_carrier_together_change_no_share(result):
+    turned = rebalanced(result, {"stage.pin_tangential_um": [20.0] * 4})
+    assert_allclose(turned.planet_share, result.planet_share, atol=1e-7)
+    lag = turned.transmission_error - result.transmission_error
+    angles = [scene.mesh().working_pressure_angle for scene in (result.stage.sun_scene, result.stage.ring_scene)]
+    expected = 0.02 * sum(map(math.cos, angles)) / float(result.dataset["sun_base_radius"])
+    assert_allclose(lag, -expected, rtol=1e-6)
+
+
+def test_result_is_saved_and_read_again(result, tmp_path):
+    files = result.save(tmp_path)
+    assert [path.name for path in files] == ["stage.nc", "sun_mesh.nc", "ring_mesh.nc"]
+    again = StageResult.load(tmp_path)
+    assert again.dataset.equals(result.dataset)
+    assert again.stage == result.stage
+    assert_allclose(again.ring_mesh.transmission_error, result.ring_mesh.transmission_error)
+    (tmp_path / "stage.nc").write_bytes((tmp_path / "sun_mesh.nc").read_bytes())
+    with pytest.raises(InputError, match="not the result of a stage"):
+        StageResult.load(tmp_path)
+
+
+def test_table_and_summary_have_every_torque(result):
+    table = result.to_table()
+    assert len(table["sun_angle_deg"]) == 2 * result.dataset.sizes["position"]
+    assert_allclose(sum(np.array(table[f"planet_{i}_share"]) for i in range(4)), 1.0)
+    assert "orders that equal planets cancel" in result.summary()
+    assert "1, 3, 5" in result.summary()
+    assert repr(result) == "StageResult(4 planets, 2 torques, 8 positions)"
+    with pytest.raises(AttributeError, match="no nothing"):
+        _ = result.nothing
+
+
+def test_root_stress_under_the_largest_share_is_known_where_it_is_asked_for(result):
+    assert "sun_root_tension" not in result.dataset
+    with coarsely():
+        asked = analyse_stage(changed(analysis__positions=5, analysis__torques_Nm=[100.0], analysis__root_stress=True))
+    for name in ("sun_root_tension", "planet_root_tension_at_sun", "planet_root_tension_at_ring", "ring_root_tension"):
+        assert 10.0 < getattr(asked, name)[0] < 2000.0  # MPa
+        assert f"{name}_MPa" in asked.key_figures()[0]
+
+
+test_bad_stages_are_refused = refused_calls(
+    (lambda: changed(stage__planets=None), "stage.planets: missing; give it or planet_angles_deg"),
+    (lambda: changed(stage__planet_angles_deg=[0.0, 90.0]), "planets: found 4 beside planet_angles_deg"),
+    (lambda: changed(stage__pin_radial_um=[1.0, 2.0]), "pin_radial_um: found 2 values; allowed 4, one for each planet"),
+    (lambda: changed(stage__sun_support_stiffness_N_per_um=-1.0), "sun_support_stiffness_N_per_um: found -1"),
+    (lambda: changed(stage__sun_support_stiffness_N_per_um=5.0), "found 5 beside floating_sun = true"),
+    (lambda: changed(stage__planets=1, stage__pin_tangential_um=None), "a sun that floats beside one planet"),
+    (lambda: changed(stage__type="wolfrom"), "stage.type: found"),
+    (lambda: changed(stage__driving="ring"), "stage.driving: found"),
+    (lambda: changed(planet__hand="left"), "planet.hand: found"),
+    (lambda: changed(ring__teeth=70), "ring.teeth: found 70"),
+    (lambda: changed(analysis__positions=3), "analysis.positions: found 3; allowed from 5 on"),
+    (lambda: changed(analysis__load_sharing=False), "analysis.load_sharing: found false"),
+    (lambda: changed(load__sun_torque_Nm=-1.0), "load.sun_torque_Nm: found -1"),
+    (lambda: parse_stage('[pair]\ntype = "cylindrical"\n[pinion]\nteeth = 3'), "not a stage but the scene of a pair"),
+    (lambda: analyse_stage(changed(analysis__torques_Nm=[0.0])), "a stage shares a torque above 0"),
+)
+
+test_stages_that_cannot_be_are_refused = refused_calls(
+    (lambda: changed(ring__teeth=-71).sun_scene, "have the centre distance 40.1997 mm, planet and ring"),
+    (lambda: changed(stage__planets=3, stage__pin_tangential_um=None).require_assembly(), "cannot be put in at 120"),
+    (
+        lambda: changed(stage__planets=10, stage__pin_tangential_um=None).require_assembly(),
+        "neighbouring planets touch",
+    ),
+    error=GeometryError,
+)
+
+
+def test_other_meshes_are_not_rebalanced(result):
+    with pytest.raises(InputError, match=r"sun.teeth: needs other meshes"):
+        rebalanced(result, {"sun.teeth": 31})

@@ -1,0 +1,72 @@
+"""What slices have of the contacts: radii, velocities, forces; what does not depend on the grid."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.material import Material
+from loaded_tca.reference.hertz import line_contact
+from loaded_tca.tribology.slices import slices_of
+from tests.samples.tribology import FAMILIES, known, shared
+
+
+def test_involutes_roll_by_their_roll_lengths():
+    """Of spur gears: v_r = omega rho_t, and 1/rho is the sum of both curvatures."""
+    result = shared("mesh_cycle_spur", pinion__modifications=None, wheel__modifications=None, torque=1.0)
+    slices, path = slices_of(result), result.scene.mesh().path_of_contact
+    assert_allclose(slices.rolling[0], slices.roll_length, rtol=1e-9)
+    assert_allclose(slices.rolling[1], result.gear_pair.ratio * (path.T2 - slices.roll_length), rtol=1e-6)
+    radius = slices.roll_length * (path.T2 - slices.roll_length) / path.T2
+    on_path = (slices.roll_length > path.A) & (slices.roll_length < path.E)
+    assert_allclose(slices.relative_radius[on_path], radius[on_path], rtol=1e-6)
+
+
+def test_slices_have_the_pressure_and_half_width_of_a_line_contact():
+    slices = slices_of(shared("mesh_cycle_spur"))
+    modulus = shared("mesh_cycle_spur").gear_pair.contact_modulus
+    for one in range(0, len(slices), 97):
+        line = line_contact(slices.line_load[one], 1.0 / slices.relative_radius[one], modulus)
+        assert_allclose(
+            (slices.pressure[one], slices.half_width[one]), (line.max_pressure, line.half_width), rtol=1e-12
+        )
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_pressure_of_slices_is_that_of_cells_where_contacts_keep_off_edges(name):
+    """Slender contacts: slices have the pressure of line contacts, within the cells and 1/aspect^2."""
+    result = shared(name)
+    peaks = np.fmax.reduceat(slices_of(result).pressure, slices_of(result).starts)
+    rough = (result.on_edge.astype(bool) | result.on_relief_start.astype(bool))[0]
+    loaded = result.normal_force[0] > 0.0
+    smooth = ~rough[loaded]
+    assert_allclose(peaks[smooth], result.peak_pressure[0][loaded][smooth], rtol=0.06)
+
+
+def test_extremes_at_sharp_edges_do_not_depend_on_the_grid():
+    """Single cells at a sharp tip grow without a limit as grids are refined; slices keep their line load."""
+    coarse, fine = (
+        known(shared("fzg_c14", analysis__accuracy=None, analysis__cells=cells), friction=0.05)
+        for cells in ((24, 16), (64, 16))
+    )
+    assert_allclose(fine.largest_flash_temperature, coarse.largest_flash_temperature, rtol=0.02)
+    assert_allclose(fine.least_film_thickness, coarse.least_film_thickness, rtol=0.02)
+    assert_allclose(fine.loss_factor, coarse.loss_factor, rtol=2e-3)
+
+
+def test_slices_are_found_once():
+    result = shared("mesh_cycle_spur")
+    assert slices_of(result) is slices_of(result)
+
+
+def test_thermal_contact_coefficient_is_the_printed_one():
+    """KISSsoft prints 13.780 N/(mm s^0.5 K) for 50 N/(s K) and 3.8 N/(mm2 K)."""
+    assert_allclose(
+        Material().thermal_contact_coefficient, 13780.0, rtol=5e-4
+    )  # half a unit of its last digit, and 3.8
+
+
+def test_a_material_that_conducts_better_stays_cooler():
+    plain = shared("mesh_cycle_spur")
+    better = shared("mesh_cycle_spur", material__conductivity_W_mK=200.0)
+    ratio = known(better, friction=0.05).flash_temperature / known(plain, friction=0.05).flash_temperature
+    assert_allclose(ratio[np.isfinite(ratio)], 0.5, rtol=1e-9)
