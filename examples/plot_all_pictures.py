@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 from scipy.stats import norm
 
-from loaded_tca import analyse, analyse_revolution, plots, read_scene
+from loaded_tca import analyse, analyse_revolution, plots, read_scene, shaft_lines
 from loaded_tca.flank_maps import ease_off_map, vh_check
 from loaded_tca.results import stress_below
 from loaded_tca.stages import analyse_stage, read_stage
@@ -37,7 +37,9 @@ def main() -> None:
     drawn |= {"comparison": plots.plot_comparison(both), "compared_maps": plots.plot_compared_maps(both)}
     check = vh_check(lambda v, h: BEVEL.with_changes({V: v, H: h}).pair(), STEPS, STEPS)
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
-    turn = analyse_revolution(HELICAL.with_changes(FEW | {"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
+    drawn["shafts"] = plots.plot_shafts(shaft_lines(read_scene(SCENES / "helical_on_shafts.toml")))
+    few = HELICAL.with_changes(FEW)
+    turn = analyse_revolution(few.with_changes({"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
     drawn |= {name: draw(turn) for name, draw in plots.REVOLUTION_PICTURES.items()}
     stage = analyse_stage(read_stage(STAGE).with_changes(FEW | {"analysis.positions": 5}))
     drawn |= {name: draw(stage) for name, draw in plots.STAGE_PICTURES.items()}

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
         LoadedTCAError,
         NotAskedError,
     )
+    from loaded_tca.loaded.shaft_lines import shaft_lines
     from loaded_tca.results import MeshCycle, Revolution, load_result
     from loaded_tca.revolution import analyse_revolution
     from loaded_tca.scene import Scene, parse_scene, read_scene
@@ -51,6 +52,7 @@ __all__ = [
     "parse_scene",
     "read_scene",
     "sample_separation",
+    "shaft_lines",
     "solve_contact",
     "trace_contact",
 ]
