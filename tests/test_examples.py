@@ -147,7 +147,8 @@ def test_designed_pair_is_quieter(name, quieter, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
 def test_example_is_short(path):
-    assert len(path.read_text(encoding="utf-8").splitlines()) < 60
+    most = 80 if path.stem == "plot_all_pictures" else 60  # a page of all kinds grows with them
+    assert len(path.read_text(encoding="utf-8").splitlines()) < most
 
 
 @pytest.mark.parametrize("path", sorted((EXAMPLES / "scenes").glob("*.toml")), ids=lambda path: path.stem)
