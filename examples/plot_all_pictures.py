@@ -27,7 +27,7 @@ SCATTER = {"mounting.misalignment_um": norm(0.0, 5.0), LEAD: norm(5.0, 1.0)}
 
 
 def main() -> None:
-    """Draw those of results, of a bevel pair, of a revolution, of a stage, of sensitivities, of studies, of a design."""
+    """Draw those of results, a bevel pair, a revolution, a stage, sensitivities, studies and a design."""
     result, other = (analyse(HELICAL.with_changes({"analysis.root_stress": True, LEAD: um})) for um in (5.0, 10.0))
     drawn = plots.result_figures(result, more=True)
     drawn |= {"teeth": plots.plot_teeth(result), "stress_below": plots.plot_stress_below(stress_below(result))}
