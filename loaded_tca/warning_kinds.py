@@ -256,6 +256,12 @@ OPEN_REVOLUTION = Kind(
     "amplitudes of a curve that is not closed leak into neighbouring orders; spans hold for the part that is there",
     '`pitches = "hunting"`, or a multiple of the number of teeth of that gear',
 )
+LARGE_MOTIONS = Kind(
+    "gears on their supports move by up to {way:.3g} mm and {turn:.3g} mrad, more than {modules:g} modules or "
+    "{most:g} mrad: supports are linear, and so soft that the gears hardly mesh",
+    "motions of that size shift the contact by parts of the tooth; stiffnesses may have another unit than was meant",
+    "stiffer supports, less torque, or the unit of compliance and stiffness: mm, rad, N, N mm",
+)
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))
 """Of every accuracy warning of an analysis, of derivatives of its result, and of its tribology."""

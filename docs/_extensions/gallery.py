@@ -29,7 +29,9 @@ def prepare() -> None:
     for path in (*EXAMPLES.glob("*.py"), EXAMPLES / "GALLERY_HEADER.rst"):
         shutil.copy2(path, WORKING_DIRECTORY)
     with zipfile.ZipFile(ARCHIVE, "w", zipfile.ZIP_DEFLATED) as archive:
-        for path in sorted([*EXAMPLES.glob("*.py"), *EXAMPLES.glob("scenes/*"), *EXAMPLES.glob("studies/*")]):
+        for path in sorted(
+            [*EXAMPLES.glob("*.py"), *(one for one in EXAMPLES.glob("*/*") if one.suffix in (".toml", ".csv"))]
+        ):
             archive.write(path, path.relative_to(EXAMPLES.parent))
 
 

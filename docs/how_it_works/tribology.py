@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.reference.iso6336_22 import load_loss_factor
+from loaded_tca.reference import iso6336_22
 
 HELICES = np.linspace(0.0, 20.0, 41)
 EVEN, STANDARD = "#0072b2", "#d55e00"
@@ -40,7 +40,7 @@ def standard_loss(one: CylindricalMesh) -> float:
     """Return the loss factor of ISO/TR 15144-1."""
     path, pitch = one.path_of_contact, one.pinion.base_pitch
     parts = (path.E - path.C) / pitch, (path.C - path.A) / pitch
-    return load_loss_factor(*parts, one.pinion.teeth, one.wheel.teeth, one.pinion.base_helix_angle)
+    return iso6336_22.load_loss_factor(*parts, one.pinion.teeth, one.wheel.teeth, one.pinion.base_helix_angle)
 
 
 def draw() -> Figure:

@@ -38,6 +38,13 @@ EASE_OFF = """files in DIR:
 SETTINGS = """SCENE has bevel gears with a section [pair.blank] and the radius of its cutter. FILE is a scene of type
 face_milled with the same blanks, and with machine settings and cutters in closed form: a start to be mended by what its
 contact shows ('loaded-tca run', 'vh', 'ease-off')."""
+SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
+touch.
+
+files in DIR:
+  shaft.csv                 motions along each shaft, one row per torque and place
+  bearings.csv              forces and moments on the bearings
+  shaft.png                 outlines of the shafts, their deflection in two planes"""
 VH = """V and H are mounting errors: of bevel and face-milled gears the offset and the axial displacement of the pinion
 [mm], of cylindrical ones the errors of the axes in their plane and out of it [deg].
 
@@ -113,7 +120,7 @@ STAGE = """files in DIR:
   stage_sun_orbit.png       motion of the sun's axis, all torques
   stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
   stage_orders.png          their orders of the mesh
-docs/guide/planetary_stages.md says more."""
+Numbers have their units in their names; docs/guide/planetary_stages.md says more."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -246,6 +253,9 @@ def _add_tables_and_maps(command: Command) -> None:
     methods = "duplex_spread_blade", "spread_blade"
     text = f"how both gears are cut; default: {methods[0]}"
     cut.add_argument("--method", choices=methods, default=methods[0], help=text)
+    shaft = command("shaft", run_by.shaft, "show how the shafts of a scene bend, without contact", SHAFT)
+    _add_scene(shaft)
+    shaft.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: none is written")
     vh = command("vh", run_by.vh, "draw contact patterns over two mounting errors (V-H check)", VH)
     _add_scene(vh)
     vh.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")

@@ -464,6 +464,24 @@ def settings(options: argparse.Namespace) -> None:
     print_files([options.out])
 
 
+def shaft(options: argparse.Namespace) -> None:
+    """Show the forces on the bearings of a scene's shafts, and write how they bend, without contact."""
+    from loaded_tca.loaded.shaft_lines import shaft_lines
+    from loaded_tca.output.shafts import bearings_csv, bearings_text, shaft_csv
+    from loaded_tca.plots import plot_shafts, png_of
+    from loaded_tca.results.files import replace_together
+
+    scene = scene_of(options)
+    if options.out is not None:
+        check_place(options.out)
+    lines = shaft_lines(scene)
+    print(bearings_text(lines), end="\n\n")
+    if options.out is not None:
+        picture = plot_shafts(lines, scene.title)
+        contents = {"shaft.csv": shaft_csv(lines).encode(), "bearings.csv": bearings_csv(lines).encode()}
+        print_files(replace_together(options.out, {**contents, "shaft.png": png_of(picture)}))
+
+
 def vh(options: argparse.Namespace) -> None:
     """Draw the contact pattern over two mounting errors, without load or under the scene's torque."""
     from loaded_tca.flank_maps import vh_check

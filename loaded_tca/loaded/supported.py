@@ -131,7 +131,7 @@ class SupportedCycle:
         """Mean loads whose motions of the geometry are those that follow from it."""
         count = min(POSITIONS, len(self.angles))
         spread = (np.arange(count) - 0.5 * (count - 1)) / count * self.pair.pitch if count > 1 else self.angles
-        loads = _first_loads(self.supports, self.at_rest, torque)
+        loads = loads_at_first_contact(self.supports, self.at_rest, torque)
         for _ in range(MOST_STEPS):
             pair, carried = self._carried(torque, loads, spread)
             supports = self.supports.mounted(pair)
@@ -201,13 +201,14 @@ def pitches_apart(supports: SupportCompliance, torque: float, angles: Array) -> 
     at_rest = moved_by(supports, _no_loads(supports))
     apart = farthest_apart(trace_teeth(at_rest, angles))
     try:
-        moved = moved_by(supports, _first_loads(supports, at_rest, torque))
+        moved = moved_by(supports, loads_at_first_contact(supports, at_rest, torque))
         return max(apart, farthest_apart(trace_teeth(moved, angles)))
     except GeometryError as error:
         raise _moved_too_far(error, torque) from None
 
 
-def _first_loads(supports: SupportCompliance, at_rest: GearPair, torque: float) -> Loads:
+def loads_at_first_contact(supports: SupportCompliance, at_rest: GearPair, torque: float) -> Loads:
+    """Loads of the stations if the force of a pinion torque [N mm] acts where the pair at rest touches at phi1 = 0."""
     contact = trace_contact(at_rest, [0.0], warn=False)[0]
     if not contact.in_contact:
         return _no_loads(supports)

@@ -35,6 +35,7 @@ from loaded_tca.plots.sensitivities import (
     plot_tornado,
     plot_transmission_error_band,
 )
+from loaded_tca.plots.shafts import plot_shafts
 from loaded_tca.plots.sharing import (
     plot_face_load,
     plot_harmonics,
@@ -121,6 +122,7 @@ __all__ = [
     "plot_root_stress_cycle",
     "plot_root_stress_over_torque",
     "plot_sensitivity_curves",
+    "plot_shafts",
     "plot_sliding_velocities",
     "plot_solution",
     "plot_stage_error",

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
+from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.supported import CarriedOnSupports
 from loaded_tca.pairs.gear_pair import GearPair
@@ -16,6 +18,10 @@ from loaded_tca.supports import SupportCompliance
 
 MICROMETRES = 1e3
 """Per millimetre."""
+
+
+LARGEST_WAY, LARGEST_TURN = 0.1, 5e-3
+"""Motions over the module, and rotations [rad], above which supports are softer than those of gears that mesh."""
 
 
 def support_arrays(
@@ -48,6 +54,17 @@ def support_arrays(
         "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),
         "drive_stiffness": np.stack([one.carried.torque_rate[0] for one in cycles]) * stiffness_per_rate,
     }
+
+
+def warn_of_motions(pair: GearPair, cycles: Sequence[CarriedOnSupports]) -> None:
+    """Give an AccuracyWarning if gears on supports move so far that their units are in doubt."""
+    motions = np.abs(np.stack([_motions(one) for one in cycles]))
+    way, turn = (float(np.nanmax(part, initial=0.0)) for part in (motions[..., :3], motions[..., 3:]))
+    if way > LARGEST_WAY * pair.module or turn > LARGEST_TURN:
+        give_accuracy_warning(
+            kinds.LARGE_MOTIONS.sentence(way=way, turn=1e3 * turn, modules=LARGEST_WAY, most=1e3 * LARGEST_TURN),
+            stacklevel=3,
+        )
 
 
 def secant_on_rigid_supports(carried: Carried, cycles: Sequence[CarriedOnSupports]) -> Array:

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import MeshCycle, analyse, load_result, read_scene
 from loaded_tca.arrays import Array
-from loaded_tca.errors import GeometryError, InputError, NotAskedError
+from loaded_tca.errors import AccuracyWarning, GeometryError, InputError, NotAskedError
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.output.result_files import positions_csv
 from loaded_tca.scene import Scene
@@ -162,6 +162,33 @@ def test_misalignment_counts_as_mounting_errors_do() -> None:
     assert abs(result.misalignment[0, 0]) > 0.1
     in_both = [one.peak_axial[0, 0, 0] for one in (result, analyse(moved))]
     assert_allclose(in_both[0], in_both[1], atol=0.5)  # the side of the face that carries more
+
+
+@pytest.mark.filterwarnings("default::loaded_tca.AccuracyWarning")
+def test_motions_of_doubtful_size_are_warned_of() -> None:
+    scene = scene_of("mesh_cycle_spur", **{"analysis.torques_Nm": [20.0]})
+    with pytest.warns(AccuracyWarning, match=r"gears on their supports move by up to .* and 10 mrad, more than 0.1"):
+        analyse(on(scene, np.diag([0.0] * 5 + [5e-7]), None))
+
+
+@pytest.mark.parametrize("tilt", [1e-9, 5e-9, 1e-7])
+def test_wide_gear_on_a_soft_tilt_settles(tilt: float) -> None:
+    """Rigid analyses repeated swing for ever here: misalignment of the mounting is undone by that of the support."""
+    changes = {
+        "pair.normal_module_mm": 4.0,
+        "pinion.teeth": 20,
+        "wheel.teeth": 50,
+        "pinion.face_width_mm": 80.0,
+        "wheel.face_width_mm": 80.0,
+        "mounting.misalignment_um": 13.0,
+        "analysis.torques_Nm": [600.0],
+    }
+    scene = scene_of("mesh_cycle_spur", **changes)
+    scene = scene.with_changes({f"{gear}.modifications": None for gear in ("pinion", "wheel")})
+    result = analyse(on(scene, None, np.diag([0.0, 0.0, 0.0, tilt, tilt, 0.0])))
+    left = 13.0 + result.misalignment[0, 0]
+    assert 0.0 < left < 13.0
+    assert left < 8.0 * (1e-9 / tilt) ** 0.8  # what is left turns the gear against its stiffness
 
 
 def test_one_pair_alone_on_supports_agrees_with_shared_load_where_one_carries() -> None:

@@ -1,0 +1,64 @@
+"""Tables of shafts under load: their motions, and the forces on their bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from loaded_tca.loaded.shaft_lines import ShaftLine
+from loaded_tca.output.result_files import csv_table
+
+FORCES = "force_x_N", "force_y_N", "force_z_N", "moment_x_Nm", "moment_y_Nm", "moment_z_Nm"
+MOTIONS = "x_um", "y_um", "z_um", "about_x_rad", "about_y_rad", "about_z_rad"
+
+
+def shaft_csv(lines: Sequence[ShaftLine]) -> str:
+    """Return one row per gear, torque and place along its shaft, units in the header."""
+    rows = [(line, n) for line in lines for n in range(len(line.places))]
+    columns: dict[str, list[Any]] = {
+        "gear": [line.gear for line, _ in rows],
+        "pinion_torque_Nm": [1e-3 * line.torque for line, _ in rows],
+        "axial_mm": [float(line.places[n]) for line, n in rows],
+    }
+    for k, name in enumerate(MOTIONS):
+        columns[name] = [float(line.motions[n, k]) * (1e3 if k < 3 else 1.0) for line, n in rows]
+    return csv_table(columns)
+
+
+def bearings_csv(lines: Sequence[ShaftLine]) -> str:
+    """Return one row per gear, torque and bearing: forces and moments on it, axes of the gear's own frame."""
+    rows = [(line, n) for line in lines for n in range(len(line.bearing_forces))]
+    columns: dict[str, list[Any]] = {
+        "gear": [line.gear for line, _ in rows],
+        "pinion_torque_Nm": [1e-3 * line.torque for line, _ in rows],
+        "bearing": [n for _, n in rows],
+        "axial_mm": [line.shaft.bearings[n].at for line, n in rows],
+    }
+    for k, name in enumerate(FORCES):
+        columns[name] = [float(line.bearing_forces[n, k]) * (1.0 if k < 3 else 1e-3) for line, n in rows]
+    return csv_table(columns)
+
+
+def bearings_text(lines: Sequence[ShaftLine]) -> str:
+    """Return forces on the bearings and the motion of the middles of the faces as text.
+
+    Examples
+    --------
+    >>> from loaded_tca import read_scene
+    >>> from loaded_tca.loaded.shaft_lines import shaft_lines
+    >>> lines = shaft_lines(read_scene("examples/scenes/helical_on_shafts.toml"))
+    >>> bearings_text(lines[:1]).splitlines()[0]
+    'pinion under 40 N m'
+    """
+    text = []
+    for line in lines:
+        text.append(f"{line.gear} under {1e-3 * line.torque:g} N m")
+        for n, force in enumerate(line.bearing_forces):
+            parts = " | ".join(f"{one:.1f}" for one in force[:3])
+            text.append(f"  bearing {n} at {line.shaft.bearings[n].at:g} mm: force x | y | z {parts} N")
+        at = abs(line.places - line.middle).argmin()
+        x, y, z, about_x, about_y, about_z = line.motions[at].tolist()
+        text.append(f"  middle of the face: x | y | z {1e3 * x:.2f} | {1e3 * y:.2f} | {1e3 * z:.2f} um")
+        turns = " | ".join(f"{1e6 * one:.1f}" for one in (about_x, about_y, about_z))
+        text.append(f"    about x | y | z {turns} urad")
+    return "\n".join(text)
