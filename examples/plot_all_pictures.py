@@ -49,7 +49,6 @@ def main() -> None:
     with TemporaryDirectory() as folder:
         loaded = run_study(vh_study(BEVEL, STEPS, STEPS), out=Path(folder, "vh.nc"), keep_maps=range(9))
         drawn["loaded_vh_check"] = plots.plot_loaded_vh_check(loaded, Path(folder, "vh_maps"))
-    few = HELICAL.with_changes(FEW)
     sampled, found = run_study(Study(few, {}, SCATTER, 8)), result.sensitivities(list(SCATTER))
     for kind in ("tornado", "sensitivity_curves", "transmission_error_band", "removal_weights"):
         drawn[kind] = getattr(plots, f"plot_{kind}")(found)

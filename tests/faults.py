@@ -38,6 +38,41 @@ AT_EDGES = "results/test_sensitivities_at_edges.py::"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
 FAULTS = (
     Fault(
+        "rings: modifications have the lower and the upper end of the face exchanged",
+        "flanks/ring.py",
+        "return Jet(-z, z=-1.0)",
+        "return Jet(z, z=1.0)",
+        "flanks/test_ring_flank.py::test_ends_of_the_face_are_those_of_the_pinion",
+    ),
+    Fault(
+        "rings: a positive error of the centre distance brings teeth together",
+        "pairs/internal.py",
+        "[mounting.centre_distance_error - mesh.working_centre_distance, 0.0, mounting.axial_offset]",
+        "[-mounting.centre_distance_error - mesh.working_centre_distance, 0.0, mounting.axial_offset]",
+        "pairs/test_internal_pair.py::test_positive_centre_distance_error_moves_teeth_apart",
+    ),
+    Fault(
+        "rings: the fillet by a cutter does not turn with the ring",
+        "gears/ring.py",
+        "turn = (start - place) * cutter.teeth / self.tooth_count",
+        "turn = start * cutter.teeth / self.tooth_count + 0.0 * place",
+        "gears/test_ring.py::test_cutter_of_two_gears_shapes_the_fillet_by_rolling",
+    ),
+    Fault(
+        "stages: planets press sun and ring with the same flank where the carrier drives",
+        "stages/kinematics.py",
+        "sign = 1.0 if sun_drives else -1.0",
+        "sign = 1.0",
+        "stages/test_kinematics.py::test_phases_are_those_of_teeth_that_are_counted",
+    ),
+    Fault(
+        "stages: planets whose flanks do not reach each other pull",
+        "stages/balance.py",
+        "        if approach <= self.first:\n            return 0.0, 0.0, 0.0\n",
+        "",
+        "stages/test_balance.py::test_planet_whose_pin_is_far_off_carries_nothing",
+    ),
+    Fault(
         "tribology: curvatures of tooth pairs beside the first are found at the angles of the gears",
         "tribology/slices.py",
         "turned = pair.pitch * float(result.pair[column])",

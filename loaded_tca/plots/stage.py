@@ -160,7 +160,7 @@ def plot_stage_sun_orbit(result: StageResult) -> Figure:
     for planet, angle in enumerate(result.planet_angle.tolist()):
         axes.annotate(
             f"planet {planet}",
-            (0.5 + 0.46 * np.cos(angle), 0.5 + 0.46 * np.sin(angle)),
+            (0.5 + 0.43 * np.cos(angle), 0.5 + 0.43 * np.sin(angle)),
             xycoords="axes fraction",
             ha="center",
             va="center",

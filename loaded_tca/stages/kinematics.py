@@ -67,7 +67,7 @@ def spacing_problems(
     Examples
     --------
     >>> spacing_problems((0.0, 2.0, 4.0), (18, 36, 93), 584.0, 816.0)[0][:60]
-    'planet_angles_deg: planets cannot be put in at 114.5916, 229.'
+    'planet_angles_deg: planets cannot be put in at 114.5916, 229'
     """
     problems = []
     whole = teeth[0] + teeth[2]
