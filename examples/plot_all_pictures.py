@@ -9,24 +9,27 @@ from tempfile import TemporaryDirectory
 
 from scipy.stats import norm
 
-from loaded_tca import analyse, analyse_revolution, plots, read_scene, shaft_lines
+from loaded_tca import analyse, analyse_revolution, plots, read_scene
 from loaded_tca.flank_maps import ease_off_map, vh_check
 from loaded_tca.results import stress_below
+from loaded_tca.stages import analyse_stage, read_stage
 from loaded_tca.studies import DesignModel, Study, optimise, robustness, run_study, vh_study
+from loaded_tca.tribology import Lubricant
 
-SCENES = Path(__file__).parent / "scenes"
+SCENES, STAGE = Path(__file__).parent / "scenes", Path(__file__).parent / "stages" / "helical_automotive.toml"
 COARSE = {"analysis.positions": 7, "analysis.cells": (16, 24), "analysis.accuracy": None}  # seconds, not minutes
 FEW = COARSE | {"analysis.positions": 4, "analysis.compliance": "contact", "analysis.free_edges": False}
 LEAD, TIP = "pinion.modifications.lead_crowning_um", "wheel.modifications.tip_relief_um"
 RELIEF = {TIP: 10.0, "wheel.modifications.tip_relief_start_mm": 179.0, "analysis.torques_Nm": [60.0, 130.0]}
 HELICAL = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(COARSE | RELIEF)
 BEVEL = read_scene(SCENES / "mesh_cycle_bevel.toml").with_changes(FEW | {"analysis.torques_Nm": [0.8]})
+OIL = Lubricant(viscosity_40=220.0, viscosity_100=19.0, density_15=890.0, oil_temperature=80.0)
 (V, H), STEPS = BEVEL.vh_keys, (-0.01, 0.0, 0.01)
 SCATTER = {"mounting.misalignment_um": norm(0.0, 5.0), LEAD: norm(5.0, 1.0)}
 
 
 def main() -> None:
-    """Draw those of results, of a bevel pair, of a revolution, of sensitivities, of studies, of a design."""
+    """Draw those of results, a bevel pair, a revolution, a stage, an oil, sensitivities, studies and a design."""
     result, other = (analyse(HELICAL.with_changes({"analysis.root_stress": True, LEAD: um})) for um in (5.0, 10.0))
     drawn = plots.result_figures(result, more=True)
     drawn |= {"teeth": plots.plot_teeth(result), "stress_below": plots.plot_stress_below(stress_below(result))}
@@ -34,13 +37,17 @@ def main() -> None:
     drawn |= {"comparison": plots.plot_comparison(both), "compared_maps": plots.plot_compared_maps(both)}
     check = vh_check(lambda v, h: BEVEL.with_changes({V: v, H: h}).pair(), STEPS, STEPS)
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
-    drawn["shafts"] = plots.plot_shafts(shaft_lines(read_scene(SCENES / "helical_on_shafts.toml")))
-    few = HELICAL.with_changes(FEW)
-    turn = analyse_revolution(few.with_changes({"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
+    turn = analyse_revolution(HELICAL.with_changes(FEW | {"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
     drawn |= {name: draw(turn) for name, draw in plots.REVOLUTION_PICTURES.items()}
+    stage = analyse_stage(read_stage(STAGE).with_changes(FEW | {"analysis.positions": 5}))
+    drawn |= {name: draw(stage) for name, draw in plots.STAGE_PICTURES.items()}
+    oiled = result.tribology([500.0, 1500.0], OIL, (0.6, 0.6), permissible_film_ratio=0.3)
+    drawn |= {name: one for name, one in plots.tribology_figures(oiled).items() if not name.startswith("flank_")}
+    drawn["over_flank"] = plots.plot_over_flank(oiled, "film_ratio")
     with TemporaryDirectory() as folder:
         loaded = run_study(vh_study(BEVEL, STEPS, STEPS), out=Path(folder, "vh.nc"), keep_maps=range(9))
         drawn["loaded_vh_check"] = plots.plot_loaded_vh_check(loaded, Path(folder, "vh_maps"))
+    few = HELICAL.with_changes(FEW)
     sampled, found = run_study(Study(few, {}, SCATTER, 8)), result.sensitivities(list(SCATTER))
     for kind in ("tornado", "sensitivity_curves", "transmission_error_band", "removal_weights"):
         drawn[kind] = getattr(plots, f"plot_{kind}")(found)

@@ -220,12 +220,6 @@ FACE_ELEMENTS = Kind(
     "the face is so wide that few elements lie across it",
     "read root stress under a contact of the whole face; a contact that covers a part of it has more",
 )
-LARGE_MOTIONS = Kind(
-    "gears on their supports move by up to {way:.3g} mm and {turn:.3g} mrad, more than {modules:g} modules or "
-    "{most:g} mrad: supports are linear, and so soft that the gears hardly mesh",
-    "motions of that size shift the contact by parts of the tooth; stiffnesses may have another unit than was meant",
-    "stiffer supports, less torque, or the unit of compliance and stiffness: mm, rad, N, N mm",
-)
 EXTREME_AT_EDGE = Kind(
     "tribology: the {extreme} lies at an edge of a flank, where it is that of a line contact of the flank beside it",
     "slices that reach a tip or a face end are real heat, but their pressure rises towards the edge: film and flash "
@@ -261,6 +255,12 @@ OPEN_REVOLUTION = Kind(
     "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: the ends of the curve do not meet",
     "amplitudes of a curve that is not closed leak into neighbouring orders; spans hold for the part that is there",
     '`pitches = "hunting"`, or a multiple of the number of teeth of that gear',
+)
+LARGE_MOTIONS = Kind(
+    "gears on their supports move by up to {way:.3g} mm and {turn:.3g} mrad, more than {modules:g} modules or "
+    "{most:g} mrad: supports are linear, and so soft that the gears hardly mesh",
+    "motions of that size shift the contact by parts of the tooth; stiffnesses may have another unit than was meant",
+    "stiffer supports, less torque, or the unit of compliance and stiffness: mm, rad, N, N mm",
 )
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))

@@ -107,7 +107,7 @@ def test_page_of_pictures_has_every_kind(tmp_path, monkeypatch):
     monkeypatch.setattr(example, "DesignModel", partial(example.DesignModel, cells=(8, 12)))
     example.main()
     drawn = {re.sub("^(study_.*?)_(peak_pressure|transmission_error).*", r"\1", path.stem) for path in Path().iterdir()}
-    several = {"all", "solution", "study", "subsurface"}  # of arrays: the bare solver, and stress_below
+    several = {"all", "shafts", "solution", "study", "subsurface"}  # of a command, of arrays, of stress_below
     kinds = {name.removeprefix("plot_") for name in plots.__all__ if name.startswith("plot_")} - several
     assert kinds - drawn == set()
 

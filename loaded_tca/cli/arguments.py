@@ -120,7 +120,7 @@ STAGE = """files in DIR:
   stage_sun_orbit.png       motion of the sun's axis, all torques
   stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
   stage_orders.png          their orders of the mesh
-docs/guide/planetary_stages.md says more."""
+Numbers have their units in their names; docs/guide/planetary_stages.md says more."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 

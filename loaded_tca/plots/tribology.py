@@ -164,7 +164,7 @@ def plot_sliding_velocities(tribology: Tribology, speed: int | None = None) -> F
         Without a speed.
     """
     result, speed = tribology.result, _chosen(tribology, speed, fastest=True)
-    torque = style.highest_torque(result)
+    torque, sliding = style.highest_torque(result), _at(tribology, "sliding_velocity", speed)
     figure, axes = style.one_panel()
     names = {
         "pinion_rolling_velocity": "rolling velocity of the pinion",
@@ -180,7 +180,7 @@ def plot_sliding_velocities(tribology: Tribology, speed: int | None = None) -> F
         _mark_letters(axes, tribology)
         axes.set_xlabel(FROM_T1)
     else:
-        rolling, sliding = (_at(tribology, name, speed)[torque] for name in ("rolling_velocity", "sliding_velocity"))
+        rolling, sliding = _at(tribology, "rolling_velocity", speed)[torque], sliding[torque]
         for values, label, colour in zip(
             (rolling[..., 0], rolling[..., 1], sliding), names.values(), DISTINCT_COLOURS, strict=False
         ):

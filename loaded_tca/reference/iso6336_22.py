@@ -286,6 +286,7 @@ def load_loss_factor(
     recess, approach : float
         eps_1 and eps_2, parts of the transverse contact ratio beyond and before the pitch point.
     teeth_1, teeth_2 : int
+        teeth_2 negative of a ring gear.
     base_helix_angle : float [rad]
         beta_b.
 
@@ -305,7 +306,10 @@ def load_loss_factor(
     0.106
     """
     require(
-        (teeth_1 > 0 and teeth_2 > 0, f"teeth_1, teeth_2: {teeth_1}, {teeth_2}; allowed numbers above 0"),
+        (
+            teeth_1 > 0 and (teeth_2 > 0 or -teeth_2 > teeth_1),
+            f"teeth_1, teeth_2: {teeth_1}, {teeth_2}; allowed numbers above 0, of a ring gear below -teeth_1",
+        ),
         (recess + approach > 0.0, f"recess, approach: {recess}, {approach}; allowed a sum above 0"),
     )
     ratio = recess + approach

@@ -13,6 +13,7 @@ from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.tribology.conditions import conditions_of
 from loaded_tca.tribology.lubricant import Lubricant
+from loaded_tca.tribology.slices import cylindrical_mesh
 from loaded_tca.tribology.tribology import Tribology
 
 MOVES = 0.02
@@ -57,6 +58,7 @@ def tribology_of(
     """
     conditions = conditions_of(
         result.scene,
+        cylindrical=cylindrical_mesh(result) is not None,
         pinion_speed_rpm=pinion_speed_rpm,
         lubricant=lubricant,
         roughness_um=roughness_um,
@@ -78,8 +80,9 @@ def _warn(tribology: Tribology) -> None:
     oil, bulk = given.lubricant, given.bulk_temperature
     if bulk is not None and oil is not None and bulk < oil.oil_temperature:
         give_accuracy_warning(kinds.COLD_BULK.sentence(bulk=bulk, oil=oil.oil_temperature), stacklevel=4)
-    if result.scene.path_points and isinstance(given.friction, str) and np.isfinite(given.speeds).all():
-        velocities = given.speeds * (2e-3 * math.pi / 60.0 * result.scene.mesh().pinion_working_radius)
+    mesh = cylindrical_mesh(result)
+    if mesh is not None and isinstance(given.friction, str) and np.isfinite(given.speeds).all():
+        velocities = given.speeds * (2e-3 * math.pi / 60.0 * mesh.pinion_working_radius)
         low, high = VELOCITIES
         beyond = velocities[(velocities < low) | (velocities > high)]
         if beyond.size:

@@ -73,6 +73,7 @@ class Conditions:
 def conditions_of(
     scene: Scene,
     *,
+    cylindrical: bool,
     pinion_speed_rpm: ArrayLike | None,
     lubricant: Lubricant | None,
     roughness_um: Sequence[float] | None,
@@ -94,7 +95,6 @@ def conditions_of(
     if lubricant is None and oil is not None:
         lubricant = lubricant_of(oil)
     speed = operation.pinion_speed_rpm if pinion_speed_rpm is None and operation else pinion_speed_rpm
-    cylindrical = bool(scene.path_points)
     gears = scene.pinion.roughness_Ra_um, scene.wheel.roughness_Ra_um
     roughness: Any = gears if roughness_um is None else roughness_um
     given: dict[str, tuple[Any, Any, tuple[float, float], str]] = {

@@ -15,7 +15,7 @@ from loaded_tca.reference.iso6336_22 import bulk_temperature, film_thickness, fl
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.tribology.conditions import LOCAL, MEAN, Conditions
 from loaded_tca.tribology.lubricant import Lubricant
-from loaded_tca.tribology.slices import Slices
+from loaded_tca.tribology.slices import Slices, cylindrical_mesh
 
 MILLI, MICRO = 1e-3, 1e-6
 RMS_OF_MEAN = math.sqrt(0.5 * math.pi)
@@ -124,7 +124,7 @@ class Evaluation:
     @cached_property
     def _mesh(self) -> Any:
         """Macro geometry of cylindrical gears."""
-        return self.result.scene.mesh()
+        return cylindrical_mesh(self.result)
 
     @cached_property
     def loss(self) -> Array:

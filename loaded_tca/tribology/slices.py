@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -102,6 +103,17 @@ class Slices:
 
 _KEPT: WeakKeyDictionary[CycleNumbers, Slices] = WeakKeyDictionary()
 """Slices of the results in use: every speed and oil asks for them again."""
+
+
+_MESHES: WeakKeyDictionary[CycleNumbers, Any] = WeakKeyDictionary()
+"""Macro geometry of the results in use, likewise."""
+
+
+def cylindrical_mesh(result: CycleNumbers) -> Any:
+    """Macro geometry of cylindrical gears; None of others. Kept as long as the result is."""
+    if result not in _MESHES:
+        _MESHES[result] = result.scene.mesh() if result.scene.path_points else None
+    return _MESHES[result]
 
 
 def slices_of(result: CycleNumbers) -> Slices:

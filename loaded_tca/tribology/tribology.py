@@ -19,7 +19,7 @@ from loaded_tca.results.summary import shown_torque
 from loaded_tca.tribology.conditions import MEAN, Conditions
 from loaded_tca.tribology.evaluate import Evaluation, pitch_weights
 from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, NEEDS, PLACES, QUANTITIES
-from loaded_tca.tribology.slices import Slices, slices_of
+from loaded_tca.tribology.slices import Slices, cylindrical_mesh, slices_of
 
 if TYPE_CHECKING:
     import pandas
@@ -62,6 +62,11 @@ class Tribology:
         return slices_of(self.result)
 
     @cached_property
+    def _shape(self) -> tuple[int, ...]:
+        """Numbers of torques, positions and tooth pairs."""
+        return tuple(self.result.load_share.shape)
+
+    @cached_property
     def _numbers(self) -> Evaluation:
         return Evaluation(self.result, self.sweep, self.conditions)
 
@@ -82,7 +87,7 @@ class Tribology:
     def missing(self) -> frozenset[str]:
         """Which of ``NEEDS`` the result and the arguments lack."""
         given, analysis = self.conditions, self.result.scene.analysis
-        cylindrical = bool(self.result.scene.path_points)
+        cylindrical = cylindrical_mesh(self.result) is not None
         lacks = {
             "load_sharing": not analysis.load_sharing,
             "positions": len(self.result.path) < 2,
@@ -220,7 +225,7 @@ class Tribology:
     def _per_pair(self, values: Array) -> Array:
         """Values (s, contacts) as an array (s, torque, position, pair), NaN where a pair carries nothing."""
         parts = self.sweep
-        whole = np.full((values.shape[0], *self.result.load_share.shape), math.nan)
+        whole = np.full((values.shape[0], *self._shape), math.nan)
         first = parts.starts
         whole[:, parts.torque[first], parts.position[first], parts.column[first]] = values
         return whole
@@ -229,7 +234,7 @@ class Tribology:
         """Extreme under each torque (s, torque), and its slice; NaN and -1 without load."""
         if name in self._extremes:
             return self._extremes[name]
-        values, torques = getattr(self._numbers, EXTREMES[name]), len(self.result.torque)
+        values, torques = getattr(self._numbers, EXTREMES[name]), self._shape[0]
         worst = -values if EXTREMES[name] in LEAST else values
         extremes = np.full((len(values), torques), math.nan)
         places = np.full(extremes.shape, -1)

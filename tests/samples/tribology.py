@@ -15,7 +15,7 @@ OIL = Lubricant(viscosity_40=220.0, viscosity_100=19.0, density_15=890.0, oil_te
 ROUGHNESS = (0.6, 0.5)
 WITHOUT_MEAN = {"friction": "local", "bulk_temperature_C": 90.0}
 """What bevel gears need in the place of the means of cylindrical ones."""
-FAMILIES = ("mesh_cycle_spur", "mesh_cycle_helical", "mesh_cycle_bevel", "face_milled_19x62_matched")
+FAMILIES = ("mesh_cycle_spur", "mesh_cycle_helical", "planet_ring", "mesh_cycle_bevel", "face_milled_19x62_matched")
 
 
 @cache

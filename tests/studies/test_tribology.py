@@ -5,8 +5,8 @@ import warnings
 import numpy as np
 from numpy.testing import assert_allclose
 
-from loaded_tca import AccuracyWarning
-from loaded_tca.studies import Study, figures, rank_variants, run_study, tribology_figures
+from loaded_tca import AccuracyWarning, analyse
+from loaded_tca.studies import DesignModel, Study, figures, rank_variants, run_study, tribology_figures
 from loaded_tca.studies.tribology import FIGURES
 from tests.samples.tribology import OIL, known, shared
 
@@ -37,3 +37,15 @@ def test_studies_rank_variants_by_loss_and_film():
     assert np.isnan(study["scuffing_safety"].values).all()  # without a load stage
     expected = known(shared("mesh_cycle_spur", pinion__modifications__profile_crowning_um=20.0), lubricant=OIL)
     assert_allclose(study["least_film_ratio"].values[1], expected.least_film_ratio, rtol=1e-9)
+
+
+def test_design_has_the_loss_factor_of_the_analysis():
+    """On cells of its own, and with the positions but the last, which is the first again."""
+    scene = shared("mesh_cycle_helical").scene.with_changes({"analysis.accuracy": None, "analysis.cells": (24, 48)})
+    key = "pinion.modifications.profile_crowning_um"
+    model = DesignModel(scene, {key: (0.0, 10.0)})
+    evaluation = model.evaluate([scene.pinion.modifications.profile_crowning_um])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        expected = analyse(scene).tribology().loss_factor
+    assert_allclose(np.ravel(evaluation.figure("loss_factor"))[0], expected[0], rtol=0.01)

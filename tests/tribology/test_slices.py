@@ -70,3 +70,14 @@ def test_a_material_that_conducts_better_stays_cooler():
     better = shared("mesh_cycle_spur", material__conductivity_W_mK=200.0)
     ratio = known(better, friction=0.05).flash_temperature / known(plain, friction=0.05).flash_temperature
     assert_allclose(ratio[np.isfinite(ratio)], 0.5, rtol=1e-9)
+
+
+def test_flanks_of_a_ring_gear_roll_the_same_way():
+    """Inside a ring the curvatures count against each other, and the ring's roll lengths begin before the pinion's."""
+    result = shared("planet_ring", pinion__modifications__tip_relief_um=0.0, wheel__modifications__tip_relief_um=0.0)
+    slices, mesh = slices_of(result), result.scene.mesh()
+    line = -mesh.path_of_contact.T2
+    ring = result.gear_pair.ratio * (slices.roll_length + line)
+    assert_allclose(np.median(slices.rolling[1] / ring), 1.0, rtol=1e-6)
+    radius = slices.roll_length * (slices.roll_length + line) / line / np.cos(mesh.pinion.base_helix_angle)
+    assert_allclose(np.median(slices.relative_radius / radius), 1.0, rtol=1e-3)  # the crowning of the lead tilts slices

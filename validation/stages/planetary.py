@@ -64,7 +64,7 @@ def pin_rows() -> list[Row]:
             apart -= pair.driving * pair.base_radii[1] * float(trace_teeth(pair).transmission_error.mean())
         expected = float(pin_errors(np.zeros(1), np.array([amount]), angles, True)[0])
         what = f"approach taken by a pin {1e3 * amount:+.0f} um outwards [um]"
-        table.append(Row(CASE, "axes displaced", what, 1e3 * apart, 1e3 * expected, 0.03))
+        table.append(Row(CASE, "axes displaced", what, 1e3 * apart, 1e3 * expected, 1e-3))
     return table
 
 
