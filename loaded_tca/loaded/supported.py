@@ -49,6 +49,9 @@ POSITIONS = 4
 SETTLED = 0.02
 """Change of the motions from one step to the next, over the motions, from which the geometry stays where it is: what
 is left of them is coupled, and what that leaves out is of their product with the motions themselves."""
+ROUGHLY, ROUGH_PEAK = 1e-3, 0.1
+"""Agreement of the tooth pairs, and accuracy of the peak pressure where no cells are given, on the way to the motions:
+what they leave is coupled."""
 MOST_STEPS = 12
 """Steps before giving up; two to four are the rule."""
 
@@ -132,8 +135,9 @@ class SupportedCycle:
         count = min(POSITIONS, len(self.angles))
         spread = (np.arange(count) - 0.5 * (count - 1)) / count * self.pair.pitch if count > 1 else self.angles
         loads = loads_at_first_contact(self.supports, self.at_rest, torque)
+        roughly = replace(self.grid, agreement=ROUGHLY, accuracy=max(self.grid.accuracy, ROUGH_PEAK))
         for _ in range(MOST_STEPS):
-            pair, carried = self._carried(torque, loads, spread)
+            pair, carried = self._carried(torque, loads, spread, grid=roughly)
             supports = self.supports.mounted(pair)
             pinion, wheel = (np.nanmean(load, axis=0) for load in loads_of(supports, carried))
             before, loads = loads, (pinion, wheel)
@@ -155,7 +159,12 @@ class SupportedCycle:
         return float(np.abs(ways).max())
 
     def _carried(
-        self, torque: float, loads: Loads, angles: Array, progress: Progress | None = None
+        self,
+        torque: float,
+        loads: Loads,
+        angles: Array,
+        progress: Progress | None = None,
+        grid: GridChoice | None = None,
     ) -> tuple[GearPair, Carried]:
         """The pair moved by loads, and what its tooth pairs carry."""
         pair, torques = moved_by(self.supports, loads), np.array([torque])
@@ -166,9 +175,9 @@ class SupportedCycle:
             with named("supports"):
                 if self.load_sharing:
                     mesh = trace_teeth(pair, angles)
-                    return pair, carried_by_all(pair, mesh, torques, self.grid, bending, progress, given)
+                    return pair, carried_by_all(pair, mesh, torques, grid or self.grid, bending, progress, given)
                 path = trace_contact(pair, angles)
-                return pair, carried_by_one(pair, path, torques, self.grid, bending, progress, given)
+                return pair, carried_by_one(pair, path, torques, grid or self.grid, bending, progress, given)
         except GeometryError as error:
             raise _moved_too_far(error, torque) from None
 

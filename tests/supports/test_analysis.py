@@ -191,6 +191,20 @@ def test_wide_gear_on_a_soft_tilt_settles(tilt: float) -> None:
     assert left < 8.0 * (1e-9 / tilt) ** 0.8  # what is left turns the gear against its stiffness
 
 
+def test_pair_mirrored_in_its_face_moves_mirrored() -> None:
+    scene, mirror = scene_of("helical"), np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
+    hands = {"pinion.hand": "left" if scene.hands[0] == "right" else "right", "wheel.hand": None}
+    both = [matrix(4e-6, 3e-9, 1e-9, seed) for seed in (1, 2)]
+    one = analyse(on(scene, *both))
+    other = analyse(on(scene.with_changes(hands), *(np.outer(mirror, mirror) * matrix for matrix in both)))
+    assert_allclose(other.transmission_error, one.transmission_error, rtol=1e-5)
+    for name in ("pinion_motion", "wheel_motion"):
+        moved, expected = getattr(other, name)[0, 0], mirror * getattr(one, name)[0, 0]
+        assert_allclose(moved[:3], expected[:3], atol=1e-4 * np.abs(expected[:3]).max())
+        assert_allclose(moved[3:], expected[3:], atol=1e-4 * np.abs(expected[3:]).max())
+    assert_allclose(other.misalignment, -one.misalignment, rtol=1e-3)
+
+
 def test_one_pair_alone_on_supports_agrees_with_shared_load_where_one_carries() -> None:
     scene = on(scene_of("mesh_cycle_spur"), matrix(1e-6, 1e-9, 1e-9, 1), None)
     alone = analyse(scene.with_changes({"analysis.load_sharing": False}))
