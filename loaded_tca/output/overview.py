@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from itertools import chain
 
 from loaded_tca.analysis import expected_effort, rounded
-from loaded_tca.errors import noted_accuracy_warnings
+from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figures import RIM_LABEL
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
 from loaded_tca.results.root_stress import rim_factor
 from loaded_tca.results.summary import shown
-from loaded_tca.results.warnings import warn_of_gears
+from loaded_tca.results.warnings import questions, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.section import Section, contents
@@ -36,6 +36,8 @@ def describe_scene(scene: Scene) -> str:
     with noted_accuracy_warnings(given=False) as sentences:
         warn_of_gears(scene, scene.pair())
         sections = scene_sections(scene)
+        for sentence in questions(scene):
+            give_accuracy_warning(sentence)
     effort = expected_effort(scene)
     spent = ("analysis, roughly: time [s], memory [GiB]", rounded(effort.seconds), rounded(effort.gibibytes))
     rows = [*chain.from_iterable(sections.values()), spent]

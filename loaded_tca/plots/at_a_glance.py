@@ -36,7 +36,7 @@ SHOWN = (
     "face_load_factor",
     "transverse_load_factor",
     "loaded_contact_ratio",
-    "line_load_max_N_per_mm",
+    "line_load_at_largest_force_N_per_mm",
     "pinion_root_tension_MPa",
     "wheel_root_tension_MPa",
 )
@@ -134,8 +134,11 @@ def _write_numbers(axes: Axes, result: MeshCycle, torque: int) -> None:
     figures = key_figures(result, torque)
     names = [name for name in SHOWN if math.isfinite(figures.get(name, math.nan))]
     axes.set_axis_off()
-    rows = [[label_of(name), shown(figures[name], name)] for name in names]
-    table = axes.table(rows, loc="upper left", cellLoc="left", colWidths=[0.85, 0.15], edges="horizontal")
+    marked = {"edge_pressure_MPa": " if sharp, mesh-dependent"}
+    rows = [[label_of(name) + marked.get(name, ""), shown(figures[name], name)] for name in names]
+    table = axes.table(rows, loc="upper left", cellLoc="left", colWidths=[0.82, 0.18], edges="horizontal")
+    for row in range(len(rows)):
+        table[row, 1].set_text_props(ha="right")
     table.auto_set_font_size(False)
     table.set_fontsize(7.0)
     table.scale(1.0, 1.35)

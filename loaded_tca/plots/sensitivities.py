@@ -206,8 +206,8 @@ def plot_tornado(
     torque : int, optional
         Index of the torque; default: the largest one.
     rigid_motions : bool
-        Whether the mean transmission error shows displacements of whole gears, too: they turn the wheel by a constant
-        that dwarfs all other bars and makes no noise.
+        Whether the mean transmission error shows mounting errors, too: as motions of whole gears they turn the wheel by
+        a constant that dwarfs all other bars and makes no noise.
 
     Returns
     -------
@@ -229,7 +229,7 @@ def plot_tornado(
         raise InputError(f"nothing is under load with {style.torque_label(result, torque)}: no derivatives")
     now = key_figures(result, torque)
     labels = [_with_tolerance(key, one) for key, one in zip(sensitivities.keys, spread.tolist(), strict=True)]
-    rigid = np.array([key.startswith("mounting.") and key.endswith("_mm") for key in sensitivities.keys])
+    rigid = np.array([key.startswith("mounting.") for key in sensitivities.keys])
     left_out_of_mean = bool(rigid.any()) and not rigid_motions and not rigid.all() and MEAN in chosen
     if left_out_of_mean:
         changes[MEAN] = np.where(rigid, np.nan, changes[MEAN])
@@ -241,7 +241,7 @@ def plot_tornado(
         together = math.sqrt(float((changes[name][~rigid] ** 2).sum() if without else (changes[name] ** 2).sum()))
         label = label_of(name)
         unit = label.partition(" [")[2].rstrip("]")
-        by = "keys but displacements" if without else "all keys"
+        by = "keys but mounting errors" if without else "all keys"
         title = f"now {shown(now[name], name)} {unit}, standard deviation by {by} {together:.3g} {unit}"
         axes.set_title(" ".join(title.split()).replace(" ,", ","), fontsize="small")
         axes.set_xlabel(f"change of the {label}")

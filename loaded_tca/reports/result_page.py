@@ -180,7 +180,7 @@ def _accuracy(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> Tab
             *(f"{one['edge_positions']} of {one['positions']}" for one in figures[part]),
         ),
         (
-            "positions at which a relief start lies in the contact",
+            "positions at which the start of a linear relief lies in the contact",
             *(f"{one['relief_start_positions']} of {one['positions']}" for one in figures[part]),
         ),
     ]

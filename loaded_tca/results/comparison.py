@@ -68,10 +68,12 @@ class Comparison:
             ]
         )
         first = value[..., :1]
-        difference = value - first
+        with np.errstate(invalid="ignore"):  # errors without a limit in both
+            difference = value - first
         is_place = np.array([any(part in name for part in PLACES) for name in names])
         base = np.where((first == 0.0) | is_place[:, None], math.nan, np.abs(first))
-        parts = {"value": value, "difference": difference, "relative_difference": difference / base}
+        with np.errstate(invalid="ignore"):
+            parts = {"value": value, "difference": difference, "relative_difference": difference / base}
         dimensions = ("torque", "figure", "result")
         return xarray.Dataset(
             {name: (dimensions, values) for name, values in parts.items()},

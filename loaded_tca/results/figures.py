@@ -142,7 +142,7 @@ FIGURES: dict[str, Figure] = {
     "edge_pressure_MPa": Figure(
         of=lambda under: under.edge.number("edge_pressure"),
         label="{edge}",
-        column="pressure at an edge",
+        column="pressure at an edge (sharp: mesh-dependent)",
         is_compared=True,
         is_load_case=True,
         accuracy=of_edge,

@@ -243,8 +243,13 @@ class MeshCycle(CycleNumbers):
         return summary_text(self.scene.title, self.scope, *about)
 
     def findings(self) -> tuple[str, ...]:
-        """Return sentences on the pressure at edges: where it is largest, under what load, what would remove it."""
-        return edge_findings(self)
+        """Return sentences on the largest pressures, if edges make them.
+
+        The largest pressure at an edge under each torque, of pairs that carry a thousandth of it and more: where, under
+        what load, how exact, and what would remove it. A peak pressure of slices at an edge in a pair that carries less
+        than a tenth, beside that of the others.
+        """
+        return findings_of(self)
 
     @property
     def scope(self) -> str:
@@ -377,40 +382,63 @@ def edges_of_contact(result: MeshCycle, torque: int, position: int, column: int)
     return np.asarray(reached)
 
 
-def edge_findings(result: MeshCycle) -> tuple[str, ...]:
-    """Sentences on the largest pressure at an edge under each torque: where, under what load, what would remove it.
+LEAST_SHARE, SMALL_SHARE = 1e-3, 0.1
+"""Shares of the torque from which an edge pressure is a finding, and below which a peak at an edge is one."""
+
+
+def findings_of(result: MeshCycle) -> tuple[str, ...]:
+    """Sentences on what the largest pressures under each torque rest on; see :meth:`MeshCycle.findings`."""
+    by_torque = ((_edge_finding(result, t), _peak_finding(result, t)) for t in range(len(result.torque)))
+    return tuple(sentence for sentences in by_torque for sentence in sentences if sentence)
+
+
+def _edge_finding(result: MeshCycle, torque: int) -> str:
+    """The largest pressure at an edge of pairs that carry a thousandth of the torque: where, and what would remove it.
 
     An edge carries no load where the flank lacks as much there as the pair deflects: its contact deformation and the
     deflection of its teeth along the normal.
     """
-    sentences = []
-    for t, torque in enumerate(result.torque.tolist()):
-        place = result.edge_contact(t)
-        if place is None:
-            continue
-        n, k = place
-        at = t, n, k
-        edges = [name for name, one in zip(NAMES, edges_of_contact(result, *at), strict=True) if one]
-        rounded = bool(result.edge_is_rounded[at])
-        error = float(result.edge_pressure_error[at])
-        accuracy = "mesh-dependent: theory has an infinite one at a sharp edge"
-        if rounded:
-            accuracy = f"of columns with an estimated error of {error:.1%}"
-        cap = float(result.max_pressure)
-        elastic = "elastic" if math.isnan(cap) else f"with the cap of {cap:.6g} MPa"
-        deflection = 1e3 * float(np.nansum([result.contact_deformation[at], result.tooth_deflection[at]]))
-        ends = any("side" in name for name in edges)
-        tips = sorted({f"{name.split()[0]}'s" for name in edges if "tip" in name})
-        reliefs = ["end relief"] * ends + [f"relief of the {' and '.join(tips)} tip"] * bool(tips)
-        remedy = " or ".join(reliefs) or "a relief"
-        amount = f"of up to {deflection:.2g} um, the pair's deflection, takes the load off it"
-        if result.paths[k].edges[n].any():
-            amount = f"of more than {deflection:.2g} um, the pair's deflection: unloaded, it touches on an edge, too"
-        more = "" if rounded else "; or round the edge (tip_rounding_mm, side_rounding_mm), which bounds it"
-        sentences.append(
-            f"edge pressure {result.edge_pressure[at]:.4g} MPa at {1e-3 * torque:g} N m on {' + '.join(edges)} (pinion "
-            f"diameter {2.0 * result.edge_radius[at]:.4g} mm, axial {result.edge_axial[at]:.4g} mm), where the pair "
-            f"carries {100.0 * result.load_share[at]:.3g} % of the torque; {elastic}, {accuracy}; "
-            f"{remedy} {amount}{more}"
+    pressures = np.where(result.load_share[torque] >= LEAST_SHARE, result.edge_pressure[torque], math.nan)
+    if not np.isfinite(pressures).any():
+        return ""
+    n, k = (int(index) for index in np.unravel_index(int(np.nanargmax(pressures)), pressures.shape))
+    at = torque, n, k
+    edges = [name for name, one in zip(NAMES, edges_of_contact(result, *at), strict=True) if one]
+    error, cap = float(result.edge_pressure_error[at]), float(result.max_pressure)
+    accuracy = "mesh-dependent: theory has an infinite one at a sharp edge"
+    if result.edge_is_rounded[at]:
+        known = f"by columns, with an estimated error of {error:.1%}"
+        accuracy = (
+            known if math.isfinite(error) else "without a limit: a sharp edge or a relief start meets the rounding"
         )
-    return tuple(sentences)
+    elastic = "elastic" if math.isnan(cap) else f"with the cap of {cap:.6g} MPa"
+    remedies = [
+        f"{relief} on the {' or '.join(dict.fromkeys(name.split()[0] for name in edges if where in name))}"
+        for relief, where in (("end relief", "side"), ("tip relief", "tip"))
+        if any(where in name for name in edges)
+    ]
+    deflection = 1e3 * float(np.nansum([result.contact_deformation[at], result.tooth_deflection[at]]))
+    amount = f"{deflection:.2g} um, by which the pair deflects"
+    if result.paths[k].edges[n].any():
+        amount = f"more than {amount}, since it touches there without load, too"
+    remedy = f"{' or '.join(remedies) or 'a relief'} of {amount}, takes the load off it"
+    return (
+        f"edge pressure {result.edge_pressure[at]:.4g} MPa at {1e-3 * result.torque[torque]:g} N m on "
+        f"{' + '.join(edges)} (pinion diameter {2.0 * result.edge_radius[at]:.4g} mm, axial "
+        f"{result.edge_axial[at]:.4g} mm), where the pair carries {100.0 * result.load_share[at]:.3g} % of the torque; "
+        f"{elastic}, {accuracy}; {remedy}"
+    )
+
+
+def _peak_finding(result: MeshCycle, torque: int) -> str:
+    """A peak pressure of slices at an edge in a pair that carries little, beside that of pairs that carry more."""
+    place = result.peak_contact(torque)
+    if place is None or not result.on_edge[torque][place] or result.load_share[torque][place] >= SMALL_SHARE:
+        return ""
+    others = np.where(result.load_share[torque] >= SMALL_SHARE, result.peak_pressure[torque], math.nan)
+    beside = f"; of pairs that carry a tenth and more it is {np.nanmax(others):.4g} MPa" if (others > 0.0).any() else ""
+    return (
+        f"the peak pressure {result.peak_pressure[torque][place]:.4g} MPa at {1e-3 * result.torque[torque]:g} N m is "
+        f"that of slices at an edge, in a pair that carries {100.0 * result.load_share[torque][place]:.3g} % of the "
+        f"torque{beside}"
+    )

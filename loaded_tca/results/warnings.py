@@ -21,6 +21,7 @@ from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.quantities import GEARS
 from loaded_tca.scene import Scene
+from loaded_tca.scene.section import values_of
 from loaded_tca.unloaded.tooth_cycle import REACH
 
 THICKEST_CONTACT = 0.25
@@ -28,6 +29,8 @@ THICKEST_CONTACT = 0.25
 
 ROUNDING = 1e-9
 """Relative, of an estimated error: four cells beside a crossing leave 3 % exactly."""
+SMALLEST_um = 0.1
+"""Amount of a modification or an error below which a question is asked; grinding holds a micrometre."""
 SOFTEST_METAL, STIFFEST, LARGEST_TORQUE_Nm = 1e4, 1e6, 1e6
 """Moduli [MPa] of gear materials, plastics left out, and a torque [N m] beyond which a question is asked."""
 LEAST_CLEARANCE = 0.1
@@ -165,6 +168,30 @@ def _odd_inputs(scene: Scene) -> list[str]:
     if largest > LARGEST_TORQUE_Nm:
         what = "more than that of any pinion on land"
         sentences.append(kinds.ODD_INPUT.sentence(key="load.pinion_torque_Nm", value=largest, unit="N m", what=what))
+    return sentences
+
+
+def questions(scene: Scene) -> list[str]:
+    """Questions about numbers of a scene that look like those of another unit, or like a slip, before any contact.
+
+    Amounts below a tenth of a micrometre are mm, mostly, and stresses of the standard beyond yield torques in N mm.
+    """
+    sentences = []
+    for place, section in (("pinion", scene.pinion), ("wheel", scene.wheel), ("mounting", scene.mounting)):
+        for key, value in values_of(section).items():
+            if key.endswith("_um") and isinstance(value, float) and 0.0 < abs(value) < SMALLEST_um:
+                what = f"less than {SMALLEST_um:g} um, which nobody makes"
+                name = f"{place}.{key}"
+                sentences.append(kinds.ODD_INPUT.sentence(key=name, value=value, unit="um", what=what))
+    torque = max(scene.torques)
+    contact = scene.contact_standard.stress_per_root_torque * math.sqrt(torque)
+    root = torque * max(scene.nominal_root_stress)
+    for stress, most, name in ((contact, HARDEST_MPa, "sigma_H0"), (root, HARDEST_ROOT_MPa, "sigma_F0")):
+        if stress > most:
+            what = f"a {name} of {stress:.4g} MPa, above {most:g}, which no gear steel carries"
+            sentences.append(
+                kinds.ODD_INPUT.sentence(key="load.pinion_torque_Nm", value=1e-3 * torque, unit="N m", what=what)
+            )
     return sentences
 
 

@@ -176,7 +176,14 @@ class CylindricalScene(BlankScene):
         if distance is not None and shifts.count(None) == 1:
             rest = profile_shift_sum(pinion, wheel, distance) - sum(shift for shift in shifts if shift is not None)
             shifts = [rest if shift is None else shift for shift in shifts]
-            pinion, wheel = map(gear, sections, self.hand_signs, names, shifts)
+            try:
+                pinion, wheel = map(gear, sections, self.hand_signs, names, shifts)
+            except (InputError, GeometryError) as error:
+                error.add_note(
+                    f"pair.centre_distance_mm = {distance:g} and the profile shift that is given ask for {rest:.4f} on "
+                    "the other gear"
+                )
+                raise
         return CylindricalMesh(pinion, wheel, centre_distance=distance)
 
     @property
@@ -307,6 +314,7 @@ class CylindricalScene(BlankScene):
             ("common face width b [mm]", f"{common_face_width(mesh, self.mounting.axial_offset_mm):.4f}"),
             ("", "pinion", "wheel"),
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
+            ("profile shift x", f"{mesh.pinion.profile_shift:.4f}", f"{mesh.wheel.profile_shift:.4f}"),
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
             *_diameter_rows(mesh),
             *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import GeometryError
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.scene import read_scene
 
@@ -250,3 +250,35 @@ def test_path_of_contact_that_lies_on_an_edge_has_nominal_points_alone():
     assert cells(text, "  A, ISO 21771")
     assert "unloaded contact point" not in text
     assert "path of contact of the pinion" not in described("straight_bevel")
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        (
+            {"pinion.modifications.lead_crowning_um": 0.005},
+            "pinion.modifications.lead_crowning_um: 0.005 um is less than 0.1 um, which nobody makes; is its unit",
+        ),
+        ({"mounting.misalignment_um": -0.012}, "mounting.misalignment_um: -0.012 um is less than 0.1 um"),
+        ({"load.pinion_torque_Nm": 130e3}, "load.pinion_torque_Nm: 130000 N m is a sigma_H0 of"),
+        ({"load.pinion_torque_Nm": 130e3}, "load.pinion_torque_Nm: 130000 N m is a sigma_F0 of"),
+    ],
+)
+def test_numbers_of_another_unit_are_asked_about_before_any_contact(changes, told):
+    scene = read_scene(SCENES / "helical.toml")
+    assert "is its unit right?" not in describe_scene(scene)
+    assert f"warning: {told}" in describe_scene(scene.with_changes(changes))
+
+
+def test_profile_shifts_of_both_gears_are_shown_and_what_asks_for_one_that_cannot_be():
+    scene = read_scene(SCENES / "helical.toml").with_changes({"pinion.profile_shift": 0.3, "wheel.profile_shift": None})
+    given = scene.with_changes({"pair.centre_distance_mm": scene.mesh().working_centre_distance + 0.4})
+    shifts = [float(cell) for cell in cells(describe_scene(given), "profile shift x")]
+    assert shifts[0] == 0.3
+    assert_allclose(shifts[1], given.mesh().wheel.profile_shift, atol=5e-5)
+    with pytest.raises((InputError, GeometryError)) as raised:
+        scene.with_changes({"pair.centre_distance_mm": 170.0}).mesh()
+    assert any(
+        "pair.centre_distance_mm = 170 and the profile shift that is given ask for" in one
+        for one in raised.value.__notes__
+    )

@@ -10,7 +10,7 @@ from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.results.mesh_cycle import NAMES, reached_edges
 from loaded_tca.scene import read_scene
-from tests.samples.results import FLANKS_ALONE, SCENES, result, with_a_gap
+from tests.samples.results import FLANKS_ALONE, SCENES, changed, result, with_a_gap
 
 
 def analysed(scene):
@@ -21,15 +21,38 @@ def analysed(scene):
 
 def test_finding_names_the_edges_of_the_largest_edge_pressure_and_the_relief_that_frees_them():
     cycle = result("misaligned", positions=2)
-    (sentence,) = cycle.findings()
-    at = (0, *cycle.edge_contact(0))
-    assert f"edge pressure {cycle.edge_pressure[at]:.4g} MPa at 130 N m on " in sentence
+    sentences = [sentence for sentence in cycle.findings() if sentence.startswith("edge pressure")]
+    assert len(sentences) == 1
+    pressures = np.where(cycle.load_share[0] >= 1e-3, cycle.edge_pressure[0], -1.0)
+    at = (0, *np.unravel_index(pressures.argmax(), pressures.shape))
+    assert f"edge pressure {cycle.edge_pressure[at]:.4g} MPa at 130 N m on " in sentences[0]
     reached = [name for name, one in zip(NAMES, reached_edges(cycle)[at], strict=True) if one]
-    assert " + ".join(reached) in sentence
-    assert "end relief" in sentence
-    assert sentence in " ".join(cycle.summary().split("finding: "))
+    assert " + ".join(reached) in sentences[0]
+    assert "end relief on the pinion or wheel of more than" in sentences[0]
+    assert f"finding: {sentences[0]}" in cycle.summary()
     deflection = 1e3 * cycle.contact_deformation[at]  # of flanks alone
-    assert f"of more than {deflection:.2g} um" in sentence  # the misaligned pair touches at its end without load
+    assert f"{deflection:.2g} um, by which the pair deflects, since it touches there without load" in sentences[0]
+
+
+def test_edge_pressure_of_pairs_that_carry_next_to_nothing_is_no_finding():
+    cycle = result("misaligned", positions=2)
+    light = changed(cycle, load_share=np.full_like(cycle.load_share, 1e-4)).findings()
+    assert not [sentence for sentence in light if sentence.startswith("edge pressure")]
+
+
+def test_peak_at_an_edge_of_a_pair_that_carries_little_is_a_finding_beside_that_of_others():
+    cycle = result("mesh_cycle_spur", positions=3)
+    assert cycle.findings() == ()
+    place = (0, 1, int(cycle.load_share[0, 1].argmin()))
+    peaks, shares, edges = cycle.peak_pressure.copy(), cycle.load_share.copy(), cycle.on_edge.copy()
+    shares[place], edges[place] = 0.05, 1
+    peaks[place] = 2.0 * np.nanmax(peaks)
+    (sentence,) = changed(cycle, peak_pressure=peaks, load_share=shares, on_edge=edges).findings()
+    assert f"the peak pressure {peaks[place]:.4g} MPa" in sentence
+    assert (
+        f"carries 5 % of the torque; of pairs that carry a tenth and more it is {0.5 * peaks[place]:.4g} MPa"
+        in sentence
+    )
 
 
 def test_relief_of_the_deflection_takes_the_load_off_the_edge():
@@ -37,7 +60,7 @@ def test_relief_of_the_deflection_takes_the_load_off_the_edge():
     scene = read_scene(SCENES / "spur.toml").with_changes(changes | FLANKS_ALONE)
     pressed = analysed(scene.with_changes({"pinion.modifications.lead_crowning_um": 2.0}))
     (sentence,) = pressed.findings()
-    deflection = float(re.search(r"end relief of up to (\S+) um", sentence).group(1))
+    deflection = float(re.search(r"end relief on the pinion or wheel of (\S+) um", sentence).group(1))
     relief = {"pinion.modifications.end_relief_um": 1.3 * deflection, "pinion.modifications.end_relief_length_mm": 5.0}
     relieved = analysed(pressed.scene.with_changes(relief))  # what the ends carried deflects the rest by as much more
     assert relieved.findings() == ()
