@@ -181,8 +181,8 @@ def test_other_file_of_the_package_is_told_in_one_line(tmp_path, refused, monkey
 
 
 def test_wrong_study_is_told_before_anything_is_written(study, capsys):
-    assert cli.main(["study", study('["a"]', "pinion.tooth = [1]"), "--out", "out"]) == 2
-    assert [line.split(":")[1].strip() for line in capsys.readouterr().err.splitlines()] == ["pinion.tooth", CROWNING]
+    assert cli.main(["study", study('["a"]', "pinion.teth = [1]"), "--out", "out"]) == 2
+    assert [line.split(":")[1].strip() for line in capsys.readouterr().err.splitlines()] == ["pinion.teth", CROWNING]
     assert not os.path.exists("out")
 
 

@@ -357,7 +357,7 @@ test_refusals_of_teeth = refused_calls(
     (lambda: asked({"wheel.tooth": [{"modifications": {}}]}), r"wheel\.tooth: table 0: number: missing"),
     (
         lambda: asked({"wheel.tooth": [{"number": 1}, {"number": 2, "modifications": {"lead_um": 3.0}}]}),
-        r"wheel\.tooth: table 2\.modifications\.lead_um: unknown key",
+        r"wheel\.tooth: table 1: modifications\.lead_um: unknown key",
     ),
     (lambda: asked({"wheel.tooth": 3}), r"wheel\.tooth: found 3; allowed a list of 0 to 10000 tables of number"),
 )

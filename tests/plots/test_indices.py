@@ -8,7 +8,7 @@ import pytest
 
 from loaded_tca import plots
 from loaded_tca.errors import InputError
-from tests.plots import test_design, test_first_order, test_loaded_vh_check
+from tests.plots import test_design, test_first_order, test_loaded_vh_check, test_revolution
 from tests.samples.pictures import told
 from tests.samples.results import result
 from tests.samples.tribology import known
@@ -18,6 +18,7 @@ CALLED_WITH = {
     "results": lambda: [[result("mesh_cycle_spur", positions=3, torques=(40.0, 130.0))] * 2],
     "sensitivities": lambda: [test_first_order.found()],
     "design": lambda: [test_design.design()],
+    "revolution": lambda: [test_revolution.turn()],
 }
 OWN = {
     "plot_over_flank": lambda: [known(CALLED_WITH["result"]()[0]), "pressure"],
@@ -42,6 +43,7 @@ def drawn_with(name):
     return partial(plot, *given())
 
 
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach edges
 @pytest.mark.parametrize(("name", "argument"), INDICES)
 @pytest.mark.parametrize("index", [7, -1, 0.5, True])
 def test_index_that_the_result_does_not_have_is_told(name, argument, index):
