@@ -28,6 +28,7 @@ from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
 from loaded_tca.separation.pair_change import PairChange
 from loaded_tca.separation.sample import Separation
 from loaded_tca.unloaded import ContactPoint
+from loaded_tca.unloaded.scan import arcs_at
 
 OF_GRIDS = MOTIONS + 3
 """Motions of a grid: in its plane, tilts of its normal along x and y, along the normal."""
@@ -56,6 +57,9 @@ class ContactChanges:
         At the contact points.
     moves_edges : (keys,) bool array
         Whether a key moves the edges of flanks by more than it removes.
+    on_arcs : (contacts,) bool array
+        Whether cells lie on the arc of a rounded edge, whose slopes are those of a few cells: their grids stay where
+        they are, since the motion of a grid times such a slope is as large as all that the key changes.
     """
 
     gaps: Array
@@ -66,6 +70,7 @@ class ContactChanges:
     border: BorderCells
     at_points: PointChanges
     moves_edges: Mask
+    on_arcs: Mask
 
     @property
     def held_gaps(self) -> Array:
@@ -89,7 +94,7 @@ class ContactChanges:
         # a modification moves contacts by little: their grids stay, but where they lie on the start of a relief
         motions[..., 0] = np.where(points.held, points.across, 0.0)
         edges = np.flatnonzero(self.moves_edges)
-        motions[edges, :, :2] = points.shifts[edges]
+        motions[edges, :, :2] = np.where(self.on_arcs[:, None], 0.0, points.shifts[edges])
         plane = motions[..., :MOTIONS]
         plane[edges] = following(border.of_keys(edges), of_border, parts, plane[edges], scales)
         motions[edges, :, MOTIONS:-1], motions[edges, :, -1] = points.tilts[edges], points.lifts[edges]
@@ -178,7 +183,17 @@ def contact_changes(
     )
     border = BorderCells.of(pair, beside, cell, changes)
     moves_edges = np.array([not change.of_modifications for change in changes], dtype=bool)
-    return ContactChanges(gaps, tilt_slopes, lever_parts, slopes, contact, border, met.at_points, moves_edges)
+    on_arcs = np.array([_on_arcs(pair, grid, own) for grid, own in zip(separations, cells, strict=True)], dtype=bool)
+    return ContactChanges(gaps, tilt_slopes, lever_parts, slopes, contact, border, met.at_points, moves_edges, on_arcs)
+
+
+def _on_arcs(pair: GearPair, grid: Separation, cells: Mask) -> bool:
+    """Whether some cells of a grid lie on the arc of a rounded edge of either flank."""
+    if pair.sharp is pair:
+        return False
+    across, along = np.nonzero(cells)
+    places = grid.origin + grid.x[across, None] * grid.axes[0] + grid.y[along, None] * grid.axes[1]
+    return bool(arcs_at(pair, places).any())
 
 
 class _Met:
