@@ -103,7 +103,9 @@ def _mark_extremes(axes: Axes, one: RootStressMap, stress: Array, signs: tuple[f
             place = x, one.point[side, station, along, 2]
             axes.plot(*place, "o", color="black", markeredgecolor="white", markersize=5.0)
             number = f"{stress[side, station, along]:.0f}"
-            text = axes.annotate(number, place, (0.0, 6.0), textcoords="offset points", ha="center")
+            above = place[1] > np.nanmean(one.point[..., 2])
+            offset, side_of_text = ((0.0, -6.0), "top") if above else ((0.0, 6.0), "bottom")
+            text = axes.annotate(number, place, offset, textcoords="offset points", ha="center", va=side_of_text)
             text.set_path_effects([withStroke(linewidth=2.5, foreground="white")])
 
 
