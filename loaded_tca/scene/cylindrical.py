@@ -44,7 +44,9 @@ class Geometry(Pair):
     normal_module_mm: float = key(above_zero(1000.0), "normal module m_n")
     pressure_angle_deg: float = key(Number(1.0, 44.0), "normal pressure angle alpha_n", 20.0)
     helix_angle_deg: float = key(
-        Number(0.0, 59.0), "helix angle beta at the reference circle; its sign is in `pinion.hand`", 0.0
+        Number(0.0, 59.0, advice="its sign is in pinion.hand"),
+        "helix angle beta at the reference circle; its sign is in `pinion.hand`",
+        0.0,
     )
     centre_distance_mm: float | None = key(
         DIAMETER_mm, "working centre distance a", None, "follows from the profile shifts, without backlash"

@@ -102,11 +102,12 @@ def _refusal(kind: Kind, value: Any, hint: str = "") -> ValueError:
 
 @dataclass(frozen=True)
 class Number:
-    """A finite number between two limits; ``above`` leaves the lower limit itself out."""
+    """A finite number between two limits; ``above`` leaves the lower limit itself out; ``advice`` ends a refusal."""
 
     low: float
     high: float
     above: bool = False
+    advice: str = ""
 
     @property
     def allowed(self) -> str:
@@ -118,7 +119,7 @@ class Number:
     def read(self, value: Any) -> float:
         """Take whole numbers and floats, no booleans, NaN or infinities."""
         if not _is_a(value, Real) or not self.low <= value <= self.high or (self.above and value == self.low):
-            raise _refusal(self, value)
+            raise _refusal(self, value, self.advice and f"; {self.advice}")
         return float(value)
 
 

@@ -83,7 +83,10 @@ ONE_PROBLEM = [
         {"pinion.face_width_mm": math.inf},
         "pinion.face_width_mm: found inf; allowed a number above 0, up to 10000",
     ),
-    ({"pair.helix_angle_deg": -15.0}, "pair.helix_angle_deg: found -15.0; allowed a number from 0 to 59"),
+    (
+        {"pair.helix_angle_deg": -15.0},
+        "pair.helix_angle_deg: found -15.0; allowed a number from 0 to 59; its sign is in pinion.hand",
+    ),
     ({"load.pinion_torque_Nm": -1.0}, "load.pinion_torque_Nm: found -1.0; allowed a number from 0 to 1e+09"),
     ({"analysis.positions": 0}, "analysis.positions: found 0; allowed a whole number from 1 to 10000"),
     (
