@@ -445,7 +445,7 @@ def modified(
     try:
         terms = modifications.terms(face_width, diameters, coordinate, nominal.profile_unit, nominal.roll_unit)
     except InputError as error:
-        raise InputError(f"{owner}.{problem}" for problem in error.problems) from None
+        raise InputError(f"{owner}.modifications.{problem}" for problem in error.problems) from None
     if not terms:
         return nominal
     flank = ModifiedFlank(nominal, terms)
@@ -456,7 +456,7 @@ def modified(
     for name in AMOUNTS:
         amount = getattr(modifications, name) or 0.0  # None: as at both ends
         if abs(amount) > LARGEST_AMOUNT:
-            message = kinds.UNIT.sentence(key=f"{owner}.{name}", amount=amount, most=LARGEST_AMOUNT)
+            message = kinds.UNIT.sentence(key=f"{owner}.modifications.{name}", amount=amount, most=LARGEST_AMOUNT)
             give_accuracy_warning(message, stacklevel=2)
     return flank
 

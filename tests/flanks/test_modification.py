@@ -414,7 +414,10 @@ def test_modified_flank_of_the_other_side_is_the_mirror_image_of_the_other_hand(
 test_modifications_off_the_flank_are_refused = refusals(
     lambda amounts: modified(**amounts),
     *(
-        ({relief: AMOUNT, f"{relief}_start": diameter}, rf"pinion.{relief}_start .*: {diameter:g} mm is not between")
+        (
+            {relief: AMOUNT, f"{relief}_start": diameter},
+            rf"pinion.modifications.{relief}_start .*: {diameter:g} mm is not between",
+        )
         for relief in ("tip_relief", "root_relief")
         for diameter in (0.0, 90.0, 2.0 * ACTIVE.start_radius, 2.0 * TIP, 130.0)
     ),
@@ -442,11 +445,11 @@ test_modifications_off_the_flank_are_refused = refusals(
 def test_roll_angle_or_length_off_the_active_profile_is_refused_in_its_own_unit(relief):
     lengths = [math.sqrt(radius_at(share) ** 2 - BASE**2) for share in (0.0, 1.0)]
     low, high = (f"{math.degrees(length / BASE):.6g}" for length in lengths)
-    told = rf"^pinion.{relief}_start_roll \(roll angle .*\): 5 deg is not between {low} and {high} deg$"
+    told = rf"^pinion.modifications.{relief}_start_roll \(roll angle .*\): 5 deg is not between {low} and {high} deg$"
     with pytest.raises(InputError, match=told):
         modified(**{relief: AMOUNT, f"{relief}_start_roll": math.radians(5.0)})
     low, high = (f"{length:.6g}" for length in lengths)
-    told = rf"^pinion.{relief}_start_length \(length on .*\): 99 mm is not between {low} and {high} mm$"
+    told = rf"^pinion.modifications.{relief}_start_length \(length on .*\): 99 mm is not between {low} and {high} mm$"
     with pytest.raises(InputError, match=told):
         modified(**{relief: AMOUNT, f"{relief}_start_length": 99.0})
 
@@ -504,7 +507,7 @@ def test_more_than_twice_the_longer_side_of_the_flank_is_no_modification(amounts
     ("name", "amount"), [("lead_crowning", 5.0), ("helix_slope", -1.001), ("twist", 1.001), ("end_relief_upper", 1.5)]
 )
 def test_micrometres_given_as_millimetres_are_doubted(name, amount):
-    told = rf"^pinion.{name}: {amount:g} mm is more than 1 mm; is its unit right\?$"
+    told = rf"^pinion.modifications.{name}: {amount:g} mm is more than 1 mm; is its unit right\?$"
     with pytest.warns(AccuracyWarning, match=told):
         modified(**{name: amount}, end_relief_length=5.0)
     assert modified(**{name: 0.999}, end_relief_length=5.0).terms  # and no warning

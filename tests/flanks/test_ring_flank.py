@@ -119,5 +119,7 @@ def test_twist_is_the_slope_at_the_tip_less_that_at_the_root():
 
 
 def test_relief_that_starts_off_the_profile_is_refused():
-    with pytest.raises(InputError, match=r"wheel.tip_relief_start .*: 170 mm is not between 175.2 and 18"):
+    with pytest.raises(
+        InputError, match=r"wheel.modifications.tip_relief_start .*: 170 mm is not between 175.2 and 18"
+    ):
         ring_pair(wheel=FlankModifications(tip_relief=0.02, tip_relief_start=170.0))

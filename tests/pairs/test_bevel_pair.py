@@ -239,7 +239,7 @@ test_bevel_pair_refuses = refused_calls(
     ),
     (
         lambda: bevel_pair(mesh_of(), modifications=(NONE, FlankModifications(tip_relief=0.03, tip_relief_start=10.0))),
-        r"wheel\.tip_relief_start .* 10 mm is not between",
+        r"wheel\.modifications\.tip_relief_start .* 10 mm is not between",
     ),
 )
 

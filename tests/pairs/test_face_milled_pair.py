@@ -218,7 +218,7 @@ def test_pointed_tooth_is_refused_with_its_place():
 test_face_milled_pair_refuses = refused_calls(
     (
         lambda: matched(modifications=(FlankModifications(root_relief=0.02, root_relief_start_roll=0.3), NONE)),
-        r"^pinion\.root_relief_start_roll: the flank is no involute and has no roll angle; give root_relief_start ",
+        r"^pinion\.modifications\.root_relief_start_roll: the flank is no involute and has no roll angle",
     ),
     (
         lambda: trace_contact(matched(mounting=BevelMounting(wheel_axial=30.0)), [0.0]),
@@ -232,6 +232,6 @@ test_face_milled_pair_refuses = refused_calls(
     (lambda: matched(driving="motor"), r"driving: 'motor' is not 'pinion' or 'wheel'"),
     (
         lambda: matched(modifications=(FlankModifications(tip_relief=0.02, tip_relief_start=10.0), NONE)),
-        r"pinion\.tip_relief_start .* 10 mm is not between",
+        r"pinion\.modifications\.tip_relief_start .* 10 mm is not between",
     ),
 )

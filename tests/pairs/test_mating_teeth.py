@@ -83,7 +83,7 @@ def test_pressure_that_does_not_fit_its_corners_is_refused():
         mated("spur").pressure_on_pinion(np.ones((3, 3, 3)), np.ones((3, 3)), 0.0)
 
 
-@pytest.mark.filterwarnings("ignore:(pinion|wheel).helix_slope")
+@pytest.mark.filterwarnings("ignore:(pinion|wheel).modifications.helix_slope")
 def test_errors_name_the_gear():
     pair = pair_of(MESHES["spur"])
     with pytest.raises(InputError, match="pinion: fillet_radius: 3 mm does not fit"):

@@ -251,7 +251,7 @@ gears = st.fixed_dictionaries(
 )
 
 
-@pytest.mark.filterwarnings("ignore:pinion.lead_crowning")
+@pytest.mark.filterwarnings("ignore:pinion.modifications.lead_crowning")
 @given(gears)
 def test_scene_makes_a_pair_or_says_why_not(changes):
     scene = parse_scene(CYLINDRICAL).with_changes(

@@ -223,7 +223,7 @@ def test_teeth_without_space_are_refused():
         build_tooth(flanks_of(MESHES["spur"]), replace(rack, teeth=60), COARSE)
 
 
-@pytest.mark.filterwarnings("ignore:(pinion|wheel).helix_slope")
+@pytest.mark.filterwarnings("ignore:(pinion|wheel).modifications.helix_slope")
 def test_tooth_pointed_by_its_modification_is_refused_and_told_where():
     """Tip relief of half the land's width on either side at mid-face would do; helix slopes do so at one end."""
     mesh = cylindrical_mesh((24, 57), shifts=(0.6, 0.0))

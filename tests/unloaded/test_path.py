@@ -123,7 +123,7 @@ TABLE_3_AND_4 = [  # dissertation; in-plane and out-of-plane error [deg], slope 
 
 
 @pytest.mark.parametrize(("in_plane", "out_of_plane", "slope"), TABLE_3_AND_4)
-@pytest.mark.filterwarnings("ignore:(pinion|wheel).lead_crowning")
+@pytest.mark.filterwarnings("ignore:(pinion|wheel).modifications.lead_crowning")
 @pytest.mark.parametrize("crowning", [2.27, 1.0])
 def test_slope_of_the_transmission_error_is_that_of_reduced_tca_whatever_the_crowning(
     in_plane, out_of_plane, slope, crowning
