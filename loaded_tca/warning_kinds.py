@@ -227,7 +227,8 @@ LARGE_MOTIONS = Kind(
     "stiffer supports, less torque, or the unit of compliance and stiffness: mm, rad, N, N mm",
 )
 EXTREME_AT_EDGE = Kind(
-    "tribology: the {extreme} lies at an edge of a flank, where it is that of a line contact of the flank beside it",
+    "tribology: the {extreme} lies at an edge of a flank, where it is that of a line contact of the flank beside it or "
+    "of its arc",
     "slices that reach a tip or a face end are real heat, but their pressure rises towards the edge: film and flash "
     "temperature there are indicative",
     "read the numbers of other slices, `on_edge` in the table of `slices`; tip or end relief; an edge with a radius",

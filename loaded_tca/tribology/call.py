@@ -90,9 +90,19 @@ def _warn(tribology: Tribology) -> None:
             give_accuracy_warning(sentence, stacklevel=4)
     if tribology.sweep.capped:
         give_accuracy_warning(kinds.SLICES_AT_CAP.sentence(), stacklevel=4)
+    if not tribology.lacking("loss_factor"):
+        _warn_of_loss(tribology)
     for name, (of_pairs, words) in LOOKED_AT.items():
         if not tribology.lacking(name):
             _warn_of_extreme(tribology, name, of_pairs, words)
+
+
+def _warn_of_loss(tribology: Tribology) -> None:
+    """Warn where half of the positions find another loss factor."""
+    whole, half = tribology.loss_factor, tribology.loss_factor_of_half
+    change = float(np.abs(half / whole - 1.0)[whole > 0.0].max(initial=0.0))
+    if change > 2.0 * MOVES:
+        give_accuracy_warning(kinds.EXTREME_MOVES.sentence(extreme="loss factor", change=change), stacklevel=5)
 
 
 def _warn_of_extreme(tribology: Tribology, name: str, of_pairs: str, words: str) -> None:

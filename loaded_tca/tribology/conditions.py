@@ -21,6 +21,8 @@ from loaded_tca.tribology.lubricant import Lubricant
 MEAN, LOCAL, XU_KAHRAMAN = "ISO/TS 6336-22", "local", "Xu-Kahraman"
 FRICTIONS = (MEAN, LOCAL, XU_KAHRAMAN)
 """Names of coefficients of friction; a number is one, too. Scenes call the first one "mean"."""
+FASTEST = 1e6
+"""Speed of the pinion up to which it is taken [1/min], as in scenes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,13 +151,15 @@ def _speeds(speed: Any, problems: list[str]) -> tuple[Array, bool]:
     """Speeds (s,), and whether several may have been given."""
     if speed is None:
         return np.array([math.nan]), False
-    wrong = f"pinion_speed_rpm: {speed!r:.60}; allowed a number above 0, or a row of them"
+    wrong = f"pinion_speed_rpm: {speed!r:.60}; allowed a number above 0, up to {FASTEST:g}, or a row of them"
     try:
-        speeds = np.asarray(speed, dtype=float)
+        given = np.asarray(speed)
+        speeds = given.astype(float)
     except (TypeError, ValueError):
         problems.append(wrong)
         return np.array([math.nan]), False
-    if speeds.ndim > 1 or not speeds.size or not ((speeds > 0.0) & (speeds < math.inf)).all():
+    beyond = not ((speeds > 0.0) & (speeds <= FASTEST)).all()
+    if speeds.ndim > 1 or not speeds.size or beyond or given.dtype.kind not in "iuf":
         problems.append(wrong)
     return speeds.reshape(-1), speeds.ndim > 0
 
@@ -182,7 +186,7 @@ def _friction(
 ) -> str | float | None:
     """The coefficient of friction to take."""
     friction = oil.friction if given is None and oil is not None else given
-    friction = MEAN if friction == "mean" else friction
+    friction = MEAN if isinstance(friction, str) and friction == "mean" else friction
     if friction is None:
         return MEAN if cylindrical else None
     if isinstance(friction, str) and friction in FRICTIONS:

@@ -147,6 +147,14 @@ class Evaluation:
         """Mean over a pitch of ``loss`` over the torque: H_VL (torque,); NaN without torque."""
         return self._over_torque(self.loss @ pitch_weights(self.loss.shape[-1]))
 
+    @property
+    def mean_loss_of_half(self) -> Array:
+        """The same of every second position; NaN of an even number, whose half does not end at the end of the pitch."""
+        half = self.loss[:, ::2]
+        if self.loss.shape[-1] % 2 == 0:
+            return np.full(len(half), math.nan)
+        return self._over_torque(half @ pitch_weights(half.shape[-1]))
+
     @cached_property
     def mean_friction_work(self) -> Array:
         """The same with the coefficients of friction, (s, torque): the part of the power that is lost."""
@@ -154,7 +162,7 @@ class Evaluation:
 
     def _over_torque(self, work: Array) -> Array:
         torque = np.broadcast_to(self.result.torque, work.shape)
-        return np.divide(work, torque, out=np.full(work.shape, math.nan), where=(torque > 0.0) & (work > 0.0))
+        return np.divide(work, torque, out=np.full(work.shape, math.nan), where=torque > 0.0)
 
     @cached_property
     def mean_friction(self) -> Array:

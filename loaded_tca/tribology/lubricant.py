@@ -17,8 +17,8 @@ AT_38 = 38.0
 """Temperature of the pressure-viscosity coefficient [C]."""
 
 LEAST_PART = 0.1
-"""Of the pressure-viscosity coefficient at 38 C, at high temperatures: the formula has it at 400 C, and none at 510 C.
-"""
+"""Of the pressure-viscosity coefficient at 38 C, and of the density at 15 C, at high temperatures: the formula of the
+coefficient has it at 400 C, and none at 510 C; that of the density at 1160 C, and none at 1290 C."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,10 @@ class Lubricant:
                 600.0 <= real(self.density_15) <= 1400.0,
                 f"density_15: {self.density_15} kg/m3; allowed a number from 600 to 1400",
             ),
-            (self.base in BASES, f"base: {self.base!r:.60}; allowed {' or '.join(map(repr, BASES))}"),
+            (
+                isinstance(self.base, str) and self.base in BASES,
+                f"base: {self.base!r:.60}; allowed {' or '.join(map(repr, BASES))}",
+            ),
             (-50.0 <= real(oil) <= 200.0, f"oil_temperature: {oil} C; allowed a number from -50 to 200"),
             (
                 alpha is None or 0.0 < real(alpha) <= 1.0,
@@ -137,7 +140,8 @@ class Lubricant:
 
     def density(self, temperature: ArrayLike) -> Array:
         """Density [kg/m3] at temperatures [C]."""
-        return np.asarray(self.density_15 - 0.7 * (np.asarray(temperature) + KELVIN - 289.0))
+        dense = self.density_15 - 0.7 * (np.asarray(temperature) + KELVIN - 289.0)
+        return np.asarray(np.maximum(dense, LEAST_PART * self.density_15))
 
     def viscosity(self, temperature: ArrayLike) -> Array:
         """Dynamic viscosity [mPa s] at temperatures [C]."""

@@ -11,7 +11,7 @@ GEARS = ("torque", "position", "pair", "gear")
 
 NEEDS = {
     "load_sharing": "of one tooth pair alone no mesh is known; set analysis.load_sharing = true and run the scene",
-    "positions": "a mean over a pitch takes more than one position; raise analysis.positions and run the scene",
+    "positions": "a mean over a pitch takes five positions or more; raise analysis.positions and run the scene",
     "speed": "needs pinion_speed_rpm, or operation.pinion_speed_rpm in the scene",
     "lubricant": "needs lubricant, or [lubricant] in the scene",
     "roughness": "needs roughness_um, or pinion.roughness_Ra_um and wheel.roughness_Ra_um in the scene",
@@ -43,7 +43,7 @@ class Quantity(NamedTuple):
     over_speed: bool = True
 
 
-MEAN = frozenset({"load_sharing", "positions"})
+OF_PITCH = frozenset({"load_sharing", "positions"})
 SPEED = frozenset({"speed"})
 FRICTION = frozenset({"friction"})
 FLASH = SPEED | FRICTION
@@ -61,11 +61,11 @@ EXTREMES = {
 """Number under a torque -> number of slices whose extreme it is; least ones begin so, the others are largest."""
 
 QUANTITIES: dict[str, Quantity] = {
-    "loss_factor": Quantity(TORQUE, "1", "load loss factor H_VL", MEAN, over_speed=False),
-    "mean_friction": Quantity(TORQUE, "1", "mean coefficient of friction, weighted with the loss", MEAN | FRICTION),
+    "loss_factor": Quantity(TORQUE, "1", "load loss factor H_VL", OF_PITCH, over_speed=False),
+    "mean_friction": Quantity(TORQUE, "1", "mean coefficient of friction, weighted with the loss", OF_PITCH | FRICTION),
     "bulk_temperature": Quantity(TORQUE, "°C", "bulk temperature of the teeth", BULK),
-    "mean_friction_power": Quantity(TORQUE, "W", "friction power, mean over a pitch", MEAN | FLASH),
-    "efficiency": Quantity(TORQUE, "1", "1 less friction power over the power at the pinion", MEAN | FRICTION),
+    "mean_friction_power": Quantity(TORQUE, "W", "friction power, mean over a pitch", OF_PITCH | FLASH),
+    "efficiency": Quantity(TORQUE, "1", "1 less friction power over the power at the pinion", OF_PITCH | FRICTION),
     "largest_flash_temperature": Quantity(TORQUE, "K", "largest flash temperature", FLASH),
     "largest_contact_temperature": Quantity(TORQUE, "°C", "largest contact temperature", HOT),
     "least_film_thickness": Quantity(TORQUE, "um", "least film thickness", FILM),
@@ -77,7 +77,7 @@ QUANTITIES: dict[str, Quantity] = {
     "micropitting_safety": Quantity(
         TORQUE, "1", "safety against micropitting, S_lambda", FILM | {"roughness", "permissible"}
     ),
-    "friction_power": Quantity(CYCLE, "W", "friction power of all tooth pairs", FLASH),
+    "friction_power": Quantity(CYCLE, "W", "friction power of all tooth pairs", FLASH | {"load_sharing"}),
     "sliding_velocity": Quantity(PAIRS, "m/s", "largest sliding velocity of the tooth pair", SPEED),
     "sum_velocity": Quantity(PAIRS, "m/s", "sum of both rolling velocities there", SPEED),
     "friction": Quantity(PAIRS, "1", "largest coefficient of friction", FRICTION),

@@ -19,7 +19,7 @@ from loaded_tca.loaded.line_load import AVERAGED_OVER, stretch_parts
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.pairs.kinematics import PlaneMotion, surface_motions
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.pressure_map import PressureMap, arc_cells
 from loaded_tca.separation import slice_middles
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
@@ -221,8 +221,14 @@ def _of_map(
         "loss": (pressure * speed).sum(axis=0) * (dx * dy),
         "torque_1": -arms[0],
         "torque_2": arms[1],
-        "edge": np.any((one.beside_end & (one.pressure > 0.0))[:, carrying], axis=0) if edge else np.zeros(y.size),
+        "edge": _reaches_edge(pair, one)[carrying] if edge else np.zeros(y.size),
     }
+
+
+def _reaches_edge(pair: GearPair, one: PressureMap) -> Mask:
+    """Slices (ny,) with pressure beside the end of the material, or on the arc of a rounded edge."""
+    edge = one.beside_end if pair.sharp is pair else one.beside_end | arc_cells(pair, one).any(axis=-1)
+    return np.asarray(np.any(edge & (one.pressure > 0.0), axis=0))
 
 
 def _averaged(force: Array, one: PressureMap, carrying: Indices, module: float) -> Array:

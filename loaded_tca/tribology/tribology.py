@@ -18,7 +18,7 @@ from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.tribology.conditions import MEAN, Conditions
 from loaded_tca.tribology.evaluate import Evaluation, pitch_weights
-from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, NEEDS, PLACES, QUANTITIES
+from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, NEEDS, OF_PITCH, PLACES, QUANTITIES
 from loaded_tca.tribology.slices import Slices, cylindrical_mesh, slices_of
 
 if TYPE_CHECKING:
@@ -30,7 +30,11 @@ CELLS = (24, 32)
 """Of the grid of a flank along the profile and lengthwise."""
 LEAST = {"film_thickness", "isothermal_film_thickness", "film_ratio"}
 """Numbers of slices whose extreme is the least one."""
+FEWEST = 5
+"""Positions of a mean over a pitch: of three or four the loss factor of a spur pair is a quarter too small."""
 MILLI = 1e-3
+SCUFFING = frozenset({"lubricant", "load_stage"})
+"""What a scuffing temperature needs."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,6 +78,8 @@ class Tribology:
         if name in QUANTITIES:
             self._require(name, QUANTITIES[name].needs)
             return self._shaped(name)
+        if name == "scuffing_temperature":  # its NotAskedError is an AttributeError, after which Python asks here
+            self._require(name, SCUFFING)
         extreme, end = _place_of(name)
         if extreme:
             self._require(name, QUANTITIES[extreme].needs)
@@ -90,7 +96,7 @@ class Tribology:
         cylindrical = cylindrical_mesh(self.result) is not None
         lacks = {
             "load_sharing": not analysis.load_sharing,
-            "positions": len(self.result.path) < 2,
+            "positions": len(self.result.path) < FEWEST,
             "speed": not np.isfinite(given.speeds).all(),
             "lubricant": given.lubricant is None,
             "roughness": given.roughness is None,
@@ -202,6 +208,12 @@ class Tribology:
         }
 
     @property
+    def loss_factor_of_half(self) -> Array:
+        """Loss factor (torque,) of every second position, which tells its error; NaN where their number is even."""
+        self._require("loss_factor_of_half", QUANTITIES["loss_factor"].needs)
+        return self._numbers.mean_loss_of_half
+
+    @property
     def scuffing_temperature(self) -> float:
         """Scuffing temperature of the oil by its load stage, ISO/TR 13989-1 [C].
 
@@ -210,7 +222,7 @@ class Tribology:
         NotAskedError
             Without lubricant or load stage.
         """
-        self._require("scuffing_temperature", frozenset({"lubricant", "load_stage"}))
+        self._require("scuffing_temperature", SCUFFING)
         oil = self._numbers.oil
         viscosity = float(oil.viscosity(oil.oil_temperature))
         return scuffing_temperature(self.conditions.load_stage or 0.0, viscosity, oil.friction_factor)
@@ -218,9 +230,11 @@ class Tribology:
     @cached_property
     def _sliding_most(self) -> Indices:
         """Slice of each contact that slides most."""
-        ends = np.append(self.sweep.starts[1:], len(self.sweep))
-        pieces = zip(self.sweep.starts.tolist(), ends.tolist(), strict=True)
-        return np.array([begin + int(self.sweep.sliding[begin:end].argmax()) for begin, end in pieces], dtype=int)
+        parts = np.split(self.sweep.sliding, self.sweep.starts[1:]) if len(self.sweep) else []
+        return np.array(
+            [begin + int(part.argmax()) for begin, part in zip(self.sweep.starts.tolist(), parts, strict=True)],
+            dtype=int,
+        )
 
     def _per_pair(self, values: Array) -> Array:
         """Values (s, contacts) as an array (s, torque, position, pair), NaN where a pair carries nothing."""
@@ -308,7 +322,8 @@ class Tribology:
         """Refuse indices of a torque and a speed that there are not."""
         counts = {"torque": len(self.result.torque), "speed": self.conditions.speeds.size}
         given = {"torque": torque, "speed": speed}
-        require(*index_checks(**{name: (given[name], count) for name, count in counts.items()}))
+        places = {name: -1 if one is None else one for name, one in given.items()}
+        require(*index_checks(**{name: (places[name], count) for name, count in counts.items()}))
 
     def _column(self, name: str, speed: int) -> Array:
         """A column of the table of slices, of all torques."""
@@ -362,12 +377,14 @@ class Tribology:
         import xarray
 
         self.check(torque, speed)
+        whole = isinstance(cells, tuple | list) and len(cells) == 2
+        whole = whole and all(isinstance(one, int | np.integer) and one >= 1 for one in cells)
         require(
-            (name in COLUMNS, f"name: {name!r:.60}; allowed {', '.join(COLUMNS)}"),
+            (isinstance(name, str) and name in COLUMNS, f"name: {name!r:.60}; allowed {', '.join(COLUMNS)}"),
             (gear in ("pinion", "wheel"), f"gear: {gear!r:.60}; allowed 'pinion' or 'wheel'"),
-            (min(cells) >= 1, f"cells: {cells!r:.60}; allowed two numbers from 1 on"),
+            (whole, f"cells: {cells!r:.60}; allowed two whole numbers from 1 on"),
         )
-        self._require(name, COLUMNS[name][2])
+        self._require(name, COLUMNS[name][2] | (OF_PITCH if name == "friction_power" else set()))
         parts, some = self.sweep, self.sweep.of_torque(torque)
         flank = getattr(self.result.gear_pair, gear).flank
         rho, z = (parts.radius, parts.axial) if gear == "pinion" else (parts.wheel_radius, parts.wheel_axial)

@@ -184,12 +184,16 @@ def test_bevel_gears_need_a_friction_and_a_bulk_temperature():
 
 
 def test_one_tooth_pair_and_one_position_have_no_mean():
-    one = shared("mesh_cycle_spur", positions=1)
-    with pytest.raises(NotAskedError, match=r"analysis\.positions"):
-        _ = one.tribology().loss_factor
+    for few in (1, 2, 4):
+        with pytest.raises(NotAskedError, match=r"analysis\.positions"):
+            _ = known(shared("mesh_cycle_spur", positions=few)).loss_factor
     alone = shared("mesh_cycle_spur", analysis__load_sharing=False)
     with pytest.raises(NotAskedError, match=r"analysis\.load_sharing"):
         _ = alone.tribology().loss_factor
+    with pytest.raises(NotAskedError, match=r"friction_power: of one tooth pair alone no mesh is known"):
+        _ = known(alone, bulk_temperature_C=90.0, friction=0.05).friction_power
+    with pytest.raises(NotAskedError, match=r"friction_power: of one tooth pair alone no mesh is known"):
+        known(alone, bulk_temperature_C=90.0, friction=0.05).over_flank("friction_power")
     assert np.isfinite(known(alone, bulk_temperature_C=90.0, friction=0.05).contact_temperature).any()
 
 
@@ -198,6 +202,53 @@ def test_without_torque_numbers_are_not_known():
     assert np.isnan(found.loss_factor).all()
     assert np.isnan(found.least_film_ratio).all()
     assert np.isnan(found.film_ratio).all()
+    assert np.isnan(found.dataset.specific_sliding).all()
+
+
+def test_without_friction_nothing_is_lost_and_nothing_heats():
+    found = known(shared("mesh_cycle_spur"), friction=0.0)
+    assert (found.efficiency, found.mean_friction, found.mean_friction_power) == (1.0, 0.0, 0.0)
+    assert found.bulk_temperature == OIL.oil_temperature
+    assert_allclose(found.film_thickness, found.isothermal_film_thickness, rtol=1e-12)
+
+
+def test_the_hottest_films_are_thin_and_known():
+    """The density of the oil falls by 0.7 kg/m3 a kelvin; beyond 1290 C nothing would be left of it."""
+    found = known(shared("mesh_cycle_spur"), pinion_speed_rpm=20000.0, friction=1.0, application_factor=20.0)
+    assert found.largest_contact_temperature > 1500.0
+    films = found.slices()["film_thickness"].to_numpy()
+    assert (films >= 0.0).all()
+
+
+def test_a_scuffing_temperature_names_what_it_lacks():
+    with pytest.raises(NotAskedError, match="scuffing_temperature: needs lubricant"):
+        _ = shared("mesh_cycle_spur").tribology(1500.0).scuffing_temperature
+
+
+def test_extremes_on_the_arc_of_a_rounded_tip_are_marked_and_warned_of():
+    """A film on an arc of 0.8 mm is that of the arc, several times thinner than on the flank beside it."""
+    flanks = {"pinion__modifications": None, "wheel__modifications": None, "pinion__tip_rounding_mm": 0.8}
+    rounded = shared("mesh_cycle_spur", positions=25, torque=50.0, **flanks)
+    table = known(rounded).slices()
+    on_arc = table.relative_radius < 1.0
+    assert on_arc.any()
+    assert table.on_edge[on_arc].all()
+    assert not table.on_edge[table.pinion_radius < rounded.scene.mesh().pinion.tip_radius - 1.5].all()
+    assert known(rounded).extreme_on_edge("least_film_thickness")
+    with pytest.warns(AccuracyWarning) as caught:
+        rounded.tribology(1500.0, OIL, ROUGHNESS)
+    assert any("the least film thickness lies at an edge of a flank" in str(one.message) for one in caught)
+
+
+def test_a_loss_factor_of_few_positions_is_doubted():
+    flanks = {"pinion__modifications": None, "wheel__modifications": None}
+    with pytest.warns(AccuracyWarning) as caught:
+        shared("mesh_cycle_spur", positions=5, **flanks).tribology()
+    assert any("with every second position the loss factor is another one by" in str(one.message) for one in caught)
+    few = known(shared("mesh_cycle_spur", positions=6))
+    assert np.isnan(few.loss_factor_of_half).all()
+    halved = known(shared("mesh_cycle_spur", positions=17)).loss_factor_of_half
+    assert_allclose(halved, known(shared("mesh_cycle_spur", positions=9)).loss_factor, rtol=1e-3)
 
 
 SPUR = "mesh_cycle_spur"
@@ -210,20 +261,25 @@ def call(**given):
 test_bad_input_is_refused = refused_calls(
     *(
         (call(pinion_speed_rpm=bad), "pinion_speed_rpm: .*above 0")
-        for bad in (0.0, -1.0, math.nan, "fast", [], [1.0, 0.0])
+        for bad in (0.0, -1.0, math.nan, "fast", [], [1.0, 0.0], "1500", True, 1e300)
     ),
     *((call(roughness_um=bad), "roughness_um: ") for bad in ((0.0, 1.0), (1.0,), (11.0, 1.0), 0.5, (math.nan, 1.0))),
     (call(application_factor=0.9), "application_factor: 0.9; allowed a number from 1"),
     (call(dynamic_factor=math.nan), "dynamic_factor: nan"),
-    *((call(friction=bad), "friction: .*allowed") for bad in ("smooth", -0.1, 1.5, math.nan)),
+    *((call(friction=bad), "friction: .*allowed") for bad in ("smooth", -0.1, 1.5, math.nan, [0.05, 0.06])),
     (call(bulk_temperature_C=900.0), "bulk_temperature_C: 900"),
     *((call(scuffing_load_stage=bad), "scuffing_load_stage: ") for bad in (0, 15, math.inf)),
     (call(permissible_film_ratio=0.0), "permissible_film_ratio: 0"),
     (call(lubricant="oil"), "lubricant: 'oil'"),
     (lambda: known(shared(SPUR)).slices(3), "torque: 3 is no index"),
+    (lambda: known(shared(SPUR)).slices(speed=None), "speed: .* is no index"),
     (lambda: known(shared(SPUR)).over_flank("beauty"), "name: 'beauty'"),
+    (lambda: known(shared(SPUR)).over_flank(["pressure"]), "name: "),
     (lambda: known(shared(SPUR)).over_flank("pressure", 0, "ring"), "gear: 'ring'"),
-    (lambda: known(shared(SPUR)).over_flank("pressure", cells=(0, 3)), "cells: "),
+    *(
+        (lambda cells=cells: known(shared(SPUR)).over_flank("pressure", cells=cells), "cells: ")
+        for cells in ((0, 3), 5, (3,), (2.5, 3), "ab")
+    ),
 )
 
 
