@@ -69,7 +69,8 @@ def scuffing_safety(
     Returns
     -------
     array
-        inf where the contact is no warmer than the oil.
+        inf where the contact is no warmer than the oil; negative where the oil itself is hotter than the scuffing
+        temperature, so that no contact is safe.
 
     References
     ----------
