@@ -18,7 +18,7 @@ from loaded_tca.tribology import Lubricant
 
 SCENES, STAGE = Path(__file__).parent / "scenes", Path(__file__).parent / "stages" / "helical_automotive.toml"
 COARSE = {"analysis.positions": 7, "analysis.cells": (16, 24), "analysis.accuracy": None}  # seconds, not minutes
-FEW = COARSE | {"analysis.positions": 4, "analysis.compliance": "contact", "analysis.free_edges": False}
+FEW = COARSE | {"analysis.positions": 5, "analysis.compliance": "contact", "analysis.free_edges": False}
 LEAD, TIP = "pinion.modifications.lead_crowning_um", "wheel.modifications.tip_relief_um"
 RELIEF = {TIP: 10.0, "wheel.modifications.tip_relief_start_mm": 179.0, "analysis.torques_Nm": [60.0, 130.0]}
 HELICAL = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(COARSE | RELIEF)
@@ -41,7 +41,7 @@ def main() -> None:
     few = HELICAL.with_changes(FEW)
     turn = analyse_revolution(few.with_changes({"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
     drawn |= {name: draw(turn) for name, draw in plots.REVOLUTION_PICTURES.items()}
-    stage = analyse_stage(read_stage(STAGE).with_changes(FEW | {"analysis.positions": 5}))
+    stage = analyse_stage(read_stage(STAGE).with_changes(FEW))
     drawn |= {name: draw(stage) for name, draw in plots.STAGE_PICTURES.items()}
     oiled = result.tribology([500.0, 1500.0], OIL, (0.6, 0.6), permissible_film_ratio=0.3)
     drawn |= {name: one for name, one in plots.tribology_figures(oiled).items() if not name.startswith("flank_")}
