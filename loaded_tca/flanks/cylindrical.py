@@ -59,17 +59,18 @@ class InvoluteFlank(Flank):
         self.roll_unit = base_radius
         self.extent = (radii[1] - radii[0], face_width)
         self.frame = CylinderFrame()
+        self._turn = -float(side)  # teeth grow thinner outwards
         self._twist = math.tan(base_helix_angle) / base_radius
         roll = math.sqrt(working_radius**2 - base_radius**2) / base_radius
         self._working_involute = roll - math.atan(roll)
 
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no relief start)
         """Theta of the involute helicoid."""
-        roll, inward = self._roll_length(rho), -float(self.side) / self.base_radius
+        roll, turn = self._roll_length(rho), self._turn / self.base_radius
         angle, steepness = roll / self.base_radius, roll / rho
         involute = angle - np.arctan(angle) - self._working_involute
-        value = (-float(self.side)) * involute + self._twist * z
-        return Jet(value, inward * steepness, self._twist, lambda: (inward * (1.0 / roll - steepness / rho), 0.0, 0.0))
+        value = self._turn * involute + self._twist * z
+        return Jet(value, turn * steepness, self._twist, lambda: (turn * (1.0 / roll - steepness / rho), 0.0, 0.0))
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Tip circle, root form circle, the two ends of the face."""

@@ -17,9 +17,6 @@ ISO 21771, 5.2 to 5.5 (signs of internal gears).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
@@ -90,17 +87,8 @@ class RingFlank(InvoluteFlank):
         self.radii = radii
         self.extent = (radii[0] - radii[1], face_width)
         self.frame = RingFrame()
+        self._turn = float(side)
         self.profile_unit, self.roll_unit = -1.0, -base_radius
-
-    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no relief start)
-        """Theta of the involute helicoid."""
-        roll, outward = self._roll_length(rho), float(self.side) / self.base_radius
-        angle, steepness = roll / self.base_radius, roll / rho
-        involute = angle - np.arctan(angle) - self._working_involute
-        value = float(self.side) * involute + self._twist * z
-        return Jet(
-            value, outward * steepness, self._twist, lambda: (outward * (1.0 / roll - steepness / rho), 0.0, 0.0)
-        )
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Tip circle, root form circle, the two ends of the face, the lower one of the pinion's z first."""
@@ -114,11 +102,8 @@ class RingFlank(InvoluteFlank):
 
     def grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
         """Even grid in roll length and face width, from root to tip and from the lower to the upper end of the face."""
-        start, end = self._roll_length(np.array(self.radii))
-        rho = np.hypot(self.base_radius, np.linspace(start, end, profile))
-        rho[[0, -1]] = self.radii
-        z = np.linspace(0.5 * self.face_width, -0.5 * self.face_width, lengthwise)
-        return tuple(np.meshgrid(rho, z, indexing="ij"))  # type: ignore[return-value]
+        rho, z = super().grid(profile, lengthwise)
+        return rho, -z
 
     def profile_coordinate(self, rho: Array, z: Array) -> Jet:
         """Roll length with a minus, -sqrt(rho^2 - r_b^2): it rises from root to tip."""

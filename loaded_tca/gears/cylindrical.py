@@ -6,21 +6,22 @@ transverse section.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import asin, atan, cos, hypot, inf, pi, radians, sin, sqrt, tan
+from math import atan, cos, inf, pi, radians, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from loaded_tca.errors import GeometryError, InputError, require
+from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears import tooth_measures
 from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks
 from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.involute_gear import InvoluteGear
 
 
 @dataclass(frozen=True)
-class CylindricalGear:
+class CylindricalGear(InvoluteGear):
     """External spur or helical gear, cut by the basic rack of ISO 53.
 
     The rounded tip of the rack shapes the fillet; where the asked radius does not fit on that tip, the tip is
@@ -146,36 +147,6 @@ class CylindricalGear:
             )
 
     @property
-    def transverse_module(self) -> float:
-        """m_t = m_n/cos(beta) [mm]."""
-        return self.normal_module / cos(self.helix_angle)
-
-    @property
-    def transverse_pressure_angle(self) -> float:
-        """alpha_t, tan(alpha_t) = tan(alpha_n)/cos(beta) [rad]."""
-        return atan(tan(self.pressure_angle) / cos(self.helix_angle))
-
-    @property
-    def base_helix_angle(self) -> float:
-        """beta_b, sin(beta_b) = sin(beta) cos(alpha_n), signed as the helix angle [rad]."""
-        return asin(sin(self.helix_angle) * cos(self.pressure_angle))
-
-    @property
-    def base_pitch(self) -> float:
-        """Transverse base pitch p_et = pi m_t cos(alpha_t) [mm]."""
-        return pi * self.transverse_module * cos(self.transverse_pressure_angle)
-
-    @property
-    def reference_radius(self) -> float:
-        """Reference radius r = d/2 = z m_t/2 [mm]."""
-        return 0.5 * self.teeth * self.transverse_module
-
-    @property
-    def base_radius(self) -> float:
-        """r_b = r cos(alpha_t) [mm]."""
-        return self.reference_radius * cos(self.transverse_pressure_angle)
-
-    @property
     def tip_radius(self) -> float:
         """r_a = d_a/2 [mm]."""
         if self.tip_diameter is not None:
@@ -214,8 +185,7 @@ class CylindricalGear:
 
     def tooth_thickness_at(self, radius: float) -> float:
         """Transverse tooth thickness at a radius, an arc: 2 r (psi_b - inv(alpha_r)) [mm]."""
-        tangent = self.roll_length(radius) / self.base_radius
-        return 2.0 * radius * (self.half_thickness_angle_at_base - (tangent - atan(tangent)))
+        return 2.0 * radius * (self.half_thickness_angle_at_base - self.involute_at(radius))
 
     @property
     def normal_tooth_thickness(self) -> float:
@@ -248,18 +218,6 @@ class CylindricalGear:
         44.9293
         """
         return tooth_measures.ball_measurement(self, diameter)
-
-    def roll_length(self, radius: float) -> float:
-        """Roll length of the involute at a radius, sqrt(r^2 - r_b^2) [mm]; zero at the base circle."""
-        if radius < self.base_radius * (1.0 - 1e-12):
-            raise InputError(
-                f"{self.name}: radius {radius:.6g} mm lies inside the base circle, radius {self.base_radius:.6g} mm"
-            )
-        return sqrt(max(0.0, (radius - self.base_radius) * (radius + self.base_radius)))
-
-    def radius_at_roll_length(self, roll_length: float) -> float:
-        """Radius of the involute at a roll length, sqrt(a^2 + r_b^2) [mm]."""
-        return hypot(roll_length, self.base_radius)
 
     @property
     def rack_tip_radius(self) -> float:

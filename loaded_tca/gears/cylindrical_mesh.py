@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan, ceil, cos, inf, pi, sin, sqrt, tan
+from math import atan, ceil, cos, inf, pi, sqrt, tan
 from typing import NamedTuple
 
 import loaded_tca.warning_kinds as kinds
@@ -19,6 +19,7 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.involute_mesh import InvoluteMesh
 
 # In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
 _NEGLIGIBLE_UNDERCUT = 1e-4
@@ -88,7 +89,7 @@ class PathOfContact:
 
 
 @dataclass(frozen=True)
-class CylindricalMesh:
+class CylindricalMesh(InvoluteMesh):
     """Two cylindrical gears on parallel axes.
 
     Parameters
@@ -218,22 +219,12 @@ class CylindricalMesh:
         """r_w2 = a z2/(z1 + z2) [mm]."""
         return self.working_centre_distance * self.gear_ratio / (1.0 + self.gear_ratio)
 
-    @property
-    def backlash(self) -> float:
-        """Circumferential backlash j_wt at the working circles; negative where the teeth overlap [mm]."""
-        return self.backlash_at(self.working_centre_distance)
-
     def backlash_at(self, centre_distance: float) -> float:
         """Backlash at another centre distance, above the sum of the base radii [mm]."""
         pinion_radius = centre_distance / (1.0 + self.gear_ratio)
         pitch = 2.0 * pi * pinion_radius / self.pinion.teeth
         first = self.pinion.tooth_thickness_at(pinion_radius)
         return pitch - first - self.wheel.tooth_thickness_at(centre_distance - pinion_radius)
-
-    @property
-    def normal_backlash(self) -> float:
-        """Normal backlash j_bn = j_wt cos(alpha_wt) cos(beta_b): shortest way between the back flanks [mm]."""
-        return self.backlash * cos(self.working_pressure_angle) * cos(self.pinion.base_helix_angle)
 
     @property
     def room(self) -> Room:
@@ -287,34 +278,6 @@ class CylindricalMesh:
             E=end,
             T2=self._line_of_action,
         )
-
-    @property
-    def common_face_width(self) -> float:
-        """Face width that both gears cover, mid-faces together [mm]."""
-        return min(self.pinion.face_width, self.wheel.face_width)
-
-    @property
-    def transverse_contact_ratio(self) -> float:
-        """eps_alpha = g_alpha/p_et."""
-        return self.path_of_contact.AE / self.pinion.base_pitch
-
-    @property
-    def overlap_ratio(self) -> float:
-        """eps_beta = b sin(|beta|)/(pi m_n), b the common face width."""
-        return self.common_face_width * sin(abs(self.pinion.helix_angle)) / (pi * self.pinion.normal_module)
-
-    @property
-    def total_contact_ratio(self) -> float:
-        """eps_gamma = eps_alpha + eps_beta."""
-        return self.transverse_contact_ratio + self.overlap_ratio
-
-    def base_tangential_force(self, pinion_torque: float) -> float:
-        """F_bt = T1/r_b1, along the line of action in the transverse section [N]; torque in N mm."""
-        return pinion_torque / self.pinion.base_radius
-
-    def normal_force(self, pinion_torque: float) -> float:
-        """F_bn = F_bt/cos(beta_b), the force normal to the flanks [N]; torque in N mm."""
-        return self.base_tangential_force(pinion_torque) / cos(self.pinion.base_helix_angle)
 
 
 ROUNDING = 1e-4

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, atan, cos, degrees, inf, isclose, pi, sin, sqrt, tan
+from math import acos, atan, cos, degrees, inf, isclose, pi, sqrt, tan
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, ActiveProfile, PathOfContact, Room, interferences
 from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.involute_mesh import InvoluteMesh
 from loaded_tca.gears.ring import RingGear
 
 _EQUAL = 1e-12
@@ -26,7 +27,7 @@ PROFILE_POINTS = 41
 
 
 @dataclass(frozen=True)
-class InternalMesh:
+class InternalMesh(InvoluteMesh):
     """A pinion inside a ring gear.
 
     Parameters
@@ -202,22 +203,12 @@ class InternalMesh:
         """abs(r_w2) = abs(a) abs(u)/(abs(u) - 1) [mm]."""
         return self.working_centre_distance * self.gear_ratio / (self.gear_ratio - 1.0)
 
-    @property
-    def backlash(self) -> float:
-        """Circumferential backlash j_wt at the working circles; negative where the teeth overlap [mm]."""
-        return self.backlash_at(self.working_centre_distance)
-
     def backlash_at(self, centre_distance: float) -> float:
         """Backlash at another centre distance, above the difference of the base radii [mm]."""
         pinion_radius = centre_distance / (self.gear_ratio - 1.0)
         ring_radius = pinion_radius * self.gear_ratio
         space = 2.0 * ring_radius * self.ring.space_angle_at(ring_radius)
         return space - self.pinion.tooth_thickness_at(pinion_radius)
-
-    @property
-    def normal_backlash(self) -> float:
-        """Normal backlash j_bn = j_wt cos(alpha_wt) cos(beta_b): shortest way between the back flanks [mm]."""
-        return self.backlash * cos(self.working_pressure_angle) * cos(self.pinion.base_helix_angle)
 
     @property
     def room(self) -> Room:
@@ -266,8 +257,8 @@ class InternalMesh:
         if max(map(abs, cosines)) > 1.0:
             return inf
         working = involute(self.working_pressure_angle)
-        of_pinion = acos(cosines[0]) + _involute_at(pinion, first) - working
-        of_ring = acos(cosines[1]) + _involute_at(ring, second) - working
+        of_pinion = acos(cosines[0]) + pinion.involute_at(first) - working
+        of_ring = acos(cosines[1]) + ring.involute_at(second) - working
         return second * (of_pinion / self.gear_ratio - of_ring)
 
     @cached_property
@@ -351,39 +342,6 @@ class InternalMesh:
             E=end,
             T2=-line,
         )
-
-    @property
-    def common_face_width(self) -> float:
-        """Face width that both gears cover, mid-faces together [mm]."""
-        return min(self.pinion.face_width, self.ring.face_width)
-
-    @property
-    def transverse_contact_ratio(self) -> float:
-        """eps_alpha = g_alpha/p_et."""
-        return self.path_of_contact.AE / self.pinion.base_pitch
-
-    @property
-    def overlap_ratio(self) -> float:
-        """eps_beta = b sin(abs(beta))/(pi m_n), b the common face width."""
-        return self.common_face_width * sin(abs(self.pinion.helix_angle)) / (pi * self.pinion.normal_module)
-
-    @property
-    def total_contact_ratio(self) -> float:
-        """eps_gamma = eps_alpha + eps_beta."""
-        return self.transverse_contact_ratio + self.overlap_ratio
-
-    def base_tangential_force(self, pinion_torque: float) -> float:
-        """F_bt = T1/r_b1, along the line of action in the transverse section [N]; torque in N mm."""
-        return pinion_torque / self.pinion.base_radius
-
-    def normal_force(self, pinion_torque: float) -> float:
-        """F_bn = F_bt/cos(beta_b), the force normal to the flanks [N]; torque in N mm."""
-        return self.base_tangential_force(pinion_torque) / cos(self.pinion.base_helix_angle)
-
-
-def _involute_at(gear: CylindricalGear | RingGear, radius: float) -> float:
-    tangent = gear.roll_length(radius) / gear.base_radius
-    return tangent - atan(tangent)
 
 
 def internal_profile_shift_sum(pinion: CylindricalGear, ring: RingGear, centre_distance: float) -> float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import asin, atan, atan2, cos, hypot, inf, pi, radians, sin, sqrt, tan
+from math import atan, atan2, cos, inf, pi, radians, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from loaded_tca.arrays import real
-from loaded_tca.errors import GeometryError, InputError, require
+from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks
 from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.involute_gear import InvoluteGear
 
 OUTSIDE_MODULES = 7.0
 """Depth of a ring between root and outside that has no outer diameter given, in normal modules."""
@@ -64,7 +65,7 @@ class PinionCutter:
 
 
 @dataclass(frozen=True)
-class RingGear:
+class RingGear(InvoluteGear):
     """Internal spur or helical gear, with fillets that are arcs or cut by a pinion-type cutter.
 
     Parameters
@@ -212,41 +213,6 @@ class RingGear:
             )
 
     @property
-    def tooth_count(self) -> int:
-        """abs(z)."""
-        return -self.teeth
-
-    @property
-    def transverse_module(self) -> float:
-        """m_t = m_n/cos(beta) [mm]."""
-        return self.normal_module / cos(self.helix_angle)
-
-    @property
-    def transverse_pressure_angle(self) -> float:
-        """alpha_t, tan(alpha_t) = tan(alpha_n)/cos(beta) [rad]."""
-        return atan(tan(self.pressure_angle) / cos(self.helix_angle))
-
-    @property
-    def base_helix_angle(self) -> float:
-        """beta_b, sin(beta_b) = sin(beta) cos(alpha_n), signed as the helix angle [rad]."""
-        return asin(sin(self.helix_angle) * cos(self.pressure_angle))
-
-    @property
-    def base_pitch(self) -> float:
-        """Transverse base pitch p_et = pi m_t cos(alpha_t) [mm]."""
-        return pi * self.transverse_module * cos(self.transverse_pressure_angle)
-
-    @property
-    def reference_radius(self) -> float:
-        """abs(r) = abs(z) m_t/2 [mm]."""
-        return 0.5 * self.tooth_count * self.transverse_module
-
-    @property
-    def base_radius(self) -> float:
-        """abs(r_b) = abs(r) cos(alpha_t) [mm]."""
-        return self.reference_radius * cos(self.transverse_pressure_angle)
-
-    @property
     def tip_radius(self) -> float:
         """abs(r_a) = abs(d_a)/2 [mm]."""
         if self.tip_diameter is not None:
@@ -287,24 +253,11 @@ class RingGear:
 
     def tooth_thickness_at(self, radius: float) -> float:
         """Transverse tooth thickness at a radius, an arc: 2 r (psi_b + inv(alpha_r)) [mm]."""
-        tangent = self.roll_length(radius) / self.base_radius
-        return 2.0 * radius * (self.half_thickness_angle_at_base + (tangent - atan(tangent)))
+        return 2.0 * radius * (self.half_thickness_angle_at_base + self.involute_at(radius))
 
     def space_angle_at(self, radius: float) -> float:
         """Half the angle of the space between two teeth at a radius [rad]; negative where the flanks have crossed."""
         return pi / self.tooth_count - 0.5 * self.tooth_thickness_at(radius) / radius
-
-    def roll_length(self, radius: float) -> float:
-        """Roll length of the involute at a radius, sqrt(r^2 - r_b^2) [mm]; it falls from the root to the tip."""
-        if radius < self.base_radius * (1.0 - 1e-12):
-            raise InputError(
-                f"{self.name}: radius {radius:.6g} mm lies inside the base circle, radius {self.base_radius:.6g} mm"
-            )
-        return sqrt(max(0.0, (radius - self.base_radius) * (radius + self.base_radius)))
-
-    def radius_at_roll_length(self, roll_length: float) -> float:
-        """Radius of the involute at a roll length, sqrt(a^2 + r_b^2) [mm]."""
-        return hypot(roll_length, self.base_radius)
 
     @property
     def _space_angle_at_base(self) -> float:

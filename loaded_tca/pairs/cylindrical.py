@@ -10,12 +10,14 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.modification import FlankModifications
-from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
+from loaded_tca.gears import CylindricalMesh
 from loaded_tca.gears.checks import LEAST_FACE
+from loaded_tca.gears.involute_gear import InvoluteGear
+from loaded_tca.gears.involute_mesh import InvoluteMesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
-from loaded_tca.tooth.families import CylindricalTooth
+from loaded_tca.tooth.families import CylindricalTooth, InvoluteTooth
 
 LARGEST_ANGLE = math.radians(45.0)
 """Angular errors stay below this [rad]: the axes are those of parallel gears, which still face each other."""
@@ -116,31 +118,78 @@ def cylindrical_pair(
     >>> cylindrical_pair(CylindricalMesh(*gears))
     GearPair(34/57, module 3 mm, face 25 mm)
     """
+    wheel = CylindricalTooth(mesh.wheel, mesh.wheel_working_radius, mesh.wheel_active_profile, modifications[1])
+    return involute_pair(
+        mesh,
+        wheel,
+        mesh.wheel.bore_diameter,
+        mounting.place_parallel(mesh.working_centre_distance),
+        modifications=modifications[0],
+        axial_offset=mounting.axial_offset,
+        materials=materials,
+        driving=driving,
+        sense=sense,
+    )
+
+
+def involute_pair(
+    mesh: InvoluteMesh,
+    wheel: InvoluteTooth,
+    held: float | None,
+    place: tuple[Array, Array],
+    *,
+    modifications: FlankModifications,
+    axial_offset: float,
+    materials: tuple[Material, Material],
+    driving: Driving,
+    sense: Sense,
+) -> GearPair:
+    """Pair of an external pinion and a mating gear, external or a ring.
+
+    Parameters
+    ----------
+    mesh : InvoluteMesh
+    wheel : InvoluteTooth
+        Teeth of the mating gear, with their modifications.
+    held : float, optional [mm]
+        Diameter at which the mating gear is held: its bore, or the outside of a ring.
+    place : (3,) array [mm], (3, 3) array
+        Origin and axes of the mating gear in the fixed frame.
+    modifications : FlankModifications
+        Of the pinion.
+    axial_offset : float [mm]
+        Of the mating gear.
+    materials : (Material, Material)
+    driving : {"pinion", "wheel"}
+    sense : {"positive", "negative"}
+
+    Raises
+    ------
+    InputError, GeometryError
+        As :func:`cylindrical_pair`.
+    """
     turning, drive = signs_of(driving, sense)
-    radii = mesh.pinion_working_radius, mesh.wheel_working_radius
-    profiles = mesh.pinion_active_profile, mesh.wheel_active_profile
-    require_common_face(mesh, mounting.axial_offset)
-    gears = []
-    for member, gear in enumerate((mesh.pinion, mesh.wheel)):
+    require_common_face(mesh, axial_offset)
+    for gear in (mesh.pinion, mesh.wheel):
         require_short_turn(gear)
-        tooth = CylindricalTooth(gear, radii[member], profiles[member], modifications[member])
-        gears.append(Gear.of(tooth, turning * drive, materials[member], gear.bore_diameter))
-    origin, axes = mounting.place_parallel(mesh.working_centre_distance)
+    pinion = CylindricalTooth(mesh.pinion, mesh.pinion_working_radius, mesh.pinion_active_profile, modifications)
+    side = turning * drive
+    origin, axes = place
     return GearPair(
-        pinion=gears[0],
-        wheel=gears[1],
-        teeth=(mesh.pinion.teeth, mesh.wheel.teeth),
+        pinion=Gear.of(pinion, side, materials[0], mesh.pinion.bore_diameter),
+        wheel=Gear.of(wheel, side, materials[1], held),
+        teeth=(mesh.pinion.tooth_count, mesh.wheel.tooth_count),
         wheel_origin=origin,
         wheel_axes=axes,
         sense=turning,
         driving=drive,
         module=mesh.pinion.normal_module,
         base_radii=(mesh.pinion.base_radius, mesh.wheel.base_radius),
-        face_width=common_face_width(mesh, mounting.axial_offset),
+        face_width=common_face_width(mesh, axial_offset),
     )
 
 
-def require_short_turn(gear: CylindricalGear | RingGear) -> None:
+def require_short_turn(gear: InvoluteGear) -> None:
     """Refuse teeth that wind a whole turn around their gear over its face width."""
     turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
     if turn >= LARGEST_TURN:
@@ -150,13 +199,13 @@ def require_short_turn(gear: CylindricalGear | RingGear) -> None:
         )
 
 
-def common_face_width(mesh: CylindricalMesh | InternalMesh, axial_offset: float) -> float:
+def common_face_width(mesh: InvoluteMesh, axial_offset: float) -> float:
     """Face width that both gears cover, the wheel moved along its axis [mm]; of faces apart the narrower one."""
     covered = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(axial_offset)
     return min(mesh.common_face_width, covered) if covered > 0.0 else mesh.common_face_width
 
 
-def require_common_face(mesh: CylindricalMesh | InternalMesh, offset: float) -> None:
+def require_common_face(mesh: InvoluteMesh, offset: float) -> None:
     """Refuse faces that the offset [mm] of the wheel leaves next to nothing in common; apart, they never touch."""
     common = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(offset)
     least = LEAST_FACE * mesh.pinion.normal_module

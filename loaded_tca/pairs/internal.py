@@ -12,10 +12,8 @@ import numpy as np
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.gears import InternalMesh
 from loaded_tca.material import Material
-from loaded_tca.pairs.cylindrical import Mounting, common_face_width, require_common_face, require_short_turn
-from loaded_tca.pairs.gear import Gear
-from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, signs_of
-from loaded_tca.tooth.families import CylindricalTooth
+from loaded_tca.pairs.cylindrical import Mounting, involute_pair
+from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
 from loaded_tca.tooth.ring import RingTooth
 
 
@@ -60,28 +58,17 @@ def internal_pair(
     >>> internal_pair(InternalMesh(pinion, RingGear(teeth=-60, normal_module=3.0, face_width=25.0)))
     GearPair(25/60, module 3 mm, face 25 mm)
     """
-    turning, drive = signs_of(driving, sense)
-    pinion, ring, side = mesh.pinion, mesh.ring, turning * drive
-    require_common_face(mesh, mounting.axial_offset)
-    require_short_turn(pinion)
-    require_short_turn(ring)
-    teeth = (
-        CylindricalTooth(pinion, mesh.pinion_working_radius, mesh.pinion_active_profile, modifications[0]),
-        RingTooth(ring, mesh.wheel_working_radius, mesh.wheel_active_profile, modifications[1]),
-    )
-    held = pinion.bore_diameter, ring.outer_diameter
-    gears = [Gear.of(*each) for each in zip(teeth, (side, side), materials, held, strict=True)]
-    return GearPair(
-        pinion=gears[0],
-        wheel=gears[1],
-        teeth=(pinion.teeth, ring.tooth_count),
-        wheel_origin=np.array(
-            [mounting.centre_distance_error - mesh.working_centre_distance, 0.0, mounting.axial_offset]
-        ),
-        wheel_axes=np.diag([1.0, -1.0, -1.0]) @ mounting.turn.T,
-        sense=turning,
-        driving=drive,
-        module=pinion.normal_module,
-        base_radii=(pinion.base_radius, ring.base_radius),
-        face_width=common_face_width(mesh, mounting.axial_offset),
+    wheel = RingTooth(mesh.ring, mesh.wheel_working_radius, mesh.wheel_active_profile, modifications[1])
+    beside = mounting.centre_distance_error - mesh.working_centre_distance
+    place = np.array([beside, 0.0, mounting.axial_offset]), np.diag([1.0, -1.0, -1.0]) @ mounting.turn.T
+    return involute_pair(
+        mesh,
+        wheel,
+        mesh.ring.outer_diameter,
+        place,
+        modifications=modifications[0],
+        axial_offset=mounting.axial_offset,
+        materials=materials,
+        driving=driving,
+        sense=sense,
     )

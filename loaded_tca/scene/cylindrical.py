@@ -9,8 +9,9 @@ from typing import ClassVar, Literal
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh
+from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
+from loaded_tca.gears.involute_mesh import InvoluteMesh
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
@@ -205,7 +206,7 @@ class CylindricalScene(BlankScene):
             sense=sense,
         )
 
-    def _mounting(self, mesh: CylindricalMesh | InternalMesh) -> Mounting:
+    def _mounting(self, mesh: InvoluteMesh) -> Mounting:
         """Mounting errors, the misalignment in the plane of action as the axis error that makes it."""
         errors = in_base_units(self.mounting)
         width = common_face_width(mesh, self.mounting.axial_offset_mm)
@@ -373,7 +374,7 @@ def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, 
     return section.form_factor, section.stress_correction_factor, helix
 
 
-def backlash_rows(mesh: CylindricalMesh | InternalMesh) -> tuple[Row, Row]:
+def backlash_rows(mesh: InvoluteMesh) -> tuple[Row, Row]:
     """Backlash j_wt and j_bn [mm], zero where they are rounding."""
     rounding = abs(mesh.backlash) <= 1e-9 * mesh.pinion.normal_module
     along, normal = (0.0, 0.0) if rounding else (mesh.backlash, mesh.normal_backlash)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from loaded_tca.errors import named
-from loaded_tca.gears import CylindricalMesh, InternalMesh
+from loaded_tca.gears.involute_mesh import InvoluteMesh
 from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.section import values_of
 
@@ -19,7 +19,7 @@ SLOPES = {"helix_slope_um": "helix_slope", "profile_slope_um": "profile_slope"}
 """Key of the modifications -> the tolerance that bounds its deviation, to either side."""
 
 
-def slope_tolerances(mesh: CylindricalMesh | InternalMesh, tolerance_class: int) -> dict[str, float]:
+def slope_tolerances(mesh: InvoluteMesh, tolerance_class: int) -> dict[str, float]:
     """Tolerances f_HbetaT and f_HalphaT of both gears by the keys that they bound, as drawings have them [um].
 
     Raises

@@ -24,37 +24,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.compliance import ContactGrid
 from loaded_tca.errors import require
 from loaded_tca.pairs.gear_pair import GearPair
 
 AXIS = np.array([0.0, 0.0, 1.0])
 ROTATION_ABOUT_AXIS = 5
 """Place of the rotation about the axis among the motions of a station."""
-
-
-class Slices(Protocol):
-    """Where the slices of a contact lie, as a separation and a pressure map have it."""
-
-    @property
-    def y(self) -> Array:
-        """Middles of the slices along the contact (ny,) [mm], from the contact point."""
-
-    @property
-    def origin(self) -> Array:
-        """The contact point (3,) in the fixed frame [mm]."""
-
-    @property
-    def axes(self) -> Array:
-        """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
-
-    @property
-    def force_line(self) -> Array:
-        """Where across the contact the force of every slice acts (ny,) [mm], from the contact point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,7 +191,7 @@ class SupportCompliance:
         """The same supports in a pair whose wheel stands elsewhere."""
         return replace(self, pair=pair)
 
-    def loads(self, grid: Slices) -> tuple[Array, Array]:
+    def loads(self, grid: ContactGrid) -> tuple[Array, Array]:
         """Loads of pinion and wheel (ny, 6 m) each by a unit normal force on every slice of a contact [1, mm]."""
         points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
         normals = np.broadcast_to(grid.axes[2], points.shape)
@@ -222,15 +202,15 @@ class SupportCompliance:
         )
         return pinion, wheel
 
-    def within(self, number: int, grid: Slices, under: Slices | None = None) -> Array:  # noqa: ARG002
+    def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:  # noqa: ARG002
         """Deflection of every slice under a unit force on each, or on each of ``under`` [mm/N]."""
         return self._between(grid, grid if under is None else under)
 
-    def between(self, at: tuple[int, Slices], under: tuple[int, Slices]) -> Array:
+    def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact under a unit force on each slice of another [mm/N]."""
         return self._between(at[1], under[1])
 
-    def deflection(self, at: tuple[int, Slices], under: tuple[int, Slices], forces: Array) -> Array:
+    def deflection(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid], forces: Array) -> Array:
         """Deflection (m,) [mm] of the slices of one contact under forces (n,) [N] on those of another."""
         there, here = self.loads(at[1]), self.loads(under[1])
         pinion, wheel = (
@@ -238,17 +218,17 @@ class SupportCompliance:
         )
         return np.asarray(pinion + wheel)
 
-    def opened(self, grid: Slices, motions: Sequence[Array]) -> Array:
+    def opened(self, grid: ContactGrid, motions: Sequence[Array]) -> Array:
         """How far the gap of every slice (ny,) [mm] grows by motions (6 m,) of the stations of both gears."""
         pinion, wheel = (loads @ motion for loads, motion in zip(self.loads(grid), motions, strict=True))
         return np.asarray(pinion + wheel)
 
-    def opened_rigidly(self, grid: Slices, motions: Sequence[Array]) -> Array:
+    def opened_rigidly(self, grid: ContactGrid, motions: Sequence[Array]) -> Array:
         """The same by motions (6,) of both gears as rigid bodies, with the middles of their faces."""
         pinion, wheel = (Support(support.middle, np.zeros((6, 6))) for support in self.supports)
         return replace(self, supports=(pinion, wheel)).opened(grid, motions)
 
-    def _between(self, at: Slices, under: Slices) -> Array:
+    def _between(self, at: ContactGrid, under: ContactGrid) -> Array:
         there, here = self.loads(at), self.loads(under)
         pinion, wheel = (a @ support.compliance @ b.T for a, b, support in zip(there, here, self.supports, strict=True))
         return np.asarray(pinion + wheel)

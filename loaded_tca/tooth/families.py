@@ -11,6 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears import BevelGear, CylindricalGear, FaceMilledGear
 from loaded_tca.gears.cylindrical_mesh import ActiveProfile
 from loaded_tca.gears.face_milled import BLADE_SIGNS
+from loaded_tca.gears.involute_gear import InvoluteGear
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, RackFillet
 from loaded_tca.tooth.held import Bore, Held
 from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
@@ -134,17 +136,63 @@ class ToothGeometry(ABC):
 
 
 @dataclass(frozen=True)
-class CylindricalTooth(ToothGeometry):
-    """Involute teeth of a cylindrical gear, with the fillet that its basic rack cuts.
+class InvoluteTooth(ToothGeometry):
+    """Involute teeth of an external gear or a ring.
 
     Parameters
     ----------
-    gear : CylindricalGear
+    gear : InvoluteGear
     working_radius : float [mm]
         Radius of the working circle, where Theta = 0 at mid-face.
     active : ActiveProfile
         Over which profile modifications run.
     modifications : FlankModifications
+    """
+
+    gear: InvoluteGear
+    working_radius: float
+    active: ActiveProfile
+    modifications: FlankModifications = FlankModifications()
+
+    flank: ClassVar[type[InvoluteFlank]] = InvoluteFlank
+
+    @property
+    def unmodified(self) -> ToothGeometry:
+        """The same teeth without modifications."""
+        return replace(self, modifications=FlankModifications())
+
+    def nominal(self, side: int) -> Flank:
+        """Involute flank of a side."""
+        gear = self.gear
+        radii = gear.form_radius, gear.tip_radius
+        return self.flank(gear.base_radius, gear.base_helix_angle, side, self.working_radius, radii, gear.face_width)
+
+    def modified(self, nominal: Flank) -> Flank:
+        """The flank with its modifications; profile modifications run over the roll length."""
+        return modified(
+            nominal,
+            self.modifications,
+            self.gear.face_width,
+            (2.0 * self.active.start_radius, 2.0 * self.active.end_radius),
+            lambda diameter: self.gear.roll_length(0.5 * diameter) / nominal.profile_unit,
+            owner=self.gear.name,
+        )
+
+    @property
+    def half_thickness_angle(self) -> float:
+        """Half the angle of a tooth at the working circle [rad]."""
+        return 0.5 * self.gear.tooth_thickness_at(self.working_radius) / self.working_radius
+
+
+@dataclass(frozen=True)
+class CylindricalTooth(InvoluteTooth):
+    """Involute teeth of a cylindrical gear, with the fillet that its basic rack cuts.
+
+    Parameters
+    ----------
+    gear : CylindricalGear
+    working_radius, active, modifications
+        As of every ``InvoluteTooth``.
 
     Examples
     --------
@@ -157,38 +205,11 @@ class CylindricalTooth(ToothGeometry):
     """
 
     gear: CylindricalGear
-    working_radius: float
-    active: ActiveProfile
-    modifications: FlankModifications = FlankModifications()
-
-    @property
-    def unmodified(self) -> ToothGeometry:
-        """The same teeth without modifications."""
-        return replace(self, modifications=FlankModifications())
-
-    def nominal(self, side: int) -> Flank:
-        """Involute flank of a side."""
-        gear = self.gear
-        radii = gear.form_radius, gear.tip_radius
-        return InvoluteFlank(gear.base_radius, gear.base_helix_angle, side, self.working_radius, radii, gear.face_width)
-
-    def modified(self, nominal: Flank) -> Flank:
-        """The flank with its modifications; profile modifications run over the roll length."""
-        return modified(
-            nominal,
-            self.modifications,
-            self.gear.face_width,
-            (2.0 * self.active.start_radius, 2.0 * self.active.end_radius),
-            lambda diameter: self.gear.roll_length(0.5 * diameter),
-            owner=self.gear.name,
-        )
 
     def form(self) -> ToothForm:
         """Transverse sections, root cylinder and the fillet of the rack."""
-        gear = self.gear
-        half_angle = 0.5 * gear.tooth_thickness_at(self.working_radius) / self.working_radius
-        root, fillet = RootCylinder(gear.root_radius), RackFillet(gear)
-        return ToothForm(gear.teeth, half_angle, TransversePlanes(), root, fillet)
+        root, fillet = RootCylinder(self.gear.root_radius), RackFillet(self.gear)
+        return ToothForm(self.gear.teeth, self.half_thickness_angle, TransversePlanes(), root, fillet)
 
 
 FILLET_RADIUS_COEFFICIENT = 0.38

@@ -12,19 +12,16 @@ surfaces keep their outside.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.flanks.ring import RingFlank
-from loaded_tca.gears.cylindrical_mesh import ActiveProfile
 from loaded_tca.gears.ring import RingGear
-from loaded_tca.tooth.families import RootCylinder, ToothForm, ToothGeometry
+from loaded_tca.tooth.families import InvoluteTooth, RootCylinder, ToothForm
 from loaded_tca.tooth.fillet import Fillet, FilletCurve, Profile, RackFillet
 from loaded_tca.tooth.held import Held
 from loaded_tca.tooth.sections import Sections
@@ -148,17 +145,14 @@ class Outside(Held):
 
 
 @dataclass(frozen=True)
-class RingTooth(ToothGeometry):
+class RingTooth(InvoluteTooth):
     """Involute teeth of a ring gear.
 
     Parameters
     ----------
     gear : RingGear
-    working_radius : float [mm]
-        Radius of the working circle, where Theta = 0 at mid-face.
-    active : ActiveProfile
-        Over which profile modifications run.
-    modifications : FlankModifications
+    working_radius, active, modifications
+        As of every ``InvoluteTooth``.
 
     Examples
     --------
@@ -171,36 +165,12 @@ class RingTooth(ToothGeometry):
     """
 
     gear: RingGear
-    working_radius: float
-    active: ActiveProfile
-    modifications: FlankModifications = FlankModifications()
 
-    @property
-    def unmodified(self) -> ToothGeometry:
-        """The same teeth without modifications."""
-        return replace(self, modifications=FlankModifications())
-
-    def nominal(self, side: int) -> Flank:
-        """Involute flank of a side."""
-        gear = self.gear
-        radii = gear.form_radius, gear.tip_radius
-        return RingFlank(gear.base_radius, gear.base_helix_angle, side, self.working_radius, radii, gear.face_width)
-
-    def modified(self, nominal: Flank) -> Flank:
-        """The flank with its modifications; profile modifications run over the roll length."""
-        return modified(
-            nominal,
-            self.modifications,
-            self.gear.face_width,
-            (2.0 * self.active.start_radius, 2.0 * self.active.end_radius),
-            lambda diameter: -self.gear.roll_length(0.5 * diameter),
-            owner=self.gear.name,
-        )
+    flank = RingFlank
 
     def form(self) -> ToothForm:
         """Transverse sections through the inversion, root cylinder, and the fillet of the ring."""
-        gear = self.gear
-        half_angle = 0.5 * gear.tooth_thickness_at(self.working_radius) / self.working_radius
-        root = gear.root_radius
+        gear, root = self.gear, self.gear.root_radius
         sections, held = InvertedPlanes(root), Outside(gear.outer_radius)
-        return ToothForm(gear.tooth_count, half_angle, sections, RootCylinder(root), RingFillet(gear), held=held)
+        angle, fillet = self.half_thickness_angle, RingFillet(gear)
+        return ToothForm(gear.tooth_count, angle, sections, RootCylinder(root), fillet, held=held)
