@@ -208,12 +208,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         warn_of_gears(scene, pair)
         count, torques = wanted.positions, np.asarray(scene.torques)
         angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
-        grid = GridChoice(
-            cells=None if wanted.cells is None else (wanted.cells[0], wanted.cells[1]),
-            accuracy=wanted.accuracy,
-            tolerance=wanted.tolerance,
-            free_edges=wanted.free_edges,
-        )
+        grid = grid_of(scene)
         roots = roots_of(scene, pair)
         cycles: list[CarriedOnSupports] = []
         if scene.is_supported:
@@ -274,6 +269,17 @@ def _on_supports(
 def _of_all(progress: Progress, torque: int, torques: int, done: int, total: int) -> None:
     """Report the positions of one torque among those of all."""
     progress(torque * total + done, torques * total)
+
+
+def grid_of(scene: Scene) -> GridChoice:
+    """How finely a scene asks for its contacts."""
+    wanted = scene.analysis
+    return GridChoice(
+        cells=None if wanted.cells is None else (wanted.cells[0], wanted.cells[1]),
+        accuracy=wanted.accuracy,
+        tolerance=wanted.tolerance,
+        free_edges=wanted.free_edges,
+    )
 
 
 def roots_of(scene: Scene, pair: GearPair) -> tuple[RootStress, ...]:

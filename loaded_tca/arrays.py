@@ -49,10 +49,14 @@ def count_problems(counts: Mapping[Any, object], least: int) -> list[str]:
 
 def index_checks(**indices: tuple[object, int]) -> list[tuple[bool, str]]:
     """Checks for ``require`` of indices, by name each with its count: None, or a whole number from 0 to count - 1."""
+    return place_checks(**{name: (index, count) for name, (index, count) in indices.items() if index is not None})
+
+
+def place_checks(**indices: tuple[object, int]) -> list[tuple[bool, str]]:
+    """The same of indices that have to be given."""
     return [
         (
-            index is None
-            or (isinstance(index, int | np.integer) and not isinstance(index, bool) and bool(0 <= index < count)),
+            isinstance(index, int | np.integer) and not isinstance(index, bool) and bool(0 <= index < count),
             f"{name}: {index!r:.60} is no index from 0 to {count - 1}",
         )
         for name, (index, count) in indices.items()

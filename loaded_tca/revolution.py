@@ -11,7 +11,7 @@ from importlib.metadata import version
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.analysis import Effort, expected_effort, roots_of
+from loaded_tca.analysis import Effort, expected_effort, grid_of, roots_of
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, model_of
 from loaded_tca.compliance.body import body_torsion
@@ -118,12 +118,7 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
                 asked.first_teeth(pair.teeth),
                 scene.tooth_flanks(),
             )
-            grid = GridChoice(
-                cells=None if wanted.cells is None else (wanted.cells[0], wanted.cells[1]),
-                accuracy=wanted.accuracy,
-                tolerance=wanted.tolerance,
-                free_edges=wanted.free_edges,
-            )
+            grid = grid_of(scene)
             roots = roots_of(scene, pair)
             bending = model_of(scene, pair, pitches_apart(path))
             numbers = _Numbers(pair, path, np.asarray(scene.torques), grid, roots, frozenset(maps))

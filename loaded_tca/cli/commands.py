@@ -450,7 +450,7 @@ def ease_off(options: argparse.Namespace) -> None:
 
 def settings(options: argparse.Namespace) -> None:
     """Write the face-milled scene of a bevel blank, with its basic machine settings."""
-    from loaded_tca.results.files import replacing
+    from loaded_tca.results.files import replace_file
     from loaded_tca.scene.bevel import BevelScene
 
     scene = scene_of(options)
@@ -458,9 +458,7 @@ def settings(options: argparse.Namespace) -> None:
     require((isinstance(scene, BevelScene), kind))
     assert isinstance(scene, BevelScene)
     check_files([options.out], Path(options.scene))
-    text = scene.face_milled(options.method).to_toml()
-    with replacing(options.out) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+    replace_file(options.out, scene.face_milled(options.method).to_toml().encode())
     print_files([options.out])
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.pairs import MatingTeeth
-from loaded_tca.results.files import Buffer, FilePath, replace_together, replacing
+from loaded_tca.results.files import Buffer, FilePath, replace_file, replace_together
 from loaded_tca.results.teeth import TeethInSpace
 from loaded_tca.tooth import TriangleMesh
 
@@ -49,9 +49,7 @@ def write_vtk(path: FilePath, mesh: TriangleMesh, title: str = "", *, binary: bo
     InputError
         If the file cannot be written, or the name of an array has a blank in it.
     """
-    content = b"".join(_vtk_parts(mesh, title, binary=binary))
-    with replacing(path) as temporary:
-        temporary.write_bytes(content)
+    replace_file(path, b"".join(_vtk_parts(mesh, title, binary=binary)))
 
 
 def _vtk_parts(mesh: TriangleMesh, title: str, *, binary: bool = True) -> Iterator[bytes]:
@@ -103,9 +101,7 @@ def write_stl(path: FilePath, mesh: TriangleMesh, title: str = "") -> None:
     InputError
         If the file cannot be written.
     """
-    content = _stl(mesh, title)
-    with replacing(path) as temporary:
-        temporary.write_bytes(content)
+    replace_file(path, _stl(mesh, title))
 
 
 def _stl(mesh: TriangleMesh, title: str) -> bytes:

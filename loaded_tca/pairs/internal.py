@@ -59,13 +59,12 @@ def internal_pair(
     GearPair(25/60, module 3 mm, face 25 mm)
     """
     wheel = RingTooth(mesh.ring, mesh.wheel_working_radius, mesh.wheel_active_profile, modifications[1])
-    beside = mounting.centre_distance_error - mesh.working_centre_distance
-    place = np.array([beside, 0.0, mounting.axial_offset]), np.diag([1.0, -1.0, -1.0]) @ mounting.turn.T
+    origin = np.array([mounting.centre_distance_error - mesh.working_centre_distance, 0.0, mounting.axial_offset])
     return involute_pair(
         mesh,
         wheel,
         mesh.ring.outer_diameter,
-        place,
+        (origin, np.diag([1.0, -1.0, -1.0]) @ mounting.turn.T),
         modifications=modifications[0],
         axial_offset=mounting.axial_offset,
         materials=materials,

@@ -25,7 +25,7 @@ from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import require
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.results.figures import FIGURES
-from loaded_tca.results.files import FilePath, replacing
+from loaded_tca.results.files import FilePath, replace_file
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.summary import shown_torque, signed
 from loaded_tca.units import unit_of, without_unit
@@ -59,9 +59,7 @@ DOTS_PER_INCH = 120
 
 def save_figure(figure: Figure, path: FilePath) -> None:
     """Save a figure as PNG, whole or not at all; InputError if that cannot be done."""
-    content = png_of(figure)
-    with replacing(path) as temporary:
-        temporary.write_bytes(content)
+    replace_file(path, png_of(figure))
 
 
 def png_of(figure: Figure) -> bytes:

@@ -11,7 +11,7 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.reports import page
 from loaded_tca.reports.result_page import result_content
 from loaded_tca.reports.study_page import design_content, study_content
-from loaded_tca.results.files import FilePath, make_directory, replacing
+from loaded_tca.results.files import FilePath, make_directory, replace_file
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.studies.design import DesignResult
 from loaded_tca.threads import one_thread
@@ -77,8 +77,7 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
     text = page.render(template, **content)
     target = Path(path)
     make_directory(target.parent)
-    with replacing(target) as temporary:
-        temporary.write_text(text, encoding="utf-8", newline="\n")
+    replace_file(target, text.encode())
     return target
 
 

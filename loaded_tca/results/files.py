@@ -90,9 +90,7 @@ def write_dataset(path: FilePath, dataset: xarray.Dataset) -> None:
     InputError
         If the file cannot be written, or NetCDF-3 has no type for a part of the dataset.
     """
-    content = netcdf_of(dataset)
-    with replacing(path) as temporary:
-        temporary.write_bytes(content)
+    replace_file(path, netcdf_of(dataset))
 
 
 def netcdf_of(dataset: xarray.Dataset) -> Buffer:
@@ -227,6 +225,12 @@ def require_replaceable(path: FilePath, inputs: Iterable[FilePath] = ()) -> None
     require((not os.path.isdir(path), f"{path}: cannot be written: a directory; give the name of a file"))
     read = [one for one in inputs if os.path.exists(one) and os.path.samefile(path, one)]
     require((not read, f"{path}: would replace the input; give another name"))
+
+
+def replace_file(path: FilePath, content: Buffer) -> None:
+    """Write a file, whole or not at all; InputError if it cannot be written."""
+    with replacing(path) as temporary:
+        temporary.write_bytes(content)
 
 
 def replace_together(directory: FilePath, contents: Mapping[str, Buffer], old: Iterable[str] = ()) -> tuple[Path, ...]:

@@ -19,7 +19,7 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.results.dynamics import dynamics_of
 from loaded_tca.results.figures import key_figures
-from loaded_tca.results.files import Buffer, FilePath, arrays_of, netcdf_of, read_dataset, replacing, variables_of
+from loaded_tca.results.files import Buffer, FilePath, arrays_of, netcdf_of, read_dataset, replace_file, variables_of
 from loaded_tca.results.numbers import CycleNumbers, dataset_of
 from loaded_tca.results.pressure_map import arc_cells, arrays_of_maps, maps_from
 from loaded_tca.results.quantities import (
@@ -275,9 +275,7 @@ class MeshCycle(CycleNumbers):
             If the file cannot be written, NetCDF-3 has no type for what was added to the dataset, or the scene asks for
             root stress that the result does not have.
         """
-        content = self.to_netcdf()
-        with replacing(path) as temporary:
-            temporary.write_bytes(content)
+        replace_file(path, self.to_netcdf())
 
     def to_netcdf(self) -> Buffer:
         """Return the bytes of the file that ``save`` writes, with the same errors."""

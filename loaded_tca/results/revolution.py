@@ -18,7 +18,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import InputError, require
-from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
+from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replace_file, variables_of
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.quantities import CYCLE, GEARS, OVER_CYCLE, QUANTITIES, ROOT_QUANTITIES
 from loaded_tca.results.summary import shown
@@ -357,9 +357,7 @@ class Revolution:
 
     def save(self, path: FilePath) -> None:
         """Write everything but pressure maps to a NetCDF-3 file, whole or not at all; ``load`` reads it back."""
-        content = self.to_netcdf()
-        with replacing(path) as temporary:
-            temporary.write_bytes(content)
+        replace_file(path, self.to_netcdf())
 
     def to_netcdf(self) -> bytes | bytearray:
         """Return the bytes of the file that ``save`` writes."""

@@ -34,7 +34,7 @@ from loaded_tca.errors import (
     noted_accuracy_warnings,
     require,
 )
-from loaded_tca.results.files import FilePath, make_directory, read_dataset, remove, replacing, write_dataset
+from loaded_tca.results.files import FilePath, make_directory, read_dataset, remove, replace_file, write_dataset
 from loaded_tca.scene import Scene
 from loaded_tca.studies.ranking import figures as key_figures
 from loaded_tca.studies.ranking import figures_of
@@ -281,8 +281,7 @@ def _keep(maps: Path, variants: Collection[int], content: bytes | None) -> None:
         return
     make_directory(maps)
     for variant in variants:
-        with replacing(_map_of(maps, variant)) as temporary:
-            temporary.write_bytes(content)
+        replace_file(_map_of(maps, variant), content)
 
 
 @contextmanager

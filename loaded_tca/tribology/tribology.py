@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices, index_checks
+from loaded_tca.arrays import Array, Indices, place_checks
 from loaded_tca.errors import NotAskedError, require
 from loaded_tca.reference.iso6336_20 import scuffing_safety, scuffing_temperature
-from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replacing
+from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replace_file
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.tribology.conditions import MEAN, Conditions
@@ -320,10 +320,8 @@ class Tribology:
 
     def check(self, torque: int, speed: int) -> None:
         """Refuse indices of a torque and a speed that there are not."""
-        counts = {"torque": len(self.result.torque), "speed": self.conditions.speeds.size}
-        given = {"torque": torque, "speed": speed}
-        places = {name: -1 if one is None else one for name, one in given.items()}
-        require(*index_checks(**{name: (places[name], count) for name, count in counts.items()}))
+        speeds = self.conditions.speeds.size
+        require(*place_checks(torque=(torque, len(self.result.torque)), speed=(speed, speeds)))
 
     def _column(self, name: str, speed: int) -> Array:
         """A column of the table of slices, of all torques."""
@@ -464,9 +462,7 @@ class Tribology:
         InputError
             If it cannot be written.
         """
-        content = self.to_netcdf()
-        with replacing(path) as temporary:
-            temporary.write_bytes(content)
+        replace_file(path, self.to_netcdf())
 
     def to_netcdf(self) -> Buffer:
         """Return the bytes of the file that ``save`` writes; in it gears are 0, the pinion, and 1, the wheel."""
