@@ -2,8 +2,7 @@
 
 Both separate a tooth pair from contact, by a length along the transverse line of action at the base circles, positive
 where the flanks come apart. An index deviation belongs to its tooth; an eccentricity turns with the gear and shifts
-all of its teeth together, so that on
-cylindrical gears it changes no share of the load.
+all of its teeth together, so that on cylindrical gears it changes no share of the load.
 """
 
 from __future__ import annotations

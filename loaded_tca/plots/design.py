@@ -24,7 +24,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from loaded_tca.arrays import Array, index_checks
+from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.plots import style
 from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS
@@ -70,8 +70,7 @@ def plot_before_and_after(design: xarray.Dataset | DesignResult, torque: int | N
     scene = _scene(design)
     pair = scene.pair()
     torques = 1e-3 * design["torque"].values
-    require(*index_checks(torque=(torque, len(torques))))
-    torque = int(torques.argmax()) if torque is None else torque
+    torque = style.torque_or_largest(torques, torque)
     figure = Figure(figsize=(11.0, 8.0), layout="constrained")
     (error, pressure), (factor, span) = figure.subplots(2, 2)
     angle = np.degrees(pair.pitch) * np.linspace(-0.5, 0.5, design.sizes["position"])

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from loaded_tca.arrays import index_checks
-from loaded_tca.errors import require
 from loaded_tca.plots import style
 from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.revolution import Revolution
@@ -24,15 +20,6 @@ BESIDE_MESH = 0.3
 """Pitches before and after the mesh of a tooth pair that are shown."""
 LEAST_SHOWN = 1e-4
 """Amplitude [um] below which orders are not told from each other."""
-
-
-def _torque(revolution: Revolution, torque: int | None) -> int:
-    require(*index_checks(torque=(torque, len(revolution.torque))))
-    return int(revolution.torque.argmax()) if torque is None else torque
-
-
-def _colour(revolution: Revolution, torque: int) -> str:
-    return to_hex(colormaps[style.COLOURS](0.15 + 0.7 * torque / max(1, len(revolution.torque) - 1)))
 
 
 def _scope(revolution: Revolution) -> str:
@@ -57,7 +44,13 @@ def plot_revolution_error(revolution: Revolution) -> Figure:
     for torque in np.argsort(revolution.torque).tolist():
         error = revolution.error_um(torque)
         label = f"pinion torque {shown_torque(revolution.torque[torque])}"
-        loaded.plot(turns, error - error.mean(), color=_colour(revolution, torque), linewidth=1.0, label=label)
+        loaded.plot(
+            turns,
+            error - error.mean(),
+            color=style.torque_colour(torque, len(revolution.torque)),
+            linewidth=1.0,
+            label=label,
+        )
     rigid.set_ylabel("rigid [µm]")
     loaded.set_ylabel("loaded, less its mean [µm]")
     loaded.set_xlabel("pitches since the first position")
@@ -93,7 +86,7 @@ def plot_revolution_spectrum(revolution: Revolution, torque: int | None = None) 
     -------
     matplotlib.figure.Figure
     """
-    torque = _torque(revolution, torque)
+    torque = style.torque_or_largest(revolution.torque, torque)
     figure = Figure(figsize=(9.0, 5.0), layout="constrained")
     axes = figure.add_subplot()
     spectrum = revolution.spectrum(torque)
@@ -148,7 +141,7 @@ def plot_revolution_shares(revolution: Revolution, torque: int | None = None) ->
     -------
     matplotlib.figure.Figure
     """
-    torque = _torque(revolution, torque)
+    torque = style.torque_or_largest(revolution.torque, torque)
     figure = Figure(figsize=(9.0, 6.0), layout="constrained")
     curves, teeth = figure.subplots(2, 1)
     data = revolution.dataset

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from matplotlib import colormaps
-from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from loaded_tca.arrays import Array, index_checks
-from loaded_tca.errors import require
+from loaded_tca.arrays import Array
 from loaded_tca.plots import style
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.stages import StageResult, rebalanced
@@ -21,15 +18,6 @@ LEAST_ORBIT = 0.5
 """Half the side of the picture of the sun's motion at the least [µm]."""
 PLAIN = 0.01
 """Pin error of planet 0 over the module that is varied where the stage has none."""
-
-
-def _torque(result: StageResult, torque: int | None) -> int:
-    require(*index_checks(torque=(torque, len(result.torque))))
-    return int(result.torque.argmax()) if torque is None else torque
-
-
-def _colour(result: StageResult, torque: int) -> str:
-    return to_hex(colormaps[style.COLOURS](0.15 + 0.7 * torque / max(1, len(result.torque) - 1)))
 
 
 def _title(figure: Figure, result: StageResult, shown: str, *rest: str) -> Figure:
@@ -86,7 +74,7 @@ def plot_stage_shares(result: StageResult, torque: int | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    torque = _torque(result, torque)
+    torque = style.torque_or_largest(result.torque, torque)
     figure, axes = style.one_panel()
     shares = 100.0 * np.concatenate([result.planet_share[torque], result.planet_share[torque][:1]])
     for planet, share in enumerate(shares.T):
@@ -128,7 +116,13 @@ def plot_stage_load_factor(result: StageResult) -> Figure:
     for torque in np.argsort(result.torque).tolist():
         label = f"sun torque {shown_torque(result.torque[torque])}"
         marker = style.MARKERS[torque % 8]
-        axes.plot(amount, factors[:, torque], color=_colour(result, torque), marker=marker, label=label)
+        axes.plot(
+            amount,
+            factors[:, torque],
+            color=style.torque_colour(torque, len(result.torque)),
+            marker=marker,
+            label=label,
+        )
     axes.set_xlabel("largest tangential pin error [µm]")
     axes.set_ylabel("mesh load factor K_gamma")
     style.widen(axes, 0.01)
@@ -154,7 +148,9 @@ def plot_stage_sun_orbit(result: StageResult) -> Figure:
         x, y = 1e3 * np.concatenate([result.sun_motion[torque], result.sun_motion[torque][:1]]).T
         label = f"sun torque {shown_torque(result.torque[torque])}"
         marker = style.MARKERS[torque % 8]
-        axes.plot(x, y, color=_colour(result, torque), marker=marker, markersize=4.0, label=label)
+        axes.plot(
+            x, y, color=style.torque_colour(torque, len(result.torque)), marker=marker, markersize=4.0, label=label
+        )
     if not result.sun_motion.any():
         style.tell(axes, "the sun is held rigid")
     for planet, angle in enumerate(result.planet_angle.tolist()):
@@ -194,7 +190,7 @@ def plot_stage_error(result: StageResult, torque: int | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    torque = _torque(result, torque)
+    torque = style.torque_or_largest(result.torque, torque)
     figure, axes = style.one_panel()
     drawn = (
         ("stage", False, "o", style.DISTINCT_COLOURS[0]),
@@ -227,7 +223,7 @@ def plot_stage_orders(result: StageResult, torque: int | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    torque = _torque(result, torque)
+    torque = style.torque_or_largest(result.torque, torque)
     figure, axes = style.one_panel()
     orders = result.orders(torque)
     count = np.array([one.order for one in orders])

@@ -101,9 +101,13 @@ def torque_styles(result: CycleNumbers) -> Iterator[tuple[int, str, str, str]]:
     count = len(result.torque)
     every = math.ceil(count / MOST_LABELS)
     for torque in range(count):
-        shade = 0.15 + 0.7 * torque / max(1, count - 1)
         label = torque_label(result, torque) if torque % every == 0 else "_unlabelled"
-        yield torque, label, to_hex(colormaps[COLOURS](shade)), MARKERS[torque % len(MARKERS)]
+        yield torque, label, torque_colour(torque, count), MARKERS[torque % len(MARKERS)]
+
+
+def torque_colour(torque: int, count: int) -> str:
+    """Colour of one of so many torques."""
+    return to_hex(colormaps[COLOURS](0.15 + 0.7 * torque / max(1, count - 1)))
 
 
 def widen(axes: Axes, smallest: float) -> None:
@@ -140,6 +144,12 @@ def tell(axes: Axes, why: str) -> None:
 def highest_torque(result: CycleNumbers) -> int:
     """Return the index of the largest torque."""
     return int(np.argmax(result.torque))
+
+
+def torque_or_largest(torques: Array, torque: int | None) -> int:
+    """Return the index of a torque among all, by default of the largest; InputError if there is none."""
+    require(*index_checks(torque=(torque, len(torques))))
+    return int(np.argmax(torques)) if torque is None else torque
 
 
 def chosen_torque(

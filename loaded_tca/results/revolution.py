@@ -306,7 +306,7 @@ class Revolution:
         for k, pair in enumerate(data["pair"].values.tolist()):
             columns[f"load_share_pair_{pair:+d}"] = data["load_share"].values[..., k].ravel()
             columns[f"peak_pressure_pair_{pair:+d}_MPa"] = data["peak_pressure"].values[..., k].ravel()
-        for name in ROOTS.keys() & data.keys():
+        for name in (name for name in ROOTS if name in data):
             for k, gear in enumerate(GEARS):
                 unit = "" if name.endswith("tooth") else "_MPa"
                 columns[f"{gear}_{name}{unit}"] = data[name].values[..., k].ravel()

@@ -33,8 +33,6 @@ from loaded_tca.errors import require
 from loaded_tca.pairs.gear_pair import GearPair
 
 AXIS = np.array([0.0, 0.0, 1.0])
-ROTATION_ABOUT_AXIS = 5
-"""Place of the rotation about the axis among the motions of a station."""
 
 
 @dataclass(frozen=True, eq=False)
