@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Protocol
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -23,7 +22,7 @@ from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.pairs.gear import Gear
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.tooth.build import Resolution, build_tooth
 from loaded_tca.tooth.families import ToothGeometry
 
@@ -35,27 +34,6 @@ NEWTON_STEPS, NO_FURTHER = 2, 1e-3
 so much of the module is the last one, as of helical teeth, whose contact lines are straight."""
 CHECKED = Resolution(flank=9, fillet=5, land=3, lengthwise=5)
 """Points of a tooth that is built to see whether it exists."""
-
-
-class ContactGrid(Protocol):
-    """Where the slices of a contact lie; a separation and a pressure map are such grids."""
-
-    @property
-    def y(self) -> Array:
-        """Middles of the slices along the contact (ny,) [mm], from the contact point."""
-
-    @property
-    def origin(self) -> Array:
-        """The contact point (3,) in the fixed frame [mm]."""
-
-    @property
-    def axes(self) -> Array:
-        """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
-
-    @property
-    def force_line(self) -> Array:
-        """Where across the contact the force of every slice acts (ny,) [mm], from the contact point."""
-
 
 _LINES: WeakKeyDictionary[ContactGrid, dict[int, tuple[FlankLine, FlankLine]]] = WeakKeyDictionary()
 """Lines of the grids, by the numbers of the tooth pairs, on pinion and wheel."""

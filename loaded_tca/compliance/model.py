@@ -14,8 +14,8 @@ from typing import Protocol, Self
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.compliance import ContactGrid, tooth_compliance, way_out_told
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.compliance.compliance import tooth_compliance, way_out_told
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.supports import SupportCompliance, support_compliance
 

@@ -28,7 +28,7 @@ STEP = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class LoadedSlices:
-    """Slices of a grid that carry forces, as :class:`loaded_tca.compliance.compliance.ContactGrid` has them."""
+    """Slices of a grid that carry forces, as :class:`loaded_tca.pairs.gear_pair.ContactGrid` has them."""
 
     y: Array
     origin: Array

@@ -29,14 +29,13 @@ from typing import NamedTuple, Protocol, Self
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, Mask
-from loaded_tca.compliance.compliance import ContactGrid
 from loaded_tca.compliance.flexibility import depth_displacement
 from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import Material
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.separation import Separation
 
 DEPTH = 0.25 * math.pi

@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
@@ -36,6 +36,26 @@ from loaded_tca.tooth.surface import ToothSurface, TriangleMesh, grid_triangles
 
 Driving = Literal["pinion", "wheel"]
 Sense = Literal["positive", "negative"]
+
+
+class ContactGrid(Protocol):
+    """Where the slices of a contact lie; a separation and a pressure map are such grids."""
+
+    @property
+    def y(self) -> Array:
+        """Middles of the slices along the contact (ny,) [mm], from the contact point."""
+
+    @property
+    def origin(self) -> Array:
+        """The contact point (3,) in the fixed frame [mm]."""
+
+    @property
+    def axes(self) -> Array:
+        """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
+
+    @property
+    def force_line(self) -> Array:
+        """Where across the contact the force of every slice acts (ny,) [mm], from the contact point."""
 
 
 def require_finite(errors: Any, units: tuple[str, ...]) -> None:

@@ -28,9 +28,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.compliance import ContactGrid
 from loaded_tca.errors import require
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 
 AXIS = np.array([0.0, 0.0, 1.0])
 
