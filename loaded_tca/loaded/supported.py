@@ -39,8 +39,7 @@ from loaded_tca.loaded.cycle import (
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
-from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation import Separation
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.supports import SupportCompliance, moved_pair
 from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
 
@@ -71,6 +70,8 @@ class CarriedOnSupports:
         Of that pair, supports included.
     carried : Carried
         Under the one torque, from the moved pair on.
+    held : tuple of (6 m,) arrays
+        Loads of pinion and wheel whose motions the pair is moved by.
     loads : tuple of (n, 6 m) arrays
         Of pinion and wheel at the positions; NaN where nothing is in contact.
     mesh_rate : (n,) array [N mm/rad]
@@ -80,6 +81,7 @@ class CarriedOnSupports:
     pair: GearPair
     bending: SumOfParts
     carried: Carried
+    held: Loads
     loads: tuple[Array, Array]
     mesh_rate: Array
 
@@ -127,7 +129,12 @@ class SupportedCycle:
         bending = self.bending.mounted(pair)
         assert bending.supports is not None
         return CarriedOnSupports(
-            pair, bending, carried, loads_of(bending.supports, carried), _rate_on_rigid_supports(carried, bending)
+            pair,
+            bending,
+            carried,
+            loads,
+            loads_of(bending.supports, carried),
+            _rate_on_rigid_supports(carried, bending),
         )
 
     def _settled(self, torque: float) -> Loads:
@@ -170,7 +177,7 @@ class SupportedCycle:
         pair, torques = moved_by(self.supports, loads), np.array([torque])
         bending = self.bending.mounted(pair)
         assert bending.supports is not None
-        given = partial(_given, bending.supports, loads)
+        given = partial(given_displacement, bending.supports, loads)
         try:
             with named("supports"):
                 if self.load_sharing:
@@ -249,12 +256,12 @@ class _OnePoint:
         return np.stack([np.zeros(3), np.zeros(3), self.contact.normal])
 
 
-def _given(supports: SupportCompliance, loads: Loads, separation: Separation) -> Array:
+def given_displacement(supports: SupportCompliance, loads: Loads, grid: ContactGrid) -> Array:
     """Displacement of the slices of a grid (ny,) [mm] beside what the forces do, in the pair moved by loads."""
     both = list(zip(supports.supports, loads, strict=True))
     other_loads = [np.zeros(len(load)) if support.motion is None else support.motion for support, load in both]
     bodies = [support.at_middle(support.moved(load)) for support, load in both]
-    return np.asarray(supports.opened(separation, other_loads) - supports.opened_rigidly(separation, bodies))
+    return np.asarray(supports.opened(grid, other_loads) - supports.opened_rigidly(grid, bodies))
 
 
 def loads_of(supports: SupportCompliance, carried: Carried) -> tuple[Array, Array]:

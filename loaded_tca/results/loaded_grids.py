@@ -37,7 +37,8 @@ def states_of_maps(result: CycleNumbers) -> LoadedStates:
     """
     pair, wanted, numbers = result.gear_pair, result.scene.analysis, result.pair.tolist()
     unloaded, apart = _unloaded_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
-    bending = model_of(result.scene, pair, apart)
+    bending = model_of(result.scene, result.scene.pair() if result.scene.is_supported else pair, apart)
+    bending = bending.mounted(pair) if bending is not None and result.scene.is_supported else bending
     places = np.argwhere(result.normal_force > 0.0).tolist()
     maps = [one for t, n, k in places if (one := result.maps[t][n][k]) is not None]
     contacts = [unloaded[n][numbers[k]] for _, n, k in places if numbers[k] in unloaded[n]]

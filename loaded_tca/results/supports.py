@@ -53,6 +53,7 @@ def support_arrays(
         "wheel_motion": np.stack([one[1] for one in motions]),
         "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),
         "drive_stiffness": np.stack([one.carried.torque_rate[0] for one in cycles]) * stiffness_per_rate,
+        **{f"{gear}_support_load": np.stack([one.held[n] for one in cycles]) for n, gear in enumerate(GEARS)},
     }
 
 
