@@ -124,7 +124,7 @@ class SupportedCycle:
         ConvergenceError
             If the motions do not settle, or a contact is not solved.
         """
-        loads = self._settled(torque) if torque > 0.0 else _no_loads(self.supports)
+        loads = self.settled(torque) if torque > 0.0 else _no_loads(self.supports)
         pair, carried = self._carried(torque, loads, self.angles, progress)
         bending = self.bending.mounted(pair)
         assert bending.supports is not None
@@ -137,8 +137,8 @@ class SupportedCycle:
             _rate_on_rigid_supports(carried, bending),
         )
 
-    def _settled(self, torque: float) -> Loads:
-        """Mean loads whose motions of the geometry are those that follow from it."""
+    def settled(self, torque: float) -> Loads:
+        """Mean loads under a pinion torque [N mm] whose motions of the geometry are those that follow from it."""
         count = min(POSITIONS, len(self.angles))
         spread = (np.arange(count) - 0.5 * (count - 1)) / count * self.pair.pitch if count > 1 else self.angles
         loads = loads_at_first_contact(self.supports, self.at_rest, torque)

@@ -145,10 +145,12 @@ class Study:
         table = as_table(self.scene)
         for key in self.keys:  # what the scene itself has there is of no account
             *sections, name = key.split(".")
-            place = table
+            place: Any = table
             for section in sections:
-                place = place.get(section, {})
-            place.pop(name, None)
+                in_list = {str(n): one for n, one in enumerate(place)} if isinstance(place, tuple) else place
+                place = in_list.get(section, {})
+            if isinstance(place, dict):
+                place.pop(name, None)
         common = [version("loaded_tca"), f"{figures.__module__}.{figures.__qualname__}", table]
         begun = hashlib.sha256(json.dumps(common, sort_keys=True).encode())
 
