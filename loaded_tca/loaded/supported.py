@@ -21,11 +21,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Protocol
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.model import SumOfParts
+from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.errors import ConvergenceError, GeometryError, named
 from loaded_tca.loaded.cycle import (
     Carried,
@@ -58,6 +59,26 @@ Loads = tuple[Array, Array]
 """Of the stations of pinion and wheel, (6 m,) each [N, N mm], in the axes of each gear's own frame."""
 
 
+class OnSupports(Protocol):
+    """Gears at positions under one torque on supports that give way, as :class:`CarriedOnSupports` has them."""
+
+    @property
+    def bending(self) -> SumOfParts:
+        """Of the moved pair, supports included."""
+
+    @property
+    def held(self) -> Loads:
+        """Loads of pinion and wheel whose motions the pair is moved by."""
+
+    @property
+    def loads(self) -> Loads:
+        """Those at the positions, (n, 6 m) each."""
+
+    @property
+    def drive_rate(self) -> Array:
+        """Tangent of the torque over the rotation (n,) with the supports [N mm/rad]."""
+
+
 @dataclass(frozen=True, eq=False)
 class CarriedOnSupports:
     """What the tooth pairs carry under one torque, on supports that give way.
@@ -84,6 +105,11 @@ class CarriedOnSupports:
     held: Loads
     loads: tuple[Array, Array]
     mesh_rate: Array
+
+    @property
+    def drive_rate(self) -> Array:
+        """Tangent of the torque over the rotation (n,) with the supports [N mm/rad]."""
+        return np.asarray(self.carried.torque_rate[0])
 
 
 class SupportedCycle:
@@ -124,7 +150,7 @@ class SupportedCycle:
         ConvergenceError
             If the motions do not settle, or a contact is not solved.
         """
-        loads = self.settled(torque) if torque > 0.0 else _no_loads(self.supports)
+        loads = self.settled(torque)
         pair, carried = self._carried(torque, loads, self.angles, progress)
         bending = self.bending.mounted(pair)
         assert bending.supports is not None
@@ -139,6 +165,8 @@ class SupportedCycle:
 
     def settled(self, torque: float) -> Loads:
         """Mean loads under a pinion torque [N mm] whose motions of the geometry are those that follow from it."""
+        if torque == 0.0:
+            return _no_loads(self.supports)
         count = min(POSITIONS, len(self.angles))
         spread = (np.arange(count) - 0.5 * (count - 1)) / count * self.pair.pitch if count > 1 else self.angles
         loads = loads_at_first_contact(self.supports, self.at_rest, torque)
@@ -266,9 +294,14 @@ def given_displacement(supports: SupportCompliance, loads: Loads, grid: ContactG
 
 def loads_of(supports: SupportCompliance, carried: Carried) -> tuple[Array, Array]:
     """Loads (n, 6 m) of pinion and wheel at the positions under the one torque; NaN where nothing is in contact."""
+    return loads_at(supports, carried.contacts[0])
+
+
+def loads_at(supports: SupportCompliance, contacts: Sequence[Sequence[LoadedContact | None]]) -> tuple[Array, Array]:
+    """The same of contacts by position."""
     at_positions: list[tuple[Array, Array]] = []
-    for contacts in carried.contacts[0]:
-        there = [one for one in contacts if one is not None]
+    for at in contacts:
+        there = [one for one in at if one is not None]
         pinion, wheel = (np.full(len(support.compliance), 0.0 if there else math.nan) for support in supports.supports)
         for one in there:
             on_pinion, on_wheel = supports.loads(one.separation)
@@ -283,14 +316,14 @@ def _rate_on_rigid_supports(carried: Carried, bending: SumOfParts) -> Array:
     teeth = bending.on_rigid_supports
     numbers = carried.pairs.tolist()
     states = [
-        [_on_rigid_supports(number, one, teeth) for number, one in zip(numbers, at, strict=True) if one is not None]
+        [on_rigid_supports(number, one, teeth) for number, one in zip(numbers, at, strict=True) if one is not None]
         for at in carried.contacts[0]
     ]
     stiffness = loaded_states(states, teeth).stiffness
     return np.where(np.isnan(carried.rotation[0]), math.nan, stiffness)
 
 
-def _on_rigid_supports(number: int, loaded: LoadedContact, teeth: SumOfParts | None) -> LoadedGrid:
+def on_rigid_supports(number: int, loaded: LoadedContact, teeth: BendingModel | None) -> LoadedGrid:
     """What the tangent needs of a loaded contact whose supports do not give way."""
     one = LoadedGrid.of(number, loaded)
     bent = None if teeth is None else teeth.within(number, loaded.separation)
