@@ -21,7 +21,7 @@ from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, re
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.revolution import STATES_AT_A_TIME, CarriedPart, carried_over_revolution, pitches_apart
-from loaded_tca.loaded.supported import POSITIONS, Loads, SupportedCycle, given_displacement, loads_at, moved_by
+from loaded_tca.loaded.supported import POSITIONS, Loads, SupportedCycle, given_motions, loads_at, moved_by
 from loaded_tca.loaded.supported import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
@@ -185,7 +185,7 @@ def _on_supports(
         assert there.supports is not None
         path = _trace(scene, moved(pair), pitches, moved)
         one = _OnSupports(path.pair, path, np.array([torque]), grid, roots, maps, bending=there, held=held)
-        given = partial(given_displacement, there.supports, held)
+        given = partial(there.supports.opened, motions=given_motions(there.supports, held))
         report = None if progress is None else partial(_report, progress, t, len(scene.torques))
         for part in carried_over_revolution(path, one.torques, grid, there, report, given):
             one.add(part)

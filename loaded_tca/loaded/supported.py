@@ -40,7 +40,7 @@ from loaded_tca.loaded.cycle import (
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
-from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.supports import SupportCompliance, moved_pair
 from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
 
@@ -205,7 +205,7 @@ class SupportedCycle:
         pair, torques = moved_by(self.supports, loads), np.array([torque])
         bending = self.bending.mounted(pair)
         assert bending.supports is not None
-        given = partial(given_displacement, bending.supports, loads)
+        given = partial(bending.supports.opened, motions=given_motions(bending.supports, loads))
         try:
             with named("supports"):
                 if self.load_sharing:
@@ -284,12 +284,13 @@ class _OnePoint:
         return np.stack([np.zeros(3), np.zeros(3), self.contact.normal])
 
 
-def given_displacement(supports: SupportCompliance, loads: Loads, grid: ContactGrid) -> Array:
-    """Displacement of the slices of a grid (ny,) [mm] beside what the forces do, in the pair moved by loads."""
-    both = list(zip(supports.supports, loads, strict=True))
-    other_loads = [np.zeros(len(load)) if support.motion is None else support.motion for support, load in both]
-    bodies = [support.at_middle(support.moved(load)) for support, load in both]
-    return np.asarray(supports.opened(grid, other_loads) - supports.opened_rigidly(grid, bodies))
+def given_motions(supports: SupportCompliance, loads: Loads) -> list[Array]:
+    """Motions (6 m,) of the stations beside those by the forces, in the pair moved by loads: d = a . this."""
+    motions = []
+    for support, load in zip(supports.supports, loads, strict=True):
+        body = support.with_middle(support.at_middle(support.moved(load)))
+        motions.append(-body if support.motion is None else support.motion - body)
+    return motions
 
 
 def loads_of(supports: SupportCompliance, carried: Carried) -> tuple[Array, Array]:

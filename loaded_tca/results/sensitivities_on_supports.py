@@ -14,7 +14,7 @@ from loaded_tca.compliance.model import SumOfParts
 from loaded_tca.errors import require
 from loaded_tca.loaded.force_lines import bending_by_shift
 from loaded_tca.loaded.sensitivity import LoadedStates, Tangents
-from loaded_tca.loaded.supported import given_displacement
+from loaded_tca.loaded.supported import given_motions
 from loaded_tca.results.figure_slopes import EXPONENT
 from loaded_tca.results.gap_growth import GapGrowth
 from loaded_tca.results.loaded_grids import states_of_maps
@@ -113,7 +113,7 @@ def _of_torque(
     bending = states.bending
     assert isinstance(bending, SumOfParts)
     tangents = states.tangents(LINEAR)
-    given = partial(given_displacement, result.supports, result.held)
+    given = partial(result.supports.opened, motions=given_motions(result.supports, result.held))
     tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, bending, given))
     columns = np.array([result.pair.tolist().index(grid.number) for grid in tangents.grids])
     of_torque = np.flatnonzero([len(state) for state in states.grids])

@@ -30,7 +30,7 @@ from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.load_sharing import SharedLoad
 from loaded_tca.loaded.loaded_contact import found_together
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
-from loaded_tca.loaded.supported import SupportedCycle, given_displacement, moved_by, pitches_apart
+from loaded_tca.loaded.supported import SupportedCycle, given_motions, moved_by, pitches_apart
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
@@ -298,7 +298,7 @@ class DesignModel:
         for torque in self.torques.tolist():
             loads = cycle.settled(torque)
             moved = moved_by(supports, loads)
-            given = partial(given_displacement, supports.mounted(moved), loads)
+            given = partial(supports.mounted(moved).opened, motions=given_motions(supports, loads))
             mesh = trace_teeth(moved, angles)
             held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, bending.mounted(moved), given))
         return tuple(held)
