@@ -170,7 +170,7 @@ class SupportedCycle:
         progress: Progress | None = None,
         grid: GridChoice | None = None,
     ) -> tuple[GearPair, SumOfParts, Carried]:
-        """The pair moved by loads, its bending with supports that are linear near them, and what its tooth pairs carry."""
+        """The pair moved by loads, its bending with supports that are linear there, and what its tooth pairs carry."""
         near = self.supports.under(loads)
         pair, torques = moved_by(near, loads), np.array([torque])
         bending = (self.bending if near is self.supports else self.bending.on_supports(near)).mounted(pair)
@@ -232,6 +232,17 @@ def loads_at_first_contact(supports: SupportCompliance, at_rest: GearPair, torqu
     unit = supports.mounted(at_rest).loads(_OnePoint(contact))
     pinion, wheel = (torque / contact.pinion_lever * load[0] for load in unit)
     return pinion, wheel
+
+
+def near_torque(bending: SumOfParts | None, torque: float) -> SumOfParts | None:
+    """A bending model whose rolling bearings have the stiffness of a pinion torque [N mm]; itself without any.
+
+    The force of the torque acts where the flanks touch first without load.
+    """
+    if bending is None or (supports := bending.supports) is None or supports.is_linear:
+        return bending
+    at_rest = moved_by(supports, _no_loads(supports))
+    return bending.on_supports(supports.under(loads_at_first_contact(supports, at_rest, torque)))
 
 
 @dataclass(frozen=True, eq=False)

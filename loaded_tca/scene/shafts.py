@@ -164,7 +164,10 @@ class BearingSection(Section):
         None,
     )
     radial_clearance_um: float | None = key(
-        Number(-1000.0, 1000.0), "balls and rollers: radial clearance of the mounted bearing; below 0: pressed", None, "0"
+        Number(-1000.0, 1000.0),
+        "balls and rollers: radial clearance of the mounted bearing; below 0: pressed",
+        None,
+        "0",
     )
     preload_um: float | None = key(
         Number(-1000.0, 1000.0),
@@ -194,7 +197,8 @@ class BearingSection(Section):
         ),
         Rule(("ball_diameter_mm", "balls", "pitch_diameter_mm"), lambda own, count, pitch: _fitting(count, own, pitch)),
         Rule(
-            ("roller_diameter_mm", "rollers", "pitch_diameter_mm"), lambda own, count, pitch: _fitting(count, own, pitch)
+            ("roller_diameter_mm", "rollers", "pitch_diameter_mm"),
+            lambda own, count, pitch: _fitting(count, own, pitch),
         ),
         Rule(("side", "contact_angle_deg", "preload_um"), _side),
         Rule(("preload_um", "type", "contact_angle_deg"), _preload),
@@ -233,7 +237,7 @@ class ShaftSection(Section):
         "`axial_stiffness_N_per_um = 0.0`, `tilting_stiffness_Nm_per_mrad = 0.0`, or with `stiffness`, 5 x 5 or 6 x 6 "
         '[N, mm, rad], instead of the three; or a rolling bearing: `type = "ball"` with `balls`, `ball_diameter_mm`, '
         '`pitch_diameter_mm`, `inner_groove_ratio = 0.52`, `outer_groove_ratio = 0.53`, or `type = "roller"` with '
-        "`rollers`, `roller_diameter_mm`, `roller_length_mm`, `pitch_diameter_mm`, both with `contact_angle_deg = 0.0`, "
+        "`rollers`, `roller_diameter_mm`, `roller_length_mm`, `pitch_diameter_mm`, both with `contact_angle_deg = 0`, "
         "`side` (1 or -1, the thrust along z that it takes), `radial_clearance_um = 0.0`, `preload_um = 0.0` and "
         "`dynamic_load_rating_N`, by default that of the geometry",
     )

@@ -45,14 +45,6 @@ class Seat(NamedTuple):
         return np.asarray(reaction.tangent + LOOSE * self.bearing.joint)
 
 
-class _State(NamedTuple):
-    """Energy at a motion, forces that are left over, and what the bearings do."""
-
-    energy: float
-    rest: Array
-    reactions: list[Reaction]
-
-
 def solved(stiffness: Array, loads: Array, free: Array) -> Array:
     """Motions under loads, over all nodes; those that are not ``free`` (indices) are zero.
 
@@ -88,53 +80,70 @@ def balanced(stiffness: Array, load: Array, free: Array, seats: Sequence[Seat]) 
     InputError
         If there is none: the bearings do not hold the shaft under this load.
     """
-
-    def with_bearings(of_bearings: Sequence[Array]) -> Array:
-        whole = stiffness.copy()
-        for seat, own in zip(seats, of_bearings, strict=True):
-            whole[seat.motions, seat.motions] += own
-        return whole
-
-    def state(motion: Array) -> _State:
-        reactions = [seat.bearing.reaction(motion[seat.motions]) for seat in seats]
-        inner = stiffness @ motion
-        rest = load - inner
-        for seat, reaction in zip(seats, reactions, strict=True):
-            rest[seat.motions] -= reaction.force
-        return _State(
-            float(motion @ (0.5 * inner - load)) + sum(one.energy for one in reactions),
-            rest,
-            reactions,
-        )
-
-    joints = with_bearings([seat.bearing.joint for seat in seats])
-    roots = np.sqrt(joints.diagonal()[free])
-
-    def size(forces: Array) -> float:
-        return float(np.abs(forces[free] / roots).max())
-
-    def scale(reactions: Sequence[Reaction]) -> float:
-        carried = load.copy()
-        for seat, reaction in zip(seats, reactions, strict=True):
-            carried[seat.motions] = np.maximum(np.abs(carried[seat.motions]), np.abs(reaction.force))
-        return size(carried)
-
-    motion = solved(joints, load, free)
-    now = state(motion)
+    whole = _Whole(stiffness, load, free, seats)
+    now = whole.at(solved(whole.joints, load, free))
     for _ in range(MOST_STEPS):
-        if size(now.rest) <= IN_BALANCE * scale(now.reactions):
-            return motion, now.reactions
-        tangents = [seat.stiffness(reaction) for seat, reaction in zip(seats, now.reactions, strict=True)]
-        step = solved(with_bearings(tangents), now.rest, free)
-        slope, share = float(now.rest @ step), 1.0
-        after = state(motion + step)
-        while not (after.energy <= now.energy - SUFFICIENT * share * slope or size(after.rest) < 0.5 * size(now.rest)):
-            share *= 0.5
-            if share < SHORTEST:
-                break
-            after = state(motion + share * step)
-        motion, now = motion + share * step, after
+        if whole.size(now.rest) <= IN_BALANCE * whole.carried(now):
+            return now.motion, now.reactions
+        now = whole.after_a_step(now)
     raise InputError(
         "bearings: the shaft finds no balance on its rolling bearings; one with a contact angle under a radial load "
         "needs another one that takes the thrust it makes"
     )
+
+
+class _State(NamedTuple):
+    """Energy at a motion, forces that are left over, and what the bearings do."""
+
+    motion: Array
+    energy: float
+    rest: Array
+    reactions: list[Reaction]
+
+
+class _Whole:
+    """A shaft with its bearings under a load."""
+
+    def __init__(self, stiffness: Array, load: Array, free: Array, seats: Sequence[Seat]) -> None:
+        self.stiffness, self.load, self.free, self.seats = stiffness, load, free, seats
+        self.joints = self._with_bearings([seat.bearing.joint for seat in seats])
+        self.roots = np.sqrt(self.joints.diagonal()[free])
+
+    def _with_bearings(self, of_bearings: Sequence[Array]) -> Array:
+        whole = self.stiffness.copy()
+        for seat, own in zip(self.seats, of_bearings, strict=True):
+            whole[seat.motions, seat.motions] += own
+        return whole
+
+    def size(self, forces: Array) -> float:
+        """The largest of forces [N^0.5 mm^0.5], each by the stiffness of its motion."""
+        return float(np.abs(forces[self.free] / self.roots).max())
+
+    def carried(self, state: _State) -> float:
+        """The largest force on the shaft, of the load and of the bearings."""
+        forces = np.abs(self.load)
+        for seat, reaction in zip(self.seats, state.reactions, strict=True):
+            forces[seat.motions] = np.maximum(forces[seat.motions], np.abs(reaction.force))
+        return self.size(forces)
+
+    def at(self, motion: Array) -> _State:
+        reactions = [seat.bearing.reaction(motion[seat.motions]) for seat in self.seats]
+        inner = self.stiffness @ motion
+        rest = self.load - inner
+        for seat, reaction in zip(self.seats, reactions, strict=True):
+            rest[seat.motions] -= reaction.force
+        energy = float(motion @ (0.5 * inner - self.load)) + sum(one.energy for one in reactions)
+        return _State(motion, energy, rest, reactions)
+
+    def after_a_step(self, now: _State) -> _State:
+        """The state after a step of Newton's method, halved until the energy decreases or the forces halve."""
+        tangents = [seat.stiffness(reaction) for seat, reaction in zip(self.seats, now.reactions, strict=True)]
+        step, share = solved(self._with_bearings(tangents), now.rest, self.free), 1.0
+        slope, half = float(now.rest @ step), 0.5 * self.size(now.rest)
+        after = self.at(now.motion + step)
+        while after.energy > now.energy - SUFFICIENT * share * slope and self.size(after.rest) >= half:
+            share *= 0.5
+            if share < SHORTEST:
+                break
+            after = self.at(now.motion + share * step)
+        return after

@@ -93,9 +93,7 @@ def ball_rating(
     return STEEL_OF_BALLS * factor * math.cos(contact_angle) ** 0.7 * float(balls) ** (2.0 / 3.0) * of_size
 
 
-def roller_rating(
-    rollers: int, diameter: float, pitch_diameter: float, contact_angle: float, length: float
-) -> float:
+def roller_rating(rollers: int, diameter: float, pitch_diameter: float, contact_angle: float, length: float) -> float:
     """Basic dynamic radial load rating [N] of a row of rollers.
 
     Parameters

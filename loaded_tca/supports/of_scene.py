@@ -136,5 +136,6 @@ def _on_shaft(shaft: Shaft, gear: str, middle: float, stations: Array, loaded: b
         of_stations[:, -1] if loaded or not shaft.is_linear else None,
         motions.on_bearings,
         motions.at_bearings,
+        shaft.bearings,
         None if shaft.is_linear else partial(_on_shaft, shaft, gear, middle, stations, loaded),
     )

@@ -4,15 +4,16 @@ The outer ring stands, the inner one moves with the shaft by x, y, z and about x
 the gear's x axis, is pressed together by
 
 .. math:: \delta_j = \sqrt{a_r^2 + a_z^2} - A, \quad
-          a_r = A \cos\alpha - s/2 + \delta_r, \quad a_z = \pm A \sin\alpha + \delta_z + R_i (r_x \sin\varphi - r_y \cos\varphi)
+          a_r = A \cos\alpha - s/2 + \delta_r, \quad
+          a_z = \pm A \sin\alpha + \delta_z + R_i (r_x \sin\varphi - r_y \cos\varphi)
 
 where it is a ball between grooves whose centres are A apart; slice k of a roller, at the place p on its raceway with
 the normal n, by
 
 .. math:: \delta_{jk} = n \cdot (u + r \times p) - \tfrac{s}{2} \cos\alpha - 2 P(x_k).
 
-Elements that are apart carry nothing, others :math:`c \delta^{3/2}` and :math:`c_s \delta^{10/9}`. Force and tangent are
-first and second derivatives of one potential, :math:`\sum c \delta^{e+1} / (e+1)`, so that the tangent is symmetric.
+Elements that are apart carry nothing, others :math:`c \delta^{3/2}` and :math:`c_s \delta^{10/9}`. Force and tangent
+are first and second derivatives of one potential, :math:`\sum c \delta^{e+1} / (e+1)`: the tangent is symmetric.
 
 References
 ----------

@@ -30,6 +30,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+from loaded_tca.supports.bearing import AnyBearing
 
 AXIS = np.array([0.0, 0.0, 1.0])
 
@@ -52,6 +53,8 @@ class Support:
         Forces and moments on bearings under unit loads of the stations, in columns, and under other loads.
     at_bearings : (bearings, 6, 6 m + 1) array, optional [mm, rad]
         Motions of the shaft in its bearings, as the forces on them.
+    bearings : sequence of bearings
+        Of its shaft.
     law : callable, optional
         Makes the support that is linear near loads (6 m,) of the stations, with their exact motions, as rolling
         bearings need it; default: this one is linear.
@@ -74,6 +77,7 @@ class Support:
     motion: Array | None = None
     on_bearings: Array | None = None
     at_bearings: Array | None = None
+    bearings: Sequence[AnyBearing] = ()
     law: Callable[[Array], Support] | None = None
 
     def __post_init__(self) -> None:
