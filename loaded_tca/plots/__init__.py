@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
+from loaded_tca.loaded.shaft_lines import shaft_lines
 from loaded_tca.plots.at_a_glance import plot_at_a_glance
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
@@ -64,7 +65,7 @@ from loaded_tca.plots.study import (
 from loaded_tca.plots.study_panels import plot_study_ranking
 from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
 from loaded_tca.plots.style import chosen_torque, png_of, save_figure
-from loaded_tca.plots.supports import plot_bearing_loads, plot_misalignment, plot_result_shafts
+from loaded_tca.plots.supports import plot_bearing_loads, plot_misalignment
 from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
 from loaded_tca.plots.tribology import (
     TRIBOLOGY_PICTURES,
@@ -117,7 +118,6 @@ __all__ = [
     "plot_pressure_envelope",
     "plot_pressure_map",
     "plot_removal_weights",
-    "plot_result_shafts",
     "plot_revolution_error",
     "plot_revolution_shares",
     "plot_revolution_spectrum",
@@ -331,7 +331,11 @@ ON_SUPPORTS = {
     "shaft": Picture(
         "shafts with gears and bearings, and their deflection in two planes, all torques",
         "Shafts under the normal force where the unloaded flanks touch, without contact.",
-        lambda one: plot_result_shafts(one.result) if any(one.result.scene.have_shafts) else None,
+        lambda one: (
+            plot_shafts(shaft_lines(one.result.scene), one.result.scene.title)
+            if any(one.result.scene.have_shafts)
+            else None
+        ),
     ),
 }
 ON_REQUEST = {

@@ -1,4 +1,4 @@
-"""Results of gears on supports: misalignment over the torque, loads around the rings of rolling bearings, shafts."""
+"""Results of gears on supports: misalignment over the torque, loads around the rings of rolling bearings."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.errors import InputError
-from loaded_tca.loaded.shaft_lines import shaft_lines
-from loaded_tca.plots.shafts import plot_shafts
 from loaded_tca.plots.style import (
     ACCENT,
     DISTINCT_COLOURS,
@@ -134,22 +132,3 @@ def plot_bearing_loads(result: MeshCycle, torque: int | None = None) -> Figure:
     figure.legend(*handles, loc="outside lower center", ncols=2, fontsize="small")
     set_title(figure, result, f"loads around the rings, {load(result, torque)}", "axes of each gear's own frame")
     return figure
-
-
-def plot_result_shafts(result: MeshCycle) -> Figure:
-    """Shafts of the scene of a result, as :func:`loaded_tca.plots.plot_shafts` draws them without contact.
-
-    Parameters
-    ----------
-    result : MeshCycle
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-
-    Raises
-    ------
-    InputError
-        If no gear has a shaft.
-    """
-    return plot_shafts(shaft_lines(result.scene), result.scene.title)

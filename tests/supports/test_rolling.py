@@ -1,4 +1,4 @@
-"""Rolling bearings by their inner geometry: numbers of others, force and tangent of one potential, lives and ratings."""
+"""Rolling bearings by their inner geometry: numbers of others, force and tangent of one potential, lives."""
 
 from __future__ import annotations
 
@@ -124,12 +124,9 @@ def test_first_element_is_on_the_x_axis() -> None:
 
 
 def test_contact_angle_sets_the_thrust_over_the_radial_force_of_tapered_rollers() -> None:
-    bearing = BEARINGS["tapered"]
-    reaction = bearing.reaction(np.array([0.0, 0.0, -0.02, 0.0, 0.0, 0.0]))
-    assert_allclose(
-        reaction.force[2],
-        -bearing.element_forces(np.array([0, 0, -0.02, 0, 0, 0.0])).sum() * math.sin(math.radians(15.0)),
-    )
+    bearing, pressed = BEARINGS["tapered"], np.array([0.0, 0.0, -0.02, 0.0, 0.0, 0.0])
+    thrust = bearing.element_forces(pressed).sum() * math.sin(math.radians(15.0))
+    assert_allclose(bearing.reaction(pressed).force[2], -thrust)
     assert not bearing.reaction(np.array([0.0, 0.0, 0.02, 0.0, 0.0, 0.0])).force.any()  # pulled off
 
 
