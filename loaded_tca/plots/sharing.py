@@ -187,7 +187,7 @@ def draw_face_load(axes: Axes, result: MeshCycle, styles: Iterable[tuple[int, st
         if not (np.isnan(factor) or label.startswith("_")):
             middles = 0.5 * (borders[1:] + borders[:-1])
             centre = float(forces @ middles / forces.sum()) - 0.5 * float(borders[0] + borders[-1])
-            text = f"{label}, K_Hβ = {factor:.3g}, centre {centre:+.2g} mm from the middle"
+            text = f"{label}, K_Hβ = {factor:.3g},\ncentre {centre:+.2g} mm from the middle"
         axes.stairs(forces / (len(result.path) - 1) / np.diff(borders), borders, color=colour, label=text)
     axes.set(xlabel=frame.labels[0], ylabel="normal force per face width [N/mm]")
     axes.set_ylim(bottom=0.0)
