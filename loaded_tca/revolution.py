@@ -33,7 +33,7 @@ from loaded_tca.results.supports import support_arrays, warn_of_motions
 from loaded_tca.results.warnings import at_places, place_of, reasons_of, rotation_reasons, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
-from loaded_tca.supports import support_compliance
+from loaded_tca.supports import SupportCompliance, support_compliance
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded.revolution import RevolutionPath, trace_revolution
 
@@ -175,17 +175,16 @@ def _on_supports(
     bending = model_of(scene, pair, apart)
     assert bending is not None
     cycle = SupportedCycle(pair, bending, angles, grid, load_sharing=True)
-    for t, torque in enumerate(scene.torques):
-        held = cycle.settled(torque)
+    for t, held in enumerate(cycle.settled(scene.torques)):
+        near = at_rest.under(held)
 
-        def moved(gears: GearPair, held: Loads = held) -> GearPair:
-            return moved_by(replace(at_rest, pair=gears), held)
+        def moved(gears: GearPair, near: SupportCompliance = near, held: Loads = held) -> GearPair:
+            return moved_by(replace(near, pair=gears), held)
 
-        there = bending.mounted(moved(pair))
-        assert there.supports is not None
+        there, torque = bending.on_supports(near).mounted(moved(pair)), np.array(scene.torques[t : t + 1])
         path = _trace(scene, moved(pair), pitches, moved)
-        one = _OnSupports(path.pair, path, np.array([torque]), grid, roots, maps, bending=there, held=held)
-        given = partial(there.supports.opened, motions=given_motions(there.supports, held))
+        one = _OnSupports(path.pair, path, torque, grid, roots, maps, bending=there, held=held)
+        given = partial(near.mounted(path.pair).opened, motions=given_motions(near, held))
         report = None if progress is None else partial(_report, progress, t, len(scene.torques))
         for part in carried_over_revolution(path, one.torques, grid, there, report, given):
             one.add(part)

@@ -8,7 +8,8 @@ of the supports and a given displacement of every slice,
 
 with a_i and r_i the unit loads of the slice on the stations and on the rigid body: what the geometry has moved already
 does not move again. Newton's step: the loads that follow are those of the next motion, until it stays; a few positions
-of the pitch are enough for it. The last one holds for the ordinary cycle, whose loads alternate about the mean.
+of the pitch are enough for it. The last one holds for the ordinary cycle, whose loads alternate about the mean. Rolling
+bearings are linear near the loads of each step, C and q0 are those of their tangent there.
 
 References
 ----------
@@ -18,10 +19,11 @@ Deuflhard 2011, Newton Methods for Nonlinear Problems, chapter 2.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -29,15 +31,16 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.errors import ConvergenceError, GeometryError, named
 from loaded_tca.loaded.cycle import (
+    AllPairsCycle,
     Carried,
     Contacts,
+    OnePairsCycle,
     Progress,
-    carried_by_all,
-    carried_by_one,
+    carried_together,
     farthest_apart,
     in_gear_angles,
 )
-from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.loaded_contact import LoadedContact, Result, Steps
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
@@ -49,6 +52,8 @@ POSITIONS = 4
 SETTLED = 0.02
 """Change of the motions from one step to the next, over the motions, from which the geometry stays where it is: what
 is left of them is coupled, and what that leaves out is of their product with the motions themselves."""
+NEARER = 5e-3
+"""The same of rolling bearings: what is left of the loads is that of their tangents, too."""
 ROUGHLY, ROUGH_PEAK = 1e-3, 0.1
 """Agreement of the tooth pairs, and accuracy of the peak pressure where no cells are given, on the way to the motions:
 what they leave is coupled."""
@@ -112,8 +117,33 @@ class CarriedOnSupports:
         return np.asarray(self.carried.torque_rate[0])
 
 
+@dataclass(frozen=True, eq=False)
+class _MovedCycle:
+    """States of the pair moved by loads of its supports under one torque [N mm], and its bending with them."""
+
+    torque: float
+    held: Loads
+    bending: SumOfParts
+    states: OnePairsCycle | AllPairsCycle
+
+    @property
+    def pair(self) -> GearPair:
+        return self.states.pair
+
+    @property
+    def supports(self) -> SupportCompliance:
+        assert self.bending.supports is not None
+        return self.bending.supports
+
+    def steps(self) -> list[Steps[Any]]:
+        return [_told(own, self.torque) for own in self.states.steps()]
+
+    def carried(self, results: Sequence[Any]) -> Carried:
+        return self.states.carried(results)
+
+
 class SupportedCycle:
-    """Mesh cycles of a pair on supports, torque by torque.
+    """Mesh cycles of a pair on supports.
 
     Parameters
     ----------
@@ -140,8 +170,8 @@ class SupportedCycle:
         """The pair as other loads alone move it."""
         return moved_by(self.supports, _no_loads(self.supports))
 
-    def under(self, torque: float, progress: Progress | None = None) -> CarriedOnSupports:
-        """Mesh cycle under a pinion torque [N mm].
+    def under(self, torques: Sequence[float], progress: Progress | None = None) -> list[CarriedOnSupports]:
+        """Mesh cycles under pinion torques [N mm], worked on together.
 
         Raises
         ------
@@ -150,33 +180,56 @@ class SupportedCycle:
         ConvergenceError
             If the motions do not settle, or a contact is not solved.
         """
-        loads = self.settled(torque)
-        pair, carried = self._carried(torque, loads, self.angles, progress)
-        bending = self.bending.mounted(pair)
-        assert bending.supports is not None
-        return CarriedOnSupports(
-            pair,
-            bending,
-            carried,
-            loads,
-            loads_of(bending.supports, carried),
-            _rate_on_rigid_supports(carried, bending),
-        )
+        held = self.settled(torques)
+        cycles = [self._moved(*one, self.angles, self.grid) for one in zip(torques, held, strict=True)]
+        carried = carried_together(cycles, progress)
+        for t in range(len(cycles)):
+            mean = _mean_load(cycles[t].supports, carried[t])
+            if not (torques[t] in _ends(torques) or self._is_near(cycles[t].supports, mean, held[t])):
+                cycles[t] = self._moved(torques[t], mean, self.angles, self.grid)
+                (carried[t],) = carried_together([cycles[t]])
+        return [
+            CarriedOnSupports(
+                one.pair,
+                one.bending,
+                own,
+                one.held,
+                loads_of(one.supports, own),
+                _rate_on_rigid_supports(own, one.bending),
+            )
+            for one, own in zip(cycles, carried, strict=True)
+        ]
 
-    def settled(self, torque: float) -> Loads:
-        """Mean loads under a pinion torque [N mm] whose motions of the geometry are those that follow from it."""
-        if torque == 0.0:
-            return _no_loads(self.supports)
+    def settled(self, torques: Sequence[float]) -> list[Loads]:
+        """Mean loads under pinion torques [N mm] whose motions of the geometry are those that follow from them.
+
+        Loads are nearly in proportion to the torque: those between the smallest and the largest one follow from these.
+        """
+        low, high = _ends(torques)
+        if high == 0.0:
+            return [_no_loads(self.supports) for _ in torques]
+        last = self._settled(high, loads_at_first_contact(self.supports, self.at_rest, high))
+        first = last if low == high else self._settled(low, _scaled(last, low / high))
+
+        def between(torque: float) -> Loads:
+            part = (torque - low) / (high - low) if high > low else 1.0
+            pinion, wheel = (
+                torque * ((1.0 - part) / low * one + part / high * other)
+                for one, other in zip(first, last, strict=True)
+            )
+            return pinion, wheel
+
+        return [between(torque) if torque > 0.0 else _no_loads(self.supports) for torque in torques]
+
+    def _settled(self, torque: float, loads: Loads) -> Loads:
+        """The same under one torque, from loads that are near."""
         count = min(POSITIONS, len(self.angles))
         spread = (np.arange(count) - 0.5 * (count - 1)) / count * self.pair.pitch if count > 1 else self.angles
-        loads = loads_at_first_contact(self.supports, self.at_rest, torque)
         roughly = replace(self.grid, agreement=ROUGHLY, accuracy=max(self.grid.accuracy, ROUGH_PEAK))
         for _ in range(MOST_STEPS):
-            pair, carried = self._carried(torque, loads, spread, grid=roughly)
-            supports = self.supports.mounted(pair)
-            pinion, wheel = (np.nanmean(load, axis=0) for load in loads_of(supports, carried))
-            before, loads = loads, (pinion, wheel)
-            if self._distance(loads, before) <= SETTLED * self._distance(loads, _no_loads(self.supports)):
+            cycle = self._moved(torque, loads, spread, roughly)
+            before, loads = loads, _mean_load(cycle.supports, carried_together([cycle])[0])
+            if self._is_near(cycle.supports, loads, before):
                 return loads
         raise ConvergenceError(
             f"supports: motions under {1e-3 * torque:g} N m not settled in {MOST_STEPS} steps: the supports are too "
@@ -184,37 +237,65 @@ class SupportedCycle:
             last=loads,
         )
 
-    def _distance(self, one: Loads, other: Loads) -> float:
+    def _is_near(self, supports: SupportCompliance, loads: Loads, before: Loads) -> bool:
+        """Whether the motions by loads are those by the ones before."""
+        whole = self._distance(supports, loads, _no_loads(supports))
+        return self._distance(supports, loads, before) <= (SETTLED if supports.is_linear else NEARER) * whole
+
+    def _distance(self, supports: SupportCompliance, one: Loads, other: Loads) -> float:
         """Largest way of the two gears between two loads, at a lever of half the face width [mm]."""
         lever = np.repeat([1.0, 0.5 * self.pair.face_width], 3)
         ways = [
             support.at_middle(support.compliance @ (a - b)) * lever
-            for support, a, b in zip(self.supports.supports, one, other, strict=True)
+            for support, a, b in zip(supports.supports, one, other, strict=True)
         ]
         return float(np.abs(ways).max())
 
-    def _carried(
-        self,
-        torque: float,
-        loads: Loads,
-        angles: Array,
-        progress: Progress | None = None,
-        grid: GridChoice | None = None,
-    ) -> tuple[GearPair, Carried]:
-        """The pair moved by loads, and what its tooth pairs carry."""
-        pair, torques = moved_by(self.supports, loads), np.array([torque])
-        bending = self.bending.mounted(pair)
-        assert bending.supports is not None
-        given = partial(bending.supports.opened, motions=given_motions(bending.supports, loads))
-        try:
-            with named("supports"):
-                if self.load_sharing:
-                    mesh = trace_teeth(pair, angles)
-                    return pair, carried_by_all(pair, mesh, torques, grid or self.grid, bending, progress, given)
-                path = trace_contact(pair, angles)
-                return pair, carried_by_one(pair, path, torques, grid or self.grid, bending, progress, given)
-        except GeometryError as error:
-            raise _moved_too_far(error, torque) from None
+    def _moved(self, torque: float, loads: Loads, angles: Array, grid: GridChoice) -> _MovedCycle:
+        """States of the pair moved by loads, with supports that are linear there."""
+        near = self.supports.under(loads)
+        pair, torques = moved_by(near, loads), np.array([torque])
+        bending = (self.bending if near is self.supports else self.bending.on_supports(near)).mounted(pair)
+        given = partial(near.mounted(pair).opened, motions=given_motions(near, loads))
+        states: OnePairsCycle | AllPairsCycle
+        with _told_of(torque):
+            if self.load_sharing:
+                states = AllPairsCycle(pair, trace_teeth(pair, angles), torques, grid, bending, given)
+            else:
+                states = OnePairsCycle(pair, trace_contact(pair, angles), torques, grid, bending, given)
+        return _MovedCycle(torque, loads, bending, states)
+
+
+def _ends(torques: Sequence[float]) -> tuple[float, float]:
+    """Smallest torque above zero, and the largest one."""
+    loaded = [torque for torque in torques if torque > 0.0]
+    return min(loaded, default=0.0), max(loaded, default=0.0)
+
+
+def _scaled(loads: Loads, factor: float) -> Loads:
+    pinion, wheel = (factor * one for one in loads)
+    return pinion, wheel
+
+
+def _mean_load(supports: SupportCompliance, carried: Carried) -> Loads:
+    pinion, wheel = (np.nanmean(load, axis=0) for load in loads_of(supports, carried))
+    return pinion, wheel
+
+
+@contextmanager
+def _told_of(torque: float) -> Iterator[None]:
+    """Say of errors that the supports move the gears under a torque [N mm]."""
+    try:
+        with named("supports"):
+            yield
+    except GeometryError as error:
+        raise _moved_too_far(error, torque) from None
+
+
+def _told(steps: Steps[Result], torque: float) -> Steps[Result]:
+    """Steps whose errors say so."""
+    with _told_of(torque):
+        return (yield from steps)
 
 
 def _no_loads(supports: SupportCompliance) -> Loads:
@@ -245,7 +326,8 @@ def pitches_apart(supports: SupportCompliance, torque: float, angles: Array) -> 
     at_rest = moved_by(supports, _no_loads(supports))
     apart = farthest_apart(trace_teeth(at_rest, angles))
     try:
-        moved = moved_by(supports, loads_at_first_contact(supports, at_rest, torque))
+        loads = loads_at_first_contact(supports, at_rest, torque)
+        moved = moved_by(supports.under(loads), loads)
         return max(apart, farthest_apart(trace_teeth(moved, angles)))
     except GeometryError as error:
         raise _moved_too_far(error, torque) from None

@@ -26,6 +26,7 @@ from loaded_tca.results.quantities import (
     GEARS,
     OVER_CYCLE,
     QUANTITIES,
+    ROLLING_QUANTITIES,
     ROOT_QUANTITIES,
     SUPPORT_QUANTITIES,
 )
@@ -63,8 +64,8 @@ ROOTS: dict[str, Part] = {
     "root_tension_tooth": (OVER_CYCLE, "1", "tooth of the pinion and of the wheel that has the tension, from 0"),
 }
 """Those of scenes that ask for root stress."""
-OF_SUPPORTS = SUPPORT_QUANTITIES | BEARING_QUANTITIES
-"""Those of gears on supports; of shafts alone where these have them."""
+OF_SUPPORTS = SUPPORT_QUANTITIES | BEARING_QUANTITIES | ROLLING_QUANTITIES
+"""Those of gears on supports; of shafts and of rolling bearings where there are any."""
 COORDINATES = "torque", "pinion_angle", "pair"
 
 

@@ -99,7 +99,7 @@ def sensitivities_on_supports(result: CycleNumbers, keys: Sequence[str]) -> tupl
     parts = []
     for t in range(len(result.torque)):
         one = under_one_torque(result, t)
-        states = kept[t] if solved == result.scene else states_of_maps(one)
+        states = kept[t] if solved == result.scene else states_of_maps(one, one.supports)
         parts.append(_of_torque(one, states, keys, at_rest) if any(states.grids) else None)
     require((any(parts), NO_LOAD))
     made = SensitivitiesOnSupports(tuple(keys), result, tuple(parts))

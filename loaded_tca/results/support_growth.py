@@ -77,9 +77,10 @@ class UnderOneTorque(CycleNumbers):
 
 def under_one_torque(result: CycleNumbers, torque: int) -> UnderOneTorque:
     """The numbers of a result on supports under one torque, by its index."""
-    at_rest = support_compliance(result.scene, result.gear_pair)
-    assert at_rest is not None
+    supports = support_compliance(result.scene, result.gear_pair)
+    assert supports is not None
     pinion, wheel = (result.dataset[f"{gear}_support_load"].values[torque] for gear in GEARS)
+    at_rest = supports.under((pinion, wheel))
     pair = moved_by(at_rest, (pinion, wheel))
     if result.scene.analysis.load_sharing:
         path, paths = in_gear_angles(trace_teeth(pair, result.pinion_angle))
@@ -183,10 +184,10 @@ def _of_support(result: UnderOneTorque, key: str) -> SupportChange:
     """The supports a step either side of the value of a key; where one is not allowed the value itself."""
     scene, value = result.scene, number_at(result.scene, key)
     step = max(STEP * abs(value), SMALLEST)
-    sides, refused = [(value, supports_of(scene))] * 2, None
+    sides, refused = [(value, result.supports.supports)] * 2, None
     for side, trial in ((1, value + step), (0, value - step)):
         try:
-            sides[side] = trial, _supports_with(scene, key, trial)
+            sides[side] = trial, _supports_with(scene, key, trial, result.held)
         except InputError as error:
             refused = refused or error
     (low, below), (high, above) = sides
@@ -196,8 +197,11 @@ def _of_support(result: UnderOneTorque, key: str) -> SupportChange:
     return SupportChange(PairChange(key, result.gear_pair, result.gear_pair, high - low), *both)
 
 
-def _supports_with(scene: Scene, key: str, value: float) -> tuple[Support, Support]:
-    return supports_of(scene.with_changes({key: value}))
+def _supports_with(scene: Scene, key: str, value: float, held: Loads) -> tuple[Support, Support]:
+    pinion, wheel = (
+        support.under(load) for support, load in zip(supports_of(scene.with_changes({key: value})), held, strict=True)
+    )
+    return pinion, wheel
 
 
 def growth_on_supports(

@@ -295,12 +295,13 @@ class DesignModel:
         assert bending is not None
         grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=scene.analysis.free_edges)
         cycle, held = SupportedCycle(pair, bending, angles, grid, load_sharing=True), []
-        for torque in self.torques.tolist():
-            loads = cycle.settled(torque)
-            moved = moved_by(supports, loads)
-            given = partial(supports.mounted(moved).opened, motions=given_motions(supports, loads))
-            mesh = trace_teeth(moved, angles)
-            held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, bending.mounted(moved), given))
+        torques = self.torques.tolist()
+        for torque, loads in zip(torques, cycle.settled(torques), strict=True):
+            near = supports.under(loads)
+            moved = moved_by(near, loads)
+            there, given = bending.on_supports(near).mounted(moved), given_motions(near, loads)
+            opened = partial(near.mounted(moved).opened, motions=given)
+            held.append(HeldContacts(scene, trace_teeth(moved, angles), ranges, torque, self.cells, there, opened))
         return tuple(held)
 
     def _check(self) -> None:
