@@ -83,30 +83,38 @@ def with_attributes(content: bytes, more: Mapping[str, Mapping[str, Attribute]],
         If the content is no REXS model.
     """
     if content.startswith(b"PK"):
-        name, inner = _unzipped(content, source)
-        buffer = io.BytesIO()
-        with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as new:
-            for one in old.infolist():
-                part = with_attributes(inner, more, source) if one.filename == name else old.read(one)
-                new.writestr(one.filename, part)
-        return buffer.getvalue()
+        return _with_attributes_in_zip(content, more, source)
     if _is_json(content):
-        whole = _json(content, source)
-        for one in _tables(whole["model"], "components", source):
-            attributes = more.get(str(one.get("id")), {})
-            kept = [each for each in one.get("attributes") or [] if each.get("id") not in attributes]
-            one["attributes"] = kept + [_json_attribute(name, each) for name, each in attributes.items()]
-        return json.dumps(whole, indent=1, ensure_ascii=False).encode() + b"\n"
+        return _with_attributes_in_json(content, more, source)
     root = _xml(content, source)
     space = str(root.tag).removesuffix("model")
-    for part in (one for group in root if _tag(group) == "components" for one in group):
-        attributes = more.get(part.get("id", ""), {})
-        for each in [each for each in part if each.get("id") in attributes]:
-            part.remove(each)
+    for component in (one for group in root if _tag(group) == "components" for one in group):
+        attributes = more.get(component.get("id", ""), {})
+        for one in [one for one in component if one.get("id") in attributes]:
+            component.remove(one)
         for name, attribute in attributes.items():
-            _add_attribute(part, name, attribute, space)
+            _add_attribute(component, name, attribute, space)
     ElementTree.indent(root)
     return bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
+
+
+def _with_attributes_in_zip(content: bytes, more: Mapping[str, Mapping[str, Attribute]], source: str) -> bytes:
+    name, inner = _unzipped(content, source)
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as new:
+        for one in old.infolist():
+            part = with_attributes(inner, more, source) if one.filename == name else old.read(one)
+            new.writestr(one.filename, part)
+    return buffer.getvalue()
+
+
+def _with_attributes_in_json(content: bytes, more: Mapping[str, Mapping[str, Attribute]], source: str) -> bytes:
+    whole = _json(content, source)
+    for one in _tables(whole["model"], "components", source):
+        attributes = more.get(str(one.get("id")), {})
+        kept = [each for each in one.get("attributes") or [] if each.get("id") not in attributes]
+        one["attributes"] = kept + [_json_attribute(name, each) for name, each in attributes.items()]
+    return json.dumps(whole, indent=1, ensure_ascii=False).encode() + b"\n"
 
 
 def _json_attribute(name: str, attribute: Attribute) -> dict[str, Any]:

@@ -210,7 +210,7 @@ class Gearbox:
         pinion, wheel = (gears[n] for n in order)
         shafts = self.shaft_of(pinion), self.shaft_of(wheel)
         axis = self.along(shafts[0] or pinion)
-        middles, placed = self._middles(component, (pinion, wheel), shafts, axis, turned=order == (1, 0))
+        middles, placed = self._middles(component, (pinion, wheel), shafts, turned=order == (1, 0))
         between = middles[1] - middles[0]
         towards = between - (between @ axis) * axis
         length = float(np.linalg.norm(towards))
@@ -234,7 +234,6 @@ class Gearbox:
         component: Component,
         gears: tuple[Component, Component],
         shafts: tuple[Component | None, Component | None],
-        axis: Array,
         *,
         turned: bool,
     ) -> tuple[Array, bool]:
@@ -294,7 +293,7 @@ class Gearbox:
 
     @property
     def tooth_torques(self) -> dict[str, float]:
-        """Torque by the teeth on the pinion of each stage about the u axis of its shaft [N m], where it is determined."""
+        """Torque by the teeth on the pinion of each stage about the u axis of its shaft [N m], where it is known."""
         return {name: torque for name, torque in self._balance.items() if name in self.stages}
 
     @cached_property
@@ -353,7 +352,7 @@ class Gearbox:
         return row, given
 
     def _is_coupled(self, shaft: Component) -> bool:
-        """Whether something that the balance does not know turns a shaft: a coupling, a carrier, a bevel or worm gear."""
+        """Whether something beside the balance turns a shaft: a coupling, a carrier, a bevel or worm gear."""
         sides = [
             part
             for role in ("inner_part", "outer_part")

@@ -174,7 +174,8 @@ def flank_of(gearbox: Gearbox, stage: Stage, gear: int, side: int) -> Component 
         wanted = stated
     both = {one: reading.model.related("flank", "gear", component.id, one) for one in FLANKS}
     other = both["left" if wanted == "right" else "right"]
-    chosen = (both[wanted] or other or [None])[0]
+    found = both[wanted] or other
+    chosen = found[0] if found else None
     if chosen is not None:
         reading.touch([chosen])
     for one in other:

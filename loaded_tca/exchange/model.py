@@ -247,6 +247,12 @@ class Reading:
         if sentence not in self.not_taken:
             self.not_taken.append(sentence)
 
+    def leave_whole(self, component: Component, why: str) -> None:
+        """Note that nothing of a component is taken, with its attributes."""
+        names = ", ".join(name for name in component.attributes if name not in BOOKKEEPING)
+        self.take(component, *component.attributes)
+        self.leave(component, f"{why} ({names})" if names else why)
+
     def note(self, sentence: str) -> None:
         """Note how the file was understood, once."""
         if sentence not in self.read_as:

@@ -73,7 +73,7 @@ def modification_keys(reading: Reading, flank: Component, teeth: Teeth) -> Keys:
             continue
         reading.take(one, "is_additive_modification")
         if one.type not in KINDS:
-            reading.leave(one, "no modification that a scene has")
+            reading.leave_whole(one, "no modification that a scene has")
             continue
         try:
             if one.flag("is_additive_modification") is False:
@@ -82,11 +82,11 @@ def modification_keys(reading: Reading, flank: Component, teeth: Teeth) -> Keys:
                 raise _Left("modifications of the profile of ring gears are not read")
             more = KINDS[one.type](reading, one, teeth)
         except _Left as reason:
-            reading.leave(one, str(reason))
+            reading.leave_whole(one, str(reason))
             continue
         taken = [name for name in more if name in keys and not (name.endswith("slope_um"))]
         if taken:
-            reading.leave(one, f"{taken[0]} is taken by another modification")
+            reading.leave_whole(one, f"{taken[0]} is taken by another modification")
             continue
         for name, value in more.items():
             if name.endswith("slope_um"):  # slopes of several modifications add

@@ -7,6 +7,7 @@ linear: by the stiffness of the operating point where the file has it, else by r
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -48,7 +49,7 @@ def shaft_section(gearbox: Gearbox, stage: Stage, gear: int) -> dict[str, Any] |
     if shaft is None:
         reading.leave(stage.gears[gear], f"it is on no shaft; {NAMES[gear]} without a support")
         return None
-    own = _OwnFrame(gearbox, stage, gear, shaft)
+    own = ShaftFrame(gearbox, stage, gear, shaft)
     reading.take(shaft, "rotational_speed", "defines_speed")
     try:
         if stage.internal and gear == 1:
@@ -71,7 +72,7 @@ def diameter_at(gearbox: Gearbox, stage: Stage, gear: int) -> float | None:
     shaft = stage.shafts[gear]
     if shaft is None:
         return None
-    own = _OwnFrame(gearbox, stage, gear, shaft)
+    own = ShaftFrame(gearbox, stage, gear, shaft)
     try:
         parts = own.parts()
     except NotTaken:
@@ -87,8 +88,26 @@ Part = tuple[float, float, tuple[float, float], tuple[float, float]]
 """Lower and upper end along u, outer and inner diameters there [mm]."""
 
 
-class _OwnFrame:
-    """A shaft seen from the middle of the face of a gear on it, in the gear's own frame."""
+class ShaftFrame:
+    """A shaft seen from the middle of the face of a gear on it, in the gear's own frame.
+
+    Parameters
+    ----------
+    gearbox : Gearbox
+    stage : Stage
+    gear : int
+        0 the pinion, 1 the wheel.
+    shaft : Component
+
+    Attributes
+    ----------
+    middle : float [mm]
+        Of the face, along the shaft's u axis.
+    sign : float
+        +1 where u points along the gear's own z, else -1.
+    turn : (3, 3) array
+        Turns vectors along u, v, w of the shaft into x, y, z of the gear's own frame.
+    """
 
     def __init__(self, gearbox: Gearbox, stage: Stage, gear: int, shaft: Component) -> None:
         self.gearbox, self.reading, self.stage, self.gear, self.shaft = gearbox, gearbox.reading, stage, gear, shaft
@@ -126,10 +145,10 @@ class _OwnFrame:
         if not parts:
             raise NotTaken("it has no sections")
         parts.sort()
-        for (_, before, *_), (after, *_) in zip(parts, parts[1:], strict=False):
+        for (_, before, *_), (after, *_) in pairwise(parts):
             if abs(after - before) > GAP:
                 raise NotTaken(
-                    f"its sections do not follow each other: one ends at u = {before:g} mm, the next begins at {after:g}"
+                    f"its sections leave a gap or overlap: one ends at u = {before:g} mm, the next begins at {after:g}"
                 )
         return parts
 
@@ -157,29 +176,33 @@ class _OwnFrame:
 
     # bearings
 
+    def held_by(self) -> list[tuple[float, Component, str]]:
+        """Bearings on the shaft in the order of the scene: axial coordinate, component, side of the shaft in it."""
+        model = self.reading.model
+        found = []
+        for side in ("inner", "outer"):
+            for one in model.related("side", f"{side}_part", self.shaft.id, "assembly"):
+                self.reading.touch([one])
+                if one.type in BEARINGS:
+                    self.reading.take(one, "u_coordinate_on_shaft_inner_side", "u_coordinate_on_shaft_outer_side")
+                    place = one.required(f"u_coordinate_on_shaft_{side}_side", LENGTH)
+                    found.append((self.at(place), one, side))
+                else:
+                    self.reading.leave(one, "no bearing; what it holds is not in the scene")
+        return sorted(found, key=lambda one: one[0])
+
     def bearings(self) -> list[dict[str, Any]]:
         """Bearings of the scene; all must have a stiffness."""
-        model = self.reading.model
-        found = [
-            (one, side)
-            for side in ("inner", "outer")
-            for one in model.related("side", f"{side}_part", self.shaft.id, "assembly")
-        ]
         bearings, without = [], []
         thrust = self._thrust()
-        for one, side in found:
+        for place, one, side in self.held_by():
             self._touch_rows(one)
-            if one.type not in BEARINGS:
-                self.reading.leave(one, "no bearing; what it holds is not in the scene")
-                continue
-            self.reading.take(one, "u_coordinate_on_shaft_inner_side", "u_coordinate_on_shaft_outer_side")
-            place = one.required(f"u_coordinate_on_shaft_{side}_side", LENGTH)
             stiffness = self._stiffness(one, thrust)
             if stiffness is None:
                 without.append(one)
                 continue
             self._note_other_part(one, side)
-            bearings.append({"at_mm": self.at(place), **stiffness})
+            bearings.append({"at_mm": place, **stiffness})
         if without:
             raise NotTaken(
                 "no stiffness of "
@@ -188,7 +211,7 @@ class _OwnFrame:
             )
         if not bearings:
             raise NotTaken("it has no bearings")
-        return sorted(bearings, key=lambda one: float(one["at_mm"]))
+        return bearings
 
     def _touch_rows(self, bearing: Component) -> None:
         for row in self.reading.model.related("ordered_assembly", "assembly", bearing.id, "part"):
@@ -219,7 +242,7 @@ class _OwnFrame:
         axial = self._axial(one, radial, axial, thrust)
         if max(radial, axial) > RIGID_N_per_mm or tilting > RIGID_Nmm_per_rad:
             self.reading.note(
-                f"{one}: its rigid directions have {1e-3 * RIGID_N_per_mm:g} N/um, {1e-6 * RIGID_Nmm_per_rad:g} N m/mrad"
+                f"{one}: rigid directions have {1e-3 * RIGID_N_per_mm:g} N/um, {1e-6 * RIGID_Nmm_per_rad:g} N m/mrad"
             )
         keys = {"radial_stiffness_N_per_um": 1e-3 * min(radial, RIGID_N_per_mm)}
         if axial > 0.0:
@@ -333,10 +356,8 @@ class _OwnFrame:
         component = stage.gears[gear]
         if torque is None or angles is None:
             if not quiet:
-                self.reading.leave(
-                    component,
-                    f"its load in stage {stage.id}, {'of unknown torque' if torque is None else 'without a centre distance'}",
-                )
+                reason = "of unknown torque" if torque is None else "without a centre distance"
+                self.reading.leave(component, f"its load in stage {stage.id}, {reason}")
             return None
         if gear == 1:
             torque *= self.gearbox.torque_ratio(stage)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -121,15 +122,15 @@ def import_stage(
     Raises
     ------
     InputError
-        If there is no such stage or load case, a number is missing or has another unit, or the scene cannot be; with the
-        id of the component and the name of the attribute, or the key of the scene.
+        If there is no such stage or load case, a number is missing or has another unit, or the scene cannot be; with
+        the id of the component and the name of the attribute, or the key of the scene.
     GeometryError
         If the gears cannot exist or cannot mesh.
 
     Examples
     --------
     >>> from loaded_tca.exchange import read_rexs
-    >>> model = read_rexs("examples/gearbox.rexs")
+    >>> model = read_rexs("examples/models/two_stage_gearbox.rexs")
     >>> imported = import_stage(model, "10")
     >>> imported.scene.pair()
     GearPair(21/55, module 2.5 mm, face 30 mm)
@@ -163,7 +164,7 @@ def import_stage(
         table,
         tuple(reading.read_as),
         tuple(rest_of(reading)),
-        f"{model.source}, REXS {model.version}, {chosen.component.label}",
+        f"{os.path.basename(model.source)}, REXS {model.version}, {chosen.component.label}",
     )
 
 
@@ -237,6 +238,12 @@ def _with_shaft(gearbox: Gearbox, stage: Stage, gear: int, table: dict[str, Any]
     shaft = stage.shafts[gear]
     if section is None or shaft is None:
         return scene
+    material, own = material_section(gearbox.reading, shaft), scene.materials[gear]
+    if material and (material["youngs_modulus_MPa"], material["poisson_ratio"]) != (
+        own.youngs_modulus_MPa,
+        own.poisson_ratio,
+    ):
+        gearbox.reading.leave(shaft, f"its material, E {material['youngs_modulus_MPa']:g} MPa: it has that of the gear")
     trial = {**table, name: {**table[name], "shaft": section}}
     try:
         on_shaft = scene_from_table(trial)
