@@ -362,7 +362,7 @@ def _json_attributes(component: dict[str, Any], source: str) -> dict[str, Attrib
 
 
 def _frozen(value: Any) -> Value:
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         return tuple(_frozen(one) for one in value)
     return value if isinstance(value, bool | int | float) else str(value)
 
