@@ -66,7 +66,9 @@ def test_arrays_in_base64_are_decoded(code: str, form: str) -> None:
     text = base64.b64encode(struct.pack(CODED[code], 40, 0, 98)).decode()
     if form == "xml":
         old = b'<attribute id="support_vector" unit="mm"><array><c>40.0</c><c>0.0</c><c>98.0</c></array>'
-        content = XML.replace(old, f'<attribute id="support_vector" unit="mm"><array code="{code}">{text}</array>'.encode())
+        content = XML.replace(
+            old, f'<attribute id="support_vector" unit="mm"><array code="{code}">{text}</array>'.encode()
+        )
     else:
         old = b'"floating_point_array": [40.0, 0.0, 98.0]'
         content = as_json(example()).replace(
@@ -137,8 +139,14 @@ REFUSED = {
     "cut JSON": (as_json(example())[:300], "not JSON"),
     "JSON of something else": (b'{"gearbox": 1}', "model: missing"),
     "JSON model": (b'{"model": 1}', "model: found 1; allowed a JSON object"),
-    "JSON components": (b'{"model": {"version": "1.7", "components": {}}}', "components: found {}; allowed a JSON array"),
-    "JSON component": (b'{"model": {"version": "1.7", "components": [1]}}', "components: found 1; allowed JSON objects"),
+    "JSON components": (
+        b'{"model": {"version": "1.7", "components": {}}}',
+        "components: found {}; allowed a JSON array",
+    ),
+    "JSON component": (
+        b'{"model": {"version": "1.7", "components": [1]}}',
+        "components: found 1; allowed JSON objects",
+    ),
     "JSON id": (b'{"model": {"version": "1.7", "components": [{"type": "shaft"}]}}', "id: missing"),
     "deep JSON": (b'{"model":' + b"[" * 100_000, "nested too deeply|not JSON"),
     "JSON in Latin-1": ('{"model": "ü"}'.encode("latin-1"), "not a text file in UTF-8"),
@@ -222,7 +230,10 @@ VALUES = {
     "missing": ({"21.face_width": None}, "cylindrical_gear 21: face_width: missing"),
     "not whole": ({"21.number_of_teeth": ("21.5", "none")}, "number_of_teeth: found 21.5; allowed a whole number"),
     "array": ({"21.support_vector": (("1", "2"), "mm")}, "support_vector: found 2 values; allowed 3"),
-    "flag": ({"31.is_driving_gear": ("perhaps", "none"), "3.rotational_speed": None}, "is_driving_gear: found 'perhaps'"),
+    "flag": (
+        {"31.is_driving_gear": ("perhaps", "none"), "3.rotational_speed": None},
+        "is_driving_gear: found 'perhaps'",
+    ),
 }
 
 

@@ -244,11 +244,13 @@ def test_stages_are_shown_with_their_gears() -> None:
 
 
 def test_a_planetary_stage_is_no_scene() -> None:
-    with pytest.raises(InputError, match=r"stage 9: planetary_stage; scenes are made of cylindrical stages .*: 211, 220"):
+    with pytest.raises(
+        InputError, match=r"stage 9: planetary_stage; scenes are made of cylindrical stages .*: 211, 220"
+    ):
         import_stage(planetary(), "9")
 
 
 def test_two_ring_gears_are_refused() -> None:
+    teeth = {f"{gear}.number_of_teeth": ("-60", "none") for gear in (23, 34)}
     with pytest.raises(InputError, match="cylindrical_stage 6: both gears are ring gears"):
-        teeth = {f"{gear}.number_of_teeth": ("-60", "none") for gear in (23, 34)}
         import_stage(changed(sew(), teeth), "6")

@@ -56,7 +56,7 @@ def test_rigid_bearings_have_a_stiffness_that_leaves_digits_for_the_shaft() -> N
     assert imported.scene.pinion.shaft.bearings[0].radial_stiffness_N_per_um == 1e6
     assert "concept_bearing 91: rigid directions have 1e+06 N/um, 1e+07 N m/mrad" in imported.read_as
     stiffer, softer = (
-        shaft_lines(import_stage(changed(attributes={k: (v, "N / m") for k in rigid}), "10").scene)[0]
+        shaft_lines(import_stage(changed(attributes=dict.fromkeys(rigid, (v, "N / m"))), "10").scene)[0]
         for v in ("1e23", "1e14")
     )
     # bearings of 1e5 N/um instead of 1e6 move by 0.03 um more, the shaft bends by 15 um
@@ -150,7 +150,9 @@ def test_shafts_without_bearings_or_sections_are_left_out() -> None:
     assert any("shaft 3" in one and "it has no bearings" in one for one in without.not_taken)
     model = example()
     relations = tuple(one for one in model.relations if one.roles.get("part") not in ("81", "82", "83"))
-    without = import_stage(changed(model, without=["assembly"], relations=[r for r in relations if r.type == "assembly"]), "10")
+    without = import_stage(
+        changed(model, without=["assembly"], relations=[r for r in relations if r.type == "assembly"]), "10"
+    )
     assert any("shaft 3" in one and "it has no sections" in one for one in without.not_taken)
 
 
@@ -213,7 +215,7 @@ def test_a_shaft_without_any_load_turns_about_the_gear() -> None:
 
 
 def test_torque_that_does_not_follow_is_asked_for() -> None:
-    with pytest.raises(InputError, match="stage 10: torque: it does not follow .*; give --torque"):
+    with pytest.raises(InputError, match=r"stage 10: torque: it does not follow .*; give --torque"):
         import_stage(changed(attributes={"97.torque_around_u_axis": None}), "10")
     scene = import_stage(changed(attributes={"97.torque_around_u_axis": None}), "10", torque_Nm=80.0).scene
     assert scene.load.pinion_torque_Nm == 80.0
@@ -246,7 +248,9 @@ def test_another_material_of_the_shaft_is_named() -> None:
     iron = part(71, "material", elastic_modulus=(170000.0, "N / mm^2"), poisson_ratio=0.28)
     model = example()
     others = [one for one in model.relations if one.type == "reference" and one.roles["origin"] != "3"]
-    model = changed(model, more=[iron], without=["reference"], relations=[*others, relation("reference", origin=3, referenced=71)])
+    model = changed(
+        model, more=[iron], without=["reference"], relations=[*others, relation("reference", origin=3, referenced=71)]
+    )
     imported = import_stage(model, "10")
     assert any("shaft 3" in one and "its material, E 170000 MPa" in one for one in imported.not_taken)
 

@@ -32,9 +32,7 @@ def changed(model=None, attributes=None, more=(), relations=(), without=(), vers
             own[name] = Attribute(*value)
         components[one] = replace(components[one], attributes=own)
     kept = tuple(one for one in model.relations if one.type not in without)
-    return replace(
-        model, components=components, relations=(*kept, *relations), version=version or model.version
-    )
+    return replace(model, components=components, relations=(*kept, *relations), version=version or model.version)
 
 
 def part(number, kind, name="", **attributes) -> Component:
@@ -115,12 +113,12 @@ def _pose(x, y=0.0, z=0.0):
     }
 
 
+ANW = ((40.0, 19.0), (11.5, 22.0), (2.3, 25.0), (1.3, 23.9), (18.9, 25.0), (30.3, 30.0), (15.2, 25.0), (22.5, 22.0))
 # id: lower end in space, sections (length, diameter), bearings (id, axial force absorption, place on the shaft)
 SEW_SHAFTS = {
     4: (
         (0.0, 0.0, 0.0),
-        ((40.0, 19.0), (11.5, 22.0), (2.3, 25.0), (1.3, 23.9), (18.9, 25.0), (30.3, 30.0), (15.2, 25.0), (22.5, 22.0))
-        + ((4.0, 14.0), (15.9, 10.0), (1.1, 9.6), (1.5, 10.0)),
+        (*ANW, (4.0, 14.0), (15.9, 10.0), (1.1, 9.6), (1.5, 10.0)),
         ((20, "both_directions", 65.5), (21, "no_direction", 111.8)),
     ),
     5: (
@@ -130,7 +128,16 @@ SEW_SHAFTS = {
     ),
     36: (
         (128.5, 50.33350037591513, 32.45007497243242),
-        ((7.0, 14.6), (14.0, 15.0), (52.0, 20.0), (5.0, 25.91), (41.0, 18.403), (9.0, 25.91), (12.0, 17.0), (3.0, 16.8)),
+        (
+            (7.0, 14.6),
+            (14.0, 15.0),
+            (52.0, 20.0),
+            (5.0, 25.91),
+            (41.0, 18.403),
+            (9.0, 25.91),
+            (12.0, 17.0),
+            (3.0, 16.8),
+        ),
         ((49, "negative", 13.5), (50, "no_direction", 66.0), (51, "positive", 135.0)),
     ),
     54: (
@@ -167,7 +174,9 @@ def sew(placed=True) -> Model:
         place = 0.0
         for n, (length, diameter) in enumerate(sections):
             ends = {f"outer_diameter_{end}": (diameter, "mm") for end in ("begin", "end")}
-            own = part(1000 * number + n, "shaft_section", u_coordinate_on_shaft=(place, "mm"), length=(length, "mm"), **ends)
+            own = part(
+                1000 * number + n, "shaft_section", u_coordinate_on_shaft=(place, "mm"), length=(length, "mm"), **ends
+            )
             parts.append(own)
             relations.append(relation("assembly", assembly=number, part=own.id))
             place += length
@@ -226,13 +235,27 @@ def planetary(version="1.1", modified=False) -> Model:
     steel = {"elastic_modulus": (210000.0, "N / mm^2"), "poisson_ratio": 0.3, "density": (7.85, "kg / dm^3")}
     parts += [part(86, "material", **steel), part(88, "material", **steel)]
     parts.append(part(83, "rack_shaped_tool", addendum_coefficient_reference_profile=1.25, tip_radius_factor=0.25))
-    parts.append(part(85, "cutter_wheel_tool", number_of_teeth=23.0, addendum_coefficient_reference_profile=1.25, tip_radius_factor=0.0))
+    parts.append(
+        part(
+            85,
+            "cutter_wheel_tool",
+            number_of_teeth=23.0,
+            addendum_coefficient_reference_profile=1.25,
+            tip_radius_factor=0.0,
+        )
+    )
     relations = []
 
     def shaft(number, origin, length, outer, inner, **more):
         parts.append(part(number, "shaft", **_pose(*origin), **more))
-        ends = {f"{side}_diameter_{end}": (d, "mm") for side, d in (("outer", outer), ("inner", inner)) for end in ("begin", "end")}
-        parts.append(part(1000 + number, "shaft_section", u_coordinate_on_shaft=(0.0, "mm"), length=(length, "mm"), **ends))
+        ends = {
+            f"{side}_diameter_{end}": (d, "mm")
+            for side, d in (("outer", outer), ("inner", inner))
+            for end in ("begin", "end")
+        }
+        parts.append(
+            part(1000 + number, "shaft_section", u_coordinate_on_shaft=(0.0, "mm"), length=(length, "mm"), **ends)
+        )
         relations.append(relation("assembly", assembly=number, part=1000 + number))
 
     def gear(number, kind, teeth, on, origin, shift, material, tool):
@@ -254,10 +277,7 @@ def planetary(version="1.1", modified=False) -> Model:
         for one in flanks:
             own = {} if shift is None else {"addendum_modification_coefficient": shift}
             parts.append(part(one, flank_kind, normal_pressure_angle=(20.0, "°"), **own))
-            if version >= "1.3":
-                relations.append(relation("manufacturing_step", 1, workpiece=one, tool=tool))
-        if version < "1.3":
-            relations.append(relation("ordered_reference", 1, origin=number, referenced=tool))
+        relations.extend(_cut(version, number, flanks, tool))
         relations.append(relation("flank", gear=number, left=flanks[0], right=flanks[1]))
 
     shaft(34, (100.0,), 150.0, 34.0, 0.0, rotational_speed=(1500.0, "1 / min"))
@@ -266,9 +286,21 @@ def planetary(version="1.1", modified=False) -> Model:
     gear(58, "ring_gear", 61, 62, (125.0,), None, 88, 85)
     parts.append(part(65, "switchable_coupling"))
     relations.append(relation("side", assembly=65, inner_part=62, outer_part=2))
-    bearing = {"radial_stiffness": (1e20, "N / m"), "axial_stiffness": (1e20, "N / m"), "bending_stiffness": (0.0, "N mm / rad")}
+    bearing = {
+        "radial_stiffness": (1e20, "N / m"),
+        "axial_stiffness": (1e20, "N / m"),
+        "bending_stiffness": (0.0, "N mm / rad"),
+    }
     for number, at, holds in ((36, 75.0, "both_directions"), (37, 127.5, "no_direction")):
-        parts.append(part(number, "concept_bearing", u_coordinate_on_shaft_inner_side=(at, "mm"), axial_force_absorption=holds, **bearing))
+        parts.append(
+            part(
+                number,
+                "concept_bearing",
+                u_coordinate_on_shaft_inner_side=(at, "mm"),
+                axial_force_absorption=holds,
+                **bearing,
+            )
+        )
         relations.append(relation("side", assembly=number, inner_part=34, outer_part=2))
     places = ((0.0, 78.0), (67.54998149518622, -39.0), (-67.54998149518622, -39.0))
     for n, (y, z) in enumerate(places):
@@ -277,29 +309,55 @@ def planetary(version="1.1", modified=False) -> Model:
         shaft(235 + n, (92.0, y, z), 66.0, 43.2, 0.0)
         relations.append(relation("assembly", assembly=3, part=235 + n))
         for number, at, holds in ((232 + n, 12.5, "both_directions"), (244 + n, 37.5, "no_direction")):
-            place = {"u_coordinate_on_shaft_inner_side": (at + 8.0, "mm"), "u_coordinate_on_shaft_outer_side": (at, "mm")}
+            place = {
+                "u_coordinate_on_shaft_inner_side": (at + 8.0, "mm"),
+                "u_coordinate_on_shaft_outer_side": (at, "mm"),
+            }
             parts.append(part(number, "concept_bearing", axial_force_absorption=holds, **place, **bearing))
             relations.append(relation("side", assembly=number, inner_part=235 + n, outer_part=229 + n))
         for number, gears in ((211 + n, (53, 247 + n)), (220 + n, (247 + n, 58))):
             parts.append(part(number, "cylindrical_stage", center_distance=(78.0, "mm")))
             relations.append(relation("stage", stage=number, gear_1=gears[0], gear_2=gears[1]))
             relations.append(relation("assembly", assembly=9, part=number))
-    parts.append(part(38, "external_load", u_coordinate_on_shaft=(150.0, "mm"), transmits_torque="true", torque_around_u_axis=(1591.5494309189535, "N m")))
+    parts.append(
+        part(
+            38,
+            "external_load",
+            u_coordinate_on_shaft=(150.0, "mm"),
+            transmits_torque="true",
+            torque_around_u_axis=(1591.5494309189535, "N m"),
+        )
+    )
     relations.append(relation("assembly", assembly=34, part=38))
     if modified:
-        amounts = {f"helix_crowning_amount_{face}": (0.005, "mm") for face in ("datum_face", "non_datum_face")}
-        at = {f"coordinate_where_helix_crowning_is_specified_{face}": (25.0, "mm") for face in ("datum_face", "non_datum_face")}
-        parts.append(part(340, "helix_crowning", **amounts, **at))
-        profile = {
-            "profile_crowning_at_tip": (0.005, "mm"),
-            "diameter_where_profile_crowning_tip_is_specified": (76.0, "mm"),
-            "profile_crowning_at_root": (0.005, "mm"),
-            "diameter_where_profile_crowning_root_is_specified": (64.06386045216821, "mm"),
-        }
-        parts.append(part(341, "profile_crowning", **profile))
-        ends = {"helix_evaluation_start": (-25.0, "mm"), "helix_evaluation_end": (25.0, "mm")}
-        parts.append(part(342, "helix_slope", helix_slope=(0.006, "mm"), **ends))
-        parts.append(part(343, "helix_slope", helix_slope=(-0.006, "mm"), **ends))
-        for flank, slope in ((530, 342), (531, 343)):
-            relations += [relation("reference", origin=flank, referenced=one) for one in (340, 341, slope)]
+        _modify_sun(parts, relations)
     return Model(version, {one.id: one for one in parts}, tuple(relations), (), "planetary.rexs")
+
+
+def _cut(version, gear, flanks, tool):
+    """Relations of a tool: to the gear in the first versions, to its flanks since 1.3."""
+    if version < "1.3":
+        return [relation("ordered_reference", 1, origin=gear, referenced=tool)]
+    return [relation("manufacturing_step", 1, workpiece=one, tool=tool) for one in flanks]
+
+
+def _modify_sun(parts, relations):
+    """Add the modifications of the sun in the file of version 1.4, of both its flanks."""
+    amounts = {f"helix_crowning_amount_{face}": (0.005, "mm") for face in ("datum_face", "non_datum_face")}
+    at = {
+        f"coordinate_where_helix_crowning_is_specified_{face}": (25.0, "mm")
+        for face in ("datum_face", "non_datum_face")
+    }
+    parts.append(part(340, "helix_crowning", **amounts, **at))
+    profile = {
+        "profile_crowning_at_tip": (0.005, "mm"),
+        "diameter_where_profile_crowning_tip_is_specified": (76.0, "mm"),
+        "profile_crowning_at_root": (0.005, "mm"),
+        "diameter_where_profile_crowning_root_is_specified": (64.06386045216821, "mm"),
+    }
+    parts.append(part(341, "profile_crowning", **profile))
+    ends = {"helix_evaluation_start": (-25.0, "mm"), "helix_evaluation_end": (25.0, "mm")}
+    parts.append(part(342, "helix_slope", helix_slope=(0.006, "mm"), **ends))
+    parts.append(part(343, "helix_slope", helix_slope=(-0.006, "mm"), **ends))
+    for flank, slope in ((530, 342), (531, 343)):
+        relations += [relation("reference", origin=flank, referenced=one) for one in (340, 341, slope)]
