@@ -133,7 +133,7 @@ def import_stage(
     >>> model = read_rexs("examples/models/two_stage_gearbox.rexs")
     >>> imported = import_stage(model, "10")
     >>> imported.scene.pair()
-    GearPair(21/55, module 2.5 mm, face 30 mm)
+    GearPair(21/55, module 2.5 mm, face 28 mm)
     """
     model = model if load_case is None else model.with_load_case(load_case)
     reading = Reading(model)
