@@ -124,8 +124,8 @@ STAGE = """files in DIR:
 Numbers have their units in their names; docs/guide/planetary_stages.md says more."""
 IMPORT = """MODEL is a REXS file of version 1.0 to 1.7: XML (.rexs), JSON (.rexsj) or zip (.rexsz). FILE is a scene of
 the cylindrical stage: flanks, tools, modifications, materials, shafts, bearings, and the loads of other stages on the
-same shafts. What was not taken stands above the scene and is shown, with ids of components;
-docs/guide/gearbox_models.md says more."""
+same shafts. What was not taken stands above the scene and is shown, with the ids of its
+components; docs/guide/gearbox_models.md says more."""
 EXPORT = """FILE is the model with the load distribution over the face, K_Hbeta, the mesh stiffness (version 1.5 on),
 deflection and torsion of the shafts and forces on their bearings; everything else and its format stay."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
