@@ -204,6 +204,10 @@ class Gearbox:
 
     def _stage(self, component: Component, gears: tuple[Component, Component]) -> Stage:
         signed = [one.whole("number_of_teeth") for one in gears]
+        for one, teeth in zip(gears, signed, strict=True):
+            require(
+                (teeth != 0, f"{one}: number_of_teeth: found 0; allowed whole numbers, negative ones of ring gears")
+            )
         rings = [one.type == "ring_gear" or teeth < 0 for one, teeth in zip(gears, signed, strict=True)]
         require((not all(rings), f"{component}: both gears are ring gears; allowed one"))
         order = (0, 1) if (rings[0], abs(signed[0])) <= (rings[1], abs(signed[1])) else (1, 0)

@@ -329,7 +329,9 @@ def gear_section(
         positive = (angle > 0.0) == (gear == 0 or stage.internal)
         section["hand"] = "right" if positive else "left"
     section |= _profile_shift(reading, flank, module, pair["pressure_angle_deg"])
-    section |= _tip(reading, component, flank)
+    if ring and section.get("profile_shift"):
+        reading.note(f"{component}: a positive profile shift of the ring thickens its teeth, as in ISO 21771")
+    section |= _tip(reading, component, None if ring else flank)
     if ring and (root := reading.number(component, "root_diameter", LENGTH)) is not None:
         section["root_diameter_mm"] = abs(root)
     if ring:
@@ -362,7 +364,7 @@ def _tip(reading: Reading, gear: Component, flank: Component | None) -> dict[str
     if diameter is not None:
         return {"tip_diameter_mm": abs(diameter)}
     addendum = None if flank is None else reading.number(flank, "addendum_coefficient_basic_profile")
-    if addendum is None or addendum == 1.0 or gear.type == "ring_gear":
+    if addendum is None or addendum == 1.0:
         return {}
     return {"tip_alteration_coefficient": addendum - 1.0}
 

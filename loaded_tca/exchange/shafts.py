@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
 from loaded_tca.exchange.gearbox import Gearbox, Stage
 from loaded_tca.exchange.gears import NAMES
 from loaded_tca.exchange.model import Component, Reading
@@ -21,6 +22,8 @@ from loaded_tca.exchange.units import ANGLE, COUPLING, FORCE, LENGTH, STIFFNESS,
 RIGID_N_per_mm, RIGID_Nmm_per_rad = 1e9, 1e13
 """Stiffnesses of bearings that files call rigid: 1e20 N/m and more would leave no digits for the shaft."""
 NO_STIFFNESS = 1e-9
+STEEPEST = math.radians(89.0)
+"""Helix angle above which gears are none."""
 STEPS = 8
 """Cylinders that a cone becomes."""
 GAP = 1e-3
@@ -352,11 +355,14 @@ class ShaftFrame:
     def _tooth_force(self, stage: Stage, gear: int, *, quiet: bool = False) -> tuple[float, Array, Array, float] | None:
         """Place, force [N], moment across the axis [N m] and torque about u [N m] by the teeth of a gear of a stage."""
         torque = self.gearbox.tooth_torques.get(stage.id)
-        angles = _working_angles(self.gearbox, stage)
         component = stage.gears[gear]
+        try:
+            angles = _working_angles(self.gearbox, stage)
+            reason = "of unknown torque" if torque is None else "without a centre distance at which its gears mesh"
+        except InputError as error:
+            angles, reason = None, "; ".join(error.problems)
         if torque is None or angles is None:
             if not quiet:
-                reason = "of unknown torque" if torque is None else "without a centre distance"
                 self.reading.leave(component, f"its load in stage {stage.id}, {reason}")
             return None
         if gear == 1:
@@ -401,6 +407,8 @@ def _working_angles(gearbox: Gearbox, stage: Stage) -> tuple[float, float, tuple
     normal = next((a for one in flanks if (a := one.number("normal_pressure_angle", ANGLE)) is not None), 20.0)
     module = stage.gears[0].required("normal_module", LENGTH)
     helix = math.radians(abs(stage.gears[0].number("helix_angle_reference_diameter", ANGLE) or 0.0))
+    if not (module > 0.0 and helix < STEEPEST and 0.0 < normal < 90.0):
+        return None
     transverse = math.atan(math.tan(math.radians(normal)) / math.cos(helix))
     radii = [0.5 * module * teeth / math.cos(helix) * math.cos(transverse) for teeth in stage.teeth]
     base = radii[1] - radii[0] if stage.internal else radii[0] + radii[1]
