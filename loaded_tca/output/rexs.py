@@ -9,6 +9,7 @@ is none of these.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,8 @@ from loaded_tca.results.load_factors import STRIPS, face_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 GEARS = "pinion", "wheel"
+SAME_PLACE_mm = 1e-3
+"""Between places of a bearing in the scene and in the model."""
 MICROMETRES = 1e3
 """Per millimetre."""
 Results = dict[str, dict[str, Attribute]]
@@ -111,7 +114,8 @@ def rexs_results(result: MeshCycle, model: Model, stage: str, torque: int | None
         )
         results[shaft.id] = _of_shaft(line, frame)
         forces = np.nanmean(getattr(result, f"{gear}_bearing_force")[index, : _distinct(result)], axis=0)
-        results |= _of_bearings(forces, frame)
+        places = [bearing.at_mm for bearing in getattr(result.scene, gear).shaft.bearings]
+        results |= _of_bearings(forces, places, frame)
     return results
 
 
@@ -163,18 +167,24 @@ def _of_shaft(line: ShaftLine, frame: ShaftFrame) -> dict[str, Attribute]:
     return {"u_coordinates_of_beam_nodes": Attribute(_floats(places), "mm"), **ways, "torsion_u": torsion}
 
 
-def _of_bearings(forces: Array, frame: ShaftFrame) -> Results:
-    """Forces [N] and tilting moments [N m] on the shaft and on the other side of each bearing (bearings, 6)."""
+def _of_bearings(forces: Array, places: Sequence[float], frame: ShaftFrame) -> Results:
+    """Forces [N] and tilting moments [N m] on the shaft and on the other side of bearings, by forces (n, 6) on them.
+
+    A bearing of the scene is that of the model at its place; the scene may have others, too.
+    """
     results: Results = {}
-    for force, (_, bearing, side) in zip(forces, frame.held_by(), strict=True):
-        along, about = force[:3] @ frame.turn, 1e-3 * force[3:] @ frame.turn
+    for at, bearing, side in frame.held_by():
+        found = [n for n, place in enumerate(places) if abs(place - at) < SAME_PLACE_mm]
+        if not found:
+            continue
+        along, about = forces[found[0], :3] @ frame.turn, 1e-3 * forces[found[0], 3:] @ frame.turn
         other = "outer" if side == "inner" else "inner"
         own: dict[str, Any] = {}
         for part, sign in ((side, -1.0), (other, 1.0)):
             for n, axis in enumerate("uvw"):
-                own[f"force_acting_on_{part}_component_{axis}"] = Attribute(sign * float(along[n]), "N")
+                own[f"force_acting_on_{part}_component_{axis}"] = Attribute(sign * float(along[n]) + 0.0, "N")
             for n, axis in ((1, "v"), (2, "w")):
-                own[f"torque_acting_on_{part}_component_{axis}"] = Attribute(sign * float(about[n]), "N m")
+                own[f"torque_acting_on_{part}_component_{axis}"] = Attribute(sign * float(about[n]) + 0.0, "N m")
         results[bearing.id] = own
     return results
 

@@ -120,6 +120,13 @@ def test_bearings_hold_the_forces_of_their_shaft(result) -> None:
     assert_allclose(on_casing, [axial, tangential, -radial], rtol=5e-3)
 
 
+def test_bearings_that_the_scene_has_elsewhere_get_no_forces(result) -> None:
+    moved = analyse(result.scene.with_changes({"pinion.shaft.bearings.1.at_mm": 65.0, "analysis.torques_Nm": [150.0]}))
+    results = rexs_results(moved, example(), "10")
+    assert "91" in results
+    assert "92" not in results
+
+
 @pytest.mark.parametrize("suffix", ["rexs", "rexsj"])
 def test_written_models_are_read_again(result, tmp_path, suffix: str) -> None:
     model = tmp_path / f"model.{suffix}"
