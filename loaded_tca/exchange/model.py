@@ -15,6 +15,8 @@ from loaded_tca.exchange.units import NUMBER, plain
 
 VERSIONS = "1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7"
 """Versions that are read; 2.0 has other names."""
+LARGEST_NUMBER = 1e30
+"""Of a model; rigid bearings have stiffnesses of 1e23 N/m."""
 Value = str | float | bool | tuple[Any, ...]
 
 
@@ -119,7 +121,8 @@ def _finite(component: Component, name: str, value: Value) -> float:
         number = math.nan if isinstance(value, bool | tuple) else float(value)
     except ValueError:
         number = math.nan
-    require((math.isfinite(number), f"{component}: {name}: found {value!r:.40}; allowed a finite number"))
+    sound = abs(number) <= LARGEST_NUMBER  # not of NaN
+    require((sound, f"{component}: {name}: found {value!r:.40}; allowed a number of up to {LARGEST_NUMBER:g}"))
     return number
 
 

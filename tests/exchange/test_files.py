@@ -224,8 +224,9 @@ def test_load_cases_of_two_spectra_are_told_apart() -> None:
 
 
 VALUES = {
-    "no number": ({"21.face_width": ("wide", "mm")}, "cylindrical_gear 21: face_width: found 'wide'; allowed a finite"),
-    "not finite": ({"21.face_width": ("NaN", "mm")}, "cylindrical_gear 21: face_width: found 'NaN'; allowed a finite"),
+    "no number": ({"21.face_width": ("wide", "mm")}, "cylindrical_gear 21: face_width: found 'wide'; allowed a number"),
+    "not finite": ({"21.face_width": ("NaN", "mm")}, "cylindrical_gear 21: face_width: found 'NaN'; allowed a number"),
+    "endless": ({"21.face_width": ("1e300", "mm")}, "cylindrical_gear 21: face_width: found '1e300'; allowed a number"),
     "unit": ({"21.face_width": ("30", "kg")}, 'cylindrical_gear 21: face_width: found the unit "kg"; allowed mm or m'),
     "missing": ({"21.face_width": None}, "cylindrical_gear 21: face_width: missing"),
     "not whole": ({"21.number_of_teeth": ("21.5", "none")}, "number_of_teeth: found 21.5; allowed a whole number"),
