@@ -20,7 +20,7 @@ MICROMETRES = 1e3
 CLOSE_um = 1e-3
 """Difference of amounts that are the same."""
 LEAST = 1e-3
-"""Part of the face or of the profile over which an amount is given at the least; what is smaller tells nothing of it."""
+"""Part of the face or of the profile over which an amount is given at the least; less tells nothing of it."""
 POWERS = {"linear": 1, "parabolic": 2, "circular": 2}
 """Shapes of reliefs; arcs of a circle are parabolas to the fourth order of the amount over the length."""
 
