@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -14,13 +15,13 @@ from scipy.interpolate import PchipInterpolator
 
 from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array
-from loaded_tca.errors import noted_accuracy_warnings, require
+from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.results import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.stages.balance import Deflections, Shares, balance, directions_of, pin_errors
 from loaded_tca.stages.kinematics import mesh_phases
 from loaded_tca.stages.result import StageResult, stage_dataset
-from loaded_tca.stages.sections import Stage
+from loaded_tca.stages.sections import RING_MESH, SUN_MESH, Stage, in_words_of
 
 PARTS = 0.15, 0.5, 1.6
 """Forces of the mesh cycles over an even share, beside it and the whole force: where planets may come to."""
@@ -56,21 +57,33 @@ def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult
     """
     stage.require_assembly()
     torques = np.asarray(stage.sun_torques)
-    require((bool((torques > 0.0).all()), "load.sun_torque_Nm: found 0; a stage shares a torque above 0"))
-    sun_mesh, planets = stage.sun_scene.mesh(), len(stage.stage.angles)
+    sun_mesh, planets = stage.meshes[0], len(stage.stage.angles)
     base_radius, planet_radius = sun_mesh.pinion.base_radius, sun_mesh.wheel.base_radius
     forces = _forces(torques / base_radius, planets)
     count = len(forces) * stage.analysis.positions
-    with noted_accuracy_warnings() as warned:
+    warned: list[str] = []
+    with _mesh_of(SUN_MESH, warned):
         of_sun = analyse(_under(stage.sun_scene, forces * base_radius), _part_of(progress, 0, 2 * count))
+    with _mesh_of(RING_MESH, warned):
         of_ring = analyse(_under(stage.ring_scene, forces * planet_radius), _part_of(progress, count, 2 * count))
     arrays = _shared(stage, torques, forces, (of_sun, of_ring))
     about = {
         "version": version("loaded_tca"),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        "warnings": "\n".join(dict.fromkeys(warned)),
+        "warnings": "\n".join(warned),
     }
     return StageResult(stage=stage, dataset=stage_dataset(arrays, **about), sun_mesh=of_sun, ring_mesh=of_ring)
+
+
+@contextmanager
+def _mesh_of(gears: Mapping[str, str], warned: list[str]) -> Iterator[None]:
+    """Tell problems in the words of the stage; note and give its accuracy warnings with the mesh that they are of."""
+    with in_words_of(gears), noted_accuracy_warnings(given=False) as sentences:
+        yield
+    mesh = " and ".join(f"{name} ({gear})" for gear, name in gears.items())
+    for sentence in dict.fromkeys(sentences):
+        warned.append(f"{mesh}: {sentence}")
+        give_accuracy_warning(warned[-1], stacklevel=4)
 
 
 OF_BALANCE = frozenset(
@@ -156,7 +169,7 @@ def _shared(stage: Stage, torques: Array, forces: Array, cycles: tuple[MeshCycle
     """Arrays of the result."""
     asked, sun_drives = stage.stage, stage.stage.driving == "sun"
     angles, planets = asked.angles, len(asked.angles)
-    sun_mesh, ring_mesh = stage.sun_scene.mesh(), stage.ring_scene.mesh()
+    sun_mesh, ring_mesh = stage.meshes
     base_radius = sun_mesh.pinion.base_radius
     pressure_angles = sun_mesh.working_pressure_angle, ring_mesh.working_pressure_angle
     phases = mesh_phases(sun_mesh, ring_mesh, angles, sun_drives)

@@ -1,4 +1,4 @@
-"""The finite elements beside which the mesh cycle of a pinion in a ring stands: curves, contact, and their kept numbers."""
+"""Finite elements beside which the mesh cycle of a pinion in a ring stands: curves, contact, their kept numbers."""
 
 import math
 
