@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from loaded_tca.analysis import analyse
+from loaded_tca.analysis import Effort, analyse, expected_effort
 from loaded_tca.arrays import Array
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.results import MeshCycle
@@ -58,14 +58,15 @@ def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult
     stage.require_assembly()
     torques = np.asarray(stage.sun_torques)
     sun_mesh, planets = stage.meshes[0], len(stage.stage.angles)
-    base_radius, planet_radius = sun_mesh.pinion.base_radius, sun_mesh.wheel.base_radius
+    base_radius = sun_mesh.pinion.base_radius
     forces = _forces(torques / base_radius, planets)
     count = len(forces) * stage.analysis.positions
+    of_sun_mesh, of_ring_mesh = scenes_of(stage)
     warned: list[str] = []
     with _mesh_of(SUN_MESH, warned):
-        of_sun = analyse(_under(stage.sun_scene, forces * base_radius), _part_of(progress, 0, 2 * count))
+        of_sun = analyse(of_sun_mesh, _part_of(progress, 0, 2 * count))
     with _mesh_of(RING_MESH, warned):
-        of_ring = analyse(_under(stage.ring_scene, forces * planet_radius), _part_of(progress, count, 2 * count))
+        of_ring = analyse(of_ring_mesh, _part_of(progress, count, 2 * count))
     arrays = _shared(stage, torques, forces, (of_sun, of_ring))
     about = {
         "version": version("loaded_tca"),
@@ -126,10 +127,29 @@ def _part_of(progress: Progress | None, begin: int, total: int) -> Progress | No
     return None if progress is None else lambda done, _: progress(begin + done, total)
 
 
+def scenes_of(stage: Stage) -> tuple[Scene, Scene]:
+    """Scenes of the sun's and the ring's mesh, under the torques of their pinions that a stage needs of them."""
+    gears = stage.meshes[0]
+    forces = _forces(np.asarray(stage.sun_torques) / gears.pinion.base_radius, len(stage.stage.angles))
+    scenes = (stage.sun_scene, gears.pinion), (stage.ring_scene, gears.wheel)
+    first, second = (_under(scene, forces * gear.base_radius) for scene, gear in scenes)
+    return first, second
+
+
 def states_of(stage: Stage) -> int:
     """How many states of both meshes an analysis of a stage has."""
-    forces = _forces(np.asarray(stage.sun_torques), len(stage.stage.angles))
-    return 2 * len(forces) * stage.analysis.positions
+    return sum(len(scene.torques) * scene.analysis.positions for scene in scenes_of(stage))
+
+
+def expected_stage_effort(stage: Stage) -> Effort:
+    """Estimate of what an analysis takes, as of :func:`loaded_tca.analysis.expected_effort`: that of both meshes."""
+    first, second = map(expected_effort, scenes_of(stage))
+    return replace(
+        first,
+        contacts=first.contacts + second.contacts,
+        seconds=first.seconds + second.seconds,
+        memory=max(first.memory, second.memory),
+    )
 
 
 def _forces(whole: Array, planets: int) -> Array:

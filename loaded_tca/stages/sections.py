@@ -421,6 +421,15 @@ def parse_stage(text: str, source: str = "stage", folder: str | os.PathLike[str]
     return stage_from_table(with_files_from(None if folder is None else Path(folder), table))
 
 
+def is_stage_file(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is TOML with a section [stage] and a sun: a stage rather than a scene; False if it is no TOML."""
+    try:
+        table = toml_table(read_text(path, LARGEST_FILE), os.fspath(path))
+    except InputError:
+        return False
+    return isinstance(table.get("stage"), dict) and "sun" in table
+
+
 def read_stage(path: str | os.PathLike[str]) -> Stage:
     """Read a stage file.
 
