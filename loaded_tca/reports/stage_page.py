@@ -10,7 +10,7 @@ from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
 from loaded_tca.reports.result_page import MOST_TORQUES, explained
 from loaded_tca.results.summary import shown
-from loaded_tca.stages import StageResult
+from loaded_tca.stages import Stage, StageResult
 from loaded_tca.stages.result import FILES
 
 
@@ -21,28 +21,35 @@ def stage_content(result: StageResult) -> dict[str, Any]:
     ----------
     result : StageResult
     """
-    sections = stage_sections(result.stage)
-    head, *phases = sections["phases"]
+    head, *phases = stage_sections(result.stage)["phases"]
     figures = {name: draw(result) for name, draw in STAGE_PICTURES.items()}
     return {
         "title": result.stage.title or "Planetary stage",
         "analysed_by": str(result.dataset.attrs.get("version", "")),
         "held": HELD,
-        "asked": [*tables_of(sections["stage"]), *tables_of(sections["torques"])],
+        **stage_geometry(result.stage),
         "phases": Table(tuple(phases[:-1]), ("", f"{head[1]} mesh", f"{head[2]} mesh")),
         "cancelled": phases[-1],
         "key_figures": [_key_figures(result, part) for part in parts_of(result.torque.tolist(), MOST_TORQUES)],
         "shares": _shares(result),
         "orders": _orders(result),
-        "geometry": [
-            table
-            for name, rows, _ in geometry_of_meshes(result.stage)
-            for table in tables_of(rows, f"Mesh of {name} (ISO 21771)")
-        ],
         "files": FILES[1:],
         "warnings": explained(result.warnings),
         "pictures": pictures_of(figures, STAGE_CAPTIONS, result.stage.title),
-        "stage_toml": result.stage.to_toml(),
+    }
+
+
+def stage_geometry(stage: Stage) -> dict[str, Any]:
+    """Return what templates take of a stage: what was asked, the geometry of both meshes, the text of the file."""
+    sections = stage_sections(stage)
+    return {
+        "asked": [*tables_of(sections["stage"]), *tables_of(sections["torques"])],
+        "geometry": [
+            table
+            for name, rows, _ in geometry_of_meshes(stage)
+            for table in tables_of(rows, f"Mesh of {name} (ISO 21771)")
+        ],
+        "scene_toml": stage.to_toml(),
     }
 
 

@@ -21,7 +21,7 @@ from loaded_tca.scene import Scene
 from loaded_tca.stages.balance import Deflections, Shares, balance, directions_of, pin_errors
 from loaded_tca.stages.kinematics import mesh_phases
 from loaded_tca.stages.result import StageResult, stage_dataset
-from loaded_tca.stages.sections import RING_MESH, SUN_MESH, Stage, in_words_of
+from loaded_tca.stages.sections import PLACE, RING_MESH, SUN_MESH, Stage, in_words_of
 
 PARTS = 0.15, 0.5, 1.6
 """Forces of the mesh cycles over an even share, beside it and the whole force: where planets may come to."""
@@ -79,7 +79,7 @@ def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult
 @contextmanager
 def _mesh_of(gears: Mapping[str, str], warned: list[str]) -> Iterator[None]:
     """Tell problems in the words of the stage; note and give its accuracy warnings with the mesh that they are of."""
-    with in_words_of(gears), noted_accuracy_warnings(given=False) as sentences:
+    with in_words_of(gears), noted_accuracy_warnings(given=False, alone=True) as sentences:
         yield
     mesh = " and ".join(f"{name} ({gear})" for gear, name in gears.items())
     for sentence in dict.fromkeys(sentences):
@@ -114,7 +114,12 @@ def rebalanced(result: StageResult, changes: Mapping[str, Any]) -> StageResult:
     InputError
         If a key changes more than the balance.
     """
-    require(*((name in OF_BALANCE, f"{name}: needs other meshes; analyse the changed stage") for name in changes))
+    require(
+        *(
+            (PLACE.sub(r"stage.\1", name) in OF_BALANCE, f"{name}: needs other meshes; analyse the changed stage")
+            for name in changes
+        )
+    )
     stage = result.stage.with_changes(changes)
     cycles = result.sun_mesh, result.ring_mesh
     forces = cycles[0].dataset["torque"].values / cycles[0].gear_pair.base_radii[0]

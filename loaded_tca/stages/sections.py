@@ -20,10 +20,10 @@ from loaded_tca.scene import cylindrical
 from loaded_tca.scene.blank import OTHER
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.internal import InternalScene, RingSection
-from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, above_zero, key
+from loaded_tca.scene.keys import Choice, Key, Line, List, Number, Whole, above_zero, key
 from loaded_tca.scene.model import _lines
 from loaded_tca.scene.parse import LARGEST_FILE, toml_table, with_files_from
-from loaded_tca.scene.section import Rule, Section, as_table, check, contents, made, subsection
+from loaded_tca.scene.section import Rule, Section, as_table, check, contents, key_at, made, subsection
 from loaded_tca.scene.sections import Analysis, DIAMETER_mm, ElasticMaterial, Load, TORQUE_Nm
 from loaded_tca.stages.kinematics import spacing_problems
 
@@ -35,6 +35,7 @@ RING_MESH = {"pinion": "planet", "wheel": "ring"}
 """Words for the gears of both meshes: in their scenes, in the stage."""
 OF_ONE_PITCH = {
     "pitch": "teeth of a stage are alike",
+    "tooth": "teeth of a stage are alike",
     "shaft": "gears of a stage stand on rigid axes, but for the sun: stage.sun_support_stiffness_N_per_um",
     "support": "gears of a stage stand on rigid axes, but for the sun: stage.sun_support_stiffness_N_per_um",
 }
@@ -44,6 +45,8 @@ SAME_DISTANCE = 1e-3
 """Difference of the centre distances of both meshes, in modules, that counts as none."""
 WRITTEN_deg = 1e-3
 """Of angles that are written with four digits."""
+PLACE = re.compile(r"stage\.(pin_tangential_um|pin_radial_um|planet_angles_deg)\.\d{1,3}")
+"""Paths to the value of one planet."""
 PIN_um = List(Number(-10000.0, 10000.0), 1, MOST_PLANETS)
 
 
@@ -323,9 +326,24 @@ class Stage(Section):
             raise GeometryError("; ".join(f"stage.{problem}" for problem in problems))
 
     def with_changes(self, changes: Mapping[str, Any]) -> Stage:
-        """Return a stage with other values, all checked; keys with dots as in a file, None: not given."""
+        """Return a stage with other values, all checked.
+
+        Parameters
+        ----------
+        changes : mapping
+            Key as in a file, with dots -> value; None: not given. A number behind a list is a place in it:
+            ``"stage.pin_tangential_um.0"`` is the pin of planet 0, the others stay what they are.
+
+        Raises
+        ------
+        InputError
+            Every problem at once, as for a file.
+        """
         table = as_table(self)
+        of_planets = {path: value for path, value in changes.items() if PLACE.fullmatch(path)}
         for path, value in changes.items():
+            if path in of_planets:
+                continue
             *sections, name = path.split(".")
             place = table
             for section in sections:
@@ -334,7 +352,36 @@ class Stage(Section):
                 place.pop(name, None)
             else:
                 place[name] = value
+        own = table.setdefault("stage", {})
+        for path, value in of_planets.items():
+            _, name, number = path.split(".")
+            count = own.get("planets") or len(own.get("planet_angles_deg") or ())
+            values = list(own.get(name) or [0.0] * count)
+            if int(number) >= len(values):
+                raise InputError(f"{path}: no such planet; allowed 0 to {len(values) - 1}")
+            values[int(number)] = value
+            own[name] = values
         return stage_from_table(table)
+
+    @classmethod
+    def key_at(cls, path: str) -> Key:
+        """Return what a stage says of the key at a path with dots, or of a place in a list of planets.
+
+        Raises
+        ------
+        InputError
+            If there is no such key, or the path leads to a section.
+
+        Examples
+        --------
+        >>> Stage.key_at("stage.pin_tangential_um.0").about
+        'displacement of each pin in the sense of rotation of the sun'
+        """
+        if not PLACE.fullmatch(path):
+            return key_at(cls, path)
+        entry = key_at(cls, path.rpartition(".")[0])
+        assert isinstance(entry.kind, List)
+        return replace(entry, kind=entry.kind.kind)
 
     def to_toml(self) -> str:
         """Return a stage file with every key; ``parse_stage`` makes the same stage of it."""
