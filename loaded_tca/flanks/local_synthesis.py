@@ -1,8 +1,8 @@
 r"""Machine settings of face-milled hypoid and spiral bevel pairs by local synthesis, from their blanks.
 
 The wheel is cut by the spread blade method, at rest (formate) or rolling with its crown gear: blade angles, point width
-and the place of the cutter are such that both flanks have their pressure angles, the tooth its thickness and the teeth
-on the mean their spiral angle at the calculation point P.
+and the place of the cutter are such that both flanks have their pressure angles, the tooth its thickness and the flank of
+the drive side its spiral angle at the calculation point P.
 
 The pinion is generated, both flanks with the same machine settings. What a flank should be is the conjugate of the
 wheel's less a mismatch: with the azimuth :math:`\Phi(\varrho, \alpha, z)` by which a point of space lies off the
@@ -204,12 +204,11 @@ def _wheel(blank: HypoidBlank, generation: Generation, edge_radius: float) -> Fa
 
     def residuals(unknowns: Array) -> Array:
         points = _cuts(cut(unknowns), rho, z)
-        (on_coast, coast_spiral), (on_drive, drive_spiral) = (_angles(outline, one.theta) for one in points)
+        (on_coast, _), (on_drive, drive_spiral) = (_angles(outline, one.theta) for one in points)
         tooth = 2.0 * pi / gear.teeth - float(points[1].theta.value[0] - points[0].theta.value[0])
         thickness = tooth * float(rho[0]) * cos(spiral)
-        mean = 0.5 * (coast_spiral + drive_spiral)
         return np.array(
-            [on_coast - coast, on_drive - drive, (thickness - gear.mean_normal_thickness) / radius, mean - spiral]
+            [on_coast - coast, on_drive - drive, (thickness - gear.mean_normal_thickness) / radius, drive_spiral - spiral]
         )
 
     solution = root(residuals, [coast, drive, gear.mean_slot_width, spiral], tol=1e-13)
