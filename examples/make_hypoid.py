@@ -2,8 +2,8 @@
 ======================================
 
 Make ``scenes/hypoid_13x42.toml``: pitch cones by method 1 of ISO 23509, blanks, and machine settings of both gears by
-local synthesis. Teeth, offset, wheel diameter, face width, cutter and factors are those of the second pair of annex F of
-ISO 23509, whose forces are in ISO/TR 10300-30; its taper is replaced by the duplex one, which suits a pinion both of
+local synthesis. Teeth, offset, wheel diameter, face width, cutter and factors are those of the second pair of annex F
+of ISO 23509, whose forces are in ISO/TR 10300-30; its taper is replaced by the duplex one, which suits a pinion both of
 whose flanks are cut at once.
 """
 

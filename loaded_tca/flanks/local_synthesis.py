@@ -1,8 +1,8 @@
 r"""Machine settings of face-milled hypoid and spiral bevel pairs by local synthesis, from their blanks.
 
 The wheel is cut by the spread blade method, at rest (formate) or rolling with its crown gear: blade angles, point width
-and the place of the cutter are such that both flanks have their pressure angles, the tooth its thickness and the flank of
-the drive side its spiral angle at the calculation point P.
+and the place of the cutter are such that both flanks have their pressure angles, the tooth its thickness and the flank
+of the drive side its spiral angle at the calculation point P.
 
 The pinion is generated, both flanks with the same machine settings. What a flank should be is the conjugate of the
 wheel's less a mismatch: with the azimuth :math:`\Phi(\varrho, \alpha, z)` by which a point of space lies off the
@@ -31,13 +31,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import atan, atan2, cos, hypot, pi, sin
+from typing import Literal
 
 import numpy as np
 from scipy.linalg import null_space
 from scipy.optimize import root
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import GeometryError, InputError, require
+from loaded_tca.errors import GeometryError, require
 from loaded_tca.flanks.base import Jet
 from loaded_tca.flanks.cradle import CradleGeneration, GeneratedPoints
 from loaded_tca.flanks.face_milled import GeneratedFlank
@@ -65,6 +66,7 @@ SETTLED = 1e-6
 """Steps below this, over what settings change easily by, end the search."""
 MOST_STEPS = 100
 LARGEST_STEP = 0.3
+
 
 @dataclass(frozen=True)
 class Mismatch:
@@ -145,9 +147,9 @@ def synthesised_gears(
     pinion = _Pinion(blank, mating, (mismatch, coast_mismatch), edge_radii[0]).solved()
     if pinion_hand == "right":
         return pinion, mating
+    hands: tuple[Literal["left"], Literal["right"]] = ("left", "right")
     first, second = (
-        replace(gear, blank=replace(gear.blank, hand=hand))
-        for gear, hand in ((pinion, "left"), (mating, "right"))
+        replace(gear, blank=replace(gear.blank, hand=hand)) for gear, hand in zip((pinion, mating), hands, strict=True)
     )
     return first, second
 
@@ -208,12 +210,19 @@ def _wheel(blank: HypoidBlank, generation: Generation, edge_radius: float) -> Fa
         tooth = 2.0 * pi / gear.teeth - float(points[1].theta.value[0] - points[0].theta.value[0])
         thickness = tooth * float(rho[0]) * cos(spiral)
         return np.array(
-            [on_coast - coast, on_drive - drive, (thickness - gear.mean_normal_thickness) / radius, drive_spiral - spiral]
+            [
+                on_coast - coast,
+                on_drive - drive,
+                (thickness - gear.mean_normal_thickness) / radius,
+                drive_spiral - spiral,
+            ]
         )
 
     solution = root(residuals, [coast, drive, gear.mean_slot_width, spiral], tol=1e-13)
     if np.abs(residuals(solution.x)).max() > MET:
-        raise GeometryError(f"wheel: no blades give its angles and thickness at the calculation point: {solution.message}")
+        raise GeometryError(
+            f"wheel: no blades give its angles and thickness at the calculation point: {solution.message}"
+        )
     return cut(solution.x)
 
 
@@ -269,7 +278,9 @@ def conjugate_flank(
     return slopes[[0, 2]] / ratio, np.array([envelope[0, 0], envelope[0, 2], envelope[2, 2]])
 
 
-def _off_the_wheel(wheel: GeneratedFlank, frame: OffsetFrame, rho: float, azimuth: float, z: float) -> tuple[Array, Array]:
+def _off_the_wheel(
+    wheel: GeneratedFlank, frame: OffsetFrame, rho: float, azimuth: float, z: float
+) -> tuple[Array, Array]:
     """Gradient (3,) and second derivatives (3, 3) of Phi by (rho, alpha, z) of the pinion."""
     radial = np.array([cos(azimuth), sin(azimuth), 0.0])
     around, axial = np.array([-radial[1], radial[0], 0.0]), np.array([0.0, 0.0, 1.0])
@@ -344,7 +355,9 @@ class _Pinion:
 
     def cut(self, unknowns: Array) -> FaceMilledGear:
         """Pinion with these settings."""
-        radial, roll, offset, back, base, root, helical, about, along, outer, inner, outside, inside = map(float, unknowns)
+        radial, roll, offset, back, base, root, helical, about, along, outer, inner, outside, inside = map(
+            float, unknowns
+        )
         machine = MachineSettings(
             radial=radial,
             cradle_angle=self.cradle_angle,
@@ -357,7 +370,9 @@ class _Pinion:
             swivel=atan2(along, about) if about or along else 0.0,
             helical_motion=helical,
         )
-        cutter = Cutter(Blade(outer, outside, edge_radius=self.edge_radius), Blade(inner, inside, edge_radius=self.edge_radius))
+        cutter = Cutter(
+            Blade(outer, outside, edge_radius=self.edge_radius), Blade(inner, inside, edge_radius=self.edge_radius)
+        )
         return FaceMilledGear(self.gear.teeth, self.outline, cutter, machine, "pinion")
 
     def conditions(self, unknowns: Array) -> Array:
@@ -412,10 +427,10 @@ class _Pinion:
         for _ in range(3):  # the last digits of the conditions alone
             met = self.conditions(unknowns)[:HARD]
             unknowns = unknowns - EASY * np.linalg.lstsq(self._slopes(unknowns)[:HARD], met, rcond=None)[0]
-        left = float(np.abs(self.conditions(unknowns)[:HARD]).max())
-        if left > MET:
+        miss = float(np.abs(self.conditions(unknowns)[:HARD]).max())
+        if miss > MET:
             raise GeometryError(
-                f"pinion: no settings meet all conditions at the calculation point; what is left is {left:.3g} mm; "
+                f"pinion: no settings meet all conditions at the calculation point; what is left is {miss:.3g} mm; "
                 "change the mismatch, the taper or the radius of the cutter"
             )
         return self._centred(unknowns)

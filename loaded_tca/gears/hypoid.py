@@ -152,8 +152,8 @@ class HypoidCones:
             if abs(zeta - before) <= CLOSED:
                 return cls((first, second), mean_cone_distances, zeta)
         raise InputError(
-            f"pitch_angles: with a wheel of {second:.6g} rad no pinion closes on an offset of {offset:g} mm and a shaft "
-            f"angle of {shaft_angle:.6g} rad"
+            f"pitch_angles: with a wheel of {second:.6g} rad no pinion closes on an offset of {offset:g} mm and a "
+            f"shaft angle of {shaft_angle:.6g} rad"
         )
 
     @property
@@ -187,7 +187,7 @@ class HypoidCones:
 
     @cached_property
     def apexes(self) -> Both:
-        """t_z of pinion and wheel: how far the pitch apexes lie beyond the crossing points, away from the teeth [mm]."""
+        """t_z of both gears: how far the pitch apexes lie beyond the crossing points, away from the teeth [mm]."""
         frame = self.frame(1)
         first, second = frame.crossing_points
         return float(first[2]), float((second - frame.origin) @ frame.axes[2])
@@ -208,7 +208,7 @@ class HypoidCones:
         """
         first, second = self.radii
         needed = second * teeth[0] / (first * teeth[1])
-        wheel = atan2(cos(self.offset_angle) - needed, sin(self.offset_angle))
+        wheel = atan((cos(self.offset_angle) - needed) / sin(self.offset_angle))
         return wheel + self.offset_angle, wheel
 
     def frame(self, hand: int) -> OffsetFrame:
@@ -318,7 +318,10 @@ def pitch_cones_by_method_1(
         *((0.0 < real(value) < inf, f"{name}: {value} is not positive and finite") for name, value in lengths.items()),
         *half_turn_checks(shaft_angle=shaft_angle),
         spiral_check("pinion_spiral_angle", pinion_spiral_angle),
-        (0.0 < abs(real(offset)) < inf, f"offset: {offset} mm; without an offset cones follow from the teeth (method 0)"),
+        (
+            0.0 < abs(real(offset)) < inf,
+            f"offset: {offset} mm; without an offset cones follow from the teeth (method 0)",
+        ),
     )
     method = _MethodOne(teeth, offset, wheel_diameter, face_width, pinion_spiral_angle, cutter_radius, shaft_angle)
     return method.solved()

@@ -1,4 +1,4 @@
-r"""Blanks of hypoid pairs: depths, cones with their apexes, face widths, spiral angles, thicknesses (ISO 23509, clause 7).
+r"""Blanks of hypoid pairs: depths, cones with their apexes, widths, spiral angles, thicknesses (ISO 23509, clause 7).
 
 What the standard computes from the pitch cones, whatever the method that they come from. Face and root cones of the
 pinion run parallel to those of the wheel in the planes that touch them, at the clearance c; with an offset a the pinion
@@ -103,7 +103,10 @@ class HypoidBlank:
         shallow = self.wheel_angles is None or all(abs(real(angle)) < _MAX_DEPTH_ANGLE for angle in self.wheel_angles)
         require(
             *teeth_checks(*self.teeth),
-            *((0.0 < real(width) < inf, f"{name}: {width} is not positive and finite") for name, width in widths.items()),
+            *(
+                (0.0 < real(width) < inf, f"{name}: {width} is not positive and finite")
+                for name, width in widths.items()
+            ),
             (
                 all(0.0 < real(angle) < _MAX_DEPTH_ANGLE for angle in self.pressure_angles),
                 f"pressure_angles: {self.pressure_angles} rad are not between 0 and 0.785 rad (45 deg)",
@@ -260,19 +263,28 @@ class HypoidBlank:
             )
         return asin(sine)
 
-    @cached_property
-    def pinion_boundaries(self) -> Both:
-        """R_i21, R_e21: cone distances of the wheel where the pinion's face begins and ends [mm]."""
-        mean, zeta = self.cones.mean_cone_distances[1], self.cones.offset_angle
-        toe, at, heel = self.pinion_cone_distances
-        first, second = (sqrt(mean**2 + step**2 + 2.0 * mean * step * cos(zeta)) for step in (toe - at, heel - at))
-        return first, second
+    def pinion_spiral_angle_at(self, cone_distance: float) -> float:
+        """Spiral angle of the pinion at one of its cone distances: that of the wheel there, and the offset angle [rad].
+
+        Raises
+        ------
+        GeometryError
+            If the circle of the cutter does not cross the place.
+        """
+        on_wheel = self.on_wheel(cone_distance)
+        return self.wheel_spiral_angle_at(on_wheel) + asin(self.cones.offset_in_pitch_plane / on_wheel)
+
+    def on_wheel(self, cone_distance: float) -> float:
+        """Cone distance of the wheel where a generatrix of the pinion, in the pitch plane, has one of its own [mm]."""
+        own, mean = self.cones.mean_cone_distances
+        step = cone_distance - own
+        return sqrt(mean**2 + step**2 + 2.0 * mean * step * cos(self.cones.offset_angle))
 
     @property
     def spiral_angles(self) -> tuple[Triple, Triple]:
         """Spiral angles of pinion and wheel at toe, calculation point, heel [rad]."""
-        in_plane = self.cones.offset_in_pitch_plane
-        pinion = [self.wheel_spiral_angle_at(distance) + asin(in_plane / distance) for distance in self.pinion_boundaries]
+        toe, _, heel = self.pinion_cone_distances
+        pinion = [self.pinion_spiral_angle_at(distance) for distance in (toe, heel)]
         wheel = [self.wheel_spiral_angle_at(distance) for distance in self.wheel_cone_distances]
         middle = self.pitch_cones.spiral_angles
         return (pinion[0], middle[0], pinion[1]), (wheel[0], middle[1], wheel[2])
@@ -303,9 +315,13 @@ class HypoidBlank:
     def _gear(self, member: int) -> BlankGear:
         sign = (1.0, -1.0)[member]
         module, pressure = self.mean_normal_module, 0.5 * sum(self.generated_pressure_angles)
-        face, root = self._planes[1] if member == 0 else (
-            self.cones.pitch_angles[1] + self.depth_angles[0],
-            self.cones.pitch_angles[1] - self.depth_angles[1],
+        face, root = (
+            self._planes[1]
+            if member == 0
+            else (
+                self.cones.pitch_angles[1] + self.depth_angles[0],
+                self.cones.pitch_angles[1] - self.depth_angles[1],
+            )
         )
         pitch = self.cones.pitch_angles[member]
         root, face = (pitch if abs(one - pitch) < _ROUNDING else one for one in (root, face))

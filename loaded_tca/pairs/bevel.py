@@ -253,9 +253,7 @@ def face_milled_pair(
     )
 
 
-def _require_mating_gears(
-    pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_flank: str, *, rolling: bool
-) -> None:
+def _require_mating_gears(pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_flank: str, *, rolling: bool) -> None:
     """Refuse gears of one hand, or whose pitch cones do not roll on each other."""
     problems = []
     if pinion_flank not in ("concave", "convex"):

@@ -68,8 +68,8 @@ class Blank(Section):
     face_width_mm: float = key(LENGTH_mm, "face width b")
     pitch_angle_deg: float = key(
         CONE_deg,
-        "pitch angle delta, as teeth and shaft angle (and of a pinion with an offset the other cones) ask for; its last "
-        "digits are taken from them",
+        "pitch angle delta, as teeth and shaft angle (and of a pinion with an offset the other cones) ask for; its "
+        "last digits are taken from them",
     )
     face_angle_deg: float = key(CONE_deg, "face angle delta_a")
     root_angle_deg: float = key(CONE_deg, "root angle delta_f")
@@ -107,7 +107,8 @@ class Machine(Section):
     root_angle_deg: float | None = key(CONE_deg, "machine root angle gamma_m", None, "that of the blank")
     machine_centre_to_back_mm: float = key(
         SETTING_mm,
-        "machine centre to back, Delta X_D, of the crossing point of the axes; positive withdraws the blank along its axis",
+        "machine centre to back, Delta X_D, of the crossing point of the axes; positive withdraws the blank along its "
+        "axis",
         0.0,
     )
     sliding_base_mm: float = key(
@@ -201,7 +202,9 @@ def _same_spheres(name: str) -> Rule:
 
 _SAME_POINT = rule(
     ("wheel.blank.calculation_cone_distance_mm", "pinion.blank.calculation_cone_distance_mm"),
-    lambda wheel, pinion: wheel == pinion or (None not in (wheel, pinion) and isclose(wheel, pinion, rel_tol=SAME_SPHERES)),
+    lambda wheel, pinion: (
+        wheel == pinion or (None not in (wheel, pinion) and isclose(wheel, pinion, rel_tol=SAME_SPHERES))
+    ),
     "found {0}; allowed pinion.blank.calculation_cone_distance_mm = {1}: without an offset both gears have one R_m",
 )
 
@@ -288,9 +291,7 @@ class FaceMilledScene(SpiralScene):
             return FaceMilledMesh(*gears(pitch_angles((self.pinion.teeth, self.wheel.teeth), shaft_angle)), shaft_angle)
         blanks = self.pinion.blank, self.wheel.blank
         first, second = (
-            hypoid.mean_distance(
-                one.outer_cone_distance_mm, one.face_width_mm, one.calculation_cone_distance_mm
-            )
+            hypoid.mean_distance(one.outer_cone_distance_mm, one.face_width_mm, one.calculation_cone_distance_mm)
             for one in blanks
         )
         angles = radians(blanks[0].pitch_angle_deg), radians(blanks[1].pitch_angle_deg)
@@ -300,17 +301,18 @@ class FaceMilledScene(SpiralScene):
         """Return the two generated flanks in space."""
         sides, mesh = self.sides(sense), self.mesh()
         _require_blades(mesh, sides)
-        return face_milled_pair(
-            mesh.pinion,
-            mesh.wheel,
-            pinion_flank=sides[0],
-            driving=self.geometry.driving,
-            shaft_angle=mesh.shaft_angle,
-            modifications=build_modifications(self.pinion, self.wheel),
-            mounting=BevelMounting(**in_base_units(self.mounting)),
-            materials=build_materials(self.materials),
-            offset=self.geometry.offset_mm,
-        )
+        with hypoid.offset_by_its_key():
+            return face_milled_pair(
+                mesh.pinion,
+                mesh.wheel,
+                pinion_flank=sides[0],
+                driving=self.geometry.driving,
+                shaft_angle=mesh.shaft_angle,
+                modifications=build_modifications(self.pinion, self.wheel),
+                mounting=BevelMounting(**in_base_units(self.mounting)),
+                materials=build_materials(self.materials),
+                offset=self.geometry.offset_mm,
+            )
 
     def active_starts(self) -> tuple[float, float]:
         """Return the form lines of pinion and wheel, from which their profiles are counted."""

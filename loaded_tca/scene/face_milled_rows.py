@@ -40,7 +40,7 @@ def geometry_rows(mesh: FaceMilledMesh, sides: Sides) -> list[Row]:
         ("hand of the spiral", *(gear.blank.hand for gear in mesh.gears)),
         ("flank in contact", *sides),
         *_blank_rows(mesh, points),
-        *_flank_rows(mesh, flanks),
+        *_flank_rows(flanks),
         *_machine_rows(mesh),
         *_blade_rows(mesh, sides),
     ]
@@ -113,7 +113,7 @@ def _outer_diameter(gear: FaceMilledGear) -> float:
     return 2.0 * gear.blank.outer_cone_distance * sin(gear.blank.pitch_angle)
 
 
-def _flank_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
+def _flank_rows(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
     """What the settings make of the flanks in contact, at their mean points."""
     heights = [
         tuple(

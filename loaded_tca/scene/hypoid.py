@@ -7,7 +7,8 @@ at t_z beyond it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from math import degrees, radians
 
@@ -40,6 +41,8 @@ def _closes(offset: float, shaft_angle: float, *cones: float) -> str | None:
     if not offset:
         return None
     (first, *pinion), (second, *wheel) = cones[:4], cones[4:]
+    if _off_face(*pinion) or _off_face(*wheel):
+        return None
     angles, distances = (radians(first), radians(second)), (mean_distance(*pinion), mean_distance(*wheel))
     try:
         closed = HypoidCones.closing(angles, distances, offset, radians(shaft_angle))
@@ -54,22 +57,41 @@ def _closes(offset: float, shaft_angle: float, *cones: float) -> str | None:
     )
 
 
+def _off_face(outer: float, width: float, given: float | None) -> str | None:
+    """What is wrong with a calculation point that lies off the face."""
+    if given is None or outer - width < given < outer:
+        return None
+    return f"found {given:g}; allowed on the face, between {outer - width:g} and outer_cone_distance_mm = {outer:g}"
+
+
 CONES = ("pitch_angle_deg", "outer_cone_distance_mm", "face_width_mm", "calculation_cone_distance_mm")
 CLOSED_AXES = Rule(
-    ("pair.offset_mm", "pair.shaft_angle_deg", *(f"{gear}.blank.{name}" for gear in ("pinion", "wheel") for name in CONES)),
+    (
+        "pair.offset_mm",
+        "pair.shaft_angle_deg",
+        *(f"{gear}.blank.{name}" for gear in ("pinion", "wheel") for name in CONES),
+    ),
     _closes,
 )
 """Of a face-milled scene."""
 
 ON_FACE = Rule(
     ("calculation_cone_distance_mm", "outer_cone_distance_mm", "face_width_mm"),
-    lambda given, outer, width: (
-        None
-        if given is None or outer - width < given < outer
-        else f"found {given:g}; allowed on the face, between {outer - width:g} and outer_cone_distance_mm = {outer:g}"
-    ),
+    lambda given, outer, width: _off_face(outer, width, given),
 )
 """Of a blank."""
+
+
+@contextmanager
+def offset_by_its_key() -> Iterator[None]:
+    """Call the offset by its key in what is said of flanks that do not fit it."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(
+            f"pair.offset_mm{problem.removeprefix('offset')}" if problem.startswith("offset:") else problem
+            for problem in error.problems
+        ) from None
 
 
 def hypoid_mesh(

@@ -1,7 +1,7 @@
 """Two face-milled gears on axes with an offset, solved by their five contact equations: nothing of the package in it.
 
-Surfaces are points of the cutters' cones in the course of the cradle, each with its own equation of meshing, in place of
-flanks theta = Theta(rho, z). The axes stand as in a housing, at right angles, with their common normal along y and the
+Surfaces are points of the cutters' cones in the course of the cradle, each with its own equation of meshing, in place
+of flanks theta = Theta(rho, z). The axes stand as in a housing, at right angles, with their common normal along y and the
 gears at the distances of a dimension sheet from it, in place of pitch cones that touch in a plane. What a sheet and two
 summaries of settings print is all that goes in. Derivatives are by complex steps; lengths in mm, angles in rad.
 """
@@ -87,7 +87,9 @@ def _solved(misses: Any, start: Vector) -> Vector:
     """Root of equations, refined by steps of Newton's method."""
     root = np.asarray(fsolve(misses, start, xtol=1e-14, full_output=True)[0])
     for _ in range(3):
-        slopes = np.array([(np.array(misses(root + step)) - misses(root - step)) / 2e-6 for step in 1e-6 * np.eye(len(root))])
+        slopes = np.array(
+            [(np.array(misses(root + step)) - misses(root - step)) / 2e-6 for step in 1e-6 * np.eye(len(root))]
+        )
         root = root - np.linalg.solve(slopes.T, misses(root))
     return root
 
@@ -152,7 +154,9 @@ class Housing:
         axis = np.array([sin(angle), 0.0, cos(angle)])
         to_point = np.array([0.0, beside - self.offset, along_pinion]) / second
         # the wheel's frame without errors: z along x, x towards P
-        turn = np.array([[cos(errors.angle), 0.0, sin(errors.angle)], [0.0, 1.0, 0.0], [-sin(errors.angle), 0.0, cos(errors.angle)]])
+        turn = np.array(
+            [[cos(errors.angle), 0.0, sin(errors.angle)], [0.0, 1.0, 0.0], [-sin(errors.angle), 0.0, cos(errors.angle)]]
+        )
         out = turn @ to_point
         self.axes = np.array([out, np.cross(axis, out), axis])
         self.origin = centre + errors.wheel * axis - np.array([0.0, 0.0, errors.pinion])
