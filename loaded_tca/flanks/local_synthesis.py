@@ -31,7 +31,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import atan, atan2, cos, hypot, pi, sin
-from typing import Literal
 
 import numpy as np
 from scipy.linalg import null_space
@@ -132,11 +131,11 @@ def synthesised_gears(
     >>> from math import degrees, radians
     >>> from loaded_tca.gears import HypoidBlank, pitch_cones_by_method_1
     >>> cones = pitch_cones_by_method_1((13, 42), 15.0, 170.0, 30.0, radians(50), 63.5)
-    >>> blank = HypoidBlank((13, 42), cones, 30.0, 63.5, profile_shift=0.3, wheel_angles=(radians(1), radians(4)))
+    >>> blank = HypoidBlank((13, 42), cones, 30.0, 63.5, profile_shift=0.3)
     >>> pinion, wheel = synthesised_gears(blank)
     >>> flank = GeneratedFlank(pinion, "concave")
     >>> round(degrees(flank.angles.spiral), 1), round(degrees(flank.angles.pressure), 1)
-    (-50.5, 17.7)
+    (-50.0, 17.7)
     """
     require(
         (pinion_hand in ("left", "right"), f"pinion_hand: {pinion_hand!r} is not 'left' or 'right'"),
@@ -147,11 +146,9 @@ def synthesised_gears(
     pinion = _Pinion(blank, mating, (mismatch, coast_mismatch), edge_radii[0]).solved()
     if pinion_hand == "right":
         return pinion, mating
-    hands: tuple[Literal["left"], Literal["right"]] = ("left", "right")
-    first, second = (
-        replace(gear, blank=replace(gear.blank, hand=hand)) for gear, hand in zip((pinion, mating), hands, strict=True)
+    return replace(pinion, blank=replace(pinion.blank, hand="left")), replace(
+        mating, blank=replace(mating.blank, hand="right")
     )
-    return first, second
 
 
 def _outline(blank: HypoidBlank, member: int) -> FaceMilledBlank:
@@ -304,8 +301,8 @@ def _off_the_wheel(
 
 EASY = np.array([3.0, 0.2, 5.0, 5.0, 5.0, 0.02, 2.0, 0.05, 0.05, 2.0, 2.0, 0.1, 0.1])
 """By how much the unknowns of the pinion change as easily as each other [mm, rad]: radial, ratio of roll, blank offset,
-machine centre to back, sliding base, root angle, helical motion, tilt about the radial line and along it, point radii of
-outside and inside blade, their angles."""
+machine centre to back, sliding base, root angle, helical motion, tilt about the radial line and along it, point radii
+of outside and inside blade, their angles."""
 DIFFERENCE = 1e-6
 """Step of differences, in parts of them."""
 HARD = 9

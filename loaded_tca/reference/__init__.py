@@ -1,4 +1,4 @@
-"""Closed forms that tests and users share: Hertz, punches, wedge, ISO 6336, ISO 1328, ISO 10300, Weber and Banaschek."""
+"""Closed forms that tests and users share: Hertz, punches, wedge, ISO 1328, 6336, 10300, Weber and Banaschek."""
 
 from typing import TYPE_CHECKING
 

@@ -1,9 +1,9 @@
 """Two face-milled gears on axes with an offset, solved by their five contact equations: nothing of the package in it.
 
 Surfaces are points of the cutters' cones in the course of the cradle, each with its own equation of meshing, in place
-of flanks theta = Theta(rho, z). The axes stand as in a housing, at right angles, with their common normal along y and the
-gears at the distances of a dimension sheet from it, in place of pitch cones that touch in a plane. What a sheet and two
-summaries of settings print is all that goes in. Derivatives are by complex steps; lengths in mm, angles in rad.
+of flanks theta = Theta(rho, z). The axes stand as in a housing, at right angles, with their common normal along y and
+the gears at the distances of a dimension sheet from it, in place of pitch cones that touch in a plane. What a sheet and
+two summaries of settings print is all that goes in. Derivatives are by complex steps; lengths in mm, angles in rad.
 """
 
 from __future__ import annotations
