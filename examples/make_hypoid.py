@@ -59,7 +59,7 @@ def blank() -> HypoidBlank:
 def table():
     """Sections of the scene, with all digits."""
     dimensions = blank()
-    gears = synthesised_gears(dimensions, "left", Mismatch(0.010, 0.050), edge_radii=(0.4, 0.5))
+    gears = synthesised_gears(dimensions, "left", Mismatch(0.010, 0.050), edge_radii=(0.7, 0.8))
     sections = hypoid_table(gears, dimensions.cones) | FURTHER
     for gear in ("pinion", "wheel"):
         sections[gear]["modifications"] = RELIEF
