@@ -93,7 +93,7 @@ def test_spiral_angles_of_annex_d_are_the_printed_ones():
 
 def test_clearance_of_the_blanks_is_found_by_the_cones():
     """Face and root cones come as near as the clearance, wherever."""
-    from loaded_tca.flanks.local_synthesis import _outline
+    from loaded_tca.flanks.hypoid_synthesis import _outline
     from loaded_tca.gears import Blade, Cutter, FaceMilledGear, HypoidMesh, MachineSettings
 
     blank = sample()

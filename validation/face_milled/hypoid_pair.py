@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.flanks.face_milled import GeneratedFlank
-from loaded_tca.flanks.local_synthesis import conjugate_flank
+from loaded_tca.flanks.hypoid_synthesis import conjugate_flank
 from loaded_tca.gears import (
     Blade,
     Cutter,
