@@ -1,8 +1,8 @@
 """A hypoid pair synthesised from its sheet
 ========================================
 
-Cut the hypoid pair 13/42 of :doc:`make_hypoid <make_hypoid>`'s sheet with three lengthwise crownings against the
-conjugate of the wheel, and draw the ease-off of the middle one: hypoid_pair.png.
+Cut the hypoid pair 13/42 of ``make_hypoid.py`` with three lengthwise crownings against the conjugate of the wheel, and
+draw the ease-off of the middle one: hypoid_pair.png.
 """
 
 from math import radians
