@@ -40,6 +40,7 @@ EXPECTED = {
     "plot_ease_off": (1.0, 1e-3),  # the crownings of both gears add up, to first order
     "plot_vh_check": (-1.0, 0.03),  # shifts under opposite errors: first order
     "plot_vh_under_load": (-1.0, 0.03),  # shifts under opposite errors: first order
+    "plot_hypoid_pair": (1.0, 1e-7),  # levers where P is held have the ratio of the teeth
     "plot_sensitivities": (1.0, 2e-3),  # the line of action turns the centre distance into sin(alpha_wt) of it
     "plot_monte_carlo": (1.0, 0.03),  # either sign of misalignment gathers the load; positions at 1 % of accuracy
     "plot_micro_geometry": (1.0, 1e-12),  # every step of crowning
