@@ -8,7 +8,7 @@ crowned flanks carry. Writes bevel_blank.png and prints the sheet.
 from pathlib import Path
 
 from loaded_tca import analyse, read_scene
-from loaded_tca.output.overview import describe_scene
+from loaded_tca.output import describe_scene
 from loaded_tca.plots import plot_pressure_envelope, save_figure
 
 SCENE = Path(__file__).parent / "scenes" / "spiral_bevel_blank.toml"
