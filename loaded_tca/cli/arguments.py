@@ -44,7 +44,7 @@ touch.
 
 files in DIR:
   shaft.csv                 motions along each shaft, one row per torque and place
-  bearings.csv              forces and moments on the bearings
+  bearings.csv              forces and moments on the bearings; of rolling bearings element force, pressure and life
   shaft.png                 outlines of the shafts, their deflection in two planes"""
 VH = """V and H are mounting errors: of bevel and face-milled gears the offset and the axial displacement of the pinion
 [mm], of cylindrical ones the errors of the axes in their plane and out of it [deg].
@@ -352,12 +352,13 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _list_of_pictures() -> str:
-    from loaded_tca.plots import ALWAYS, ON_REQUEST, ROOTS, SHARED
+    from loaded_tca.plots import ALWAYS, ON_REQUEST, ON_SUPPORTS, ROOTS, SHARED
 
     groups = (
         (None, ALWAYS),
         ("and where tooth pairs share the load", SHARED),
         ("and with analysis.root_stress = true", ROOTS),
+        ("and with sections for shafts or supports", ON_SUPPORTS),
         ("and, only with 'plot --all'", ON_REQUEST),
     )
     lines = []
