@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from loaded_tca.cli import commands as run_by
+from loaded_tca.cli import exchange
 from loaded_tca.cli.terminal import flush
 from loaded_tca.errors import InputError
 
@@ -94,8 +95,9 @@ STUDY = """files in DIR:
   study.rows.jsonl          the variants that are done; the same command goes on from there
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
-pictures, accuracy warnings with what to do, and the scene file; of a study what varies, the ranking, best and worst
-variant; of a design start and optimum. It prints on A4. Needs the package jinja2."""
+pictures, accuracy warnings with what to do, and the scene file; of a stage its phases, shares and orders; of a study
+what varies, the ranking, best and worst variant; of a design start and optimum. It prints on A4. Needs the package
+jinja2."""
 REVOLUTION = """files in DIR:
   revolution.nc             everything, to be read by loaded_tca.Revolution.load or xarray
   revolution.json           the key figures: single-flank deviations, orders, worst teeth
@@ -121,6 +123,12 @@ STAGE = """files in DIR:
   stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
   stage_orders.png          their orders of the mesh
 Numbers have their units in their names; docs/guide/planetary_stages.md says more."""
+IMPORT = """MODEL is a REXS file of version 1.0 to 1.7: XML (.rexs), JSON (.rexsj) or zip (.rexsz). FILE is a scene of
+the cylindrical stage: flanks, tools, modifications, materials, shafts, bearings, and the loads of other stages on the
+same shafts. What was not taken stands above the scene and is shown, with the ids of its
+components; docs/guide/gearbox_models.md says more."""
+EXPORT = """FILE is the model with the load distribution over the face, K_Hbeta, the mesh stiffness (version 1.5 on),
+deflection and torsion of the shafts and forces on their bearings; everything else and its format stay."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -154,8 +162,11 @@ def command_line() -> argparse.ArgumentParser:
     _add_comparisons(command)
     _add_tables_and_maps(command)
     _add_studies(command)
-    check = command("check", run_by.check, "read a scene and show its geometry, without computing a contact", None)
-    _add_scene(check)
+    _add_exchange(command)
+    text = "read a scene or a stage and show its geometry, without computing a contact"
+    check = command("check", run_by.check, text, None)
+    check.add_argument("scene", metavar="FILE.toml", help="scene file, or stage file")
+    _add_changes(check)
     return parser
 
 
@@ -174,7 +185,7 @@ def _add_analyses(command: Command) -> None:
     _add_scene(revolution)
     revolution.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     stage = command("stage", run_by.stage, "analyse a planetary stage: how its planets share the torque", STAGE)
-    stage.add_argument("stage", metavar="STAGE.toml", help="stage file")
+    stage.add_argument("scene", metavar="STAGE.toml", help="stage file")
     _add_changes(stage)
     stage.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
 
@@ -272,6 +283,26 @@ def _add_tables_and_maps(command: Command) -> None:
     _add_engine(vh)
 
 
+def _add_exchange(command: Command) -> None:
+    """Add the commands that read and write models of other programs."""
+    text = "write a stage of a gearbox model (REXS) as a scene; without --stage, show its stages"
+    reader = command("import", exchange.import_model, text, IMPORT)
+    reader.add_argument("model", metavar="MODEL", type=_path, help="REXS file")
+    reader.add_argument("--stage", metavar="ID", help="id of the stage")
+    reader.add_argument("--out", metavar="FILE", type=_path, help="scene file to write; default: it is shown")
+    reader.add_argument("--load-case", metavar="ID", help="load case whose torques and speeds hold; default: none")
+    text = "on the pinion, instead of what the loads on the shafts give"
+    reader.add_argument("--torque", metavar="NM", type=_torque, help=text)
+    writer = command(
+        "export", exchange.export_model, "write a gearbox model (REXS) with the numbers of a result", EXPORT
+    )
+    writer.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+    writer.add_argument("--model", metavar="MODEL", required=True, type=_path, help="REXS file that the scene is from")
+    writer.add_argument("--stage", metavar="ID", required=True, help="id of the stage")
+    writer.add_argument("--out", metavar="FILE", required=True, type=_path, help="REXS file to write")
+    writer.add_argument("--torque", metavar="NM", type=float, help="pinion torque of the numbers; default: largest")
+
+
 def _add_studies(command: Command) -> None:
     """Add studies and reports."""
     study = command(
@@ -288,8 +319,9 @@ def _add_studies(command: Command) -> None:
         default=(),
         help="variants, from 0, whose results are kept whole",
     )
-    report = command("report", run_by.report, "write a report of a result, a study or a design as HTML", REPORT)
-    text = "result.nc, study.nc, the file of a design, or the directory that holds one"
+    text = "write a report of a result, a planetary stage, a study or a design as HTML"
+    report = command("report", run_by.report, text, REPORT)
+    text = "result.nc, stage.nc, study.nc, the file of a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
     report.add_argument("--rank-by", metavar="FIGURE", help="of a study, the least is best; default: TE span")
@@ -360,6 +392,16 @@ def _path(text: str) -> Path:
     if not text:
         raise argparse.ArgumentTypeError("the name is empty; '.' is the directory that you are in")
     return Path(text)
+
+
+def _torque(text: str) -> float:
+    try:
+        torque = float(text)
+    except ValueError:
+        torque = math.nan
+    if not 0.0 < torque < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed a torque above 0 in N m")
+    return torque
 
 
 def _numbers(text: str) -> tuple[int, ...]:
