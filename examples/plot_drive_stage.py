@@ -1,8 +1,8 @@
 """A stage of a drive on its shafts, with its oil
 ==============================================
 
-The pinion overhangs its bearings, so that it tilts under load: the load over the face beside that on rigid supports, what
-a helix slope makes up for, and how the stage runs with its oil. Writes drive_stage.png and prints the numbers.
+The pinion overhangs its bearings, so that it tilts under load: the load over the face beside that on rigid supports,
+what a helix slope makes up for, and how the stage runs with its oil. Writes drive_stage.png and prints the numbers.
 """
 
 from pathlib import Path
