@@ -6,10 +6,9 @@ import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan, cos, degrees, radians, sin, tan
-from typing import ClassVar, Literal, get_args
+from typing import ClassVar, Literal
 
 from loaded_tca.errors import require
-from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.checks import LARGEST_PRESSURE_ANGLE
@@ -21,6 +20,7 @@ from loaded_tca.scene.bevel_blank import Blank, blank_rows, settings_table
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
+from loaded_tca.scene.machine_settings import METHODS, Method, Settings
 from loaded_tca.scene.model import Row, Scene, family, scene_from_table
 from loaded_tca.scene.section import Rule, as_table, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, ERROR_mm, Pair
@@ -42,12 +42,11 @@ OF_EQUATIONS = (
     "root_apex_mm",
 )
 """Keys of a gear that a face-milled one has in its blank, or not."""
-Method = Literal["duplex_spread_blade", "spread_blade"]
 ROUNDING = 1e-9
 """Cone angles closer than this [rad] are the same."""
 
 
-def _too_steep(normal: float | None, spiral: float | None) -> str | None:
+def too_steep(normal: float | None, spiral: float | None) -> str | None:
     """What is wrong with a normal pressure angle [deg] whose transverse one is more than a gear may have."""
     largest = degrees(atan(tan(LARGEST_PRESSURE_ANGLE) * cos(radians(spiral or 0.0))))
     if normal is None or normal <= largest:
@@ -59,7 +58,8 @@ def _too_steep(normal: float | None, spiral: float | None) -> str | None:
 SIZES = "outer_module_mm", "mean_normal_module_mm", "wheel_outer_diameter_mm"
 
 
-def _one_size(*values: float | None) -> str | None:
+def one_size(*values: float | None) -> str | None:
+    """What is wrong with the sizes that are given."""
     given = [name for name, value in zip(SIZES, values, strict=True) if value is not None]
     if len(given) == 1:
         return None
@@ -117,7 +117,7 @@ class Geometry(Pair):
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        Rule(SIZES, _one_size),
+        Rule(SIZES, one_size),
         rule(
             ("spiral_angle_deg", "type"),
             lambda spiral, kind: not spiral or kind == "spiral_bevel",
@@ -139,7 +139,7 @@ class Geometry(Pair):
             lambda *both: None in both,
             "found {0:g} beside pressure_angle_deg = {1:g}; give one of the two",
         ),
-        Rule(("normal_pressure_angle_deg", "spiral_angle_deg"), _too_steep),
+        Rule(("normal_pressure_angle_deg", "spiral_angle_deg"), too_steep),
     )
 
 
@@ -275,22 +275,23 @@ class BevelScene(SpiralScene, BlankScene):
             outer_module=self.outer_module,
         )
 
-    def face_milled(self, method: Method = "duplex_spread_blade") -> Scene:
-        """Return the face-milled scene of the blanks, with basic machine settings and cutters in closed form.
+    def face_milled(self, method: Method | Settings = "duplex_spread_blade") -> Scene:
+        """Return the face-milled scene of the blanks, with machine settings and cutters.
 
         Modifications, mounting errors, material, load and analysis are those of this scene.
 
         Parameters
         ----------
-        method : {"duplex_spread_blade", "spread_blade"}
-            See :mod:`loaded_tca.gears.basic_settings`.
+        method : {"duplex_spread_blade", "spread_blade", "local_synthesis"} or Settings
+            See :mod:`loaded_tca.gears.basic_settings` and :mod:`loaded_tca.pairs.local_synthesis`; or the section
+            [pair.settings], with what local synthesis is to reach.
 
         Raises
         ------
         InputError
-            If the scene has no [pair.blank] with a cutter radius, or the method is neither of the two.
+            If the scene has no [pair.blank] with a cutter radius, or the method is none of the three.
         GeometryError
-            If the gears cannot exist.
+            If the gears cannot exist, or there are no such settings.
 
         Examples
         --------
@@ -299,16 +300,18 @@ class BevelScene(SpiralScene, BlankScene):
         GearPair(14/39, module 3.20333 mm, face 25.4 mm)
         """
         blanks = self.blanks()
+        known = isinstance(method, Settings) or method in METHODS
         require(
-            (method in get_args(Method), f"method: {method!r} is not one of {', '.join(get_args(Method))}"),
+            (known, f"method: {method!r} is not one of {', '.join(METHODS)}"),
             (
                 blanks is not None and blanks.cutter_radius is not None,
                 "pair.blank.cutter_radius_mm: missing; machine settings follow from blanks and their cutter",
             ),
         )
         assert blanks is not None
-        settings = {"spread_blade": spread_blade, "duplex_spread_blade": duplex_spread_blade}[method]
-        gears = settings(blanks, self.hands[0])
+        settings = method if isinstance(method, Settings) else Settings(method=method)
+        flank = self.sides(self.sense)[0]
+        gears = settings.gears(blanks, self.hands[0], flank)
         table = {name: value for name, value in as_table(self).items() if name not in ("pair", "pinion", "wheel")}
         table["pair"] = {
             "type": "face_milled",

@@ -214,11 +214,14 @@ def settings_table(gear: FaceMilledGear) -> dict[str, Any]:
     lengths = {
         "blank": {"outer_cone_distance": blank.outer_cone_distance, "face_width": blank.face_width}
         | {name: getattr(blank, name) for name in ("face_apex", "root_apex")},
-        "machine": {name: getattr(machine, name) for name in ("radial", "sliding_base")},
+        "machine": {
+            name: getattr(machine, name)
+            for name in ("radial", "machine_centre_to_back", "sliding_base", "blank_offset")
+        },
     }
     angles = {
         "blank": {name: getattr(blank, name) for name in ("pitch_angle", "face_angle", "root_angle")},
-        "machine": {name: getattr(machine, name) for name in ("cradle_angle", "root_angle")},
+        "machine": {name: getattr(machine, name) for name in ("cradle_angle", "root_angle", "tilt", "swivel")},
     }
     table: dict[str, Any] = {
         name: {f"{key}_mm": value for key, value in lengths[name].items()}
@@ -226,7 +229,10 @@ def settings_table(gear: FaceMilledGear) -> dict[str, Any]:
         for name in lengths
     }
     table["blank"]["hand"] = blank.hand
-    table["machine"]["ratio_of_roll"] = machine.ratio_of_roll
+    table["machine"] |= {
+        name: getattr(machine, name) for name in ("ratio_of_roll", "modified_roll_2c", "modified_roll_6d", "generation")
+    }
+    table["machine"]["helical_motion_mm_per_rad"] = machine.helical_motion
     blades = {"concave": cutter.concave, "convex": cutter.convex}
     table["cutter"] = {"number": cutter.number} | {
         flank: {

@@ -44,7 +44,7 @@ from loaded_tca.scene.tolerance_class import scatter_of_class
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
 """Label and cells of a line of an overview."""
-_OF_FAMILIES = frozenset({"pair", "pair.type", "wheel", "wheel.teeth"})
+_OF_FAMILIES = frozenset({"pair", "pair.type", "pair.blank", "wheel", "wheel.teeth"})
 """Keys whose change may make a scene one of another family or variant."""
 
 

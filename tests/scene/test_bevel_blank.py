@@ -149,7 +149,7 @@ def test_command_writes_the_face_milled_scene(run, tmp_path):
     assert read_scene(tmp_path / "cut.toml") == annex_f2().face_milled()
     code, _, errors = run("settings", SCENES / "spur.toml", "--out", tmp_path / "other.toml")
     assert code == 2
-    assert "pair.type: allowed straight_bevel or spiral_bevel, with [pair.blank]" in errors[0]
+    assert "pair.type: allowed straight_bevel, spiral_bevel or face_milled, with [pair.blank]" in errors[0]
 
 
 def test_flanks_of_a_blank_are_conjugate():
