@@ -72,14 +72,14 @@ def test_contact_of_the_scene_is_as_its_settings_ask(example):
 
 
 def test_scene_of_few_keys_is_analysed_as_a_hertzian_contact():
-    """At the mean point, far from all edges: the asked accuracy of the peak pressure is 1 %."""
-    scene = parse_scene(SHORT).with_changes({"load.pinion_torque_Nm": 20.0, "analysis.positions": 1})
+    """At the mean point under a small torque, of an ellipse 3 mm long: the asked accuracy of its peak is 1 %."""
+    scene = parse_scene(SHORT).with_changes({"load.pinion_torque_Nm": 2.0, "analysis.positions": 1})
     assert isinstance(scene, BlankFaceMilledScene)
     result = analyse(scene.with_changes({"analysis.load_sharing": False}))
     pair = scene.pair()
     curvature = relative_curvature(pair, trace_contact(pair, [0.0])[0])
     hertz = point_contact(float(result.normal_force.max()), (curvature.across, curvature.along), pair.contact_modulus)
-    assert_allclose(result.peak_pressure.max(), hertz.max_pressure, rtol=1.5e-2)
+    assert_allclose(result.peak_pressure.max(), hertz.max_pressure, rtol=1e-2)
     assert scene.contact_sides == ("concave", "convex")
     assert scene.hands == ("right", "left")
 
