@@ -214,6 +214,8 @@ class SphericalInvoluteFlank(Flank):
         Toe and heel.
     apexes : (float, float) [mm]
         How far the apexes of both cones lie beyond that of the pitch cone, away from the teeth.
+    zero_distance : float [mm], optional
+        R_m, where theta = 0 on the pitch cone; None: in the middle of the face.
 
     Raises
     ------
@@ -230,6 +232,7 @@ class SphericalInvoluteFlank(Flank):
         cone_angles: tuple[float, float],
         cone_distances: tuple[float, float],
         apexes: tuple[float, float] = (0.0, 0.0),
+        zero_distance: float | None = None,
     ) -> None:
         base = math.asin(math.sin(pitch_angle) * math.cos(pressure_angle))
         seen = [
@@ -247,6 +250,7 @@ class SphericalInvoluteFlank(Flank):
         self.base_angle, self.side = base, side
         self.cone_angles, self.cone_distances, self.apexes = cone_angles, cone_distances, apexes
         self.mean_cone_distance = self.profile_unit = 0.5 * (cone_distances[0] + cone_distances[1])
+        self.zero_distance = self.mean_cone_distance if zero_distance is None else zero_distance
         self.roll_unit = math.sin(base)
         self._spiral = math.tan(spiral_angle) / math.sin(pitch_angle)
         self._pitch_involute = float(spherical_involute(np.array(pitch_angle), base))
@@ -270,9 +274,7 @@ class SphericalInvoluteFlank(Flank):
         if self._spiral == 0.0:
             return profile
         inverse = 1.0 / distance.value
-        logarithm = distance.compose(
-            np.log(distance.value / self.mean_cone_distance), inverse, lambda: -inverse * inverse
-        )
+        logarithm = distance.compose(np.log(distance.value / self.zero_distance), inverse, lambda: -inverse * inverse)
         return profile + logarithm * self._spiral
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:

@@ -1,13 +1,14 @@
 """One gear of a pair of bevel blanks: what follows from its cones, depths and thicknesses (ISO 23509).
 
-Lengths are in mm, angles in rad; arrays of three are values at toe, mid-face and heel. Along the face the depth follows
+Lengths are in mm, angles in rad; arrays of three are values at toe, mean point and heel. Along the face the depth follows
 straight cones; the tooth thickness follows the normal pitch, or where slots are of constant width what these leave.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import acos, cos, pi, sin, tan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from loaded_tca.gears.involute import involute
 
 Triple = tuple[float, float, float]
 
-SECTIONS = ("toe", "mid-face", "heel")
+SECTIONS = ("toe", "mean point", "heel")
 
 # Height over radius, or angle, below which the virtual gear is a rack: cancellation would cost more than curvature.
 _RACK = 1e-8
@@ -61,7 +62,7 @@ class BlankGear:
     pitch_angle, pressure_angle : float [rad]
         delta and alpha_n.
     cone_distances, spiral_angles : (float, float, float) [mm], [rad]
-        R and beta at toe, mid-face, heel.
+        R and beta at toe, mean point, heel.
     mean_addendum, mean_dedendum : float [mm]
         h_am and h_fm, normal to the pitch cone.
     addendum_angle, dedendum_angle : float [rad]
@@ -158,7 +159,7 @@ class BlankGear:
 
     @property
     def mean_slot_width(self) -> float:
-        """W_m, width of the slot at its bottom at mid-face, the theoretical point width of a cutter [mm]."""
+        """W_m, width of the slot at its bottom at the mean point, the theoretical point width of a cutter [mm]."""
         return float(self.slot_widths[1])
 
     @property
@@ -198,6 +199,33 @@ class BlankGear:
         angle = self.mean_normal_thickness * bend
         rise = 0.0 if abs(angle) < _RACK else sin(0.5 * angle) ** 2 / bend
         return self.mean_addendum + cos(self.pitch_angle) * rise
+
+    def with_cones(self, face: tuple[float, float] | None = None, root: tuple[float, float] | None = None) -> BlankGear:
+        """Return the gear between other cones, given by angle [rad] and t_z [mm]; its depths follow from them."""
+        changes: dict[str, Any] = {}
+        for name, cone, sign in (("addendum", face, 1.0), ("dedendum", root, -1.0)):
+            if cone is not None:
+                angle, apex = cone
+                above = angle - self.pitch_angle
+                height = (self.cone_distances[1] * sin(above) + apex * sin(angle)) / cos(above)
+                changes |= {f"{name}_angle": sign * above, f"mean_{name}": sign * height}
+                changes["face_apex" if face is cone else "root_apex"] = apex
+        return replace(self, **changes) if changes else self
+
+    @property
+    def edge_radius_of_slot(self) -> float:
+        r"""Largest radius of the blade tips that fit side by side on the bottom of the slot where it is narrowest [mm].
+
+        .. math:: r = \frac{W}{2 \tan(45° - \alpha_n/2)}
+        """
+        return 0.5 * float(self.slot_widths.min()) / tan(0.25 * pi - 0.5 * self.pressure_angle)
+
+    def edge_radius_of_clearance(self, clearance: float) -> float:
+        r"""Largest radius of the blade tips whose rounding stays below the mating gear's tip, c above the root [mm].
+
+        .. math:: r = \frac{c}{1 - \sin\alpha_n}
+        """
+        return clearance / (1.0 - sin(self.pressure_angle))
 
     def check(self, allow_undercut: bool) -> None:
         """Raise GeometryError where this gear cannot exist; the message says where, and what to change."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan, cos, degrees, radians, sin, tan
@@ -16,8 +15,9 @@ from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import spiral
-from loaded_tca.scene.bevel_blank import Blank, blank_rows, settings_table
+from loaded_tca.scene.bevel_blank import MEASURED, MEASURED_RULES, Blank, Measured, settings_table
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
+from loaded_tca.scene.blank_rows import blank_rows, common_blank_rows
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.machine_settings import METHODS, Method, Settings
@@ -28,6 +28,7 @@ from loaded_tca.scene.spiral import MountingErrors, SpiralScene
 
 SPIRAL_deg = Number(0.0, 59.0)
 CONE_deg = above_zero(179.0)
+DEPTH_mm = above_zero(1000.0)
 PRESSURE_deg = Number(1.0, 44.0)
 USUAL_PRESSURE_deg = 20.0
 OF_BLANK = "face_angle", "root_angle", "face_apex", "root_apex", "mean_normal_thickness"
@@ -40,6 +41,7 @@ OF_EQUATIONS = (
     "root_angle_deg",
     "face_apex_mm",
     "root_apex_mm",
+    *MEASURED,
 )
 """Keys of a gear that a face-milled one has in its blank, or not."""
 ROUNDING = 1e-9
@@ -153,6 +155,19 @@ class GearSection(BlankGearSection):
         ERROR_mm, "apex t_zF of the face cone, beyond the crossing point of the axes, away from the teeth", None, "0"
     )
     root_apex_mm: float | None = key(ERROR_mm, "apex t_zR of the root cone, likewise", None, "0")
+    mean_addendum_mm: float | None = key(
+        DEPTH_mm, "with [pair.blank]: measured mean addendum h_am, instead of data type I or II", None, "by the blank"
+    )
+    mean_dedendum_mm: float | None = key(
+        DEPTH_mm, "with [pair.blank]: measured mean dedendum h_fm, likewise", None, "by the blank"
+    )
+    mean_normal_thickness_mm: float | None = key(
+        DEPTH_mm,
+        "with [pair.blank]: measured mean normal thickness s_mn, circular, of both gears: backlash and thickness "
+        "modification follow",
+        None,
+        "by the blank",
+    )
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankGearSection.rules,
@@ -205,20 +220,12 @@ class BevelScene(SpiralScene, BlankScene):
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankScene.rules,
         rule(
-            ("wheel.face_width_mm", "pinion.face_width_mm"),
-            operator.eq,
+            ("wheel.face_width_mm", "pinion.face_width_mm", "pair.blank"),
+            lambda wheel, pinion, blank: blank is not None or wheel == pinion,
             "found {0:g}; allowed pinion.face_width_mm = {1:g}: both gears end on the same spheres",
         ),
         spiral.AXES_THAT_MEET,
-        *(
-            rule(
-                (f"{gear}.{name}", "pair.blank"),
-                lambda value, blank: blank is None or not value,
-                "found {0:g}; not allowed with [pair.blank], which has the depths and thicknesses",
-            )
-            for gear in ("pinion", "wheel")
-            for name in ("profile_shift", "face_angle_deg", "root_angle_deg")
-        ),
+        *MEASURED_RULES,
     )
 
     @property
@@ -249,7 +256,8 @@ class BevelScene(SpiralScene, BlankScene):
         assert wanted.mean_normal_module_mm is not None  # by the rules of the section
         pitch, _ = pitch_angles((self.pinion.teeth, self.wheel.teeth), radians(wanted.shaft_angle_deg))
         mean = wanted.mean_normal_module_mm / cos(radians(wanted.spiral_angle_deg or 0.0))
-        return mean + self.pinion.face_width_mm * sin(pitch) / self.pinion.teeth
+        outside = 1.0 if wanted.blank is None else 2.0 * wanted.blank.outer_face_share
+        return mean + outside * self.wheel.face_width_mm * sin(pitch) / self.pinion.teeth
 
     @property
     def normal_pressure_angle(self) -> float:
@@ -268,11 +276,12 @@ class BevelScene(SpiralScene, BlankScene):
             return None
         return self.geometry.blank.build(
             (self.pinion.teeth, self.wheel.teeth),
-            self.pinion.face_width_mm,
+            (self.pinion.face_width_mm, self.wheel.face_width_mm),
             shaft_angle=radians(self.geometry.shaft_angle_deg),
             spiral_angle=radians(self.geometry.spiral_angle_deg or 0.0),
             pressure_angle=self.normal_pressure_angle,
             outer_module=self.outer_module,
+            measured=Measured.of(self.pinion, self.wheel),
         )
 
     def face_milled(self, method: Method | Settings = "duplex_spread_blade") -> Scene:
@@ -337,6 +346,10 @@ class BevelScene(SpiralScene, BlankScene):
             if blanks is not None:
                 blank = blanks.pinion if name == "pinion" else blanks.wheel
                 values |= {each: getattr(blank, each) for each in OF_BLANK}
+                if blanks.has_own_faces:
+                    _, mean, outer = blank.cone_distances
+                    values["outer_module"] = 2.0 * outer * sin(pitch_angle) / own.teeth
+                    values["calculation_distance"] = mean
             return BevelGear(**values, pitch_angle=pitch_angle, name=name)
 
         pitches = pitch_angles((self.pinion.teeth, self.wheel.teeth), radians(self.geometry.shaft_angle_deg))
@@ -365,15 +378,16 @@ class BevelScene(SpiralScene, BlankScene):
         return mesh.pinion.unwound_arc(pinion), mesh.wheel.unwound_arc(wheel)
 
     def geometry_rows(self) -> Sequence[Row]:
-        """Return cones, cone distances, modules and contact ratios."""
-        mesh = self.mesh()
-        gear = mesh.pinion
+        """Return cones, cone distances, modules and contact ratios, and of blanks the dimension sheet."""
+        mesh, blanks = self.mesh(), self.blanks()
+        gear = mesh.wheel if blanks is not None and blanks.has_own_faces else mesh.pinion
         distances = (gear.outer_cone_distance, gear.mean_cone_distance, gear.inner_cone_distance)
         modules = (gear.outer_module, gear.mean_normal_module / cos(gear.spiral_angle))
         stated = self.geometry.normal_pressure_angle_deg
         if stated is None and self.geometry.blank is not None and self.geometry.pressure_angle_deg is None:
             stated = USUAL_PRESSURE_deg
         pressures = (gear.pressure_angle, atan(tan(gear.pressure_angle) * cos(gear.spiral_angle)))
+        widths = (gear.face_width,) if blanks is None or not blanks.has_own_faces else blanks.face_widths
         return [
             ("shaft angle Sigma [deg]", f"{degrees(mesh.shaft_angle):.4f}"),
             ("cone distances R_e, R_m, R_i [mm]", *(f"{distance:.4f}" for distance in distances)),
@@ -386,14 +400,22 @@ class BevelScene(SpiralScene, BlankScene):
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.transverse_contact_ratio + mesh.overlap_ratio:.4f}"),
-            ("face width b [mm]", f"{gear.face_width:.4f}"),
+            ("face width b [mm]", *(f"{width:.4f}" for width in widths)),
+            *(() if blanks is None else common_blank_rows(blanks, self.geometry.blank, self.data_type)),
             ("", "pinion", "wheel"),
             ("teeth z", str(mesh.pinion.teeth), str(mesh.wheel.teeth)),
             ("hand of the spiral", *(self.hands if gear.spiral_angle else ("none", "none"))),
             ("flank in contact", *self.contact_sides),
-            *_cone_rows(mesh),
-            *(_depth_rows(mesh) if (blanks := self.blanks()) is None else blank_rows(blanks, self.geometry.blank)),
+            *_cone_rows(mesh, seen=blanks is not None),
+            *(_depth_rows(mesh) if blanks is None else blank_rows(blanks)),
         ]
+
+    @property
+    def data_type(self) -> str:
+        """Type of the data of the blanks: I, II or measured."""
+        blank = self.geometry.blank
+        assert blank is not None
+        return blank.data_type if Measured.of(self.pinion, self.wheel).addenda is None else "measured"
 
     def interferences(self) -> Sequence[str]:
         """Return how the whole gears interfere without mounting errors."""
@@ -410,23 +432,34 @@ class BevelScene(SpiralScene, BlankScene):
         return spiral.force_rows((pair.pinion.nominal_flank, pair.wheel.nominal_flank), (first, second), torques)
 
 
-def _cone_rows(mesh: BevelMesh) -> list[Row]:
-    """Cone angles of both gears, diameters and depths at their pitch cones, and whether tips reach into fillets."""
+def _cone_rows(mesh: BevelMesh, *, seen: bool) -> list[Row]:
+    """Cone angles of both gears, diameters and depths at their pitch cones, and whether tips reach into fillets.
+
+    Angles of cones with apexes of their own are those ``seen`` from the pitch apex at mid-face.
+    """
+    aside = ", seen at R_m" if seen else ""
     gears = mesh.pinion, mesh.wheel
     starts = [active[0] for active in mesh.active_cones]
     angles = (
         ("pitch angle delta [deg]", [gear.pitch_angle for gear in gears]),
-        ("face angle delta_a [deg]", [gear.tip_angle for gear in gears]),
+        (f"face angle delta_a{aside} [deg]", [gear.tip_angle for gear in gears]),
         ("start of active profile, cone angle [deg]", starts),
         ("root form cone angle [deg]", [gear.form_angle for gear in gears]),
-        ("root angle delta_f [deg]", [gear.root_cone_angle for gear in gears]),
+        (f"root angle delta_f{aside} [deg]", [gear.root_cone_angle for gear in gears]),
         ("base cone angle delta_b [deg]", [gear.base_angle for gear in gears]),
     )
     lengths = (
-        ("outer pitch diameter d_e [mm]", [2.0 * gear.outer_cone_distance * sin(gear.pitch_angle) for gear in gears]),
-        ("mean pitch diameter d_m [mm]", [2.0 * gear.mean_cone_distance * sin(gear.pitch_angle) for gear in gears]),
-        ("mean addendum h_am [mm]", [_height(gear, gear.tip_angle) for gear in gears]),
-        ("mean dedendum h_fm [mm]", [-_height(gear, gear.root_cone_angle) for gear in gears]),
+        ()
+        if seen
+        else (
+            (
+                "outer pitch diameter d_e [mm]",
+                [2.0 * gear.outer_cone_distance * sin(gear.pitch_angle) for gear in gears],
+            ),
+            ("mean pitch diameter d_m [mm]", [2.0 * gear.mean_cone_distance * sin(gear.pitch_angle) for gear in gears]),
+            ("mean addendum h_am [mm]", [_height(gear, gear.tip_angle) for gear in gears]),
+            ("mean dedendum h_fm [mm]", [-_height(gear, gear.root_cone_angle) for gear in gears]),
+        )
     )
     interference = [start - gear.form_angle < ROUNDING for start, gear in zip(starts, gears, strict=True)]
     return [

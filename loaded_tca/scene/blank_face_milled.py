@@ -11,7 +11,8 @@ from loaded_tca.gears.face_milled import FaceMilledMesh
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import bevel, spiral
 from loaded_tca.scene.bevel import SIZES, BevelScene, GearSection, one_size, too_steep
-from loaded_tca.scene.bevel_blank import Blank, blank_rows
+from loaded_tca.scene.bevel_blank import Blank
+from loaded_tca.scene.blank_rows import blank_rows, common_blank_rows
 from loaded_tca.scene.face_milled import FaceMilledScene
 from loaded_tca.scene.keys import Choice, key
 from loaded_tca.scene.machine_settings import Method, Settings, mean_contact_rows
@@ -91,6 +92,20 @@ class BlankFaceMilledScene(BevelScene):
     wheel: GearSection = subsection(GearSection, "its mating gear")
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *BevelScene.rules,
+        rule(
+            ("wheel.face_width_mm", "pinion.face_width_mm"),
+            lambda wheel, pinion: wheel == pinion,
+            "found {0:g}; allowed pinion.face_width_mm = {1:g}: both face-milled gears end on the same spheres",
+        ),
+        rule(
+            ("pair.blank.outer_face_share",),
+            lambda share: share == 0.5,
+            "found {0:g}; allowed 0.5 of face-milled gears, whose calculation point lies in the middle of the face",
+        ),
+    )
+
     usual_flank = "concave"
 
     @classmethod
@@ -149,8 +164,8 @@ class BlankFaceMilledScene(BevelScene):
         """Return the dimension sheet of the blanks, angles of the flanks, machine settings, cutters, mean contact."""
         blanks, mesh = self.blanks(), self.mesh()
         assert blanks is not None
-        rows = [*self.cut.geometry_rows(), *blank_rows(blanks, self.geometry.blank)]
-        return [*rows, *mean_contact_rows(mesh.gears, self.sides(self.sense)[0])]
+        rows = [*common_blank_rows(blanks, self.geometry.blank, self.data_type), *self.cut.geometry_rows()]
+        return [*rows, *blank_rows(blanks), *mean_contact_rows(mesh.gears, self.sides(self.sense)[0])]
 
     def interferences(self) -> Sequence[str]:
         """Return how the whole gears interfere without mounting errors."""

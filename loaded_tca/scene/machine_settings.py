@@ -129,6 +129,14 @@ class Settings(Section):
                 "pair.blank.cutter_radius_mm: missing; machine settings follow from blanks and their cutter",
             ),
         )
+        largest = min(gear.edge_radius_of_slot for gear in (blanks.pinion, blanks.wheel))
+        require(
+            (
+                self.edge_radius_mm <= largest,
+                f"pair.settings.edge_radius_mm: found {self.edge_radius_mm:g}; allowed up to {largest:.4f}: both blades"
+                " of a slot would be rounded over more than its width",
+            ),
+        )
         if self.method in ways:
             return ways[self.method](blanks, pinion_hand, self.edge_radius_mm)
         basic = duplex_spread_blade(blanks, pinion_hand, self.edge_radius_mm, self.cutter_number)

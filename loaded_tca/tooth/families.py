@@ -249,6 +249,7 @@ class BevelTooth(ToothGeometry):
             (form, face),
             (gear.inner_cone_distance, gear.outer_cone_distance),
             (below, above),
+            gear.calculation_distance,
         )
 
     def modified(self, nominal: Flank) -> Flank:

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears import BevelBlank, duplex_spread_blade
-from loaded_tca.gears.bevel_blank import crown_gear_factors, usual_factors
+from loaded_tca.gears.blank_factors import crown_gear_factors, usual_factors
 from loaded_tca.pairs import MeanContact, face_milled_pair, local_synthesis, mean_contact
 from loaded_tca.pairs.local_synthesis import with_tooth_angle
 from loaded_tca.pairs.mean_contact import MARKING, mean_point

@@ -150,6 +150,11 @@ def test_usual_contact_of_the_convex_flank_is_the_mirror_image(example):
         ),
         ({"pair.settings.path_angle_deg": 0.0}, "pair.settings.path_angle_deg: found 0.0; allowed a number from 5 to"),
         ({"pair.settings.methods": "x"}, "pair.settings.methods: unknown key; did you mean .pair.settings.method"),
+        (
+            {"pinion.face_width_mm": 27.0},
+            r"wheel.face_width_mm: found 25.4; allowed pinion.face_width_mm = 27: both face-milled gears",
+        ),
+        ({"pair.blank.outer_face_share": 0.45}, "pair.blank.outer_face_share: found 0.45; allowed 0.5 of face-milled"),
         ({"pinion.profile_shift": 0.2}, r"pinion.profile_shift: found 0.2; not allowed with \[pair.blank\]"),
     ],
 )
@@ -161,6 +166,14 @@ def test_what_does_not_fit_is_refused_by_its_key(example, changes, told):
 def test_contact_that_cannot_be_is_refused_by_its_section(example):
     scene = example.with_changes({"pair.settings.path_angle_deg": 175.0, "pair.settings.contact_length_mm": 2.0})
     with pytest.raises(GeometryError, match=r"pair\.settings: path_angle: along 175 deg .* take a path more across"):
+        scene.pair()
+
+
+def test_blades_rounded_over_more_than_the_slot_are_refused(example):
+    scene = example.with_changes({"pair.settings.edge_radius_mm": 1.4})
+    with pytest.raises(
+        InputError, match=r"pair\.settings\.edge_radius_mm: found 1\.4; allowed up to 1\.3491: both blades"
+    ):
         scene.pair()
 
 
