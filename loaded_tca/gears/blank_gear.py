@@ -1,7 +1,8 @@
 """One gear of a pair of bevel blanks: what follows from its cones, depths and thicknesses (ISO 23509).
 
-Lengths are in mm, angles in rad; arrays of three are values at toe, mean point and heel. Along the face the depth follows
-straight cones; the tooth thickness follows the normal pitch, or where slots are of constant width what these leave.
+Lengths are in mm, angles in rad; arrays of three are values at toe, mean point and heel. Along the face the depth
+follows straight cones; the tooth thickness follows the normal pitch, or where slots are of constant width what these
+leave.
 """
 
 from __future__ import annotations
