@@ -213,6 +213,7 @@ def test_edge_contact_warns_once_and_exits_0(run):
     assert all(line.startswith("warning: ") for line in err)
     assert sum("edge of a flank" in line for line in err) == 1
     assert "note: at 3 of 3 positions the contact reaches an edge" in out
+    assert not {*err} & {*out}  # each line once, on a terminal
 
 
 @pytest.mark.usefixtures("blank_pictures")

@@ -28,6 +28,9 @@ EXPECTED = {
     "plot_transmission_error": (2.0 / 3.0, 5e-3),  # approach of a Hertz contact under growing load
     "plot_load_sharing": (1.0, 1e-3),  # half a pitch before and behind: the two pairs of one position
     "plot_revolution": (1.0, 1e-4),  # an eccentric wheel turns as far as its axis is off, loaded as unloaded
+    "plot_drive_stage": (1.0, 2e-3),  # bearings carry what the teeth press, whose normals lie 2 deg about one another
+    "plot_planetary_stage": (1.0, 1e-9),  # a sun that floats among three planets is pressed evenly
+    "plot_bevel_blank": (1.165, 2.5e-3),  # printed of virtual gears; of these flanks 1.1631
     "plot_tribology": (1.0, 1e-9),  # torques of friction do the friction power
     "plot_root_stress": (1.0, 1e-3),  # a pitch further the mesh is the same
     "plot_loaded_transmission_error": (1.0, 1e-3),  # a pitch further the mesh is the same
@@ -46,6 +49,9 @@ EXPECTED = {
 
 SHORTER = {
     "plot_tip_relief_and_rounding": {"RELIEFS": lambda _: [0.0, 12.0], "SCENE": lambda scene: few(scene, 3)},
+    "plot_drive_stage": {
+        "CHANGES": lambda changes: changes | {"analysis.positions": 3, "analysis.compliance": "contact"}
+    },
     "export_to_dynamics": {"SPEEDS": lambda _: np.linspace(0.3, 0.7, 33), "PHASES": lambda _: np.linspace(20, 24, 257)},
 }
 """Values, made of the example's own, without the analyses and times that its number does not depend on."""

@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, progress_bar, say_cost
+from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_summary, progress_bar, say_cost
 from loaded_tca.errors import InputError, named, reason_of, require
 
 if TYPE_CHECKING:
@@ -239,8 +239,7 @@ def _run_scene(scene: Scene, directory: Path) -> None:
         again = f"'loaded-tca plot {directory}' draws them"
         error.add_note(f"{directory}: the numbers are new, all pictures are missing: {again}")
         raise
-    print(result.summary(), end="\n\n")
-    print_files([*report, *pictures])
+    print_summary(result.summary(), [*report, *pictures])
 
 
 def revolution(options: argparse.Namespace) -> None:
@@ -256,8 +255,7 @@ def revolution(options: argparse.Namespace) -> None:
         result = analyse_revolution(scene, progress=progress)
     pictures = {f"{name}.png": png_of(draw(result)) for name, draw in REVOLUTION_PICTURES.items()}
     written = write_revolution(result, directory, pictures)
-    print(result.summary(), end="\n\n")
-    print_files(written)
+    print_summary(result.summary(), written)
 
 
 def tribology(options: argparse.Namespace) -> None:
@@ -281,8 +279,7 @@ def tribology(options: argparse.Namespace) -> None:
     found = changed.tribology(options.speed)
     pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(found).items()}
     written = write_tribology(found, directory, pictures)
-    print(found.summary(), end="\n\n")
-    print_files(written)
+    print_summary(found.summary(), written)
 
 
 OF_TRIBOLOGY = (
@@ -317,8 +314,7 @@ def stage(options: argparse.Namespace) -> None:
         result = analyse_stage(asked, progress=progress)
     pictures = {f"{name}.png": png_of(draw(result)) for name, draw in STAGE_PICTURES.items()}
     written = write_stage(result, directory, pictures)
-    print(result.summary(), end="\n\n")
-    print_files(written)
+    print_summary(result.summary(), written)
 
 
 def plot(options: argparse.Namespace) -> None:
@@ -358,8 +354,7 @@ def subsurface(options: argparse.Namespace) -> None:
     below = stress_below(result, torque, position, options.pair, gear=options.gear)
     pictures = {f"subsurface_{quantity}.png": png_of(plot_stress_below(below, quantity)) for quantity in NAMES}
     written = write_subsurface(below, directory, pictures)
-    print(below.summary(), end="\n\n")
-    print_files(written)
+    print_summary(below.summary(), written)
 
 
 def compare(options: argparse.Namespace) -> None:
@@ -394,8 +389,7 @@ def _compare(
         "compared_maps.png": png_of(plot_compared_maps(comparison, torque, position)),
     }
     written = write_comparison(comparison, directory, pictures)
-    print(summary, end="\n\n")
-    print_files(written)
+    print_summary(summary, written)
 
 
 def sensitivities(options: argparse.Namespace) -> None:
@@ -419,8 +413,7 @@ def sensitivities(options: argparse.Namespace) -> None:
     written = write_sensitivities(
         slopes, tolerances, directory, {f"{name}.png": png_of(figure) for name, figure in pictures.items()}
     )
-    print(text, end="\n\n")
-    print_files(written)
+    print_summary(text, written)
 
 
 def dynamics(options: argparse.Namespace) -> None:
@@ -534,8 +527,7 @@ def study(options: argparse.Namespace) -> None:
     rank_by = options.rank_by if options.rank_by in rows else None  # another one is told once all is written
     pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(rows, rank_by=rank_by).items()}
     written = write_study(rows, directory, pictures, rank_by)
-    print(study_summary(rows), end="\n\n")
-    print_files([directory / "study.nc", *written])
+    print_summary(study_summary(rows), [directory / "study.nc", *written])
     failed = (rows["status"] != "ok").values
     require(
         (rank_by == options.rank_by, f"--rank-by {options.rank_by}: not in study.csv; ranked by the default figure"),

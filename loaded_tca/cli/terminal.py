@@ -8,6 +8,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 from threading import Event, Thread
 from typing import TYPE_CHECKING, TextIO
@@ -46,6 +47,13 @@ def say(line: str) -> None:
             print(line, file=sys.stderr)
         except OSError:
             let_go(sys.stderr)
+
+
+def print_summary(text: str, paths: Sequence[Path]) -> None:
+    """Show a summary, and say which files were written; warnings that are told at the end are left out of it."""
+    told = {f"warning: {message}" for message in _messages()}
+    print("\n".join(line for line in text.splitlines() if line not in told), end="\n\n")
+    print_files(paths)
 
 
 def print_files(paths: Sequence[Path]) -> None:
@@ -121,14 +129,25 @@ def bar_of(what: str, whole: int, layout: str) -> Iterator[Callable[..., None] |
             ticking.join()
 
 
+_CAUGHT: ContextVar[Sequence[warnings.WarningMessage]] = ContextVar("caught", default=())
+"""Warnings that the command has raised so far."""
+
+
+def _messages() -> Counter[str]:
+    """Warnings that the command has raised so far, in one line each, and how many times."""
+    return Counter(" ".join(str(entry.message).split()) for entry in _CAUGHT.get())
+
+
 @contextmanager
 def warnings_in_one_line_each() -> Iterator[None]:
     """Collect warnings and tell each once, with its count, also if an error follows."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         warnings.simplefilter("ignore", ResourceWarning)  # files that an interrupt leaves open
+        before = _CAUGHT.set(caught)
         try:
             yield
         finally:
-            for message, count in Counter(" ".join(str(entry.message).split()) for entry in caught).items():
+            for message, count in _messages().items():
                 say(f"warning: {message}" + (f" ({count} times)" if count > 1 else ""))
+            _CAUGHT.reset(before)

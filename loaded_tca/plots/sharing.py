@@ -32,7 +32,7 @@ from loaded_tca.plots.style import (
     torque_styles,
     torques_with_panels,
 )
-from loaded_tca.results.load_factors import strip_borders, strip_forces
+from loaded_tca.results.load_factors import face_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.summary import signed
@@ -176,14 +176,18 @@ def plot_face_load(result: MeshCycle) -> Figure:
 
 
 def draw_face_load(axes: Axes, result: MeshCycle, styles: Iterable[tuple[int, str, str, str]]) -> None:
-    """Draw the load over the face width under torques, given by index, label, colour and marker, with their K_Hbeta."""
+    """Draw the load over the face width under torques, given by index, label, colour and marker.
+
+    With K_Hbeta, and how far the centre of the load is from the middle of the common face.
+    """
     pair, frame = result.gear_pair, result.gear_pair.pinion.flank.frame
-    borders = strip_borders(pair, result.path)
     for torque, label, colour, _ in styles:
-        maps = [one for row in result.maps[torque][:-1] for one in row if one is not None]
-        forces = np.sum([np.zeros(len(borders) - 1), *(strip_forces(pair, one, borders)[0] for one in maps)], axis=0)
-        factor = result.face_load_factor[torque]
-        text = label if np.isnan(factor) or label.startswith("_") else f"{label}, K_Hβ = {factor:.3g}"
+        borders, forces = face_forces(pair, result.path, result.maps[torque])
+        factor, text = result.face_load_factor[torque], label
+        if not (np.isnan(factor) or label.startswith("_")):
+            middles = 0.5 * (borders[1:] + borders[:-1])
+            centre = float(forces @ middles / forces.sum()) - 0.5 * float(borders[0] + borders[-1])
+            text = f"{label}, K_Hβ = {factor:.3g},\ncentre {centre:+.2g} mm from the middle"
         axes.stairs(forces / (len(result.path) - 1) / np.diff(borders), borders, color=colour, label=text)
     axes.set(xlabel=frame.labels[0], ylabel="normal force per face width [N/mm]")
     axes.set_ylim(bottom=0.0)

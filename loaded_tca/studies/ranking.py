@@ -34,6 +34,8 @@ MAIN_FIGURES = tuple(sorted(declared(lambda figure: figure.rank), key=lambda nam
 """Figures by which variants are compared unless others are asked for; the first one ranks them."""
 QUANTILE = 0.95
 """Of a figure over the samples of a combination."""
+FEWEST_SAMPLES = 2
+"""Of one sample nothing is known of its scatter."""
 
 
 def varied_keys(study: xarray.Dataset) -> list[str]:
@@ -103,7 +105,8 @@ def rank_combinations(
 ) -> pandas.DataFrame:
     """Combinations of the given values of a study with distributions, the best first.
 
-    Single samples say little of a design: the best one of many is lucky.
+    Single samples say little of a design: the best one of many is lucky. So is, by less, a design whose quantile lies
+    within a few standard errors of the next one: more samples tell them apart.
 
     Parameters
     ----------
@@ -116,8 +119,9 @@ def rank_combinations(
     pandas.DataFrame
         One row per combination: ``rank`` from 1, ``samples`` (how many are ok), the keys of factors and table, and of
         each figure, its worst value over the torques, the 95 % quantile over the samples (with ``largest_is_best`` the
-        5 % quantile), and ``warnings`` (of all samples). A combination without the figure has no rank. No rows where
-        every key has a distribution.
+        5 % quantile), and ``warnings`` (of all samples). ``standard_error``: how far other samples of that number would
+        scatter the quantile of the figure that ranks, in its unit (Maritz and Jarrett 1978; NaN for a single one). A
+        combination without the figure has no rank. No rows where every key has a distribution.
 
     Raises
     ------
@@ -140,17 +144,32 @@ def rank_combinations(
     keys = design_keys(study)
     figures = list(dict.fromkeys([*([by] if by else []), *main_figures(study)]))
     if not (keys and figures):
-        return pandas.DataFrame(columns=["rank", "samples", *keys, *figures, "warnings"])
+        return pandas.DataFrame(columns=["rank", "samples", *keys, *figures, "standard_error", "warnings"])
     groups = variants.groupby(keys, sort=False)
     ranked = groups[figures].quantile(1.0 - QUANTILE if largest_is_best else QUANTILE)
     ranked.insert(0, "samples", groups["status"].agg(lambda status: int((status == "ok").sum())))
+    ranked.insert(1, "standard_error", groups[figures[0]].agg(lambda values: _standard_error(values, largest_is_best)))
     ranked["warnings"] = groups["warnings"].sum()
     ranked = ranked.reset_index().sort_values(
         figures[0], kind="stable", ignore_index=True, ascending=not largest_is_best
     )
     ranked.insert(0, "rank", pandas.array(ranked.index + 1, dtype="Int64"))
     ranked.loc[ranked[figures[0]].isna(), "rank"] = pandas.NA
-    return ranked[["rank", "samples", *keys, *figures, "warnings"]]
+    return ranked[["rank", "samples", *keys, *figures, "standard_error", "warnings"]]
+
+
+def _standard_error(values: pandas.Series, largest_is_best: bool) -> float:
+    """Standard error of the quantile of a figure over the samples that are ok (Maritz and Jarrett 1978)."""
+    from scipy.stats import beta
+
+    known = np.sort(values.dropna().to_numpy())
+    if known.size < FEWEST_SAMPLES:
+        return float("nan")
+    if largest_is_best:
+        known = -known[::-1]
+    rank = np.ceil(QUANTILE * known.size)
+    weights = np.diff(beta.cdf(np.linspace(0.0, 1.0, known.size + 1), rank, known.size - rank + 1.0))
+    return float(np.sqrt(weights @ (known - weights @ known) ** 2))
 
 
 def rank_variants(

@@ -349,6 +349,8 @@ def test_load_over_the_face_width_carries_the_force_and_has_the_load_factor(name
         assert_allclose(load @ np.diff(borders), force, rtol=1e-6)
         assert_allclose(load.max() / load.mean(), cycle.face_load_factor[torque], rtol=ROUNDING)
         assert f"K_Hβ = {cycle.face_load_factor[torque]:.3g}" in steps.get_label()
+        middles = 0.5 * (borders[1:] + borders[:-1] - borders[0] - borders[-1])
+        assert f"centre {np.average(middles, weights=load):+.2g} mm from the middle" in steps.get_label()
     assert axes.get_xlabel() == cycle.gear_pair.pinion.flank.frame.labels[0]
 
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from loaded_tca.errors import InputError
-from loaded_tca.studies import rank_variants
+from loaded_tca.studies import rank_combinations, rank_variants
 from loaded_tca.studies.ranking import figure_values, main_figures, nominal_variant, varied_keys
 from tests.samples.study_datasets import LEAD, SCENE, TIP, dataset, grid
 
@@ -74,3 +74,22 @@ def test_nominal_variant_is_that_of_the_scene():
 def test_tables_of_words_and_numbers_are_ranked():
     study = dataset({"analysis.compliance": ["contact", "contact+tooth"], TIP: [0.0, 1.0]}, {"a_um": [2.0, 1.0]})
     assert rank_variants(study, "a_um")["analysis.compliance"].tolist() == ["contact+tooth", "contact"]
+
+
+@pytest.mark.parametrize(("samples", "sign"), [(20, 1.0), (20, -1.0), (100, 1.0)])
+def test_standard_error_of_a_rank_is_the_scatter_of_quantiles_of_other_samples(samples, sign):
+    """Sixty designs with samples of one even distribution: their quantiles scatter by what is told of each."""
+    values = np.random.default_rng(7).uniform(1.0, 2.0, (60, samples))
+    designs = np.repeat(np.arange(60.0), samples)
+    study = dataset({LEAD: designs.tolist(), TIP: [0.0] * designs.size}, {"face_load_factor": values.reshape(-1, 1)})
+    study[TIP].attrs["sampling"] = "distribution"
+    ranked = rank_combinations(study, "face_load_factor", largest_is_best=sign < 0.0)
+    scatter = ranked["face_load_factor"].std()
+    # of 60 designs the scatter itself is known to a tenth; the estimate of one from its few samples to a third
+    assert ranked["standard_error"].mean() == pytest.approx(scatter, rel=0.3)
+
+
+def test_one_sample_has_no_standard_error():
+    study = dataset({LEAD: [0.0, 3.0], TIP: [1.0, 2.0]}, {"face_load_factor": [[1.0], [2.0]]})
+    study[TIP].attrs["sampling"] = "distribution"
+    assert rank_combinations(study)["standard_error"].isna().all()
