@@ -31,6 +31,7 @@ EXPECTED = {
     "plot_drive_stage": (1.0, 2e-3),  # bearings carry what the teeth press, whose normals lie 2 deg about one another
     "plot_planetary_stage": (1.0, 1e-9),  # a sun that floats among three planets is pressed evenly
     "plot_bevel_blank": (1.165, 2.5e-3),  # printed of virtual gears; of these flanks 1.1631
+    "plot_local_synthesis": (1.0, 1e-3),  # motion curve asked for, by differences that leave a fourth derivative
     "plot_tribology": (1.0, 1e-9),  # torques of friction do the friction power
     "plot_root_stress": (1.0, 1e-3),  # a pitch further the mesh is the same
     "plot_loaded_transmission_error": (1.0, 1e-3),  # a pitch further the mesh is the same

@@ -67,3 +67,13 @@ def test_measured_gear_of_the_guide_has_the_allowance_that_it_says():
     gear = parse_scene(common + measured + rest + material).mesh().pinion
     assert round(gear.thickness_allowance, 3) == -0.130
     assert round(2.0 * gear.tip_radius, 2) == 380.75
+
+
+def test_sheet_of_the_guide_is_a_scene_whose_contact_can_be_changed():
+    page = (ROOT / "docs" / "guide" / "bevel_blanks.md").read_text(encoding="utf-8")
+    (sheet,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    assert parse_scene(sheet).cut.pinion.machine.blank_offset_mm != 0.0
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    made = {}
+    exec(code.replace("examples/", f"{(ROOT / 'examples').as_posix()}/"), made)
+    assert made["path"].transmission_error[0] < made["path"].transmission_error[1]
