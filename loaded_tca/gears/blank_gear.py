@@ -8,7 +8,7 @@ leave.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import acos, cos, pi, sin, tan
+from math import acos, cos, inf, pi, sin, tan
 from typing import Any
 
 import numpy as np
@@ -138,6 +138,35 @@ class BlankGear:
     def root_diameters(self) -> NDArray[np.float64]:
         """d_fi, d_fm, d_fe = d - 2 h_f cos(delta) [mm]."""
         return self.pitch_diameters - 2.0 * cos(self.pitch_angle) * self.dedenda
+
+    @property
+    def mean_point_to_crossing(self) -> float:
+        """t_zm = R_m cos(delta): calculation point from the crossing point of the axes, along the own axis [mm]."""
+        return self.cone_distances[1] * cos(self.pitch_angle)
+
+    @property
+    def outer_whole_depth(self) -> float:
+        r"""h_t, whole depth at the heel, normal to the root cone [mm].
+
+        .. math:: h_t = \frac{t_{xo} + t_{zF}}{\cos\delta_a} \sin(\theta_a + \theta_f)
+                  - (t_{zR} - t_{zF}) \sin\delta_f
+        """
+        along = (float(self.crown_to_crossing[2]) + self.face_apex) / cos(self.face_angle)
+        between = sin(self.addendum_angle + self.dedendum_angle)
+        return along * between - (self.root_apex - self.face_apex) * sin(self.root_angle)
+
+    @property
+    def thickness_coefficient(self) -> float:
+        """x_sm: what thickens the tooth beyond pi/2 and profile shift, over two mean normal modules; backlash in it."""
+        module = float(self.normal_pitches[1]) / pi
+        thick = 0.5 * self.mean_normal_thickness / module
+        return thick - 0.25 * pi - self.profile_shift * tan(self.pressure_angle)
+
+    @property
+    def virtual_diameter(self) -> float:
+        """d_mn of the virtual spur gear in the mean normal section; infinite of a crown gear [mm]."""
+        bend = float(self.virtual_curvatures[1])
+        return 2.0 / bend if bend else inf
 
     @property
     def crown_to_crossing(self) -> NDArray[np.float64]:

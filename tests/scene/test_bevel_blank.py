@@ -13,6 +13,7 @@ from loaded_tca.pairs import mating_teeth
 from loaded_tca.pairs.bevel import face_milled_pair
 from loaded_tca.scene import parse_scene, read_scene
 from loaded_tca.unloaded import trace_contact
+from loaded_tca.unloaded.curvature import relative_curvature
 from tests.samples.results import SCENES
 
 F2 = """
@@ -447,3 +448,10 @@ def test_largest_edge_radii_are_those_of_slot_and_clearance():
     # from the corner of bottom and flank to the foot of the circle: r (1 - sin alpha)/cos alpha
     assert_allclose(2.0 * radius * (1.0 - math.sin(alpha)) / math.cos(alpha), gear.slot_widths.min(), rtol=1e-12)
     assert_allclose(gear.edge_radius_of_clearance(0.8) * (1.0 - math.sin(alpha)), 0.8, rtol=1e-12)
+
+
+def test_radius_of_relative_curvature_of_annex_f2_is_that_of_iso_tr_10300_30():
+    """rho_rel 12.459 mm at the mean point of the conjugate flanks, normal to the contact line."""
+    pair = annex_f2().pair()
+    curvature = relative_curvature(pair, trace_contact(pair, [0.0])[0])
+    assert_allclose(1.0 / curvature.across, 12.459, atol=1e-3)
