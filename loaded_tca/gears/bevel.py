@@ -21,6 +21,7 @@ from loaded_tca.gears.checks import (
     spiral_check,
     teeth_checks,
 )
+from loaded_tca.gears.cutter_circle import CutterCircle
 from loaded_tca.gears.cylindrical_mesh import Room
 
 _EQUAL = 1e-9
@@ -49,7 +50,7 @@ def pitch_angles(teeth: tuple[int, int], shaft_angle: float) -> tuple[float, flo
 
 @dataclass(frozen=True)
 class BevelGear:
-    """Bevel gear with spherical involute teeth, straight or with a logarithmic spiral.
+    """Bevel gear with spherical involute teeth, straight, along a logarithmic spiral or the circle of a cutter.
 
     Parameters
     ----------
@@ -64,7 +65,8 @@ class BevelGear:
     pressure_angle : float [rad]
         alpha, transverse, on the pitch cone.
     spiral_angle : float [rad]
-        beta_m on the pitch cone, at every cone distance; right hand positive, left hand negative.
+        beta_m on the pitch cone, right hand positive, left hand negative; at every cone distance, or with a cutter
+        radius at R_m.
     profile_shift : float
         Coefficient x, in outer transverse modules.
     face_angle, root_angle : float [rad], optional
@@ -80,6 +82,8 @@ class BevelGear:
         s_mn on the pitch cone at R_m; None: as the profile shift makes it.
     calculation_distance : float [mm], optional
         R_m, of the calculation point; None: in the middle of the face.
+    cutter_radius : float [mm], optional
+        r_c0, whose circle the teeth follow lengthwise, with beta_m at R_m; None: a logarithmic spiral.
 
     Raises
     ------
@@ -114,6 +118,7 @@ class BevelGear:
     root_apex: float = 0.0
     mean_normal_thickness: float | None = None
     calculation_distance: float | None = None
+    cutter_radius: float | None = None
 
     def __post_init__(self) -> None:
         require(
@@ -140,6 +145,8 @@ class BevelGear:
                 f"{self.name}: face_width {self.face_width:.6g} mm reaches the apex: no face width is left at the toe; "
                 f"it must be below the outer cone distance {self.outer_cone_distance:.6g} mm"
             )
+        if self.cutter_circle is not None:
+            self.cutter_circle.check(self.name, (self.inner_cone_distance, self.outer_cone_distance))
         if self.root_cone_angle <= 0.0:
             raise GeometryError(
                 f"{self.name}: the root cone, {_degrees(self.root_cone_angle)}, reaches the axis; raise profile_shift"
@@ -186,6 +193,13 @@ class BevelGear:
         if self.calculation_distance is not None:
             return self.calculation_distance
         return self.outer_cone_distance - 0.5 * self.face_width
+
+    @property
+    def cutter_circle(self) -> CutterCircle | None:
+        """Circle that the teeth follow lengthwise; None: a logarithmic spiral."""
+        if self.cutter_radius is None or self.spiral_angle == 0.0:
+            return None
+        return CutterCircle(self.mean_cone_distance, abs(self.spiral_angle), self.cutter_radius)
 
     @property
     def mean_normal_module(self) -> float:
@@ -358,6 +372,10 @@ class BevelMesh:
         require(
             *pair_checks(first, second, of_both, "spiral_angle"),
             (rolls, f"pitch_angle: {pitches} do not roll on each other with {first.teeth}/{second.teeth} teeth"),
+            (
+                first.cutter_radius == second.cutter_radius,
+                f"cutter_radius: {first.cutter_radius} and {second.cutter_radius} mm must be equal",
+            ),
             (self.shaft_angle < pi, f"pitch_angle: the shaft angle, {shaft_angle}, is not below 180 deg"),
         )
 
@@ -436,11 +454,14 @@ class BevelMesh:
     @property
     def overlap_ratio(self) -> float:
         """eps_beta: turn of the pinion over which the spiral passes the face, in pitches."""
-        gear = self.pinion
-        turn = abs(tan(gear.spiral_angle)) / sin(gear.pitch_angle)
+        gear, circle = self.pinion, self.pinion.cutter_circle
         heel = min(self.pinion.outer_cone_distance, self.wheel.outer_cone_distance)
         toe = max(self.pinion.inner_cone_distance, self.wheel.inner_cone_distance)
-        return turn * log(heel / toe) * gear.teeth / (2.0 * pi)
+        if circle is None:
+            turn = abs(tan(gear.spiral_angle)) / sin(gear.pitch_angle) * log(heel / toe)
+        else:
+            turn = float(circle.turn(heel) - circle.turn(toe)) / sin(gear.pitch_angle)
+        return turn * gear.teeth / (2.0 * pi)
 
 
 def bevel_mesh(

@@ -346,6 +346,8 @@ class BevelScene(SpiralScene, BlankScene):
             if blanks is not None:
                 blank = blanks.pinion if name == "pinion" else blanks.wheel
                 values |= {each: getattr(blank, each) for each in OF_BLANK}
+                if self.geometry.blank is not None and self.geometry.blank.lengthwise_curve == "cutter_circle":
+                    values["cutter_radius"] = blanks.cutter_radius
                 if blanks.has_own_faces:
                     _, mean, outer = blank.cone_distances
                     values["outer_module"] = 2.0 * outer * sin(pitch_angle) / own.teeth

@@ -146,6 +146,12 @@ class Blank(Section):
     taper: Taper = key(
         Choice(("standard", "uniform", "duplex", "modified")), "how the depth falls from heel to toe", "standard"
     )
+    lengthwise_curve: Literal["logarithmic", "cutter_circle"] = key(
+        Choice(("logarithmic", "cutter_circle")),
+        "how straight and spiral bevel flanks run along the face: a logarithmic spiral, of one spiral angle, or the "
+        "circle of the cutter, through beta_m at R_m",
+        "logarithmic",
+    )
     outer_face_share: float = key(
         Number(0.05, 0.95),
         "c_be2, part of either face width between the calculation point R_m and the heel; both points are one",
@@ -183,6 +189,11 @@ class Blank(Section):
     mean_transverse_backlash_mm: float | None = key(BACKLASH_mm, "backlash j_mt2, instead of j_en", None, "by j_en")
 
     rules: ClassVar[tuple[Rule, ...]] = (
+        rule(
+            ("lengthwise_curve", "cutter_radius_mm"),
+            lambda curve, radius: radius is not None or curve == "logarithmic",
+            'found "{0}"; allowed with cutter_radius_mm, the radius of that circle',
+        ),
         Rule((*TYPE_I, *TYPE_II), _one_type),
         _one_of("thickness_factor", "wheel_slot_width_mm"),
         _one_of(*BACKLASHES),

@@ -100,6 +100,11 @@ class BlankFaceMilledScene(BevelScene):
             "found {0:g}; allowed pinion.face_width_mm = {1:g}: both face-milled gears end on the same spheres",
         ),
         rule(
+            ("pair.blank.lengthwise_curve",),
+            lambda curve: curve == "logarithmic",
+            'found "{0}"; not allowed with face-milled gears, whose flanks run as the cutter leaves them',
+        ),
+        rule(
             ("pair.blank.outer_face_share",),
             lambda share: share == 0.5,
             "found {0:g}; allowed 0.5 of face-milled gears, whose calculation point lies in the middle of the face",
@@ -164,7 +169,8 @@ class BlankFaceMilledScene(BevelScene):
         """Return the dimension sheet of the blanks, angles of the flanks, machine settings, cutters, mean contact."""
         blanks, mesh = self.blanks(), self.mesh()
         assert blanks is not None
-        rows = [*common_blank_rows(blanks, self.geometry.blank, self.data_type), *self.cut.geometry_rows()]
+        common = common_blank_rows(blanks, self.geometry.blank, self.data_type)
+        rows = [*(row for row in common if row[0] != "flanks along the face"), *self.cut.geometry_rows()]
         return [*rows, *blank_rows(blanks), *mean_contact_rows(mesh.gears, self.sides(self.sense)[0])]
 
     def interferences(self) -> Sequence[str]:

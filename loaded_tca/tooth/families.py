@@ -250,6 +250,7 @@ class BevelTooth(ToothGeometry):
             (gear.inner_cone_distance, gear.outer_cone_distance),
             (below, above),
             gear.calculation_distance,
+            gear.cutter_circle,
         )
 
     def modified(self, nominal: Flank) -> Flank:

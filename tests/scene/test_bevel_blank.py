@@ -455,3 +455,33 @@ def test_radius_of_relative_curvature_of_annex_f2_is_that_of_iso_tr_10300_30():
     pair = annex_f2(**{"pinion.modifications.lead_crowning_um": 0.01}).pair()
     curvature = relative_curvature(pair, trace_contact(pair, [0.0])[0])
     assert_allclose(1.0 / curvature.across, 12.459, atol=1e-3)
+
+
+def test_flanks_along_the_circle_of_the_cutter_are_conjugate_and_have_its_spiral_angles():
+    """beta_e 36.846 and beta_i 33.946 deg of annex F.2, on the flanks; its eps_vb of the whole face 1.443."""
+    scene = annex_f2(**{"pair.blank.lengthwise_curve": "cutter_circle"})
+    pair = scene.pair()
+    path = trace_contact(pair, np.linspace(-0.4, 0.4, 5) * pair.pitch)
+    assert_allclose(path.transmission_error, 0.0, atol=1e-12)
+    for gear, delta in ((pair.pinion, 19.7468), (pair.wheel, 70.2532)):
+        sine, cosine = math.sin(math.radians(delta)), math.cos(math.radians(delta))
+        for distance, printed in ((93.9726, 36.846), (81.273, 35.0), (68.5726, 33.946)):
+            rho, z = np.array(distance * sine), np.array(distance * cosine)
+            theta = gear.nominal_flank.theta(rho, z)
+            along = float(rho * (theta.rho * sine + theta.z * cosine))
+            assert_allclose(abs(math.degrees(math.atan(along))), printed, atol=1e-3)
+    assert row(scene, "overlap ratio eps_beta")[0] == pytest.approx(1.443, abs=0.03)  # the standard's of R_m alone
+    assert mating_teeth(pair).pinion is not None
+
+
+def test_circle_of_a_large_cutter_is_no_logarithmic_spiral():
+    told = {name: cells for name, *cells in annex_f2().geometry_rows()}["flanks along the face"]
+    assert told == ["logarithmic"]
+    with pytest.raises(InputError, match=r'pair\.blank\.lengthwise_curve: found "cutter_circle"; allowed with cutter'):
+        annex_f2(
+            **{
+                "pair.blank.lengthwise_curve": "cutter_circle",
+                "pair.blank.cutter_radius_mm": None,
+                "pair.blank.taper": "standard",
+            }
+        )
