@@ -5,8 +5,8 @@ from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, MatingTeeth, Sense, mating_teeth
 from loaded_tca.pairs.internal import internal_pair
-from loaded_tca.pairs.local_synthesis import local_synthesis, mean_contact
-from loaded_tca.pairs.mean_contact import MeanContact
+from loaded_tca.pairs.mean_point import MeanContact
+from loaded_tca.pairs.synthesis import local_synthesis, mean_contact
 
 __all__ = [
     "BevelMounting",

@@ -292,7 +292,7 @@ class BevelScene(SpiralScene, BlankScene):
         Parameters
         ----------
         method : {"duplex_spread_blade", "spread_blade", "local_synthesis"} or Settings
-            See :mod:`loaded_tca.gears.basic_settings` and :mod:`loaded_tca.pairs.local_synthesis`; or the section
+            See :mod:`loaded_tca.gears.basic_settings` and :mod:`loaded_tca.pairs.synthesis`; or the section
             [pair.settings], with what local synthesis is to reach.
 
         Raises

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, radians
+from math import cos, degrees, pi, radians
 from typing import ClassVar, Literal, get_args
 
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.basic_settings import Gears, duplex_spread_blade, spread_blade
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.face_milled import FlankName
-from loaded_tca.pairs.local_synthesis import local_synthesis, mean_contact, with_tooth_angle
-from loaded_tca.pairs.mean_contact import OTHER_FLANK, MeanContact
+from loaded_tca.pairs.mean_point import OTHER_FLANK, MeanContact
+from loaded_tca.pairs.synthesis import local_synthesis, mean_contact, with_tooth_angle
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Hand, Row
 from loaded_tca.scene.section import Rule, Section, rule
@@ -129,6 +129,12 @@ class Settings(Section):
                 "pair.blank.cutter_radius_mm: missing; machine settings follow from blanks and their cutter",
             ),
         )
+        internal = next((gear for gear in (blanks.pinion, blanks.wheel) if gear.root_angle >= 0.5 * pi), None)
+        if internal is not None:
+            raise GeometryError(
+                f"{internal.name}: a root angle of {degrees(internal.root_angle):.2f} deg is that of an internal bevel"
+                " gear, into which a cutter on a cradle does not reach; take a smaller shaft angle or ratio"
+            )
         largest = min(gear.edge_radius_of_slot for gear in (blanks.pinion, blanks.wheel))
         require(
             (

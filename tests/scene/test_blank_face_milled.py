@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import analyse
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.face_milled import tooth_angle
-from loaded_tca.pairs.mean_contact import MARKING
+from loaded_tca.pairs.mean_point import MARKING
 from loaded_tca.reference.hertz import point_contact
 from loaded_tca.scene import BlankFaceMilledScene, FaceMilledScene, parse_scene, read_scene
 from loaded_tca.unloaded import trace_contact
@@ -165,7 +165,15 @@ def test_what_does_not_fit_is_refused_by_its_key(example, changes, told):
 
 def test_contact_that_cannot_be_is_refused_by_its_section(example):
     scene = example.with_changes({"pair.settings.path_angle_deg": 175.0, "pair.settings.contact_length_mm": 2.0})
-    with pytest.raises(GeometryError, match=r"pair\.settings: path_angle: along 175 deg .* take a path more across"):
+    with pytest.raises(
+        GeometryError, match=r"pair\.settings: path_angle: a path at 175 deg .* take a path more across"
+    ):
+        scene.pair()
+
+
+def test_internal_bevel_gears_are_refused(example):
+    scene = example.with_changes({"pair.shaft_angle_deg": 150.0, "pair.blank.allow_undercut": True})
+    with pytest.raises(GeometryError, match=r"wheel: a root angle of 1\d\d\.\d+ deg is that of an internal bevel gear"):
         scene.pair()
 
 

@@ -244,12 +244,18 @@ class MeanField:
         pull = lever * float(mixed @ along) / behind
         of_path, skew = pull * (axes @ mixed)
         least = aim.least_curvature
-        if not of_path > least:
-            longest = math.inf if of_path <= 0.0 else math.sqrt(8.0 * MARKING / of_path)
+        if not behind > 0.0:
+            most = -self.hessian[0, 0] * (2.0 * math.pi / teeth) ** 2 / 8.0
             raise GeometryError(
-                f"path_angle: along {math.degrees(aim.path_angle):.4g} deg the relative curvature is"
-                f" {of_path:.4g} 1/mm with motion_fall = {aim.motion_fall:.4g} rad; a contact ellipse there is longer"
-                f" than {longest:.4g} mm, asked for are {aim.contact_length:.4g} mm; take a path more across the tooth"
+                f"motion_fall: {aim.motion_fall:.4g} rad; allowed below {most:.4g} rad, the fall of an edge at the mean"
+                " point"
+            )
+        if not of_path > least:
+            longest = math.sqrt(8.0 * MARKING / of_path) if of_path > 0.0 else math.inf
+            raise GeometryError(
+                f"path_angle: a path at {math.degrees(aim.path_angle):.4g} deg with motion_fall = {aim.motion_fall:.4g}"
+                f" rad needs a contact ellipse that is longer than {longest:.4g} mm; asked for are"
+                f" {aim.contact_length:.4g} mm: take a path more across the tooth"
             )
         across = least + skew**2 / (of_path - least)
         bend = axes.T @ np.array([[of_path, skew], [skew, across]]) @ axes / -lever

@@ -4,7 +4,7 @@ The wheel is given. The settings of the pinion are those next to the ones given 
 :mod:`loaded_tca.gears.basic_settings`) at which
 
 - the flank asked for has, at the mean point, the slopes and bends of
-  :meth:`~loaded_tca.pairs.mean_contact.MeanField.flank_for`: it touches the wheel there, with the second derivative of
+  :meth:`~loaded_tca.pairs.mean_point.MeanField.flank_for`: it touches the wheel there, with the second derivative of
   the motion curve, the direction of the path and the length of the contact ellipse asked for (five equations);
 - the other flank, cut in the same pass (completing), touches its mating flank at the mean point (two equations), or
   has what is asked of it as well (five);
@@ -29,14 +29,14 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import newton
+from scipy.optimize import least_squares, newton
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.face_milled import tooth_angle as tooth_angle_of
 from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 from loaded_tca.pairs.bevel import BevelMounting
-from loaded_tca.pairs.mean_contact import (
+from loaded_tca.pairs.mean_point import (
     OTHER_FLANK,
     LocalFlank,
     MeanContact,
@@ -69,7 +69,8 @@ FOR_BOTH = "root_angle", "tilt_along", "tilt_across", "modified_roll_2c", "helic
 """Those that change only where the others cannot do it."""
 LENGTHS = "radial", "machine_centre_to_back", "sliding_base", "blank_offset", "helical_motion", "point_radius"
 USUAL_DISTANCE = 80.0
-MOST_STEPS, HALVINGS = 40, 12
+MOST_STEPS, HALVINGS, MOST_TRIALS = 40, 12, 200
+FAR = 1e3
 RESOLVED = 1e-11
 """Residuals (scaled to the mean cone distance) that end the iteration, far below what machines are set to."""
 DIFFERENCE = 1e-5
@@ -134,8 +135,9 @@ def local_synthesis(
     settings = settings or _solve(pinion, asked, tuple(SCALES))
     if settings is None:
         raise GeometryError(
-            "pinion: no machine settings are found that give the contact asked for; ask for less: a path_angle nearer"
-            " to that of the settings to start from, another contact_length or motion_fall"
+            "pinion: no machine settings are found that give the contact asked for; ask for less (a path_angle nearer"
+            " to that of the settings to start from, another contact_length or motion_fall), or take a cutter radius"
+            " nearer to the mean cone distance"
         )
     return settings
 
@@ -266,34 +268,64 @@ class _NotCutError(Exception):
     """Settings that do not cut the mean point, toe or heel."""
 
 
-def _solve(pinion: FaceMilledGear, asked: _Asked, names: tuple[str, ...]) -> FaceMilledGear | None:
-    """Newton's method, with steps halved while they lead away; the nearest solution where there are several."""
-    size = pinion.blank.mean_cone_distance / USUAL_DISTANCE
-    scales = np.array([SCALES[name] * (size if name.rpartition(".")[2] in LENGTHS else 1.0) for name in names])
+class _Equations:
+    """What is left of the equations over changes of some settings, each in its scale."""
 
-    def gear(changes: Array) -> FaceMilledGear:
-        return _changed(pinion, dict(zip(names, (changes * scales).tolist(), strict=True)))
+    def __init__(self, pinion: FaceMilledGear, asked: _Asked, names: tuple[str, ...]) -> None:
+        size = pinion.blank.mean_cone_distance / USUAL_DISTANCE
+        scales = [SCALES[name] * (size if name.rpartition(".")[2] in LENGTHS else 1.0) for name in names]
+        self.pinion, self.asked, self.names, self.scales = pinion, asked, names, np.array(scales)
+        self.count = asked.misses(pinion, self._root_line).size
 
-    def misses(changes: Array) -> Array:
+    @property
+    def _root_line(self) -> bool:
+        return "root_angle" in self.names
+
+    def gear(self, changes: Array) -> FaceMilledGear:
+        """The pinion with its settings changed."""
+        return _changed(self.pinion, dict(zip(self.names, (changes * self.scales).tolist(), strict=True)))
+
+    def misses(self, changes: Array) -> Array:
+        """What is left; FAR everywhere where the mean point is not cut, or a blade stands beyond its range."""
         try:
-            return asked.misses(gear(changes), len(names) == len(SCALES))
-        except (_NotCutError, InputError):  # the mean point is not cut, or a blade stands beyond its range
-            return np.full(1, np.inf)
+            return self.asked.misses(self.gear(changes), self._root_line)
+        except (_NotCutError, InputError):
+            return np.full(self.count, FAR)
 
-    changes, steps = np.zeros(len(names)), DIFFERENCE * np.eye(len(names))
-    left = misses(changes)
+    def slopes(self, changes: Array) -> Array:
+        """Differences of what is left by every change."""
+        steps = DIFFERENCE * np.eye(len(self.names))
+        both = [self.misses(changes + step) - self.misses(changes - step) for step in steps]
+        return np.stack(both, axis=1) / (2.0 * DIFFERENCE)
+
+
+def _solve(pinion: FaceMilledGear, asked: _Asked, names: tuple[str, ...]) -> FaceMilledGear | None:
+    """Newton's method to the nearest solution, and where it leads nowhere least squares, of more reach."""
+    equations = _Equations(pinion, asked, names)
+    start = np.zeros(len(names))
+    found = _newton(equations, start, nearest=True)
+    if found is None and len(names) == len(SCALES):
+        reached = least_squares(equations.misses, start, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=MOST_TRIALS)
+        found = _newton(equations, reached.x, nearest=False)
+    return None if found is None else equations.gear(found)
+
+
+def _newton(equations: _Equations, changes: Array, *, nearest: bool) -> Array | None:
+    """Root of the equations by steps that are halved while they lead away.
+
+    Of several solutions of the linear equations it takes the one ``nearest`` to no change at all, or to where it is.
+    """
+    left = equations.misses(changes)
     for _ in range(MOST_STEPS):
         if _size(left) <= RESOLVED:
-            return gear(changes)
-        both = [(misses(changes + step), misses(changes - step)) for step in steps]
-        if not all(np.isfinite(one).all() and np.isfinite(other).all() for one, other in both):
-            break
-        slopes = np.stack([(one - other) / (2.0 * DIFFERENCE) for one, other in both], axis=1)
-        step = np.linalg.lstsq(slopes, slopes @ changes - left, rcond=SINGULAR)[0] - changes
+            return changes
+        slopes = equations.slopes(changes)
+        kept = changes if nearest else 0.0 * changes
+        step = np.linalg.lstsq(slopes, slopes @ kept - left, rcond=SINGULAR)[0] - kept
         trials = ((changes + 0.5**halving * step) for halving in range(HALVINGS))
-        better = next(((trial, new) for trial in trials if _size(new := misses(trial)) < _size(left)), None)
+        better = next(((trial, new) for trial in trials if _size(new := equations.misses(trial)) < _size(left)), None)
         if better is None:
-            break
+            return None
         changes, left = better
     return None
 

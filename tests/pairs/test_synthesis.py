@@ -11,8 +11,8 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears import BevelBlank, duplex_spread_blade
 from loaded_tca.gears.blank_factors import crown_gear_factors, usual_factors
 from loaded_tca.pairs import MeanContact, face_milled_pair, local_synthesis, mean_contact
-from loaded_tca.pairs.local_synthesis import with_tooth_angle
-from loaded_tca.pairs.mean_contact import MARKING, mean_point
+from loaded_tca.pairs.mean_point import MARKING, mean_point
+from loaded_tca.pairs.synthesis import with_tooth_angle
 from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.curvature import relative_curvature
 from tests.samples.face_milled import matched_pinion, published_wheel
@@ -153,14 +153,30 @@ def test_larger_pair_of_the_same_form_has_larger_settings_of_the_same_form():
 
 def test_ellipse_shorter_than_the_path_allows_is_refused_with_the_least_length():
     basic, wheel = start()
-    with pytest.raises(GeometryError, match=r"path_angle: along 178 deg .* is longer than .* take a path more across"):
+    with pytest.raises(GeometryError, match=r"path_angle: a path at 178 deg .* longer than .* take a path more across"):
         local_synthesis(basic, wheel, asked(path=178.0, length=2.0))
 
 
+def test_uniform_depth_and_small_cutters_take_all_settings():
+    """Their basic settings are far off, and few settings find nothing."""
+    for basic, wheel in (start(taper="uniform"), start(taper="modified", cutter=60.0)):
+        pinion = local_synthesis(basic, wheel, asked())
+        assert_is_asked(measured(pinion, wheel, "concave"), asked())
+        assert pinion.machine.tilt != 0.0
+
+
 def test_settings_that_are_not_found_are_told():
-    basic, wheel = start(taper="uniform")
+    basic, wheel = start()
     with pytest.raises(GeometryError, match="no machine settings are found that give the contact asked for"):
-        local_synthesis(basic, wheel, asked())
+        local_synthesis(basic, wheel, asked(path=90.0, length=1.0))
+
+
+def test_fall_beyond_that_of_an_edge_is_refused():
+    basic, wheel = start()
+    with pytest.raises(
+        GeometryError, match=r"motion_fall: 0.009696 rad; allowed below 0.00\d+ rad, the fall of an edge"
+    ):
+        local_synthesis(basic, wheel, asked(fall=2000.0))
 
 
 def test_formate_pinion_and_missing_blades_are_refused():
