@@ -69,8 +69,10 @@ FOR_BOTH = "root_angle", "tilt_along", "tilt_across", "modified_roll_2c", "helic
 """Those that change only where the others cannot do it."""
 LENGTHS = "radial", "machine_centre_to_back", "sliding_base", "blank_offset", "helical_motion", "point_radius"
 USUAL_DISTANCE = 80.0
-MOST_STEPS, HALVINGS, MOST_TRIALS = 40, 12, 200
-FAR = 1e3
+MOST_STEPS, HALVINGS, MOST_TRIALS = 15, 6, 200
+"""Of Newton's method, and calls of the search by least squares."""
+FAR, NEAR = 1e3, 1e-8
+"""What is left where nothing is cut; relative change that ends the search by least squares, whose end is a start."""
 RESOLVED = 1e-11
 """Residuals (scaled to the mean cone distance) that end the iteration, far below what machines are set to."""
 DIFFERENCE = 1e-5
@@ -305,7 +307,7 @@ def _solve(pinion: FaceMilledGear, asked: _Asked, names: tuple[str, ...]) -> Fac
     start = np.zeros(len(names))
     found = _newton(equations, start, nearest=True)
     if found is None and len(names) == len(SCALES):
-        reached = least_squares(equations.misses, start, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=MOST_TRIALS)
+        reached = least_squares(equations.misses, start, xtol=NEAR, ftol=NEAR, gtol=NEAR, max_nfev=MOST_TRIALS)
         found = _newton(equations, reached.x, nearest=False)
     return None if found is None else equations.gear(found)
 

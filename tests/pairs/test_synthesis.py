@@ -173,9 +173,7 @@ def test_settings_that_are_not_found_are_told():
 
 def test_fall_beyond_that_of_an_edge_is_refused():
     basic, wheel = start()
-    with pytest.raises(
-        GeometryError, match=r"motion_fall: 0.009696 rad; allowed below 0.00\d+ rad, the fall of an edge"
-    ):
+    with pytest.raises(GeometryError, match=r"motion_fall: 0.009696 rad; allowed below .* the fall of an edge"):
         local_synthesis(basic, wheel, asked(fall=2000.0))
 
 
