@@ -42,6 +42,7 @@ UNITS = {
     "Nm": Unit("N m", "N mm", 1e3),
     "MPa": Unit("MPa", "MPa", 1.0),
     "N": Unit("N", "N", 1.0),
+    "Mrev": Unit("million revolutions", "million revolutions", 1.0),
     "rpm": Unit("1/min", "1/min", 1.0),
     "C": Unit("°C", "°C", 1.0),
     "mm2_s": Unit("mm²/s", "mm²/s", 1.0),

@@ -49,6 +49,7 @@ CASES = (
     "cylindrical.metric_gear_technology",
     "loaded.limits",
     "loaded.revolution",
+    "loaded.rolling_bearings",
     "loaded.cut_contacts",
     "loaded.mesh_stiffness",
     "loaded.local_term",

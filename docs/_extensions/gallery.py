@@ -30,7 +30,7 @@ def prepare() -> None:
         shutil.copy2(path, WORKING_DIRECTORY)
     with zipfile.ZipFile(ARCHIVE, "w", zipfile.ZIP_DEFLATED) as archive:
         for path in sorted(
-            [*EXAMPLES.glob("*.py"), *(one for one in EXAMPLES.glob("*/*") if one.suffix in (".toml", ".csv"))]
+            [*EXAMPLES.glob("*.py"), *(one for one in EXAMPLES.glob("*/*") if one.suffix in (".toml", ".csv", ".rexs"))]
         ):
             archive.write(path, path.relative_to(EXAMPLES.parent))
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from loaded_tca.cli import commands as run_by
+from loaded_tca.cli import exchange
 from loaded_tca.cli.terminal import flush
 from loaded_tca.errors import InputError
 
@@ -44,7 +45,7 @@ touch.
 
 files in DIR:
   shaft.csv                 motions along each shaft, one row per torque and place
-  bearings.csv              forces and moments on the bearings
+  bearings.csv              forces and moments on the bearings; of rolling bearings element force, pressure and life
   shaft.png                 outlines of the shafts, their deflection in two planes"""
 VH = """V and H are mounting errors: of bevel and face-milled gears the offset and the axial displacement of the pinion
 [mm], of cylindrical ones the errors of the axes in their plane and out of it [deg].
@@ -122,6 +123,12 @@ STAGE = """files in DIR:
   stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
   stage_orders.png          their orders of the mesh
 Numbers have their units in their names; docs/guide/planetary_stages.md says more."""
+IMPORT = """MODEL is a REXS file of version 1.0 to 1.7: XML (.rexs), JSON (.rexsj) or zip (.rexsz). FILE is a scene of
+the cylindrical stage: flanks, tools, modifications, materials, shafts, bearings, and the loads of other stages on the
+same shafts. What was not taken stands above the scene and is shown, with the ids of its
+components; docs/guide/gearbox_models.md says more."""
+EXPORT = """FILE is the model with the load distribution over the face, K_Hbeta, the mesh stiffness (version 1.5 on),
+deflection and torsion of the shafts and forces on their bearings; everything else and its format stay."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -155,6 +162,7 @@ def command_line() -> argparse.ArgumentParser:
     _add_comparisons(command)
     _add_tables_and_maps(command)
     _add_studies(command)
+    _add_exchange(command)
     check = command("check", run_by.check, "read a scene and show its geometry, without computing a contact", None)
     _add_scene(check)
     return parser
@@ -273,6 +281,26 @@ def _add_tables_and_maps(command: Command) -> None:
     _add_engine(vh)
 
 
+def _add_exchange(command: Command) -> None:
+    """Add the commands that read and write models of other programs."""
+    text = "write a stage of a gearbox model (REXS) as a scene; without --stage, show its stages"
+    reader = command("import", exchange.import_model, text, IMPORT)
+    reader.add_argument("model", metavar="MODEL", type=_path, help="REXS file")
+    reader.add_argument("--stage", metavar="ID", help="id of the stage")
+    reader.add_argument("--out", metavar="FILE", type=_path, help="scene file to write; default: it is shown")
+    reader.add_argument("--load-case", metavar="ID", help="load case whose torques and speeds hold; default: none")
+    text = "on the pinion, instead of what the loads on the shafts give"
+    reader.add_argument("--torque", metavar="NM", type=_torque, help=text)
+    writer = command(
+        "export", exchange.export_model, "write a gearbox model (REXS) with the numbers of a result", EXPORT
+    )
+    writer.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+    writer.add_argument("--model", metavar="MODEL", required=True, type=_path, help="REXS file that the scene is from")
+    writer.add_argument("--stage", metavar="ID", required=True, help="id of the stage")
+    writer.add_argument("--out", metavar="FILE", required=True, type=_path, help="REXS file to write")
+    writer.add_argument("--torque", metavar="NM", type=float, help="pinion torque of the numbers; default: largest")
+
+
 def _add_studies(command: Command) -> None:
     """Add studies and reports."""
     study = command(
@@ -325,12 +353,13 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _list_of_pictures() -> str:
-    from loaded_tca.plots import ALWAYS, ON_REQUEST, ROOTS, SHARED
+    from loaded_tca.plots import ALWAYS, ON_REQUEST, ON_SUPPORTS, ROOTS, SHARED
 
     groups = (
         (None, ALWAYS),
         ("and where tooth pairs share the load", SHARED),
         ("and with analysis.root_stress = true", ROOTS),
+        ("and with sections for shafts or supports", ON_SUPPORTS),
         ("and, only with 'plot --all'", ON_REQUEST),
     )
     lines = []
@@ -360,6 +389,16 @@ def _path(text: str) -> Path:
     if not text:
         raise argparse.ArgumentTypeError("the name is empty; '.' is the directory that you are in")
     return Path(text)
+
+
+def _torque(text: str) -> float:
+    try:
+        torque = float(text)
+    except ValueError:
+        torque = math.nan
+    if not 0.0 < torque < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed a torque above 0 in N m")
+    return torque
 
 
 def _numbers(text: str) -> tuple[int, ...]:

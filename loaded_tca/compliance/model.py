@@ -95,6 +95,10 @@ class SumOfParts(BendingModel):
         """Its part that is the supports, if there is one."""
         return next((part for part in self.parts if isinstance(part, SupportCompliance)), None)
 
+    def on_supports(self, supports: SupportCompliance) -> SumOfParts:
+        """The same parts with other supports."""
+        return SumOfParts(tuple(supports if isinstance(part, SupportCompliance) else part for part in self.parts))
+
     @property
     def on_rigid_supports(self) -> SumOfParts | None:
         """The other parts; None without any."""

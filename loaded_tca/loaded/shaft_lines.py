@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, named
 from loaded_tca.loaded.supported import loads_at_first_contact, moved_by
 from loaded_tca.scene import Scene
 from loaded_tca.supports import Shaft, shafts_of, support_compliance
@@ -37,6 +37,8 @@ class ShaftLine:
         Along x, y, z and about them, axes of the gear's own frame.
     bearing_forces : (bearings, 6) array [N, N mm]
         On the bearings.
+    bearing_motions : (bearings, 6) array [mm, rad]
+        Of the shaft in its bearings.
     """
 
     gear: str
@@ -47,6 +49,7 @@ class ShaftLine:
     places: Array
     motions: Array
     bearing_forces: Array
+    bearing_motions: Array
 
 
 def shaft_lines(scene: Scene) -> tuple[ShaftLine, ...]:
@@ -80,11 +83,27 @@ def shaft_lines(scene: Scene) -> tuple[ShaftLine, ...]:
             continue
         support = supports.supports[n]
         places = np.linspace(shaft.start, shaft.end, PLACES)
-        solved = shaft.solved([*support.places.tolist(), *places.tolist()])
+        every = [*support.places.tolist(), *places.tolist()]
         own = 6 * len(support.places)
         columns = [*range(own), -1]
+        solved = shaft.solved(every)
         for torque in scene.torques:
-            loads = np.append(loads_at_first_contact(supports, at_rest, torque)[n], 1.0)
-            motions, forces = solved.at_nodes[..., columns] @ loads, solved.on_bearings[..., columns] @ loads
-            lines.append(ShaftLine(gear, torque, shaft, support.middle, pair.face_width, solved.nodes, motions, forces))
+            load = loads_at_first_contact(supports, at_rest, torque)[n]
+            if not shaft.is_linear:
+                with named(f"{gear}.shaft"):
+                    solved = shaft.solved(every, np.append(load, np.zeros(6 * len(places))))
+            loads = np.append(load, 1.0)
+            lines.append(
+                ShaftLine(
+                    gear,
+                    torque,
+                    shaft,
+                    support.middle,
+                    pair.face_width,
+                    solved.nodes,
+                    solved.at_nodes[..., columns] @ loads,
+                    solved.on_bearings[..., columns] @ loads,
+                    solved.at_bearings[..., columns] @ loads,
+                )
+            )
     return tuple(lines)

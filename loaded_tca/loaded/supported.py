@@ -8,7 +8,8 @@ of the supports and a given displacement of every slice,
 
 with a_i and r_i the unit loads of the slice on the stations and on the rigid body: what the geometry has moved already
 does not move again. Newton's step: the loads that follow are those of the next motion, until it stays; a few positions
-of the pitch are enough for it. The last one holds for the ordinary cycle, whose loads alternate about the mean.
+of the pitch are enough for it. The last one holds for the ordinary cycle, whose loads alternate about the mean. Rolling
+bearings are linear near the loads of each step, C and q0 are those of their tangent there.
 
 References
 ----------
@@ -49,6 +50,8 @@ POSITIONS = 4
 SETTLED = 0.02
 """Change of the motions from one step to the next, over the motions, from which the geometry stays where it is: what
 is left of them is coupled, and what that leaves out is of their product with the motions themselves."""
+NEARER = 5e-3
+"""The same of rolling bearings: what is left of the loads is that of their tangents, too."""
 ROUGHLY, ROUGH_PEAK = 1e-3, 0.1
 """Agreement of the tooth pairs, and accuracy of the peak pressure where no cells are given, on the way to the motions:
 what they leave is coupled."""
@@ -123,8 +126,7 @@ class SupportedCycle:
             If the motions do not settle, or a contact is not solved.
         """
         loads = self._settled(torque) if torque > 0.0 else _no_loads(self.supports)
-        pair, carried = self._carried(torque, loads, self.angles, progress)
-        bending = self.bending.mounted(pair)
+        pair, bending, carried = self._carried(torque, loads, self.angles, progress)
         assert bending.supports is not None
         return CarriedOnSupports(
             pair, bending, carried, loads_of(bending.supports, carried), _rate_on_rigid_supports(carried, bending)
@@ -137,11 +139,13 @@ class SupportedCycle:
         loads = loads_at_first_contact(self.supports, self.at_rest, torque)
         roughly = replace(self.grid, agreement=ROUGHLY, accuracy=max(self.grid.accuracy, ROUGH_PEAK))
         for _ in range(MOST_STEPS):
-            pair, carried = self._carried(torque, loads, spread, grid=roughly)
-            supports = self.supports.mounted(pair)
+            _, bending, carried = self._carried(torque, loads, spread, grid=roughly)
+            supports = bending.supports
+            assert supports is not None
             pinion, wheel = (np.nanmean(load, axis=0) for load in loads_of(supports, carried))
             before, loads = loads, (pinion, wheel)
-            if self._distance(loads, before) <= SETTLED * self._distance(loads, _no_loads(self.supports)):
+            whole = self._distance(supports, loads, _no_loads(supports))
+            if self._distance(supports, loads, before) <= (SETTLED if supports.is_linear else NEARER) * whole:
                 return loads
         raise ConvergenceError(
             f"supports: motions under {1e-3 * torque:g} N m not settled in {MOST_STEPS} steps: the supports are too "
@@ -149,12 +153,12 @@ class SupportedCycle:
             last=loads,
         )
 
-    def _distance(self, one: Loads, other: Loads) -> float:
+    def _distance(self, supports: SupportCompliance, one: Loads, other: Loads) -> float:
         """Largest way of the two gears between two loads, at a lever of half the face width [mm]."""
         lever = np.repeat([1.0, 0.5 * self.pair.face_width], 3)
         ways = [
             support.at_middle(support.compliance @ (a - b)) * lever
-            for support, a, b in zip(self.supports.supports, one, other, strict=True)
+            for support, a, b in zip(supports.supports, one, other, strict=True)
         ]
         return float(np.abs(ways).max())
 
@@ -165,19 +169,22 @@ class SupportedCycle:
         angles: Array,
         progress: Progress | None = None,
         grid: GridChoice | None = None,
-    ) -> tuple[GearPair, Carried]:
-        """The pair moved by loads, and what its tooth pairs carry."""
-        pair, torques = moved_by(self.supports, loads), np.array([torque])
-        bending = self.bending.mounted(pair)
+    ) -> tuple[GearPair, SumOfParts, Carried]:
+        """The pair moved by loads, its bending with supports that are linear there, and what its tooth pairs carry."""
+        near = self.supports.under(loads)
+        pair, torques = moved_by(near, loads), np.array([torque])
+        bending = (self.bending if near is self.supports else self.bending.on_supports(near)).mounted(pair)
         assert bending.supports is not None
         given = partial(_given, bending.supports, loads)
         try:
             with named("supports"):
                 if self.load_sharing:
                     mesh = trace_teeth(pair, angles)
-                    return pair, carried_by_all(pair, mesh, torques, grid or self.grid, bending, progress, given)
-                path = trace_contact(pair, angles)
-                return pair, carried_by_one(pair, path, torques, grid or self.grid, bending, progress, given)
+                    carried = carried_by_all(pair, mesh, torques, grid or self.grid, bending, progress, given)
+                else:
+                    path = trace_contact(pair, angles)
+                    carried = carried_by_one(pair, path, torques, grid or self.grid, bending, progress, given)
+                return pair, bending, carried
         except GeometryError as error:
             raise _moved_too_far(error, torque) from None
 
@@ -210,7 +217,8 @@ def pitches_apart(supports: SupportCompliance, torque: float, angles: Array) -> 
     at_rest = moved_by(supports, _no_loads(supports))
     apart = farthest_apart(trace_teeth(at_rest, angles))
     try:
-        moved = moved_by(supports, loads_at_first_contact(supports, at_rest, torque))
+        loads = loads_at_first_contact(supports, at_rest, torque)
+        moved = moved_by(supports.under(loads), loads)
         return max(apart, farthest_apart(trace_teeth(moved, angles)))
     except GeometryError as error:
         raise _moved_too_far(error, torque) from None
@@ -224,6 +232,17 @@ def loads_at_first_contact(supports: SupportCompliance, at_rest: GearPair, torqu
     unit = supports.mounted(at_rest).loads(_OnePoint(contact))
     pinion, wheel = (torque / contact.pinion_lever * load[0] for load in unit)
     return pinion, wheel
+
+
+def near_torque(bending: SumOfParts | None, torque: float) -> SumOfParts | None:
+    """A bending model whose rolling bearings have the stiffness of a pinion torque [N mm]; itself without any.
+
+    The force of the torque acts where the flanks touch first without load.
+    """
+    if bending is None or (supports := bending.supports) is None or supports.is_linear:
+        return bending
+    at_rest = moved_by(supports, _no_loads(supports))
+    return bending.on_supports(supports.under(loads_at_first_contact(supports, at_rest, torque)))
 
 
 @dataclass(frozen=True, eq=False)

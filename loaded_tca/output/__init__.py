@@ -3,6 +3,7 @@
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.result_files import describe_results, write_report
 from loaded_tca.output.revolution_files import write_revolution
+from loaded_tca.output.rexs import write_rexs
 from loaded_tca.output.stage_files import write_stage
 from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
 from loaded_tca.output.tables import (
@@ -24,6 +25,7 @@ __all__ = [
     "write_dynamics",
     "write_report",
     "write_revolution",
+    "write_rexs",
     "write_sensitivities",
     "write_stage",
     "write_stl",

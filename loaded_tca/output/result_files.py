@@ -25,6 +25,7 @@ from loaded_tca.results.quantities import (
     PAIRS,
     PATH_PARTS,
     QUANTITIES,
+    ROLLING_QUANTITIES,
     ROOT_MAPS,
     ROOT_QUANTITIES,
     SUPPORT_QUANTITIES,
@@ -221,7 +222,7 @@ def describe_results() -> str:
         "",
         "### Supports, where the scene has them",
         "",
-        *_described(SUPPORT_QUANTITIES | BEARING_QUANTITIES, of_supports),
+        *_described(SUPPORT_QUANTITIES | BEARING_QUANTITIES | ROLLING_QUANTITIES, of_supports),
     ]
     lines += [
         "",

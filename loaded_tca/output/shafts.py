@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 from loaded_tca.loaded.shaft_lines import ShaftLine
 from loaded_tca.output.result_files import csv_table
+from loaded_tca.supports import RollingBearing
 
 FORCES = "force_x_N", "force_y_N", "force_z_N", "moment_x_Nm", "moment_y_Nm", "moment_z_Nm"
 MOTIONS = "x_um", "y_um", "z_um", "about_x_rad", "about_y_rad", "about_z_rad"
+INSIDE = "element_force_N", "element_pressure_MPa", "life_Mrev"
+"""Columns of rolling bearings."""
 
 
 def shaft_csv(lines: Sequence[ShaftLine]) -> str:
@@ -26,7 +30,11 @@ def shaft_csv(lines: Sequence[ShaftLine]) -> str:
 
 
 def bearings_csv(lines: Sequence[ShaftLine]) -> str:
-    """Return one row per gear, torque and bearing: forces and moments on it, axes of the gear's own frame."""
+    """Return one row per gear, torque and bearing: forces and moments on it, axes of the gear's own frame.
+
+    Where a bearing is a rolling one, its largest element force, contact pressure and life stand beside; empty cells of
+    linear ones, and of a life without load.
+    """
     rows = [(line, n) for line in lines for n in range(len(line.bearing_forces))]
     columns: dict[str, list[Any]] = {
         "gear": [line.gear for line, _ in rows],
@@ -36,7 +44,26 @@ def bearings_csv(lines: Sequence[ShaftLine]) -> str:
     }
     for k, name in enumerate(FORCES):
         columns[name] = [float(line.bearing_forces[n, k]) * (1.0 if k < 3 else 1e-3) for line, n in rows]
+    inside = [rolling_figures(line, n) for line, n in rows]
+    if any(inside):
+        for name in INSIDE:
+            columns[name] = [one.get(name, math.nan) for one in inside]
     return csv_table(columns)
+
+
+def rolling_figures(line: ShaftLine, place: int) -> dict[str, float]:
+    """Largest element force, contact pressure and life of the bearing at a place in the list; nothing of a linear one.
+
+    Parameters
+    ----------
+    line : ShaftLine
+    place : int
+    """
+    bearing, motion = line.shaft.bearings[place], line.bearing_motions[place]
+    if not isinstance(bearing, RollingBearing):
+        return {}
+    values = float(bearing.element_forces(motion).max()), bearing.largest_pressure(motion), bearing.life(motion)
+    return dict(zip(INSIDE, values, strict=True))
 
 
 def bearings_text(lines: Sequence[ShaftLine]) -> str:
@@ -56,6 +83,10 @@ def bearings_text(lines: Sequence[ShaftLine]) -> str:
         for n, force in enumerate(line.bearing_forces):
             parts = " | ".join(f"{one:.1f}" for one in force[:3])
             text.append(f"  bearing {n} at {line.shaft.bearings[n].at:g} mm: force x | y | z {parts} N")
+            if inside := rolling_figures(line, n):
+                largest, pressure, life = inside.values()
+                lasting = "no load" if math.isinf(life) else f"life {life:.4g} million revolutions"
+                text.append(f"    largest element force {largest:.1f} N, pressure {pressure:.0f} MPa, {lasting}")
         at = abs(line.places - line.middle).argmin()
         x, y, z, about_x, about_y, about_z = line.motions[at].tolist()
         text.append(f"  middle of the face: x | y | z {1e3 * x:.2f} | {1e3 * y:.2f} | {1e3 * z:.2f} um")

@@ -6,8 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 from matplotlib.figure import Figure
 
+from loaded_tca.loaded.shaft_lines import shaft_lines
 from loaded_tca.plots.at_a_glance import plot_at_a_glance
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
@@ -63,6 +65,7 @@ from loaded_tca.plots.study import (
 from loaded_tca.plots.study_panels import plot_study_ranking
 from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
 from loaded_tca.plots.style import chosen_torque, png_of, save_figure
+from loaded_tca.plots.supports import plot_bearing_loads, plot_misalignment
 from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
 from loaded_tca.plots.tribology import (
     TRIBOLOGY_PICTURES,
@@ -87,6 +90,7 @@ __all__ = [
     "draw_teeth",
     "plot_all",
     "plot_at_a_glance",
+    "plot_bearing_loads",
     "plot_before_and_after",
     "plot_compared_maps",
     "plot_comparison",
@@ -106,6 +110,7 @@ __all__ = [
     "plot_load_share",
     "plot_loaded_vh_check",
     "plot_mesh_stiffness",
+    "plot_misalignment",
     "plot_over_flank",
     "plot_path_pressure",
     "plot_peak_pressure",
@@ -307,6 +312,32 @@ ROOTS = {
         lambda one: plot_root_stress_over_torque(one.result) if len(one.result.torque) > 1 else None,
     ),
 }
+ON_SUPPORTS = {
+    "misalignment": Picture(
+        "misalignment of cylindrical gears over the torque, with its band over the pitch",
+        "Misalignment of both gears by their supports, counted as that of the mounting, which is not in it.",
+        lambda one: (
+            plot_misalignment(one.result)
+            if len(one.result.torque) > 1 and np.isfinite(one.result.misalignment).any()
+            else None
+        ),
+    ),
+    "bearing_loads": Picture(
+        "forces of all elements around the rings of rolling bearings, under the largest torque",
+        "Forces of rolling elements around their rings, the first of them on the x axis of the gear's own frame, and "
+        "the basic reference rating life.",
+        lambda one: plot_bearing_loads(one.result, one.torque) if one.result.has_rolling_bearings else None,
+    ),
+    "shaft": Picture(
+        "shafts with gears and bearings, and their deflection in two planes, all torques",
+        "Shafts under the normal force where the unloaded flanks touch, without contact.",
+        lambda one: (
+            plot_shafts(shaft_lines(one.result.scene), one.result.scene.title)
+            if any(one.result.scene.have_shafts)
+            else None
+        ),
+    ),
+}
 ON_REQUEST = {
     "contact_patterns": Picture(
         "the highest pressure on the flanks under each of several torques, on one scale",
@@ -323,12 +354,14 @@ ON_REQUEST = {
         ),
     ),
 }
-"""Pictures that every result has; where tooth pairs share the load; with root stress; on request alone."""
-PICTURES = (*ALWAYS, *SHARED, *ROOTS)
+"""Pictures that every result has; where tooth pairs share the load; with root stress; on supports; on request alone."""
+PICTURES = (*ALWAYS, *SHARED, *ROOTS, *ON_SUPPORTS)
 """Names of the pictures that a result has, without their ending."""
 MORE_PICTURES = tuple(ON_REQUEST)
 """Names of those that are drawn on request."""
-CAPTIONS = {name: one.caption for group in (ALWAYS, SHARED, ROOTS, ON_REQUEST) for name, one in group.items()}
+CAPTIONS = {
+    name: one.caption for group in (ALWAYS, SHARED, ROOTS, ON_SUPPORTS, ON_REQUEST) for name, one in group.items()
+}
 """How each picture is read."""
 
 
@@ -389,8 +422,9 @@ def result_figures(
         highest pressure where it holds. Where tooth pairs share the load: ``at_a_glance``, ``load_share``,
         ``harmonics``, ``mesh_stiffness``, ``line_load``, ``line_load_distribution``, ``face_load``,
         ``pressure_envelope``, ``path_pressure``. With root stress: ``root_stress``; of several positions
-        ``root_stress_cycle``; of several torques ``root_stress_over_torque``. With ``more``: under several torques
-        ``contact_patterns``, and ``full_mesh``.
+        ``root_stress_cycle``; of several torques ``root_stress_over_torque``. On supports:
+        ``misalignment`` of cylindrical gears under several torques, ``bearing_loads`` of rolling bearings, ``shaft`` of
+        gears with shafts. With ``more``: under several torques ``contact_patterns``, and ``full_mesh``.
 
     Raises
     ------
@@ -404,6 +438,7 @@ def result_figures(
         (SHARED, shares_load),
         (ON_REQUEST, shares_load and more),
         (ROOTS, result.has_root_stress),
+        (ON_SUPPORTS, result.scene.is_supported),
     )
     figures = {name: one.draw(shown) for group, wanted in groups if wanted for name, one in group.items()}
     return {name: figure for name, figure in figures.items() if figure is not None}

@@ -153,6 +153,8 @@ class Figure:
         Whether it is a part of one, that texts show in %.
     is_of_roots : bool
         Whether results without root stress do not have it.
+    needs : str
+        Array of a result without which it does not have it; default: all have it.
     accuracy : callable, optional
         What is to be known of its accuracy, of name, result, slice of torques and figures under each.
     """
@@ -169,6 +171,7 @@ class Figure:
     slope: Slope | None = None
     is_part: bool = False
     is_of_roots: bool = False
+    needs: str = ""
     accuracy: Note | None = None
 
 

@@ -59,7 +59,9 @@ def key_figures(result: CycleNumbers, torque: int) -> dict[str, float]:
     """
     under = UnderTorque(result, torque)
     return {
-        name: figure.of(under) for name, figure in FIGURES.items() if result.has_root_stress or not figure.is_of_roots
+        name: figure.of(under)
+        for name, figure in FIGURES.items()
+        if (result.has_root_stress or not figure.is_of_roots) and (not figure.needs or figure.needs in result.dataset)
     }
 
 
@@ -110,6 +112,32 @@ def _of_gear(gear: int) -> dict[str, Figure]:
     others = "root_stress_ratio", "nominal_root_stress_iso_6336_MPa", *(f"{what}_factor_iso_6336" for what in FACTORS)
     figures |= {f"{name}_{other}": {} for other in (*others, "root_stress_iso_6336_MPa")}
     return {entry: _of_roots(entry, **texts) for entry, texts in figures.items()}
+
+
+def _of_bearings(gear: str) -> dict[str, Figure]:
+    """Figures of the rolling bearings of the shaft of a gear."""
+    force, pressure, life = f"{gear}_element_force", f"{gear}_element_pressure", f"{gear}_bearing_life"
+    return {
+        f"{force}_N": Figure(
+            of=lambda under: reduced(np.max, getattr(under, force)),
+            label=f"element force in bearings, {gear}",
+            is_compared=True,
+            needs=force,
+        ),
+        f"{pressure}_MPa": Figure(
+            of=lambda under: reduced(np.max, getattr(under, pressure)),
+            label=f"pressure in bearings, {gear}",
+            is_compared=True,
+            needs=pressure,
+        ),
+        f"{life}_Mrev": Figure(
+            of=lambda under: reduced(np.min, getattr(under, life)),
+            label=f"bearing life, {gear}",
+            is_compared=True,
+            needs=life,
+            accuracy=saying("basic reference rating life, ISO/TS 16281: 90 % reliability, no lubrication"),
+        ),
+    }
 
 
 FIGURES: dict[str, Figure] = {
@@ -221,6 +249,16 @@ FIGURES: dict[str, Figure] = {
     "secant_stiffness_mean_N_per_mm_um": Figure(
         of=lambda under: mean_over_a_pitch(under.secant_stiffness), accuracy=of_bending
     ),
+    "misalignment_mean_um": Figure(
+        of=lambda under: mean_over_a_pitch(under.misalignment),
+        axis="mean misalignment",
+        label="misalignment, mean",
+        is_compared=True,
+        needs="misalignment",
+    ),
+    "drive_stiffness_mean_N_per_mm_um": Figure(
+        of=lambda under: mean_over_a_pitch(under.drive_stiffness), axis="mean drive stiffness", needs="drive_stiffness"
+    ),
     "face_load_factor": Figure(
         of=lambda under: float(under.face_load_factor),
         label="load factor K_Hbeta",
@@ -257,6 +295,7 @@ FIGURES: dict[str, Figure] = {
         accuracy=of_line_load,
     ),
     "line_load_ratio_at_largest_force": Figure(of=lambda under: under.heaviest.number("line_load_ratio")),
+    **{name: figure for gear in GEARS for name, figure in _of_bearings(gear).items()},
     "max_pressure_MPa": Figure(of=lambda under: under.result.max_pressure),
     "fewest_cells_across": Figure(of=lambda under: reduced(np.min, under.cells_across[under.cells_across > 0])),
     "fewest_cells_along": Figure(of=lambda under: reduced(np.min, under.cells_along[under.cells_along > 0])),
@@ -317,6 +356,11 @@ SUMMARY: tuple[Line, ...] = (
         ("mesh_stiffness_without_body_torsion_mean_N_per_mm_um",),
     ),
     Line(*STIFFNESS_ROW),
+    Line("  with supports [N/(mm um)]", ("drive_stiffness_mean_N_per_mm_um",)),
+    Line("misalignment of the supports, mean [um]", ("misalignment_mean_um",)),
+    Line("largest element force in bearings of pinion | wheel [N]", tuple(f"{gear}_element_force_N" for gear in GEARS)),
+    Line("  largest pressure there [MPa]", tuple(f"{gear}_element_pressure_MPa" for gear in GEARS)),
+    Line("  shortest life [million revolutions]", tuple(f"{gear}_bearing_life_Mrev" for gear in GEARS)),
     Line("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
     Line("  K_Hbeta too low by its cells, at the most [%]", ("face_load_factor_error",)),
     Line(*LOAD_ROW),

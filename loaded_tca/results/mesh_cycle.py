@@ -31,6 +31,7 @@ from loaded_tca.results.quantities import (
     PAIRS,
     PATH_PARTS,
     QUANTITIES,
+    ROLLING_QUANTITIES,
     ROOT_PARTS,
     SIZES,
     SUPPORT_QUANTITIES,
@@ -314,6 +315,7 @@ class MeshCycle(CycleNumbers):
             supported = supported | {
                 name: BEARING_QUANTITIES[name] for name in map("{}_bearing_force".format, on_shafts)
             }
+            supported |= {name: part for name, part in ROLLING_QUANTITIES.items() if name in file.variables}
             in_dataset = (
                 QUANTITIES | supported | (ROOT_PARTS if scene.analysis.root_stress or "root_tension" in file else {})
             )

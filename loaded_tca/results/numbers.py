@@ -25,6 +25,7 @@ from loaded_tca.results.quantities import (
     OF_THE_PEAK,
     PAIRS,
     QUANTITIES,
+    ROLLING_QUANTITIES,
     ROOT_PARTS,
     SUPPORT_QUANTITIES,
     not_asked,
@@ -37,6 +38,10 @@ if TYPE_CHECKING:
     import xarray
 
 
+OF_SUPPORTS = (*SUPPORT_QUANTITIES, *BEARING_QUANTITIES, *ROLLING_QUANTITIES)
+"""Numbers of results whose gears give way as a whole."""
+
+
 def dataset_of(arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
     """Make the dataset of a mesh cycle of the arrays of all ``QUANTITIES`` and the attributes of ``ABOUT``.
 
@@ -44,7 +49,7 @@ def dataset_of(arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
     """
     import xarray
 
-    optional = SUPPORT_QUANTITIES | BEARING_QUANTITIES | ROOT_PARTS
+    optional = SUPPORT_QUANTITIES | BEARING_QUANTITIES | ROLLING_QUANTITIES | ROOT_PARTS
     variables = variables_of(QUANTITIES | {name: part for name, part in optional.items() if name in arrays}, arrays)
     coordinates = {name: variables.pop(name) for name in COORDINATES}
     return xarray.Dataset(variables, coordinates, about)
@@ -72,7 +77,12 @@ class CycleNumbers:
             raise NotAskedError(f"{name}: the scene has no supports; [pinion.support] or [wheel.support] gives them")
         if name in BEARING_QUANTITIES and name not in self.dataset:
             raise NotAskedError(f"{name}: the gear has no shaft; [{name.partition('_')[0]}.shaft] gives it")
-        if name not in (*QUANTITIES, *BEARING_QUANTITIES, *SUPPORT_QUANTITIES, *ROOT_PARTS) or name not in self.dataset:
+        if name in ROLLING_QUANTITIES and name not in self.dataset:
+            gear = name.partition("_")[0]
+            raise NotAskedError(
+                f"{name}: the gear has no rolling bearings; type of [[{gear}.shaft.bearings]] gives them"
+            )
+        if name not in (*QUANTITIES, *OF_SUPPORTS, *ROOT_PARTS) or name not in self.dataset:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
         values = self.dataset[name].values
         return values if values.ndim else values.item()
@@ -81,7 +91,7 @@ class CycleNumbers:
         return [
             *super().__dir__(),
             *QUANTITIES,
-            *(name for name in (*SUPPORT_QUANTITIES, *BEARING_QUANTITIES, *ROOT_PARTS) if name in self.dataset),
+            *(name for name in (*OF_SUPPORTS, *ROOT_PARTS) if name in self.dataset),
         ]
 
     @property
@@ -109,6 +119,11 @@ class CycleNumbers:
     def has_root_stress(self) -> bool:
         """Whether the analysis found root stress: its scene asked for it."""
         return "root_tension" in self.dataset
+
+    @property
+    def has_rolling_bearings(self) -> bool:
+        """Whether a shaft of the scene has rolling bearings by their inner geometry."""
+        return any(name in self.dataset for name in ROLLING_QUANTITIES)
 
     def without_body_torsion(self, stiffness: float) -> float:
         """Mesh stiffness without the twist of the gear bodies, to be compared with c_gamma of ISO 6336-1.
@@ -157,7 +172,7 @@ class CycleNumbers:
         if not isinstance(name, str) or name not in self.dataset or self.dataset[name].dims != PAIRS:
             known = (
                 f"; result.{name} has its numbers as they are"
-                if name in (*QUANTITIES, *SUPPORT_QUANTITIES, *ROOT_PARTS)
+                if name in (*QUANTITIES, *OF_SUPPORTS, *ROOT_PARTS)
                 else ""
             )
             raise InputError(f"name: {name!r} is no array (torque, position, pair) of the result{known}")

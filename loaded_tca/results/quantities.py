@@ -150,6 +150,35 @@ BEARING_QUANTITIES: dict[str, Part] = {
     for gear in GEARS
 }
 """Numbers that a result has of each gear with a shaft."""
+ROLLING_QUANTITIES: dict[str, Part] = {
+    name.format(gear): ((*axes, f"{gear}_bearing", *last), unit, text.format(gear))
+    for gear in GEARS
+    for name, axes, last, unit, text in (
+        (
+            "{}_bearing_motion",
+            CYCLE,
+            ("motion",),
+            "mm, rad",
+            "motion of the shaft of the {0} in its bearings: along x, y, z and about them, axes of the {0}'s own frame",
+        ),
+        (
+            "{}_element_force",
+            CYCLE,
+            (),
+            "N",
+            "largest force of a rolling element of the {}'s bearings; NaN of linear ones",
+        ),
+        ("{}_element_pressure", CYCLE, (), "MPa", "largest contact pressure there, at the inner ring"),
+        (
+            "{}_bearing_life",
+            ("torque",),
+            (),
+            "1e6 revolutions",
+            "basic reference rating life after ISO/TS 16281 at the mean motion of the {}'s bearings; inf without load",
+        ),
+    )
+}
+"""Numbers that a result has of each gear whose shaft has rolling bearings."""
 MOTIONS = 6
 """Length of the axis ``motion``."""
 

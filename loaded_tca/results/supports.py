@@ -13,8 +13,9 @@ from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.supported import CarriedOnSupports
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.quantities import GEARS
-from loaded_tca.supports import SupportCompliance
+from loaded_tca.supports import RollingBearing, SupportCompliance, shafts_of
 
 MICROMETRES = 1e3
 """Per millimetre."""
@@ -27,7 +28,7 @@ LARGEST_WAY, LARGEST_TURN = 0.1, 5e-3
 def support_arrays(
     pair: GearPair, cycles: Sequence[CarriedOnSupports], *, pressure_angle: float, stiffness_per_rate: float
 ) -> dict[str, Array]:
-    """Arrays of ``SUPPORT_QUANTITIES``, and of ``BEARING_QUANTITIES`` of gears with shafts.
+    """Arrays of ``SUPPORT_QUANTITIES``; of ``BEARING_QUANTITIES`` of gears with shafts, ``ROLLING_QUANTITIES`` of some.
 
     Parameters
     ----------
@@ -48,11 +49,71 @@ def support_arrays(
         for n, gear in enumerate(GEARS)
         if _parts(cycles[0]).supports[n].on_bearings is not None
     }
-    return forces | {
-        "pinion_motion": np.stack([one[0] for one in motions]),
-        "wheel_motion": np.stack([one[1] for one in motions]),
-        "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),
-        "drive_stiffness": np.stack([one.carried.torque_rate[0] for one in cycles]) * stiffness_per_rate,
+    return (
+        forces
+        | _of_rolling_bearings(cycles)
+        | {
+            "pinion_motion": np.stack([one[0] for one in motions]),
+            "wheel_motion": np.stack([one[1] for one in motions]),
+            "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),
+            "drive_stiffness": np.stack([one.carried.torque_rate[0] for one in cycles]) * stiffness_per_rate,
+        }
+    )
+
+
+def _of_rolling_bearings(cycles: Sequence[CarriedOnSupports]) -> dict[str, Array]:
+    """Arrays of ``ROLLING_QUANTITIES`` of the gears whose shafts have rolling bearings; NaN of linear ones beside."""
+    arrays: dict[str, Array] = {}
+    for n, gear in enumerate(GEARS):
+        supports = [_parts(one).supports[n] for one in cycles]
+        bearings = supports[0].bearings
+        if not any(isinstance(bearing, RollingBearing) for bearing in bearings):
+            continue
+        motions = np.stack(
+            [[own.bearing_motions(load) for load in one.loads[n]] for own, one in zip(supports, cycles, strict=True)]
+        )
+        forces, pressures = np.full((2, *motions.shape[:3]), math.nan)
+        lives = np.full((len(cycles), len(bearings)), math.nan)
+        for t, k in np.ndindex(lives.shape):
+            bearing, own = bearings[k], motions[t, :, k]
+            loaded = ~np.isnan(own).any(axis=1)
+            if not isinstance(bearing, RollingBearing) or not loaded.any():
+                continue
+            forces[t, loaded, k] = [bearing.element_forces(motion).max() for motion in own[loaded]]
+            pressures[t, loaded, k] = [bearing.largest_pressure(motion) for motion in own[loaded]]
+            lives[t, k] = bearing.life(own[loaded].mean(axis=0))
+        arrays |= {
+            f"{gear}_bearing_motion": motions,
+            f"{gear}_element_force": forces,
+            f"{gear}_element_pressure": pressures,
+            f"{gear}_bearing_life": lives,
+        }
+    return arrays
+
+
+def element_forces(result: CycleNumbers, gear: str, torque: int) -> dict[int, tuple[RollingBearing, Array]]:
+    """Rolling bearings of the shaft of a gear, by their places in the list, and forces (position, element) [N] in them.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    gear : str
+        "pinion" or "wheel".
+    torque : int
+        Index of the torque.
+
+    Raises
+    ------
+    NotAskedError
+        If the shaft of the gear has no rolling bearings.
+    """
+    motions = getattr(result, f"{gear}_bearing_motion")[torque]
+    shaft = shafts_of(result.scene)[GEARS.index(gear)]
+    assert shaft is not None
+    return {
+        k: (bearing, np.stack([bearing.element_forces(np.nan_to_num(motion)) for motion in motions[:, k]]))
+        for k, bearing in enumerate(shaft.bearings)
+        if isinstance(bearing, RollingBearing)
     }
 
 
@@ -78,6 +139,7 @@ def secant_on_rigid_supports(carried: Carried, cycles: Sequence[CarriedOnSupport
         By torque.
     """
     secant = np.full(carried.rotation.shape, math.nan)
+    at_rest = [support.at_rest for support in _parts(cycles[0]).supports]
     for t, one in enumerate(cycles):
         for n, contacts in enumerate(one.carried.contacts[0]):
             moment = sum(c.solution.load * c.contact.wheel_lever for c in contacts if c is not None)
@@ -86,6 +148,11 @@ def secant_on_rigid_supports(carried: Carried, cycles: Sequence[CarriedOnSupport
                     float(load[n] @ support.compliance @ load[n])
                     for load, support in zip(one.loads, _parts(one).supports, strict=True)
                 )
+                if not _parts(one).is_linear:  # from where the gears are at rest on
+                    work += sum(
+                        float(load[n] @ (support.moved(np.zeros(load.shape[1])) - rest))
+                        for load, support, rest in zip(one.loads, _parts(one).supports, at_rest, strict=True)
+                    )
                 rotation = carried.rotation[t, n] - work / moment
                 secant[t, n] = carried.torque[t] / rotation if rotation > 0.0 else math.nan
     return secant

@@ -347,6 +347,11 @@ class Scene(Section, ABC):
         return {}
 
     @property
+    def have_shafts(self) -> tuple[bool, bool]:
+        """Whether pinion and wheel sit on a shaft."""
+        return self.pinion.shaft is not None, self.wheel.shaft is not None
+
+    @property
     def is_supported(self) -> bool:
         """Whether a gear gives way as a whole: it has a section for its support or its shaft."""
         return any(gear.support or gear.shaft for gear in (self.pinion, self.wheel))

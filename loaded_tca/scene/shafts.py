@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from loaded_tca.scene.keys import Choice, Grid, List, Number, above_zero, key
+from loaded_tca.scene.keys import Choice, Grid, List, Number, Whole, above_zero, key
 from loaded_tca.scene.section import Rule, Section, Tables
 from loaded_tca.scene.supports import STIFFEST_N_per_mm, fault_of_matrix
 
@@ -18,6 +19,8 @@ LENGTH_mm = above_zero(100000.0)
 STIFFNESS = Number(0.0, 1e9)
 FORCE = Number(-1e9, 1e9)
 MOST_PARTS = 200
+ELEMENTS = Whole(3, 1000)
+GROOVE = Number(0.5, 1.0, above=True)
 
 
 def _inner_below_outer(inner: float, outer: float) -> str | None:
@@ -35,9 +38,48 @@ class PartOfShaft(Section):
     rules: ClassVar[tuple[Rule, ...]] = (Rule(("inner_diameter_mm", "outer_diameter_mm"), _inner_below_outer),)
 
 
+OF_TYPES = {
+    "ball": ("balls", "ball_diameter_mm", "pitch_diameter_mm"),
+    "roller": ("rollers", "roller_diameter_mm", "roller_length_mm", "pitch_diameter_mm"),
+}
+"""Type of a rolling bearing -> the keys that it must have."""
+OF_BALLS, OF_ROLLERS = ("balls", "ball_diameter_mm"), ("rollers", "roller_diameter_mm", "roller_length_mm")
+GROOVES = ("inner_groove_ratio", "outer_groove_ratio")
+OF_ROLLING = (
+    "pitch_diameter_mm",
+    "contact_angle_deg",
+    "side",
+    "radial_clearance_um",
+    "preload_um",
+    "dynamic_load_rating_N",
+)
+LINEAR = ("stiffness", "radial_stiffness_N_per_um", "axial_stiffness_N_per_um", "tilting_stiffness_Nm_per_mrad")
+KEYS_OF_TYPE = {
+    None: LINEAR,
+    "ball": (*OF_BALLS, *GROOVES, *OF_ROLLING),
+    "roller": (*OF_ROLLERS, *OF_ROLLING),
+}
+
+
+def _keys_of_type(kind: str | None, *values: object) -> str | None:
+    """What is missing of a type of bearing, or belongs to another one."""
+    given = [name for name, value in zip(OF_ANY, values, strict=True) if value not in (None, 0.0)]
+    named = "not given, a linear bearing" if kind is None else f'found "{kind}"'
+    if others := [name for name in given if name not in KEYS_OF_TYPE[kind]]:
+        return f"{named}, beside {', '.join(others)}; allowed with it {', '.join(KEYS_OF_TYPE[kind])}"
+    if missing := [name for name in OF_TYPES.get(kind or "", ()) if name not in given]:
+        return f"{named}, without {', '.join(missing)}; it needs {', '.join(OF_TYPES[kind or ''])}"
+    return None
+
+
+OF_ANY = (*LINEAR, *OF_BALLS, *GROOVES, *OF_ROLLERS, *OF_ROLLING)
+
+
 def _stiffness(
-    matrix: tuple[tuple[float, ...], ...] | None, radial: float | None, axial: float, tilting: float
+    kind: str | None, matrix: tuple[tuple[float, ...], ...] | None, radial: float | None, axial: float, tilting: float
 ) -> str | None:
+    if kind is not None:
+        return None
     if (matrix is None) == (radial is None):
         return f"{'missing' if matrix is None else 'found'}; give one of stiffness and radial_stiffness_N_per_um"
     if matrix is None:
@@ -49,6 +91,30 @@ def _stiffness(
     return fault_of_matrix(whole_matrix(matrix), definite=False)
 
 
+def _fitting(count: int | None, diameter: float | None, pitch: float | None) -> str | None:
+    """Elements that would touch each other."""
+    if count is None or diameter is None or pitch is None:
+        return None
+    largest = pitch * math.sin(math.pi / count)
+    if diameter < largest:
+        return None
+    return f"found {diameter:g}; {count} of them on {pitch:g} mm would touch: allowed below {largest:.4g}"
+
+
+def _side(side: int | None, angle: float | None, preload: float | None) -> str | None:
+    if side is None and angle:
+        return f"missing; a contact angle of {angle:g} takes thrust one way: 1 if that of the shaft along z, -1 if not"
+    if side is None and preload:
+        return "missing; a preload presses the shaft along z with 1, against it with -1"
+    return None
+
+
+def _preload(preload: float | None, kind: str | None, angle: float | None) -> str | None:
+    if preload and kind == "roller" and not angle:
+        return f"found {preload:g}; cylindrical rollers have none along the axis: give radial_clearance_um below 0"
+    return None
+
+
 def whole_matrix(rows: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
     """A matrix of 6 rows: one of 5 has nothing about the axis."""
     if len(rows) == 6:
@@ -58,25 +124,84 @@ def whole_matrix(rows: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class BearingSection(Section):
-    """A bearing of a shaft, linear."""
+    """A bearing of a shaft: linear, or a rolling bearing by its inner geometry."""
 
     at_mm: float = key(PLACE_mm, "its place, in the axial coordinate of the gear")
-    radial_stiffness_N_per_um: float | None = key(STIFFNESS, "radial stiffness", None, "by `stiffness`")
-    axial_stiffness_N_per_um: float = key(STIFFNESS, "axial stiffness, in both directions", 0.0)
-    tilting_stiffness_Nm_per_mrad: float = key(STIFFNESS, "stiffness against tilting about x and y", 0.0)
+    type: str | None = key(
+        Choice(("ball", "roller")),
+        "a row of balls (deep groove, or angular contact with a contact angle) or of rollers (cylindrical, or tapered "
+        "with one)",
+        None,
+        "linear",
+    )
+    radial_stiffness_N_per_um: float | None = key(STIFFNESS, "linear: radial stiffness", None, "by `stiffness`")
+    axial_stiffness_N_per_um: float = key(STIFFNESS, "linear: axial stiffness, in both directions", 0.0)
+    tilting_stiffness_Nm_per_mrad: float = key(STIFFNESS, "linear: stiffness against tilting about x and y", 0.0)
     stiffness: tuple[tuple[float, ...], ...] | None = key(
         Grid(Number(-STIFFEST_N_per_mm, STIFFEST_N_per_mm), 5, 6),
-        "or all of it: forces [N] and moments [N mm] on the bearing by motions [mm, rad], x, y, z, about x, about y "
-        "(and z) of the gear's own frame; 5 lists of 5, or 6 of 6",
+        "linear, or all of it: forces [N] and moments [N mm] on the bearing by motions [mm, rad], x, y, z, about x, "
+        "about y (and z) of the gear's own frame; 5 lists of 5, or 6 of 6",
         None,
         "by the three before",
     )
+    balls: int | None = key(ELEMENTS, "balls: how many; the first one is on the x axis of the gear's own frame", None)
+    ball_diameter_mm: float | None = key(LENGTH_mm, "balls: diameter", None)
+    inner_groove_ratio: float | None = key(
+        GROOVE, "balls: radius of the groove of the inner ring over the diameter of a ball", None, "0.52"
+    )
+    outer_groove_ratio: float | None = key(GROOVE, "balls: the same of the outer ring", None, "0.53")
+    rollers: int | None = key(ELEMENTS, "rollers: how many; the first one is on the x axis of the gear's frame", None)
+    roller_diameter_mm: float | None = key(LENGTH_mm, "rollers: diameter, of tapered ones in the middle", None)
+    roller_length_mm: float | None = key(LENGTH_mm, "rollers: effective length", None)
+    pitch_diameter_mm: float | None = key(LENGTH_mm, "balls and rollers: diameter of the circle of their middles", None)
+    contact_angle_deg: float | None = key(
+        Number(0.0, 45.0), "balls and rollers: angle of the line of contact against the radial plane", None, "0"
+    )
+    side: int | None = key(
+        Choice((1, -1)),
+        "the thrust of the shaft that a bearing with a contact angle takes: 1 along z of the gear's own frame, -1 "
+        "against it; without a contact angle the sense of its preload",
+        None,
+    )
+    radial_clearance_um: float | None = key(
+        Number(-1000.0, 1000.0),
+        "balls and rollers: radial clearance of the mounted bearing; below 0: pressed",
+        None,
+        "0",
+    )
+    preload_um: float | None = key(
+        Number(-1000.0, 1000.0),
+        "balls and tapered rollers: by how much the rings are set against each other along the axis, in the sense of "
+        "`side`; below 0: apart",
+        None,
+        "0",
+    )
+    dynamic_load_rating_N: float | None = key(
+        above_zero(1e9),
+        "balls and rollers: basic dynamic radial load rating, for the life",
+        None,
+        "that of the geometry after ISO 281",
+    )
 
     rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(("type", *OF_ANY), _keys_of_type),
         Rule(
-            ("stiffness", "radial_stiffness_N_per_um", "axial_stiffness_N_per_um", "tilting_stiffness_Nm_per_mrad"),
-            _stiffness,
+            (
+                "stiffness",
+                "type",
+                "radial_stiffness_N_per_um",
+                "axial_stiffness_N_per_um",
+                "tilting_stiffness_Nm_per_mrad",
+            ),
+            lambda matrix, kind, *others: _stiffness(kind, matrix, *others),
         ),
+        Rule(("ball_diameter_mm", "balls", "pitch_diameter_mm"), lambda own, count, pitch: _fitting(count, own, pitch)),
+        Rule(
+            ("roller_diameter_mm", "rollers", "pitch_diameter_mm"),
+            lambda own, count, pitch: _fitting(count, own, pitch),
+        ),
+        Rule(("side", "contact_angle_deg", "preload_um"), _side),
+        Rule(("preload_um", "type", "contact_angle_deg"), _preload),
     )
 
 
@@ -110,7 +235,11 @@ class ShaftSection(Section):
         Tables(BearingSection, 1, MOST_PARTS),
         "its bearings, each a table `[[pinion.shaft.bearings]]` of `at_mm`, `radial_stiffness_N_per_um`, "
         "`axial_stiffness_N_per_um = 0.0`, `tilting_stiffness_Nm_per_mrad = 0.0`, or with `stiffness`, 5 x 5 or 6 x 6 "
-        "[N, mm, rad], instead of the three",
+        '[N, mm, rad], instead of the three; or a rolling bearing: `type = "ball"` with `balls`, `ball_diameter_mm`, '
+        '`pitch_diameter_mm`, `inner_groove_ratio = 0.52`, `outer_groove_ratio = 0.53`, or `type = "roller"` with '
+        "`rollers`, `roller_diameter_mm`, `roller_length_mm`, `pitch_diameter_mm`, both with `contact_angle_deg = 0`, "
+        "`side` (1 or -1, the thrust along z that it takes), `radial_clearance_um = 0.0`, `preload_um = 0.0` and "
+        "`dynamic_load_rating_N`, by default that of the geometry",
     )
     loads: tuple[ShaftLoadSection, ...] = key(
         Tables(ShaftLoadSection, 0, MOST_PARTS),

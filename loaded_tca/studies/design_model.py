@@ -30,6 +30,7 @@ from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.load_sharing import SharedLoad
 from loaded_tca.loaded.loaded_contact import found_together
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
+from loaded_tca.loaded.supported import near_torque
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import value_at
@@ -269,7 +270,7 @@ class DesignModel:
         mesh = trace_teeth(pair, pair.pitch * (np.arange(self.positions) / self.positions - 0.5))
         if without_bodies := scene.analysis.without_bodies:
             require_teeth(pair, without_bodies)
-        bending = model_of(scene, pair, farthest_apart(mesh))
+        bending = near_torque(model_of(scene, pair, farthest_apart(mesh)), float(self.torques.max()))
         ranges = {
             key: (low + by, high + by) for (key, (low, high)), by in zip(self.variables.items(), own, strict=True)
         }

@@ -1,4 +1,4 @@
-r"""Shafts on linear bearings: beams with shear, exact for loads at their nodes.
+r"""Shafts on bearings: beams with shear, exact for loads at their nodes.
 
 A section between two nodes is a beam of 12 degrees of freedom: axial force E A, torsion G I_p with I_p = 2 I, bending
 in both planes with the shear deflection of Timoshenko, whose share is
@@ -8,6 +8,9 @@ in both planes with the shear deflection of Timoshenko, whose share is
 
 for a ring of the inner over outer diameter m. Bearings are stiffnesses at nodes; the rotation about the axis is given
 at one place. Motions at a node are x, y, z and the rotations about x, y, z, in the axes of the gear's own frame.
+
+With rolling bearings the motions are those of the least potential energy, by Newton's method with halved steps; from
+there on the shaft is linear.
 
 References
 ----------
@@ -23,11 +26,12 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg import solve
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import Material
+from loaded_tca.supports.balance import Seat, balanced, solved
+from loaded_tca.supports.bearing import AnyBearing, Bearing
 
 SAME_PLACE = 1e-9
 """Places closer than this over the length of the shaft are one node."""
@@ -37,6 +41,8 @@ from which they hold it."""
 TURNS = 1e-6
 """Part of a free motion from which it is a rotation; about a single bearing it moves the middle of the shaft, too."""
 MOTIONS = "along x", "along y", "along its axis", "about x", "about y"
+NO_THRUST = 1e-9
+"""Of the forces on a shaft, the axial one that is none."""
 
 
 @dataclass(frozen=True)
@@ -101,14 +107,6 @@ class ShaftSection:
 
 
 @dataclass(frozen=True, eq=False)
-class Bearing:
-    """A linear bearing: its place on the axis [mm], and its stiffness (6, 6) [N, N mm over mm, rad], symmetric."""
-
-    at: float
-    stiffness: Array
-
-
-@dataclass(frozen=True, eq=False)
 class ShaftLoad:
     """A load of something else on the shaft: place [mm], and force and moment (6,) [N, N mm]."""
 
@@ -129,7 +127,7 @@ class Shaft:
     material : Material
     torque_at : float [mm]
         Where the rotation about the axis is given.
-    bearings : sequence of Bearing
+    bearings : sequence of Bearing or RollingBearing
     loads : sequence of ShaftLoad
 
     Raises
@@ -151,7 +149,7 @@ class Shaft:
     sections: Sequence[ShaftSection]
     material: Material
     torque_at: float
-    bearings: Sequence[Bearing]
+    bearings: Sequence[AnyBearing]
     loads: Sequence[ShaftLoad] = field(default_factory=tuple)
 
     def __post_init__(self) -> None:
@@ -193,7 +191,7 @@ class Shaft:
             moved[range(5), range(5)] = 1.0
             moved[0, 4], moved[1, 3] = bearing.at - middle, middle - bearing.at
             moved = moved * scale
-            held += moved.T @ bearing.stiffness @ moved
+            held += moved.T @ bearing.joint @ moved
         roots = np.sqrt(held.diagonal())
         over = np.where(roots > 0.0, roots, 1.0)
         values, vectors = np.linalg.eigh(held / np.outer(over, over))
@@ -214,45 +212,84 @@ class Shaft:
         every = np.sort(np.concatenate([borders, others, [self.torque_at], places]))
         return every[np.concatenate([[True], np.diff(every) > SAME_PLACE * (self.end - self.start)])]
 
-    def solved(self, places: Sequence[float]) -> ShaftMotions:
+    @property
+    def is_linear(self) -> bool:
+        """Whether it has linear bearings alone."""
+        return all(isinstance(bearing, Bearing) for bearing in self.bearings)
+
+    def solved(self, places: Sequence[float], under: Array | None = None) -> ShaftMotions:
         """How all nodes of the shaft move under unit loads at places [mm], and under its own loads.
+
+        Parameters
+        ----------
+        places : sequence of float [mm]
+        under : (6 m,) array, optional [N, N mm]
+            Loads of the places near which the motions are linear; of account with rolling bearings only, whose motions
+            under these loads are exact. Default: none.
 
         Raises
         ------
         InputError
-            If a place lies beside the shaft.
+            If a place lies beside the shaft, no bearing takes the thrust, or rolling bearings find no balance.
         """
         self.require_on_shaft({"gear": list(places)})
         nodes = self._nodes(places)
-        count = len(nodes)
-        borders = self.start + np.cumsum([section.length for section in self.sections])
-        matrix = np.zeros((6 * count, 6 * count))
-        for k, (low, high) in enumerate(pairwise(nodes.tolist())):
-            section = self.sections[min(int(np.searchsorted(borders, 0.5 * (low + high))), len(self.sections) - 1)]
-            matrix[6 * k : 6 * k + 12, 6 * k : 6 * k + 12] += section.stiffness(high - low, self.material)
 
         def at(place: float) -> slice:
             k = int(np.abs(nodes - place).argmin())
             return slice(6 * k, 6 * k + 6)
 
-        for bearing in self.bearings:
-            matrix[at(bearing.at), at(bearing.at)] += bearing.stiffness
-        loads = np.zeros((6 * count, 6 * len(places) + 1))
+        loads = np.zeros((6 * len(nodes), 6 * len(places) + 1))
         for n, place in enumerate(places):
             loads[at(place), 6 * n : 6 * n + 6] = np.eye(6)
         for load in self.loads:
             loads[at(load.at), -1] += load.load
-        turning = at(self.torque_at).start + 5
-        left = np.delete(np.arange(6 * count), turning)
-        roots = np.sqrt(matrix.diagonal()[left])  # motions of unit stiffness: mm beside rad, soft beside stiff
-        motions = np.zeros(loads.shape)
-        scaled = matrix[np.ix_(left, left)] / np.outer(roots, roots)
-        motions[left] = solve(scaled, loads[left] / roots[:, None], assume_a="pos") / roots[:, None]
+        matrix, free = self._stiffness(nodes), np.delete(np.arange(6 * len(nodes)), at(self.torque_at).start + 5)
+        seats = [Seat(bearing, at(bearing.at)) for bearing in self.bearings]
+        given, moved = np.zeros(6 * len(places)) if under is None else under, np.zeros(6 * len(nodes))
+        if self.is_linear:
+            reactions = [seat.bearing.reaction(moved[seat.motions]) for seat in seats]
+        else:
+            whole = loads @ np.append(given, 1.0)
+            self._require_thrust_taken(whole.reshape(-1, 6))
+            moved, reactions = balanced(matrix, whole, free, seats)
+        for seat, reaction in zip(seats, reactions, strict=True):
+            matrix[seat.motions, seat.motions] += seat.stiffness(reaction)
+        motions = solved(matrix, loads, free)
+        if not self.is_linear:
+            motions[:, -1] = moved - motions[:, :-1] @ given
+        of_bearings = np.stack([motions[seat.motions] for seat in seats])
+        forces = np.stack([reaction.tangent @ own for reaction, own in zip(reactions, of_bearings, strict=True)])
+        if not self.is_linear:
+            forces[..., -1] = np.stack([reaction.force for reaction in reactions]) - forces[..., :-1] @ given
         return ShaftMotions(
             nodes,
-            motions.reshape(count, 6, -1),
+            motions.reshape(len(nodes), 6, -1),
             np.stack([motions[at(place)] for place in places]),
-            np.stack([bearing.stiffness @ motions[at(bearing.at)] for bearing in self.bearings]),
+            forces,
+            of_bearings,
+        )
+
+    def _stiffness(self, nodes: Array) -> Array:
+        """Stiffness of the shaft itself (6 n, 6 n) over the motions of its nodes."""
+        borders = self.start + np.cumsum([section.length for section in self.sections])
+        matrix = np.zeros((6 * len(nodes), 6 * len(nodes)))
+        for k, (low, high) in enumerate(pairwise(nodes.tolist())):
+            section = self.sections[min(int(np.searchsorted(borders, 0.5 * (low + high))), len(self.sections) - 1)]
+            matrix[6 * k : 6 * k + 12, 6 * k : 6 * k + 12] += section.stiffness(high - low, self.material)
+        return matrix
+
+    def _require_thrust_taken(self, loads: Array) -> None:
+        """Refuse a force along z, of loads (n, 6) on all nodes, that every bearing lets go."""
+        thrust = float(loads[:, 2].sum())
+        wanted = int(np.sign(thrust))
+        senses = {sense for bearing in self.bearings for sense in bearing.takes}
+        require(
+            (
+                wanted in senses or abs(thrust) <= NO_THRUST * float(np.abs(loads[:, :3]).max()),
+                f"bearings: none takes the axial force of {thrust:.4g} N; allowed are bearings of which one has side = "
+                f"{wanted}, no contact angle, or an axial stiffness",
+            )
         )
 
     def compliance(self, places: Sequence[float]) -> Array:
@@ -272,9 +309,11 @@ class ShaftMotions:
     at_places : (m, 6, 6 m + 1) array [mm, rad]
     on_bearings : (bearings, 6, 6 m + 1) array [N, N mm]
         Forces and moments on the bearings.
+    at_bearings : (bearings, 6, 6 m + 1) array [mm, rad]
     """
 
     nodes: Array
     at_nodes: Array
     at_places: Array
     on_bearings: Array
+    at_bearings: Array

@@ -22,7 +22,7 @@ Przemieniecki 1968, Theory of Matrix Structural Analysis, chapter 6 (flexibiliti
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,6 +30,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+from loaded_tca.supports.bearing import AnyBearing
 
 AXIS = np.array([0.0, 0.0, 1.0])
 
@@ -50,6 +51,13 @@ class Support:
         Motions of the stations without any force on the teeth; default: none.
     on_bearings : (bearings, 6, 6 m + 1) array, optional [N, N mm]
         Forces and moments on bearings under unit loads of the stations, in columns, and under other loads.
+    at_bearings : (bearings, 6, 6 m + 1) array, optional [mm, rad]
+        Motions of the shaft in its bearings, as the forces on them.
+    bearings : sequence of bearings
+        Of its shaft.
+    law : callable, optional
+        Makes the support that is linear near loads (6 m,) of the stations, with their exact motions, as rolling
+        bearings need it; default: this one is linear.
 
     Raises
     ------
@@ -68,6 +76,9 @@ class Support:
     stations: Array | None = None
     motion: Array | None = None
     on_bearings: Array | None = None
+    at_bearings: Array | None = None
+    bearings: Sequence[AnyBearing] = ()
+    law: Callable[[Array], Support] | None = None
 
     def __post_init__(self) -> None:
         size = 6 * len(self.places)
@@ -85,6 +96,16 @@ class Support:
         """Axial coordinates of the stations (m,) [mm]."""
         return np.array([self.middle]) if self.stations is None else self.stations
 
+    def under(self, loads: Array) -> Support:
+        """The support that is linear near loads (6 m,) of the stations; itself if it is linear."""
+        return self if self.law is None else self.law(loads)
+
+    @property
+    def at_rest(self) -> Array:
+        """Motions of the stations (6 m,) [mm, rad] under other loads alone."""
+        unloaded = np.zeros(len(self.compliance))
+        return self.under(unloaded).moved(unloaded)
+
     def moved(self, loads: Array) -> Array:
         """Motions of the stations (6 m,) [mm, rad] under loads (6 m,) [N, N mm] beside the other ones."""
         moved = self.compliance @ loads
@@ -94,6 +115,11 @@ class Support:
         """Forces and moments on the bearings (bearings, 6) [N, N mm] under loads (6 m,), other loads included."""
         assert self.on_bearings is not None
         return np.asarray(self.on_bearings @ np.append(loads, 1.0))
+
+    def bearing_motions(self, loads: Array) -> Array:
+        """Motions of the shaft in its bearings (bearings, 6) [mm, rad] under loads (6 m,), other loads included."""
+        assert self.at_bearings is not None
+        return np.asarray(self.at_bearings @ np.append(loads, 1.0))
 
     def at_middle(self, motions: Array) -> Array:
         """Motion (6,) of the middle of the face by those of the stations (6 m,)."""
@@ -187,6 +213,18 @@ class SupportCompliance:
     def mounted(self, pair: GearPair) -> SupportCompliance:
         """The same supports in a pair whose wheel stands elsewhere."""
         return replace(self, pair=pair)
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the motions grow with the loads, whatever these are."""
+        return all(support.law is None for support in self.supports)
+
+    def under(self, loads: Sequence[Array]) -> SupportCompliance:
+        """The supports that are linear near loads (6 m,) of pinion and wheel; these if they are linear."""
+        if self.is_linear:
+            return self
+        pinion, wheel = (support.under(load) for support, load in zip(self.supports, loads, strict=True))
+        return replace(self, supports=(pinion, wheel))
 
     def loads(self, grid: ContactGrid) -> tuple[Array, Array]:
         """Loads of pinion and wheel (ny, 6 m) each by a unit normal force on every slice of a contact [1, mm]."""

@@ -16,7 +16,7 @@ from loaded_tca.errors import AccuracyWarning, GeometryError, InputError, NotAsk
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.output.result_files import positions_csv
 from loaded_tca.scene import Scene
-from tests.supports.oracle import settled
+from validation.loaded.moved_gears import settled
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # contacts at edges: not the matter here
 

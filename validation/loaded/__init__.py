@@ -2,6 +2,8 @@
 
 - ``limits``: balance, energy, no load, conjugate teeth, published stiffnesses;
 - ``revolution``: whole revolutions beside one pitch, flanks really turned, eccentric axes, stiffnesses of single teeth;
+- ``rolling_bearings``: motions and lives of others, Stribeck, ISO 281, rigid analyses with moved gears; a page;
+  ``moved_gears``: these analyses, which tests of supports have, too;
 - ``cut_contacts``: scatter of contacts that end at faces and tips;
 - ``mesh_stiffness``: beside ISO 6336-1, over helix angle, bore, face width, torque and crowning;
 - ``bending_line``: a helical pair whose pressure leaves the axis of its grid, beside repeated analyses;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,13 +27,20 @@ class Settled:
     motions: Array
 
 
-def settled(scene: Scene, compliances: tuple[Array, Array], grid: GridChoice, relaxation: float = 1.0) -> Settled:
+Law = Array | Callable[[Array], Array]
+
+
+def settled(
+    scene: Scene, compliances: tuple[Law, Law], grid: GridChoice, relaxation: float = 1.0, change: float = SETTLED
+) -> Settled:
     """Rigid analyses at the pitch point with a wheel that is moved by what the loads move both gears.
 
-    ``compliances``: (6, 6) of the middles of the faces, in the axes of each gear's own frame.
+    ``compliances``: (6, 6) of the middles of the faces, in the axes of each gear's own frame, or motions (6,) by loads
+    (6,). ``change``: of the motions that is none.
     """
     pair = scene.pair()
-    bending = model_of(scene.with_changes({"pinion.support": None, "wheel.support": None}), pair, 3)
+    none = [f"{gear}.{section}" for gear in ("pinion", "wheel") for section in ("support", "shaft")]
+    bending = model_of(scene.with_changes(dict.fromkeys(none)), pair, 3)
     torque = np.array(scene.torques[:1])
     axes = np.eye(3), pair.wheel_axes
     middles = [np.zeros(3), pair.wheel_origin] + np.array(scene.face_middles)[:, None] * [own[2] for own in axes]
@@ -58,10 +66,12 @@ def settled(scene: Scene, compliances: tuple[Array, Array], grid: GridChoice, re
         new = np.empty((2, 6))
         for gear, (own, compliance) in enumerate(zip(axes, compliances, strict=True)):
             turned = np.kron(np.eye(2), own)
-            new[gear] = turned.T @ compliance @ turned @ loads[gear]
-        change = float(np.abs(new - motions).max())
+            own_loads = turned @ loads[gear]
+            moved_by = compliance(own_loads) if callable(compliance) else compliance @ own_loads
+            new[gear] = turned.T @ moved_by
+        changed = float(np.abs(new - motions).max())
         motions = motions + relaxation * (new - motions)
-        if change < SETTLED:
+        if changed < change:
             error = float(carried.path.transmission_error[0] - pair.driving * carried.rotation[0, 0])
             return Settled(error, new)
-    raise AssertionError(f"oracle not settled: {change:.1e}")
+    raise AssertionError(f"oracle not settled: {changed:.1e}")
