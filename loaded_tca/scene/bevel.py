@@ -413,6 +413,11 @@ class BevelScene(SpiralScene, BlankScene):
         ]
 
     @property
+    def geometry_standard(self) -> str:
+        """ISO 23509 where the blanks are the standard's."""
+        return "depths by outer modules, about one apex" if self.geometry.blank is None else "ISO 23509"
+
+    @property
     def data_type(self) -> str:
         """Type of the data of the blanks: I, II or measured."""
         blank = self.geometry.blank

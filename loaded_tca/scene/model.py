@@ -342,6 +342,11 @@ class Scene(Section, ABC):
         return 3.0  # of face-milled teeth, whose contact ratio is not known before their contact
 
     @property
+    def geometry_standard(self) -> str:
+        """What the rows of the geometry follow, as titles have it."""
+        return "ISO 21771" if self.path_points else "ISO 23509"
+
+    @property
     def path_points(self) -> Mapping[str, float]:
         """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion; none of bevel gears."""
         return {}
