@@ -485,3 +485,8 @@ def test_circle_of_a_large_cutter_is_no_logarithmic_spiral():
                 "pair.blank.taper": "standard",
             }
         )
+
+
+def test_standard_of_the_geometry_is_told_where_it_is_that_of_the_blanks():
+    assert annex_f2().geometry_standard == "ISO 23509"
+    assert annex_f2(**{"pair.blank": None}).geometry_standard == "depths by outer modules, about one apex"
