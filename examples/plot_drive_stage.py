@@ -1,5 +1,5 @@
 """A stage of a drive on its shafts, with its oil
-=============================================
+==============================================
 
 The pinion overhangs its bearings, so that it tilts under load: the load over the face under two torques, what a helix
 slope makes up for, and how the stage runs with its oil. Writes drive_stage.png and prints the numbers.

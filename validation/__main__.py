@@ -55,6 +55,7 @@ CASES = (
     "loaded.mesh_stiffness",
     "loaded.local_term",
     "loaded.ring_teeth",
+    "loaded.internal_cycle",
     "loaded.root_stress",
     "loaded.root_stress_cycle",
     "loaded.root_stress_space",
