@@ -17,6 +17,7 @@ from loaded_tca.plots import plot_pressure_envelope, plot_root_stress, plot_root
 
 DOCS = Path(__file__).parent
 EXAMPLES = {
+    "guide/hypoid_pair.png": "plot_hypoid_pair",
     "guide/study_heat_map.png": "plot_micro_geometry",
     "guide/vh_check.png": "plot_vh_check",
     "guide/vh_under_load.png": "plot_vh_under_load",

@@ -95,8 +95,9 @@ STUDY = """files in DIR:
   study.rows.jsonl          the variants that are done; the same command goes on from there
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
-pictures, accuracy warnings with what to do, and the scene file; of a study what varies, the ranking, best and worst
-variant; of a design start and optimum. It prints on A4. Needs the package jinja2."""
+pictures, accuracy warnings with what to do, and the scene file; of a stage its phases, shares and orders; of a study
+what varies, the ranking, best and worst variant; of a design start and optimum. It prints on A4. Needs the package
+jinja2."""
 REVOLUTION = """files in DIR:
   revolution.nc             everything, to be read by loaded_tca.Revolution.load or xarray
   revolution.json           the key figures: single-flank deviations, orders, worst teeth
@@ -162,8 +163,10 @@ def command_line() -> argparse.ArgumentParser:
     _add_tables_and_maps(command)
     _add_studies(command)
     _add_exchange(command)
-    check = command("check", run_by.check, "read a scene and show its geometry, without computing a contact", None)
-    _add_scene(check)
+    text = "read a scene or a stage and show its geometry, without computing a contact"
+    check = command("check", run_by.check, text, None)
+    check.add_argument("scene", metavar="FILE.toml", help="scene file, or stage file")
+    _add_changes(check)
     return parser
 
 
@@ -182,7 +185,7 @@ def _add_analyses(command: Command) -> None:
     _add_scene(revolution)
     revolution.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     stage = command("stage", run_by.stage, "analyse a planetary stage: how its planets share the torque", STAGE)
-    stage.add_argument("stage", metavar="STAGE.toml", help="stage file")
+    stage.add_argument("scene", metavar="STAGE.toml", help="stage file")
     _add_changes(stage)
     stage.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
 
@@ -316,8 +319,9 @@ def _add_studies(command: Command) -> None:
         default=(),
         help="variants, from 0, whose results are kept whole",
     )
-    report = command("report", run_by.report, "write a report of a result, a study or a design as HTML", REPORT)
-    text = "result.nc, study.nc, the file of a design, or the directory that holds one"
+    text = "write a report of a result, a planetary stage, a study or a design as HTML"
+    report = command("report", run_by.report, text, REPORT)
+    text = "result.nc, stage.nc, study.nc, the file of a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
     report.add_argument("--rank-by", metavar="FIGURE", help="of a study, the least is best; default: TE span")

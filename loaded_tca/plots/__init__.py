@@ -49,6 +49,7 @@ from loaded_tca.plots.sharing import (
 )
 from loaded_tca.plots.solution import plot_solution
 from loaded_tca.plots.stage import (
+    STAGE_CAPTIONS,
     STAGE_PICTURES,
     plot_stage_error,
     plot_stage_load_factor,
@@ -65,7 +66,7 @@ from loaded_tca.plots.study import (
 from loaded_tca.plots.study_panels import plot_study_ranking
 from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
 from loaded_tca.plots.style import chosen_torque, png_of, save_figure
-from loaded_tca.plots.supports import plot_bearing_loads, plot_misalignment
+from loaded_tca.plots.supports import plot_bearing_loads, plot_face_load_on_supports, plot_misalignment
 from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
 from loaded_tca.plots.tribology import (
     TRIBOLOGY_PICTURES,
@@ -85,6 +86,7 @@ __all__ = [
     "MORE_PICTURES",
     "PICTURES",
     "REVOLUTION_PICTURES",
+    "STAGE_CAPTIONS",
     "STAGE_PICTURES",
     "TRIBOLOGY_PICTURES",
     "draw_teeth",
@@ -100,6 +102,7 @@ __all__ = [
     "plot_ease_off",
     "plot_efficiency",
     "plot_face_load",
+    "plot_face_load_on_supports",
     "plot_film_ratio",
     "plot_first_order_scatter",
     "plot_friction_power",

@@ -303,6 +303,9 @@ class MeshCycle(CycleNumbers):
             raise InputError(
                 f"{path}: a whole revolution, not the result of a mesh cycle; read it with Revolution.load"
             )
+        if kind == "stage":
+            reader = "StageResult.load"
+            raise InputError(f"{path}: a planetary stage, not the result of a mesh cycle; read it with {reader}")
         if kind in ("study", "design"):
             reader = f"loaded_tca.studies.load_{kind}"
             raise InputError(f"{path}: a {kind}, not the result of a mesh cycle; read it with {reader}")

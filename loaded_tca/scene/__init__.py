@@ -14,6 +14,7 @@ from loaded_tca.scene.internal import InternalScene
 from loaded_tca.scene.bevel import BevelScene
 from loaded_tca.scene.face_milled import FaceMilledScene
 from loaded_tca.scene.parse import describe_keys
+from loaded_tca.scene.hypoid_table import hypoid_table
 from loaded_tca.scene.flank_form import FlankForm, Measurement
 from loaded_tca.scene.model import Scene, scene_from_table
 from loaded_tca.scene.parse import parse_scene, read_scene
@@ -35,6 +36,7 @@ __all__ = [
     "cylindrical",
     "describe_keys",
     "face_milled",
+    "hypoid_table",
     "internal",
     "parse_scene",
     "read_scene",

@@ -79,9 +79,11 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
     ...
     """
     table = toml_table(text, source)
+    if isinstance(table.get("stage"), dict) and "sun" in table:
+        raise InputError(f"{source}: not the scene of a pair but a planetary stage; run it with 'loaded-tca stage'")
     if "pair" not in table and isinstance(table.get("scene"), str):
         raise InputError(f"{source}: not a scene but a study of {table['scene']}; run it with 'loaded-tca study'")
-    return scene_from_table(_with_files_from(None if folder is None else Path(folder), table))
+    return scene_from_table(with_files_from(None if folder is None else Path(folder), table))
 
 
 def literal_value(text: str) -> Any:
@@ -99,7 +101,7 @@ def literal_value(text: str) -> Any:
     return table["value"] if len(table) == 1 else text
 
 
-def _with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[str, ...] = ()) -> dict[str, Any]:
+def with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[str, ...] = ()) -> dict[str, Any]:
     """The table, in which the keys of the upper levels that are called file name it from the current folder.
 
     Who opens the scene of somebody else lets it read nothing but what lies beside it.
@@ -112,7 +114,7 @@ def _with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[
         tables = isinstance(value, list) and all(isinstance(one, dict) for one in value)
         if (isinstance(value, dict) or tables) and len(key) < LEVELS_WITH_FILES:
             try:
-                inner = [_with_files_from(folder, one, key) for one in (value if tables else [value])]
+                inner = [with_files_from(folder, one, key) for one in (value if tables else [value])]
                 with_files[name] = inner if tables else inner[0]
             except InputError as error:
                 problems += error.problems

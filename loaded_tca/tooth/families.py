@@ -314,7 +314,7 @@ class FaceMilledTooth(ToothGeometry):
         """The flank with its modifications; the profile runs from the form line to the tip."""
         generated, blank = unmodified(nominal), self.gear.blank
         assert isinstance(generated, GeneratedFlank)
-        distance, (tip, foot) = blank.mean_cone_distance, generated.mean_cone_angles
+        distance, (tip, foot) = blank.middle_cone_distance, generated.mean_cone_angles
 
         def diameter(angle: float) -> float:
             sine = math.sin(angle)

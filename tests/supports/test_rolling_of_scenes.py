@@ -20,7 +20,7 @@ from loaded_tca.errors import InputError, NotAskedError
 from loaded_tca.loaded.shaft_lines import shaft_lines
 from loaded_tca.loaded.supported import loads_at_first_contact, near_torque
 from loaded_tca.loaded.tooth_contact import GridChoice
-from loaded_tca.plots import plot_bearing_loads, plot_misalignment, result_figures
+from loaded_tca.plots import plot_bearing_loads, plot_face_load_on_supports, plot_misalignment, result_figures
 from loaded_tca.results.supports import element_forces
 from loaded_tca.scene import Scene
 from loaded_tca.studies import DesignModel
@@ -298,6 +298,18 @@ def test_pictures_of_supports_are_among_those_of_the_result(result: MeshCycle) -
     assert_allclose(drawn, result.misalignment.mean(axis=1))
     assert plot_misalignment(result).axes[0].get_ylabel().endswith("[µm]")
     assert len(figures["shaft"].axes) == 6
+
+
+def test_load_over_the_face_is_drawn_beside_that_of_rigid_supports(scene: Scene, result: MeshCycle) -> None:
+    rigid = analyse(scene.with_changes({"pinion.shaft": None, "wheel.shaft": None}))
+    axes = plot_face_load_on_supports(result, rigid).axes[0]
+    labels = axes.get_legend_handles_labels()[1]
+    for label, one in zip(labels, (result, rigid), strict=True):
+        assert f"K_Hβ = {one.face_load_factor[1]:.3g}" in label
+    other = analyse(rigid.scene.with_changes({"analysis.torques_Nm": [40.0], "analysis.positions": 1}))
+    with pytest.raises(InputError) as refused:
+        plot_face_load_on_supports(result, other)
+    assert [problem[:20] for problem in refused.value.problems] == ["rigid: other torques", "face load: a mean ov"]
 
 
 def test_pictures_of_what_a_result_lacks_are_refused(scene: Scene) -> None:
