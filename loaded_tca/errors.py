@@ -131,13 +131,15 @@ def give_accuracy_warning(sentence: str, stacklevel: int = 2) -> None:
 
 
 @contextmanager
-def noted_accuracy_warnings(*, given: bool = True) -> Iterator[list[str]]:
+def noted_accuracy_warnings(*, given: bool = True, alone: bool = False) -> Iterator[list[str]]:
     """Note the sentences of accuracy warnings of this thread, whatever the filters of ``warnings`` do with them.
 
     Parameters
     ----------
     given : bool
         Whether the warnings are given, too.
+    alone : bool
+        Whether nobody who notes them around this notes them, too: who passes them on in other words.
 
     Examples
     --------
@@ -147,7 +149,7 @@ def noted_accuracy_warnings(*, given: bool = True) -> Iterator[list[str]]:
     ['the fit is coarse']
     """
     sentences: list[str] = []
-    mark = _noted.set((*_noted.get(), (sentences, given)))
+    mark = _noted.set((*(() if alone else _noted.get()), (sentences, given)))
     try:
         yield sentences
     finally:

@@ -37,8 +37,9 @@ EASE_OFF = """files in DIR:
   ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
                             corners, and its angles, crownings and twist"""
 SETTINGS = """SCENE has bevel gears with a section [pair.blank] and the radius of its cutter. FILE is a scene of type
-face_milled with the same blanks, and with machine settings and cutters in closed form: a start to be mended by what its
-contact shows ('loaded-tca run', 'vh', 'ease-off')."""
+face_milled with the same blanks, and with all machine settings and cutters: in closed form, a start to be mended by
+what its contact shows ('loaded-tca run', 'vh', 'ease-off'), or with the pinion's by local synthesis, whose contact at
+the mean point is what [pair.settings] of a scene of type face_milled asks for, or what is usual."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
 touch.
 
@@ -95,8 +96,9 @@ STUDY = """files in DIR:
   study.rows.jsonl          the variants that are done; the same command goes on from there
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
-pictures, accuracy warnings with what to do, and the scene file; of a study what varies, the ranking, best and worst
-variant; of a design start and optimum. It prints on A4. Needs the package jinja2."""
+pictures, accuracy warnings with what to do, and the scene file; of a stage its phases, shares and orders; of a study
+what varies, the ranking, best and worst variant; of a design start and optimum. It prints on A4. Needs the package
+jinja2."""
 REVOLUTION = """files in DIR:
   revolution.nc             everything, to be read by loaded_tca.Revolution.load or xarray
   revolution.json           the key figures: single-flank deviations, orders, worst teeth
@@ -162,8 +164,10 @@ def command_line() -> argparse.ArgumentParser:
     _add_tables_and_maps(command)
     _add_studies(command)
     _add_exchange(command)
-    check = command("check", run_by.check, "read a scene and show its geometry, without computing a contact", None)
-    _add_scene(check)
+    text = "read a scene or a stage and show its geometry, without computing a contact"
+    check = command("check", run_by.check, text, None)
+    check.add_argument("scene", metavar="FILE.toml", help="scene file, or stage file")
+    _add_changes(check)
     return parser
 
 
@@ -182,7 +186,7 @@ def _add_analyses(command: Command) -> None:
     _add_scene(revolution)
     revolution.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     stage = command("stage", run_by.stage, "analyse a planetary stage: how its planets share the torque", STAGE)
-    stage.add_argument("stage", metavar="STAGE.toml", help="stage file")
+    stage.add_argument("scene", metavar="STAGE.toml", help="stage file")
     _add_changes(stage)
     stage.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
 
@@ -258,9 +262,9 @@ def _add_tables_and_maps(command: Command) -> None:
     cut = command("settings", run_by.settings, "write the face-milled scene of a bevel blank", SETTINGS)
     _add_scene(cut)
     cut.add_argument("--out", metavar="FILE", required=True, type=_path, help="scene file to write")
-    methods = "duplex_spread_blade", "spread_blade"
-    text = f"how both gears are cut; default: {methods[0]}"
-    cut.add_argument("--method", choices=methods, default=methods[0], help=text)
+    methods = "duplex_spread_blade", "spread_blade", "local_synthesis"
+    text = f"how both gears are cut; default: pair.settings.method of the scene, else {methods[0]}"
+    cut.add_argument("--method", choices=methods, help=text)
     shaft = command("shaft", run_by.shaft, "show how the shafts of a scene bend, without contact", SHAFT)
     _add_scene(shaft)
     shaft.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: none is written")
@@ -316,8 +320,9 @@ def _add_studies(command: Command) -> None:
         default=(),
         help="variants, from 0, whose results are kept whole",
     )
-    report = command("report", run_by.report, "write a report of a result, a study or a design as HTML", REPORT)
-    text = "result.nc, study.nc, the file of a design, or the directory that holds one"
+    text = "write a report of a result, a planetary stage, a study or a design as HTML"
+    report = command("report", run_by.report, text, REPORT)
+    text = "result.nc, stage.nc, study.nc, the file of a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
     report.add_argument("--rank-by", metavar="FIGURE", help="of a study, the least is best; default: TE span")

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
+    from loaded_tca.stages import Stage, StageResult
     from loaded_tca.studies import DesignResult
 
 REACHED_WITHIN = 10.0
@@ -37,6 +38,16 @@ def scene_of(options: argparse.Namespace) -> Scene:
     scene = read_scene(options.scene)
     changes = {key: literal_value(value) for key, value in options.set}
     return scene.with_changes(changes) if changes else scene
+
+
+def stage_of(options: argparse.Namespace) -> Stage:
+    """The stage that the command line names, with its changes."""
+    from loaded_tca.scene.parse import literal_value
+    from loaded_tca.stages import read_stage
+
+    stage = read_stage(options.scene)
+    changes = {key: literal_value(value) for key, value in options.set}
+    return stage.with_changes(changes) if changes else stage
 
 
 def result_of(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, int | None]:
@@ -89,15 +100,15 @@ def result_file(path: Path) -> Path:
 
 
 def file_of_report(path: Path) -> Path:
-    """The file of a result, a study or a design that is named by itself or by its directory."""
-    result, *others = (path / name for name in ("result.nc", "study.nc", "design.nc"))
+    """The file of a result, a stage, a study or a design that is named by itself or by its directory."""
+    result, *others = (path / name for name in ("result.nc", "stage.nc", "study.nc", "design.nc"))
     if not os.path.isdir(path):
         return path
     return next((one for one in (result, *others) if one.is_file()), result)
 
 
-def subject_of_report(path: Path) -> MeshCycle | xarray.Dataset | DesignResult:
-    """The result, study or design in a file."""
+def subject_of_report(path: Path) -> MeshCycle | StageResult | xarray.Dataset | DesignResult:
+    """The result, stage, study or design in a file."""
     from loaded_tca.results.files import read_dataset
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.studies import load_design, load_study
@@ -105,6 +116,10 @@ def subject_of_report(path: Path) -> MeshCycle | xarray.Dataset | DesignResult:
     kind = read_dataset(path).attrs.get("kind")
     if kind == "study":
         return load_study(path)
+    if kind == "stage":
+        from loaded_tca.stages import StageResult
+
+        return StageResult.load(path.parent)
     return load_design(path) if kind == "design" else MeshCycle.load(path)
 
 
@@ -297,20 +312,16 @@ def _is_of_tribology(key: str) -> bool:
 
 def stage(options: argparse.Namespace) -> None:
     """Analyse a planetary stage, write everything into a directory, and show the summary."""
-    from loaded_tca.analysis import expected_effort
     from loaded_tca.output.stage_files import write_stage
     from loaded_tca.plots import STAGE_PICTURES, png_of
-    from loaded_tca.scene.parse import literal_value
-    from loaded_tca.stages import analyse_stage, read_stage
-    from loaded_tca.stages.analyse import states_of
+    from loaded_tca.stages import analyse_stage
+    from loaded_tca.stages.analyse import expected_stage_effort, states_of
 
-    asked, directory = read_stage(options.stage), options.out
-    changes = {key: literal_value(value) for key, value in options.set}
-    asked = asked.with_changes(changes) if changes else asked
+    asked, directory = stage_of(options), options.out
     check_place(directory)
     asked.require_assembly()
     states = states_of(asked)
-    with progress_bar(expected_effort(asked.sun_scene), "states of both meshes", states) as progress:
+    with progress_bar(expected_stage_effort(asked), "states of both meshes", states) as progress:
         result = analyse_stage(asked, progress=progress)
     pictures = {f"{name}.png": png_of(draw(result)) for name, draw in STAGE_PICTURES.items()}
     written = write_stage(result, directory, pictures)
@@ -442,16 +453,21 @@ def ease_off(options: argparse.Namespace) -> None:
 
 
 def settings(options: argparse.Namespace) -> None:
-    """Write the face-milled scene of a bevel blank, with its basic machine settings."""
+    """Write the face-milled scene of a bevel blank, with all its machine settings."""
     from loaded_tca.results.files import replace_file
     from loaded_tca.scene.bevel import BevelScene
+    from loaded_tca.scene.blank_face_milled import BlankFaceMilledScene
 
     scene = scene_of(options)
-    kind = f"{options.scene}: pair.type: allowed straight_bevel or spiral_bevel, with [pair.blank]"
+    kind = f"{options.scene}: pair.type: allowed straight_bevel, spiral_bevel or face_milled, with [pair.blank]"
     require((isinstance(scene, BevelScene), kind))
     assert isinstance(scene, BevelScene)
     check_files([options.out], Path(options.scene))
-    replace_file(options.out, scene.face_milled(options.method).to_toml().encode())
+    if isinstance(scene, BlankFaceMilledScene):
+        cut: Scene = scene.with_method(options.method).cut if options.method else scene.cut
+    else:
+        cut = scene.face_milled(options.method or "duplex_spread_blade")
+    replace_file(options.out, cut.to_toml().encode())
     print_files([options.out])
 
 
@@ -535,7 +551,7 @@ def study(options: argparse.Namespace) -> None:
 
 
 def report(options: argparse.Namespace) -> None:
-    """Write the report of a result, a study or a design."""
+    """Write the report of a result, a stage, a study or a design."""
     from loaded_tca.reports import write_html_report
 
     path, out = file_of_report(options.result), options.out
@@ -548,7 +564,9 @@ def report(options: argparse.Namespace) -> None:
 
 
 def check(options: argparse.Namespace) -> None:
-    """Show the geometry of a scene."""
+    """Show the geometry of a scene or of a stage."""
     from loaded_tca.output.overview import describe_scene
+    from loaded_tca.output.stage_overview import describe_stage
+    from loaded_tca.stages.sections import is_stage_file
 
-    print(describe_scene(scene_of(options)))
+    print(describe_stage(stage_of(options)) if is_stage_file(options.scene) else describe_scene(scene_of(options)))

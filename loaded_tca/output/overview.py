@@ -100,7 +100,10 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     if wanted.root_stress:
         yield "root stress", "on"
     if wanted.without_bodies:
-        yield "bores or journals held rigid, diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
+        held = (
+            "bore and outside of the ring held rigid [mm]" if scene.wheel.teeth < 0 else "bores or journals held rigid"
+        )
+        yield held, *(f"{bore:.4f}" for bore in pair.rigid_bores)
 
 
 def _bearing_rows(scene: Scene) -> Iterator[Row]:

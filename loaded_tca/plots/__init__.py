@@ -49,6 +49,7 @@ from loaded_tca.plots.sharing import (
 )
 from loaded_tca.plots.solution import plot_solution
 from loaded_tca.plots.stage import (
+    STAGE_CAPTIONS,
     STAGE_PICTURES,
     plot_stage_error,
     plot_stage_load_factor,
@@ -85,6 +86,7 @@ __all__ = [
     "MORE_PICTURES",
     "PICTURES",
     "REVOLUTION_PICTURES",
+    "STAGE_CAPTIONS",
     "STAGE_PICTURES",
     "TRIBOLOGY_PICTURES",
     "draw_teeth",

@@ -24,7 +24,6 @@ from loaded_tca.plots.study_panels import (
     NOTHING,
     SAME,
     SAMPLE,
-    TORQUE,
     column_of,
     finish_panel,
     groups_of,
@@ -53,6 +52,7 @@ from loaded_tca.plots.study_scatter import (
 )
 from loaded_tca.plots.style import ACCENT, COLOURS, MOST_LABELS, NOT_REACHED, label_of
 from loaded_tca.studies.ranking import figure_values, main_figures, varied_keys
+from loaded_tca.studies.stage import torque_name
 
 if TYPE_CHECKING:
     import xarray
@@ -112,8 +112,9 @@ def plot_study(
             pictures[f"study_heat_map_{name}"] = plot_study_heat_map(study, name, *stepped[:2], largest_is_best=best)
         if scattered:
             pictures[f"study_histogram_{name}"] = plot_study_histogram(study, name, stepped)
-    if scattered and TRANSMISSION_ERROR in figures and _has_common_torques(study):
-        pictures["study_over_torque"] = plot_study_over_torque(study)
+    over_torque = TRANSMISSION_ERROR if "stage_toml" not in study.attrs else rank_by
+    if scattered and over_torque in figures and _has_common_torques(study):
+        pictures["study_over_torque"] = plot_study_over_torque(study, over_torque)
     if len(scattered) > 1 or len(stepped) > 2:
         pictures["study_scatter_matrix"] = plot_study_scatter_matrix(study, figures[:2])
     pictures["study_ranking"] = plot_study_ranking(study, rank_by, largest_is_best=largest_is_best)
@@ -297,7 +298,9 @@ def _is_short_table(study: xarray.Dataset, keys: Sequence[str]) -> bool:
 
 def _has_common_torques(study: xarray.Dataset) -> bool:
     """Whether there are several torques, each with more than one variant."""
-    if TORQUE not in study:
+    name = torque_name(study)
+    if name not in study:
         return False
-    _, counts = np.unique(study[TORQUE].values[np.isfinite(study[TORQUE].values)], return_counts=True)
+    torques = study[name].values
+    _, counts = np.unique(torques[np.isfinite(torques)], return_counts=True)
     return len(counts) > 1 and bool(counts.min() > 1)

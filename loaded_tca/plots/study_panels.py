@@ -35,12 +35,12 @@ from loaded_tca.studies.ranking import (
     ranking,
     varied_keys,
 )
+from loaded_tca.studies.stage import torque_name
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
-TORQUE = "pinion_torque_Nm"
 PERCENTILES = (0.05, 0.5, 0.95)
 SAMPLE = "sample"
 """Number of a variant: stands for a key where no key orders the variants."""
@@ -105,11 +105,12 @@ def shown_torques(study: xarray.Dataset) -> list[int]:
 def torque_labels(study: xarray.Dataset) -> list[str]:
     """What is said of each torque; where it is not the same in all variants, which of several it is."""
     count = study.sizes["torque"]
-    torques = figure_values(study, TORQUE) if TORQUE in study else np.full((1, count), np.nan)
+    torques = figure_values(study, torque_name(study)) if torque_name(study) in study else np.full((1, count), np.nan)
     columns = (np.unique(column[np.isfinite(column)]) for column in torques.T)
+    whose = torque_name(study).partition("_")[0]
     numbered = [f"torque {k + 1} of {count}" if count > 1 else "" for k in range(count)]
     return [
-        f"pinion torque {shown_torque(1e3 * one[0])}" if len(one) == 1 else number
+        f"{whose} torque {shown_torque(1e3 * one[0])}" if len(one) == 1 else number
         for one, number in zip(columns, numbered, strict=True)
     ]
 
@@ -161,6 +162,8 @@ def mark_missing(axes: Axes, places: Array, height: float = 0.03, colour: str = 
 
 def key_label(study: xarray.Dataset, key: str) -> str:
     """What an axis calls a key; V and H come before the two errors of a V-H check."""
+    if "stage_toml" in study.attrs:
+        return label_of(key)
     errors = parse_scene(study.attrs["scene_toml"], folder=None).vh_keys
     letter = f"{'VH'[errors.index(key)]}: " if {*varied_keys(study)} == {*errors} else ""
     return letter + label_of(key)
@@ -209,7 +212,8 @@ def told_of_variants(study: xarray.Dataset, values: Array | None = None) -> str:
 
 def set_study_title(drawing: Figure, study: xarray.Dataset, values: Array | None, *about: str) -> None:
     """Title of the scene, what is shown, and what became of the variants."""
-    title = toml_table(study.attrs.get("scene_toml", ""), "scene").get("title", "")
+    text = study.attrs.get("stage_toml", study.attrs.get("scene_toml", ""))
+    title = toml_table(text, "scene").get("title", "")
     style.write_title(drawing, title, *about, told_of_variants(study, values))
 
 

@@ -21,7 +21,6 @@ from loaded_tca.plots.study_panels import (
     MISSING,
     PERCENTILES,
     SAME,
-    TORQUE,
     column_of,
     finish_panel,
     groups_of,
@@ -39,6 +38,7 @@ from loaded_tca.plots.study_panels import (
 )
 from loaded_tca.plots.style import ACCENT, COLOURS, MOST_LABELS, label_of, wrapped_label_of
 from loaded_tca.studies.ranking import design_keys, figure_values, main_figures, nominal_variant, varied_keys
+from loaded_tca.studies.stage import torque_name
 
 if TYPE_CHECKING:
     import xarray
@@ -116,7 +116,7 @@ def plot_study_over_torque(study: xarray.Dataset, figure: str = TRANSMISSION_ERR
     InputError
         If the study has no such figure, or its figures have no torque.
     """
-    values, torques = figure_values(study, figure), figure_values(study, TORQUE)
+    values, torques = figure_values(study, figure), figure_values(study, torque_name(study))
     at = np.unique(torques[np.isfinite(torques)])
     drawing, (axes,) = panels_of(1, (7.5, 5.0))
     keys = design_keys(study)
@@ -133,7 +133,7 @@ def plot_study_over_torque(study: xarray.Dataset, figure: str = TRANSMISSION_ERR
     nominal = nominal_variant(study)
     if nominal is not None:
         axes.plot(torques[nominal], values[nominal], "s--", color="black", label="nominal")
-    axes.set(xlabel=label_of(TORQUE), ylabel=label_of(figure))
+    axes.set(xlabel=label_of(torque_name(study)), ylabel=label_of(figure))
     finish_panel(axes, values, "")
     legend_of(drawing, [axes], ", ".join(map(label_of, keys)))
     told = [f"of each design median and band ({BAND}) of its samples"] if keys else []

@@ -16,9 +16,11 @@ from loaded_tca.plots import plot_before_and_after, plot_peak_to_peak_over_torqu
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, pictures_of
 from loaded_tca.reports.result_page import explained, scene_content
+from loaded_tca.reports.stage_page import stage_geometry
 from loaded_tca.results.summary import shown, shown_torque
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import parse_scene
+from loaded_tca.stages import Stage
 from loaded_tca.studies.design import DesignResult
 from loaded_tca.studies.design_figures import FIGURES, FigureOfErrors
 from loaded_tca.studies.ranking import (
@@ -33,6 +35,7 @@ from loaded_tca.studies.ranking import (
     rank_variants,
     varied_keys,
 )
+from loaded_tca.studies.stage import subject_of
 
 if TYPE_CHECKING:
     import pandas
@@ -65,7 +68,7 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
     sampled = is_sampled(study)
     combinations = rank_combinations(study, by) if sampled else None
     grouped = combinations is not None and bool(combinations["rank"].notna().any())
-    scene = parse_scene(study.attrs["scene_toml"], source="scene_toml", folder=None)
+    subject = subject_of(study)
     lines = Counter(line for warned in study["warnings"].values.tolist() for line in warned.splitlines())
     by_reason: dict[str, list[str]] = {}
     for line in lines:
@@ -78,12 +81,12 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
     figures = plot_study(study, rank_by=by)
     figures.pop("study_ranking")  # a table of the page
     return {
-        "title": scene.title or "Study",
+        "title": subject.title or "Study",
         "analysed_by": str(study.attrs.get("version", "")),
         "statuses": Counter(study["status"].values.tolist()).most_common(),
         "variants": variants,
         "analysed": "ok" in study["status"].values,
-        **scene_content(scene),
+        **(stage_geometry(subject) if isinstance(subject, Stage) else scene_content(subject)),
         "varied": _varied(study),
         "seed": f"{study.attrs.get('seed', '-')}" if sampled else "",
         "scatter": [*_scatter(study, by)],
@@ -101,7 +104,7 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
             if status != "ok"
         ).most_common(),
         "warnings": explained([f"{reason} ({count} of {variants} variants)" for reason, count in concerned.items()]),
-        "pictures": pictures_of(figures, STUDY_CAPTIONS, scene.title),
+        "pictures": pictures_of(figures, STUDY_CAPTIONS, subject.title),
     }
 
 

@@ -79,9 +79,11 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
     ...
     """
     table = toml_table(text, source)
+    if isinstance(table.get("stage"), dict) and "sun" in table:
+        raise InputError(f"{source}: not the scene of a pair but a planetary stage; run it with 'loaded-tca stage'")
     if "pair" not in table and isinstance(table.get("scene"), str):
         raise InputError(f"{source}: not a scene but a study of {table['scene']}; run it with 'loaded-tca study'")
-    return scene_from_table(_with_files_from(None if folder is None else Path(folder), table))
+    return scene_from_table(with_files_from(None if folder is None else Path(folder), table))
 
 
 def literal_value(text: str) -> Any:
@@ -99,7 +101,7 @@ def literal_value(text: str) -> Any:
     return table["value"] if len(table) == 1 else text
 
 
-def _with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[str, ...] = ()) -> dict[str, Any]:
+def with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[str, ...] = ()) -> dict[str, Any]:
     """The table, in which the keys of the upper levels that are called file name it from the current folder.
 
     Who opens the scene of somebody else lets it read nothing but what lies beside it.
@@ -112,7 +114,7 @@ def _with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[
         tables = isinstance(value, list) and all(isinstance(one, dict) for one in value)
         if (isinstance(value, dict) or tables) and len(key) < LEVELS_WITH_FILES:
             try:
-                inner = [_with_files_from(folder, one, key) for one in (value if tables else [value])]
+                inner = [with_files_from(folder, one, key) for one in (value if tables else [value])]
                 with_files[name] = inner if tables else inner[0]
             except InputError as error:
                 problems += error.problems
@@ -186,9 +188,9 @@ def describe_keys() -> str:
             if path and path not in shared:
                 lines += _section_lines(path, section, f"{about} ({kinds})")
         for own, when in VARIANTS.get(scene, {}).items():
-            of_family = {section for section, _ in table.values()}
+            of_families = {section for each in tables for section, _ in each.values()}
             for path, (section, about) in _sections(own, "", {}):
-                if path and section not in of_family:
+                if path and section not in of_families:
                     lines += _section_lines(path, section, f"{about} ({when})", {})
     for path, keys_of in shared.items():
         lines += _section_lines(path, *keys_of)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -12,15 +13,15 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from loaded_tca.analysis import analyse
+from loaded_tca.analysis import Effort, analyse, expected_effort
 from loaded_tca.arrays import Array
-from loaded_tca.errors import noted_accuracy_warnings, require
+from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.results import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.stages.balance import Deflections, Shares, balance, directions_of, pin_errors
 from loaded_tca.stages.kinematics import mesh_phases
 from loaded_tca.stages.result import StageResult, stage_dataset
-from loaded_tca.stages.sections import Stage
+from loaded_tca.stages.sections import PLACE, RING_MESH, SUN_MESH, Stage, in_words_of
 
 PARTS = 0.15, 0.5, 1.6
 """Forces of the mesh cycles over an even share, beside it and the whole force: where planets may come to."""
@@ -56,21 +57,34 @@ def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult
     """
     stage.require_assembly()
     torques = np.asarray(stage.sun_torques)
-    require((bool((torques > 0.0).all()), "load.sun_torque_Nm: found 0; a stage shares a torque above 0"))
-    sun_mesh, planets = stage.sun_scene.mesh(), len(stage.stage.angles)
-    base_radius, planet_radius = sun_mesh.pinion.base_radius, sun_mesh.wheel.base_radius
+    sun_mesh, planets = stage.meshes[0], len(stage.stage.angles)
+    base_radius = sun_mesh.pinion.base_radius
     forces = _forces(torques / base_radius, planets)
     count = len(forces) * stage.analysis.positions
-    with noted_accuracy_warnings() as warned:
-        of_sun = analyse(_under(stage.sun_scene, forces * base_radius), _part_of(progress, 0, 2 * count))
-        of_ring = analyse(_under(stage.ring_scene, forces * planet_radius), _part_of(progress, count, 2 * count))
+    of_sun_mesh, of_ring_mesh = scenes_of(stage)
+    warned: list[str] = []
+    with _mesh_of(SUN_MESH, warned):
+        of_sun = analyse(of_sun_mesh, _part_of(progress, 0, 2 * count))
+    with _mesh_of(RING_MESH, warned):
+        of_ring = analyse(of_ring_mesh, _part_of(progress, count, 2 * count))
     arrays = _shared(stage, torques, forces, (of_sun, of_ring))
     about = {
         "version": version("loaded_tca"),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        "warnings": "\n".join(dict.fromkeys(warned)),
+        "warnings": "\n".join(warned),
     }
     return StageResult(stage=stage, dataset=stage_dataset(arrays, **about), sun_mesh=of_sun, ring_mesh=of_ring)
+
+
+@contextmanager
+def _mesh_of(gears: Mapping[str, str], warned: list[str]) -> Iterator[None]:
+    """Tell problems in the words of the stage; note and give its accuracy warnings with the mesh that they are of."""
+    with in_words_of(gears), noted_accuracy_warnings(given=False, alone=True) as sentences:
+        yield
+    mesh = " and ".join(f"{name} ({gear})" for gear, name in gears.items())
+    for sentence in dict.fromkeys(sentences):
+        warned.append(f"{mesh}: {sentence}")
+        give_accuracy_warning(warned[-1], stacklevel=4)
 
 
 OF_BALANCE = frozenset(
@@ -100,7 +114,12 @@ def rebalanced(result: StageResult, changes: Mapping[str, Any]) -> StageResult:
     InputError
         If a key changes more than the balance.
     """
-    require(*((name in OF_BALANCE, f"{name}: needs other meshes; analyse the changed stage") for name in changes))
+    require(
+        *(
+            (PLACE.sub(r"stage.\1", name) in OF_BALANCE, f"{name}: needs other meshes; analyse the changed stage")
+            for name in changes
+        )
+    )
     stage = result.stage.with_changes(changes)
     cycles = result.sun_mesh, result.ring_mesh
     forces = cycles[0].dataset["torque"].values / cycles[0].gear_pair.base_radii[0]
@@ -113,10 +132,29 @@ def _part_of(progress: Progress | None, begin: int, total: int) -> Progress | No
     return None if progress is None else lambda done, _: progress(begin + done, total)
 
 
+def scenes_of(stage: Stage) -> tuple[Scene, Scene]:
+    """Scenes of the sun's and the ring's mesh, under the torques of their pinions that a stage needs of them."""
+    gears = stage.meshes[0]
+    forces = _forces(np.asarray(stage.sun_torques) / gears.pinion.base_radius, len(stage.stage.angles))
+    scenes = (stage.sun_scene, gears.pinion), (stage.ring_scene, gears.wheel)
+    first, second = (_under(scene, forces * gear.base_radius) for scene, gear in scenes)
+    return first, second
+
+
 def states_of(stage: Stage) -> int:
     """How many states of both meshes an analysis of a stage has."""
-    forces = _forces(np.asarray(stage.sun_torques), len(stage.stage.angles))
-    return 2 * len(forces) * stage.analysis.positions
+    return sum(len(scene.torques) * scene.analysis.positions for scene in scenes_of(stage))
+
+
+def expected_stage_effort(stage: Stage) -> Effort:
+    """Estimate of what an analysis takes, as of :func:`loaded_tca.analysis.expected_effort`: that of both meshes."""
+    first, second = map(expected_effort, scenes_of(stage))
+    return replace(
+        first,
+        contacts=first.contacts + second.contacts,
+        seconds=first.seconds + second.seconds,
+        memory=max(first.memory, second.memory),
+    )
 
 
 def _forces(whole: Array, planets: int) -> Array:
@@ -156,7 +194,7 @@ def _shared(stage: Stage, torques: Array, forces: Array, cycles: tuple[MeshCycle
     """Arrays of the result."""
     asked, sun_drives = stage.stage, stage.stage.driving == "sun"
     angles, planets = asked.angles, len(asked.angles)
-    sun_mesh, ring_mesh = stage.sun_scene.mesh(), stage.ring_scene.mesh()
+    sun_mesh, ring_mesh = stage.meshes
     base_radius = sun_mesh.pinion.base_radius
     pressure_angles = sun_mesh.working_pressure_angle, ring_mesh.working_pressure_angle
     phases = mesh_phases(sun_mesh, ring_mesh, angles, sun_drives)

@@ -80,14 +80,25 @@ def spacing_problems(
             f"not meet; the nearest that are possible are {near} deg, multiples of 360/(z_s + z_r) = "
             f"{360.0 / whole:.4f} deg from the first"
         )
-    turns = np.sort(np.mod(angles, 2.0 * math.pi))
-    apart = np.diff(np.append(turns, turns[0] + 2.0 * math.pi))
-    if len(angles) > 1 and (room := 2.0 * centre_distance * math.sin(0.5 * min(apart.min(), math.pi))) <= tip_diameter:
+    if len(angles) > 1 and (room := neighbours_apart(angles, centre_distance)) <= tip_diameter:
         problems.append(
             f"planets: neighbouring planets touch: their axes are {room:.4f} mm apart, their tip diameter is "
             f"{tip_diameter:.4f} mm; fewer planets, or a smaller planet.tip_diameter_mm"
         )
     return problems
+
+
+def neighbours_apart(angles: Sequence[float], centre_distance: float) -> float:
+    """Least distance of the axes of two planets at some angles [rad], in the unit of the centre distance.
+
+    Examples
+    --------
+    >>> round(neighbours_apart((0.0, 0.5 * math.pi, math.pi), 10.0), 4)
+    14.1421
+    """
+    turns = np.sort(np.mod(angles, 2.0 * math.pi))
+    apart = np.diff(np.append(turns, turns[0] + 2.0 * math.pi))
+    return 2.0 * centre_distance * math.sin(0.5 * min(apart.min(), math.pi))
 
 
 def mesh_phases(

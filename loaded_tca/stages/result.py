@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replace_together, variables_of
 from loaded_tca.results.summary import shown
@@ -215,24 +215,35 @@ class StageResult:
     def load(cls, directory: FilePath) -> StageResult:
         """Read the files that ``save`` wrote into a directory.
 
+        Parameters
+        ----------
+        directory : str or path
+            The directory, or the file ``stage.nc`` in it.
+
         Raises
         ------
         InputError
             If one cannot be read, is damaged, or is no such file.
         """
         place = Path(directory)
-        file = read_dataset(place / FILES[0])
+        place = place if place.is_dir() or place.name != FILES[0] else place.parent
+        path = place / FILES[0]
+        file = read_dataset(path)
         if file.attrs.get("kind") != KIND:
-            raise InputError(f"{place / FILES[0]}: not the result of a stage")
-        stage = parse_stage(str(file.attrs["stage_toml"]), source=str(place / FILES[0]))
-        parts = {**QUANTITIES, **(ROOTS if stage.analysis.root_stress else {})}
+            raise InputError(f"{path}: not the result of a stage")
+        try:
+            stage = parse_stage(str(file.attrs.get("stage_toml", "")), source="stage_toml", folder=None)
+            arrays = arrays_of(file, {**QUANTITIES, **(ROOTS if stage.analysis.root_stress else {})})
+            sizes = {"planet": len(stage.stage.angles), "torque": len(stage.sun_torques), "axis": 2}
+            require(*((file.sizes[name] == size, f"{name}: expected {size}") for name, size in sizes.items()))
+        except InputError as error:
+            raise InputError([f"{path}: not the result of a stage", *error.problems]) from None
+        cycles = [MeshCycle.load(place / name) for name in FILES[1:]]
+        for name, cycle, scene in zip(FILES[1:], cycles, (stage.sun_scene, stage.ring_scene), strict=True):
+            if replace(cycle.scene, analysis=scene.analysis) != scene:
+                raise InputError(f"{place / name}: the mesh cycle of another stage than {FILES[0]} beside it")
         about = {name: file.attrs[name] for name in ("version", "date", "warnings") if name in file.attrs}
-        return cls(
-            stage=stage,
-            dataset=stage_dataset(arrays_of(file, parts), **about),
-            sun_mesh=MeshCycle.load(place / FILES[1]),
-            ring_mesh=MeshCycle.load(place / FILES[2]),
-        )
+        return cls(stage=stage, dataset=stage_dataset(arrays, **about), sun_mesh=cycles[0], ring_mesh=cycles[1])
 
 
 def _line(label: str, *cells: str) -> str:

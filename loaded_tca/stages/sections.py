@@ -5,31 +5,48 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.gears import CylindricalMesh, InternalMesh
 from loaded_tca.input_files import read_text
 from loaded_tca.pairs.gear_pair import Driving
 from loaded_tca.scene import cylindrical
 from loaded_tca.scene.blank import OTHER
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.internal import InternalScene, RingSection
-from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, above_zero, key
+from loaded_tca.scene.keys import Choice, Key, Line, List, Number, Whole, above_zero, key
 from loaded_tca.scene.model import _lines
-from loaded_tca.scene.parse import LARGEST_FILE, toml_table
-from loaded_tca.scene.section import Rule, Section, as_table, check, contents, made, subsection
+from loaded_tca.scene.parse import LARGEST_FILE, toml_table, with_files_from
+from loaded_tca.scene.section import Rule, Section, as_table, check, contents, key_at, made, subsection
 from loaded_tca.scene.sections import Analysis, DIAMETER_mm, ElasticMaterial, Load, TORQUE_Nm
 from loaded_tca.stages.kinematics import spacing_problems
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
 
 
+SUN_MESH = {"pinion": "sun", "wheel": "planet"}
+RING_MESH = {"pinion": "planet", "wheel": "ring"}
+"""Words for the gears of both meshes: in their scenes, in the stage."""
+OF_ONE_PITCH = {
+    "pitch": "teeth of a stage are alike",
+    "tooth": "teeth of a stage are alike",
+    "shaft": "gears of a stage stand on rigid axes, but for the sun: stage.sun_support_stiffness_N_per_um",
+    "support": "gears of a stage stand on rigid axes, but for the sun: stage.sun_support_stiffness_N_per_um",
+}
+"""Sections of a gear that a stage does not have, and why."""
 MOST_PLANETS = 12
 SAME_DISTANCE = 1e-3
 """Difference of the centre distances of both meshes, in modules, that counts as none."""
+WRITTEN_deg = 1e-3
+"""Of angles that are written with four digits."""
+PLACE = re.compile(r"stage\.(pin_tangential_um|pin_radial_um|planet_angles_deg)\.\d{1,3}")
+"""Paths to the value of one planet."""
 PIN_um = List(Number(-10000.0, 10000.0), 1, MOST_PLANETS)
 
 
@@ -90,6 +107,17 @@ class PlanetaryStage(Section):
                 else None
             ),
         ),
+        Rule(
+            ("planet_angles_deg", "floating_sun", "sun_support_stiffness_N_per_um"),
+            lambda angles, floating, stiffness: (
+                f"found planets on one side of a sun that floats, with {gap:.4g} deg between two of them; allowed up "
+                "to 180 deg, or the planets push the sun away"
+                if (floating or stiffness == 0.0)
+                and len(angles or ()) > 1
+                and (gap := _largest_gap(angles)) > 180.0 + WRITTEN_deg
+                else None
+            ),
+        ),
     )
 
     @property
@@ -107,6 +135,12 @@ class PlanetaryStage(Section):
             return 0.0
         stiffness = self.sun_support_stiffness_N_per_um
         return math.inf if stiffness is None else 1e3 * stiffness
+
+
+def _largest_gap(angles: tuple[float, ...]) -> float:
+    """Largest angle between neighbouring planets [deg]."""
+    turns = sorted(angle % 360.0 for angle in angles)
+    return max(after - before for before, after in zip(turns, [*turns[1:], turns[0] + 360.0], strict=True))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,13 +198,30 @@ class Stage(Section):
     analysis: Analysis = subsection(Analysis, "how finely both meshes are computed")
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        Rule(
-            ("planet.hand",),
-            lambda hand: None if hand is None else f'found "{hand}"; not allowed: sun.hand gives the hands of all',
+        *(
+            Rule(
+                (f"{gear}.hand",),
+                lambda hand: None if hand is None else f'found "{hand}"; not allowed: sun.hand gives the hands of all',
+            )
+            for gear in ("planet", "ring")
+        ),
+        *(
+            Rule(
+                (f"{gear}.{name}",),
+                lambda given, why=why: None if given is None else f"found a section; not allowed: {why}",
+            )
+            for gear in ("sun", "planet", "ring")
+            for name, why in OF_ONE_PITCH.items()
         ),
         Rule(
-            ("ring.hand",),
-            lambda hand: None if hand is None else f'found "{hand}"; not allowed: sun.hand gives the hands of all',
+            ("load.sun_torque_Nm", "analysis.torques_Nm"),
+            lambda torque, several: (
+                None if several or torque > 0.0 else "found 0; allowed above 0: a stage shares a torque"
+            ),
+        ),
+        Rule(
+            ("analysis.torques_Nm",),
+            lambda several: None if all(several or (1.0,)) else "found 0; allowed above 0: a stage shares a torque",
         ),
         Rule(
             ("analysis.load_sharing",),
@@ -204,7 +255,7 @@ class Stage(Section):
         """
         if self.geometry.centre_distance_mm is not None:
             return self.geometry.centre_distance_mm
-        first, second = (scene.mesh().working_centre_distance for scene in self._meshes(None))
+        first, second = (mesh.working_centre_distance for mesh in _gears_of(*self._meshes(None)))
         if abs(first - second) > SAME_DISTANCE * self.geometry.normal_module_mm:
             raise GeometryError(
                 f"ring.teeth: without backlash sun and planet have the centre distance {first:.4f} mm, planet and ring "
@@ -223,6 +274,17 @@ class Stage(Section):
         """Scene of a planet and the ring: the planet is the pinion, turning the other way."""
         return self._meshes(self.centre_distance)[1]
 
+    @cached_property
+    def meshes(self) -> tuple[CylindricalMesh, InternalMesh]:
+        """Gears of the sun's and the ring's mesh; problems have the words of the stage.
+
+        Raises
+        ------
+        GeometryError
+            If gears are impossible, or do not mesh.
+        """
+        return _gears_of(self.sun_scene, self.ring_scene)
+
     def _meshes(self, distance: float | None) -> tuple[CylindricalScene, InternalScene]:
         """Scenes of both meshes under a planet's part of the first torque; problems have the names of the stage."""
         common = {**contents(self.geometry), "type": "cylindrical", "centre_distance_mm": distance}
@@ -230,7 +292,7 @@ class Stage(Section):
         planets, torque = len(self.stage.angles), 1e-3 * self.sun_torques[0]
         other = OTHER[self.sun.hand or "right"]
         shared: dict[str, Any] = {"material": self.material, "analysis": replace(self.analysis, torques_Nm=None)}
-        try:
+        with in_words_of(SUN_MESH):
             of_sun = CylindricalScene(
                 title=f"{self.title}: sun and planet".strip(": "),
                 geometry=cylindrical.Geometry(**common, driving=driving),
@@ -239,6 +301,7 @@ class Stage(Section):
                 load=Load(pinion_torque_Nm=torque / planets),
                 **shared,
             )
+        with in_words_of(RING_MESH):
             of_ring = InternalScene(
                 title=f"{self.title}: planet and ring".strip(": "),
                 geometry=cylindrical.Geometry(**common, driving=driving, sense="negative"),
@@ -247,8 +310,6 @@ class Stage(Section):
                 load=Load(pinion_torque_Nm=torque * self.planet.teeth / self.sun.teeth / planets),
                 **shared,
             )
-        except InputError as error:
-            raise InputError(_renamed(problem) for problem in error.problems) from None
         return of_sun, of_ring
 
     def require_assembly(self) -> None:
@@ -259,15 +320,30 @@ class Stage(Section):
         GeometryError
             With every problem, and the nearest angles that are possible.
         """
-        planet = self.sun_scene.mesh().wheel
+        planet = self.meshes[0].wheel
         problems = spacing_problems(self.stage.angles, self.teeth, self.centre_distance, 2.0 * planet.tip_radius)
         if problems:
-            raise GeometryError("; ".join(problems))
+            raise GeometryError("; ".join(f"stage.{problem}" for problem in problems))
 
     def with_changes(self, changes: Mapping[str, Any]) -> Stage:
-        """Return a stage with other values, all checked; keys with dots as in a file, None: not given."""
+        """Return a stage with other values, all checked.
+
+        Parameters
+        ----------
+        changes : mapping
+            Key as in a file, with dots -> value; None: not given. A number behind a list is a place in it:
+            ``"stage.pin_tangential_um.0"`` is the pin of planet 0, the others stay what they are.
+
+        Raises
+        ------
+        InputError
+            Every problem at once, as for a file.
+        """
         table = as_table(self)
+        of_planets = {path: value for path, value in changes.items() if PLACE.fullmatch(path)}
         for path, value in changes.items():
+            if path in of_planets:
+                continue
             *sections, name = path.split(".")
             place = table
             for section in sections:
@@ -276,16 +352,73 @@ class Stage(Section):
                 place.pop(name, None)
             else:
                 place[name] = value
+        own = table.setdefault("stage", {})
+        for path, value in of_planets.items():
+            _, name, number = path.split(".")
+            count = own.get("planets") or len(own.get("planet_angles_deg") or ())
+            values = list(own.get(name) or [0.0] * count)
+            if int(number) >= len(values):
+                raise InputError(f"{path}: no such planet; allowed 0 to {len(values) - 1}")
+            values[int(number)] = value
+            own[name] = values
         return stage_from_table(table)
+
+    @classmethod
+    def key_at(cls, path: str) -> Key:
+        """Return what a stage says of the key at a path with dots, or of a place in a list of planets.
+
+        Raises
+        ------
+        InputError
+            If there is no such key, or the path leads to a section.
+
+        Examples
+        --------
+        >>> Stage.key_at("stage.pin_tangential_um.0").about
+        'displacement of each pin in the sense of rotation of the sun'
+        """
+        if not PLACE.fullmatch(path):
+            return key_at(cls, path)
+        entry = key_at(cls, path.rpartition(".")[0])
+        assert isinstance(entry.kind, List)
+        return replace(entry, kind=entry.kind.kind)
 
     def to_toml(self) -> str:
         """Return a stage file with every key; ``parse_stage`` makes the same stage of it."""
         return "\n".join(_lines(self, "")) + "\n"
 
 
-def _renamed(problem: str) -> str:
-    """A problem of a scene in the words of the stage."""
-    return re.sub(r"\bload\.pinion_torque_Nm\b", "load.sun_torque_Nm", problem)
+def _gears_of(sun_scene: CylindricalScene, ring_scene: InternalScene) -> tuple[CylindricalMesh, InternalMesh]:
+    """Gears of both scenes."""
+    with in_words_of(SUN_MESH):
+        of_sun = sun_scene.mesh()
+    with in_words_of(RING_MESH):
+        return of_sun, ring_scene.mesh()
+
+
+@contextmanager
+def in_words_of(gears: Mapping[str, str]) -> Iterator[None]:
+    """Tell problems of a scene in the words of the stage.
+
+    Examples
+    --------
+    >>> with in_words_of(RING_MESH):
+    ...     raise GeometryError("wheel: its spaces close")
+    Traceback (most recent call last):
+    ...
+    loaded_tca.errors.GeometryError: ring: its spaces close
+    """
+
+    def told(problem: str) -> str:
+        problem = problem.replace("load.pinion_torque_Nm", "load.sun_torque_Nm")
+        return re.sub(r"\b(pinion|wheel)\b", lambda word: gears[word[0]], problem)
+
+    try:
+        yield
+    except InputError as error:
+        raise InputError(map(told, error.problems)) from None
+    except GeometryError as error:
+        raise GeometryError(told(str(error))) from None
 
 
 def stage_from_table(table: Mapping[str, Any]) -> Stage:
@@ -302,7 +435,7 @@ def stage_from_table(table: Mapping[str, Any]) -> Stage:
     return made(Stage, values)
 
 
-def parse_stage(text: str, source: str = "stage") -> Stage:
+def parse_stage(text: str, source: str = "stage", folder: str | os.PathLike[str] | None = ".") -> Stage:
     r"""Make a stage of the text of a stage file.
 
     Parameters
@@ -311,11 +444,13 @@ def parse_stage(text: str, source: str = "stage") -> Stage:
         TOML.
     source : str
         What messages call the text.
+    folder : str or path, optional
+        Where the files of measured flanks lie, or below; None: it may name none.
 
     Raises
     ------
     InputError
-        If the text is not TOML, or with every problem that it holds.
+        If the text is not TOML, names a file that lies elsewhere, or with every problem that it holds.
 
     Examples
     --------
@@ -328,7 +463,18 @@ def parse_stage(text: str, source: str = "stage") -> Stage:
     table = toml_table(text, source)
     if "stage" not in table and ("pinion" in table or "wheel" in table):
         raise InputError(f"{source}: not a stage but the scene of a pair; run it with 'loaded-tca run'")
-    return stage_from_table(table)
+    if isinstance(table.get("stage"), str):
+        raise InputError(f"{source}: not a stage but a study of {table['stage']}; run it with 'loaded-tca study'")
+    return stage_from_table(with_files_from(None if folder is None else Path(folder), table))
+
+
+def is_stage_file(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is TOML with a section [stage] and a sun: a stage rather than a scene; False if it is no TOML."""
+    try:
+        table = toml_table(read_text(path, LARGEST_FILE), os.fspath(path))
+    except InputError:
+        return False
+    return isinstance(table.get("stage"), dict) and "sun" in table
 
 
 def read_stage(path: str | os.PathLike[str]) -> Stage:
@@ -337,7 +483,7 @@ def read_stage(path: str | os.PathLike[str]) -> Stage:
     Parameters
     ----------
     path : str or path
-        A TOML file in UTF-8.
+        A TOML file in UTF-8. The files that it names lie in its folder, or below.
 
     Returns
     -------
@@ -354,4 +500,4 @@ def read_stage(path: str | os.PathLike[str]) -> Stage:
     >>> stage.teeth, stage.centre_distance
     ((18, 36, 93), 584.0)
     """
-    return parse_stage(read_text(path, LARGEST_FILE), source=os.fspath(path))
+    return parse_stage(read_text(path, LARGEST_FILE), source=os.fspath(path), folder=Path(path).parent)

@@ -10,6 +10,7 @@ from loaded_tca.studies.read import parse_study, read_study, vh_study
 from loaded_tca.studies.revolution import revolution_figures
 from loaded_tca.studies.rows import load_study
 from loaded_tca.studies.run import process_pool, run_study
+from loaded_tca.studies.stage import stage_figures
 from loaded_tca.studies.study import Study
 from loaded_tca.studies.tribology import tribology_figures
 
@@ -29,6 +30,7 @@ __all__ = [
     "revolution_figures",
     "robustness",
     "run_study",
+    "stage_figures",
     "study_summary",
     "tribology_figures",
     "vh_study",

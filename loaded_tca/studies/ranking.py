@@ -22,9 +22,9 @@ from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
 from loaded_tca.scene.keys import did_you_mean, nearest
-from loaded_tca.scene.parse import parse_scene
-from loaded_tca.scene.section import as_table
+from loaded_tca.studies.stage import TORQUES, nominal_of, subject_of, torque_name
 from loaded_tca.studies.tribology import tribology_figures
+from loaded_tca.units import without_unit
 
 if TYPE_CHECKING:
     import pandas
@@ -47,7 +47,7 @@ def main_figures(study: xarray.Dataset) -> list[str]:
     """Figures of ``MAIN_FIGURES`` that a study has; if it has none, as with figures of its own, its first ones."""
     known = [str(name) for name, values in study.data_vars.items() if values.dims == ("sample", "torque")]
     figures_of = [name for name in MAIN_FIGURES if name in known and np.isfinite(figure_values(study, name)).any()]
-    return figures_of or known[: len(MAIN_FIGURES)]
+    return figures_of or [name for name in known if name not in TORQUES][: len(MAIN_FIGURES)]
 
 
 def figure_values(study: xarray.Dataset, name: str) -> Array:
@@ -68,12 +68,10 @@ def figure_values(study: xarray.Dataset, name: str) -> Array:
 
 def nominal_variant(study: xarray.Dataset) -> int | None:
     """Number of the first variant in which every varied key has the value of the scene; None without one."""
-    table = as_table(parse_scene(study.attrs["scene_toml"], folder=None))
+    subject = subject_of(study)
     agrees = np.ones(study.sizes["sample"], dtype=bool)
     for key in varied_keys(study):
-        nominal = table
-        for section in key.split("."):
-            nominal = nominal.get(section, {})
+        nominal = nominal_of(subject, key)
         agrees &= np.array([value == nominal for value in study[key].values.tolist()], dtype=bool)
     return int(agrees.argmax()) if agrees.any() else None
 
@@ -314,12 +312,13 @@ def study_summary(study: xarray.Dataset) -> str:
 
 def _table(study: xarray.Dataset) -> Iterator[str]:
     """Percentiles of the main figures over the variants, one line for each torque."""
-    shown = {
-        name: labelled(name, FIGURES[name].label) for name in MAIN if name in study and np.isfinite(study[name]).any()
-    }
+    names = [name for name in MAIN if name in study] or main_figures(study)
+    labels = {name: FIGURES[name].label if name in FIGURES else without_unit(name).replace("_", " ") for name in names}
+    shown = {name: labelled(name, label) for name, label in labels.items() if np.isfinite(study[name]).any()}
     if not shown:
         return
-    torques = study["pinion_torque_Nm"].values if "pinion_torque_Nm" in study else np.zeros((1, 1))
+    name = torque_name(study)
+    torques = study[name].values if name in study else np.zeros((1, 1))
     for torque in range(study.sizes["torque"]):
         known = torques[np.isfinite(torques[:, torque]), torque]
         same = known.size and np.ptp(known) == 0.0 and study.sizes["torque"] > 1

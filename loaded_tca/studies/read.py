@@ -21,10 +21,11 @@ from loaded_tca.input_files import read_text
 from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest, shown, shown_key
 from loaded_tca.scene.parse import LARGEST_FILE, toml_table
-from loaded_tca.scene.section import values_of
+from loaded_tca.stages import Stage, read_stage
+from loaded_tca.studies.stage import nominal_of
 from loaded_tca.studies.study import MOST_VARIANTS, Distribution, Study, is_finite, is_whole
 
-WORDS = ("scene", "changes", "factors", "distributions", "samples", "seed", "table")
+WORDS = ("scene", "stage", "changes", "factors", "distributions", "samples", "seed", "table")
 LARGEST_TABLE = 2**27
 """Bytes of a table of variants: a hundred for each of a million."""
 SPAN = {"from", "to", "count"}
@@ -45,8 +46,8 @@ def read_study(path: str | os.PathLike[str]) -> Study:
     Parameters
     ----------
     path : str or path
-        TOML in UTF-8. The files that it names, ``scene`` and ``table`` (CSV with keys as its header), are looked for
-        from its folder.
+        TOML in UTF-8. The files that it names, ``scene`` or ``stage``, and ``table`` (CSV with keys as its header), are
+        looked for from its folder.
 
     Raises
     ------
@@ -82,6 +83,8 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
     factors.mounting.misalignment_um: found a table; allowed a list of values or { from, to, count }
     """
     table = toml_table(text, source)
+    if "sun" in table and isinstance(table.get("stage"), dict):
+        raise InputError(f'{source}: not a study but a planetary stage; a study names it as stage = "..."')
     if "pair" in table:
         raise InputError(f'{source}: not a study but a scene; a study names it as scene = "..."')
     problems = [
@@ -116,15 +119,19 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
     return Study(**given)
 
 
-def _scene(table: Mapping[str, Any], folder: Path) -> Scene:
-    name, changes = table.get("scene"), table.get("changes", {})
+def _scene(table: Mapping[str, Any], folder: Path) -> Scene | Stage:
+    word = "stage" if "stage" in table else "scene"
+    name, changes = table.get(word), table.get("changes", {})
+    if word == "stage" and "scene" in table:
+        raise InputError("scene: found beside stage; a study is of one of them")
     if not isinstance(name, str):
         raise InputError(
-            f"scene: {'missing' if name is None else f'found {shown(name)}'}; allowed the name of a scene file"
+            f"{word}: {'missing' if name is None else f'found {shown(name)}'}; allowed the name of a {word} file"
         )
     if not isinstance(changes, dict):
         raise InputError(f"changes: found {shown(changes)}; allowed a section [changes]")
-    return read_scene(folder / name).with_changes(dict(_leaves(changes, set())))
+    read = read_stage if word == "stage" else read_scene
+    return read(folder / name).with_changes(dict(_leaves(changes, set())))
 
 
 def _leaves(section: Mapping[str, Any], words: set[str], place: str = "") -> Iterator[tuple[str, Any]]:
@@ -170,7 +177,7 @@ def _distribution(study: Mapping[str, Any], place: str, value: Any) -> Distribut
             f'{place}: found {value_given}; allowed {{ {DISTRIBUTION} = "norm", scale = 5.0 }}, names of scipy.stats'
         )
     parameters = {word: number for word, number in value.items() if word not in (DISTRIBUTION, ABOUT)}
-    nominal = values_of(study["scene"]).get(key) if "scene" in study else None
+    nominal = nominal_of(study["scene"], key) if "scene" in study else None
     is_number = isinstance(nominal, Real) and not isinstance(nominal, bool)
     if (about := value.get(ABOUT)) is not None:
         if about != NOMINAL:
@@ -196,7 +203,7 @@ def _distribution(study: Mapping[str, Any], place: str, value: Any) -> Distribut
     return frozen
 
 
-def _of_class(scene: Scene | None, place: str, value: Mapping[str, Any]) -> Distribution:
+def _of_class(scene: Scene | Stage | None, place: str, value: Mapping[str, Any]) -> Distribution:
     """Distribution of a slope, about that of the scene, of gears of a tolerance class."""
     if beside := [word for word in value if word != CLASS]:
         raise InputError(f"{place}: found {', '.join(map(shown_key, beside))} beside {CLASS}; allowed nothing else")
@@ -208,6 +215,8 @@ def _of_class(scene: Scene | None, place: str, value: Mapping[str, Any]) -> Dist
 
         nothing: Distribution = norm()
         return nothing
+    if isinstance(scene, Stage):
+        raise InputError(f"{place}.{CLASS}: not in a study of stages; allowed a distribution of scipy.stats")
     with named(place):
         bounded = scene.scatter_of_class(given)
     key = place.removeprefix("distributions.")

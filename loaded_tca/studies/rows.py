@@ -22,6 +22,7 @@ from loaded_tca.errors import InputError, reason_of
 from loaded_tca.input_files import require_regular
 from loaded_tca.results.files import FilePath, make_directory, read_dataset
 from loaded_tca.scene.keys import literal, shown
+from loaded_tca.studies.stage import TORQUES
 from loaded_tca.studies.study import Study, told_distribution
 
 if TYPE_CHECKING:
@@ -281,7 +282,7 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
     own = {name: ("sample", np.array(column, dtype=object)) for name, column in texts.items()}
     spent = ("sample", seconds, {"units": "s", "long_name": "time of the analysis"})
     places = {"sample": ("sample", np.arange(count, dtype=np.int32))}
-    torque = 1e3 * arrays.get("pinion_torque_Nm", np.full((1, torques), np.nan))
+    torque = 1e3 * next((arrays[name] for name in TORQUES if name in arrays), np.full((1, torques), np.nan))
     known = torque[np.isfinite(torque).all(axis=1)]
     if len(known) and (known == known[0]).all():  # the same in all variants
         places["torque"] = ("torque", known[0])

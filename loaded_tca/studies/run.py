@@ -36,9 +36,11 @@ from loaded_tca.errors import (
 )
 from loaded_tca.results.files import FilePath, make_directory, read_dataset, remove, replace_file, write_dataset
 from loaded_tca.scene import Scene
+from loaded_tca.stages import Stage
 from loaded_tca.studies.ranking import figures as key_figures
 from loaded_tca.studies.ranking import figures_of
 from loaded_tca.studies.rows import Row, Rows, dataset_of, problem_of_figures
+from loaded_tca.studies.stage import stage_figures
 from loaded_tca.studies.study import Study
 from loaded_tca.threads import one_thread
 
@@ -50,7 +52,7 @@ AHEAD = 1000
 
 GONE = "as when a scheduler goes away"
 
-Figures = Callable[[Scene], Mapping[str, Any]]
+Figures = Callable[[Any], Mapping[str, Any]]
 Progress = Callable[[int, int, int], None]
 """Called with how many variants are done, of how many, and how many of these are not ok."""
 
@@ -77,7 +79,8 @@ def run_study(
         Called as ``progress(done, total, failed)`` with those known before, if any, and whenever variants are done.
     figures : callable, optional
         What is kept of a variant: a function of its scene that returns numbers, or numbers over the torques, by their
-        names, and that workers can import. Default: :func:`loaded_tca.studies.figures`.
+        names, and that workers can import. Default: :func:`loaded_tca.studies.figures`, of stages
+        :func:`loaded_tca.studies.stage_figures`.
     keep_maps : collection of int
         Variants of which the whole result is kept, pressure maps included, if they are ok:
         ``<name>_maps/<variant>.nc`` beside ``out``, to be read by :func:`loaded_tca.load_result`.
@@ -110,11 +113,13 @@ def run_study(
     >>> found["face_load_factor"].squeeze().diff("sample").item() > 0.0  # more crowning, less of the face carries
     True
     """
-    figures, with_maps = figures or key_figures, set(keep_maps)
+    of_stage = isinstance(study.scene, Stage)
+    figures, with_maps = figures or (stage_figures if of_stage else key_figures), set(keep_maps)
     unknown = sorted(with_maps.difference(range(len(study))))
     named = "<lambda>" not in getattr(figures, "__qualname__", "<lambda>")
     require(
         (not with_maps or out is not None, "keep_maps: needs out"),
+        (not (with_maps and of_stage), "keep_maps: not of a study of stages; analyse_stage has their mesh cycles"),
         (not unknown, f"keep_maps: {unknown[:3]} are not variants 0 to {len(study) - 1}"),
         (named, f"figures: found {figures!r}; allowed a function with a name, which identifies its rows"),
     )
@@ -150,15 +155,16 @@ def run_study(
                     _keep(maps, with_maps.intersection(variants), whole)
                     done, failed = done + len(variants), failed + len(variants) * (row["status"] != "ok")
                 tell(done, len(study), failed)
-        attributes = {"scene_toml": study.scene.to_toml(), "version": version("loaded_tca"), "seed": study.seed}
+        text = "stage_toml" if of_stage else "scene_toml"
+        attributes = {text: study.scene.to_toml(), "version": version("loaded_tca"), "seed": study.seed}
         dataset = dataset_of(study, rows.of(digests), attributes)
         if out is not None:
             write_dataset(place, dataset)
     return dataset
 
 
-Task = tuple[Scene, dict[str, Any], str, Figures, bool]
-"""Scene of the study, changes, digest, figures, and whether maps are to be kept."""
+Task = tuple[Scene | Stage, dict[str, Any], str, Figures, bool]
+"""Scene or stage of the study, changes, digest, figures, and whether maps are to be kept."""
 Done = tuple[Row, bytes | None]
 """A row, and the whole result if maps are kept."""
 
@@ -208,14 +214,14 @@ def _submitted(executor: Executor, task: Task) -> Future[Done]:
         return future
 
 
-def _analysed(scene: Scene, changes: dict[str, Any], digest: str, figures: Figures, keep: bool) -> Done:
+def _analysed(scene: Scene | Stage, changes: dict[str, Any], digest: str, figures: Figures, keep: bool) -> Done:
     """Analyse one variant, in whatever process and thread this is called."""
     begin = time.perf_counter()
     status, reason, values_of, whole = "ok", "", {}, None
     with one_thread(), noted_accuracy_warnings(given=False) as warned:
         try:
             variant = scene.with_changes(changes)
-            if keep:
+            if keep and isinstance(variant, Scene):
                 result = analyse(variant)
                 whole = bytes(result.to_netcdf())
             values = figures_of(result) if keep and figures is key_figures else figures(variant)

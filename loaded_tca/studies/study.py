@@ -1,4 +1,4 @@
-"""What a study varies: keys of a scene, each over given values or after a distribution."""
+"""What a study varies: keys of a scene or of a planetary stage, each over given values or after a distribution."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.scene import Scene
 from loaded_tca.scene.keys import Key, Number, Whole, shown
-from loaded_tca.scene.section import as_table, key_at
+from loaded_tca.scene.section import as_table
+from loaded_tca.stages import Stage
+from loaded_tca.studies.stage import key_of
 
 NEVER = 1e-12
 """Probabilities nearer than this to 0 or 1 are moved there: a distribution without bounds has no value at its ends."""
@@ -36,11 +38,11 @@ class Distribution(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """Variants of a scene, numbered from 0: rows of the table outermost, then the factors, samples innermost.
+    """Variants of a scene or of a stage, numbered from 0: rows of the table outermost, then factors, samples innermost.
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene or Stage
         What all variants have in common.
     factors : mapping of str to sequence, optional
         Keys as in a scene file, with dots -> values; every combination is a variant, the last factor changes fastest.
@@ -71,7 +73,7 @@ class Study:
     (128, 5.0)
     """
 
-    scene: Scene
+    scene: Scene | Stage
     factors: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     distributions: Mapping[str, Distribution] = field(default_factory=dict)
     samples: int | None = None
@@ -112,12 +114,13 @@ class Study:
             if self.keys.count(key) > 1:
                 yield f"{key}: varied more than once"
             try:
-                key_at(type(self.scene), key)
+                key_of(self.scene, key)
             except InputError as error:
                 yield from error.problems
         several = self.scene.analysis.torques_Nm is not None or "analysis.torques_Nm" in self.keys
-        if "load.pinion_torque_Nm" in self.keys and several:
-            yield ("load.pinion_torque_Nm: changes nothing beside analysis.torques_Nm; vary these, or leave them out")
+        torque = "load.sun_torque_Nm" if isinstance(self.scene, Stage) else "load.pinion_torque_Nm"
+        if torque in self.keys and several:
+            yield (f"{torque}: changes nothing beside analysis.torques_Nm; vary these, or leave them out")
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -145,10 +148,14 @@ class Study:
         table = as_table(self.scene)
         for key in self.keys:  # what the scene itself has there is of no account
             *sections, name = key.split(".")
-            place = table
+            place: Any = table
             for section in sections:
-                place = place.get(section, {})
-            place.pop(name, None)
+                in_list = {str(n): one for n, one in enumerate(place)} if isinstance(place, tuple) else place
+                place = in_list.get(section, {})
+            if isinstance(place, dict):
+                place.pop(name, None)
+            elif int(name) < len(place):  # a place in a list
+                _put(table, sections, (*place[: int(name)], None, *place[int(name) + 1 :]))
         common = [version("loaded_tca"), f"{figures.__module__}.{figures.__qualname__}", table]
         begun = hashlib.sha256(json.dumps(common, sort_keys=True).encode())
 
@@ -170,7 +177,7 @@ class Study:
         kinds = {}
         for key in self.keys:
             with suppress(InputError):
-                kinds[key] = key_at(type(self.scene), key)
+                kinds[key] = key_of(self.scene, key)
         return kinds
 
     @cached_property
@@ -184,6 +191,14 @@ class Study:
         unit = sobol.random_base2(int(self.samples - 1).bit_length())[: self.samples]
         columns = zip(self.distributions.values(), np.clip(unit, NEVER, 1.0 - NEVER).T, strict=True)
         return np.stack([np.asarray(one.ppf(column), dtype=float) for one, column in columns], axis=1)
+
+
+def _put(table: dict[str, Any], path: Sequence[str], value: Any) -> None:
+    """Set a value at a path of a nested table."""
+    *sections, name = path
+    for section in sections:
+        table = table[section]
+    table[name] = value
 
 
 def told_distribution(distribution: Any) -> str:

@@ -152,7 +152,7 @@ def test_geometry_is_that_of_the_standards(page, written):
     )
     assert "Geometry (ISO 21771)" in page.words
     bevel = written(result("spiral_bevel", 1))
-    assert "Geometry (ISO 23509)" in bevel.words
+    assert "Geometry (depths by outer modules, about one apex)" in bevel.words
     assert bevel.rows("cone distances R_e, R_m, R_i [mm]")
 
 
@@ -613,7 +613,7 @@ def design_dataset():
 
 @pytest.mark.parametrize("subject", [None, {"kind": "study"}, xarray.Dataset()])
 def test_other_subjects_are_refused(subject, tmp_path):
-    with pytest.raises(InputError, match=r"report: found a \w+; allowed a result, a study or a design"):
+    with pytest.raises(InputError, match=r"report: found a \w+; allowed a result, a stage, a study or a design"):
         write_html_report(subject, tmp_path / "report.html")
     assert not [*tmp_path.iterdir()]
 

@@ -146,7 +146,7 @@ test_bad_stages_are_refused = refused_calls(
     (lambda: changed(analysis__load_sharing=False), "analysis.load_sharing: found false"),
     (lambda: changed(load__sun_torque_Nm=-1.0), "load.sun_torque_Nm: found -1"),
     (lambda: parse_stage('[pair]\ntype = "cylindrical"\n[pinion]\nteeth = 3'), "not a stage but the scene of a pair"),
-    (lambda: analyse_stage(changed(analysis__torques_Nm=[0.0])), "a stage shares a torque above 0"),
+    (lambda: analyse_stage(changed(analysis__torques_Nm=[0.0])), "found 0; allowed above 0: a stage shares a torque"),
 )
 
 test_stages_that_cannot_be_are_refused = refused_calls(

@@ -57,7 +57,7 @@ def test_file_holds_all_that_a_study_has(tmp_path):
         ("changes = 1", "changes: found 1; allowed a section [changes]"),
         ("factors = [1]", "factors: found [1]; allowed a section [factors]"),
         ("factor = 1", 'factor: unknown word; did you mean "factors"?'),
-        ("xyz = 1", "xyz: unknown word; allowed scene, changes, factors"),
+        ("xyz = 1", "xyz: unknown word; allowed scene, stage, changes, factors"),
         ("factors.a.b = 3", "factors.a.b: found 3; allowed a list of values or { from, to, count }"),
         ("factors.a = { from = 1, to = 2 }", "factors.a: found a table; allowed a list of values or {"),
         ("factors.a = { from = 1, to = 2, count = 0 }", "factors.a.count: found 0; allowed a whole number from 1"),

@@ -10,35 +10,28 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.path import Path
 from numpy.typing import NDArray
-from scipy.sparse.linalg import splu
-from scipy.spatial import Delaunay, cKDTree
-from skfem import Basis, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri
-from skfem.models.elasticity import lame_parameters, linear_elasticity
+from skfem import ElementTriP2, FacetBasis, LinearForm
 
 from loaded_tca.compliance.body import factorised, gear_nodes
 from loaded_tca.compliance.finite_elements import discretise
 from loaded_tca.compliance.flexibility import DENSITY, local_flexibility
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.gears import CylindricalGear, InternalMesh, PinionCutter, RingGear
-from loaded_tca.material import Material
 from loaded_tca.pairs import internal_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.reference.weber_banaschek import flank_flattening
 from loaded_tca.tooth.fillet import polar
+from validation.loaded.plane_teeth import STEEL, PlaneTeeth, flank_angle
 from validation.loaded.root_stress import FINE, plane_curves
 from validation.table import Row
 
 Array = NDArray[np.float64]
 
 CASE, SOURCE = "teeth of a ring", "plane-strain finite elements in their true form"
-STEEL = Material(206000.0, 0.3)
 HALF_WIDTH = 0.15  # of the strips [mm]
 HEIGHTS = 0.3, 0.55, 0.8  # of the flank, over its height
 STIFFNESS, TENSION = 0.02, 0.04
-TEETH_BESIDE = 5
-SIZES = ((1.2, math.inf), (0.4, 2.5), (0.12, 0.6), (0.05, 0.16))  # of elements within distances from the fine border
 
 
 def ring_pair(teeth: int, cutter: PinionCutter | None) -> tuple[RingGear, Gear]:
@@ -48,76 +41,17 @@ def ring_pair(teeth: int, cutter: PinionCutter | None) -> tuple[RingGear, Gear]:
     return ring, internal_pair(InternalMesh(pinion, ring), materials=(STEEL, STEEL)).wheel
 
 
-def flank_angle(ring: RingGear, radius: Array) -> Array:
-    """Half thickness angle of the tooth at radii [rad]."""
-    roll = np.sqrt(np.maximum(radius**2 - ring.base_radius**2, 0.0)) / ring.base_radius
-    return ring.half_thickness_angle_at_base + roll - np.arctan(roll)
-
-
-def half_outline(ring: RingGear, step: float) -> Array:
-    """Radius and half angle (n, 2) of half a tooth, from the middle of its tip to the middle of the space."""
-    height = ring.form_radius - ring.tip_radius
-    flank = np.linspace(ring.tip_radius, ring.form_radius, max(4, math.ceil(height / step)))
-    radius, angle = ring.root_fillet(max(6, math.ceil(2.5 / step)))
-    tip, land = flank_angle(ring, flank[:1])[0], math.pi / ring.tooth_count
-    parts = [
-        np.stack([np.full(5, ring.tip_radius), np.linspace(0.0, tip, 5)], axis=1)[:-1],
-        np.stack([flank, flank_angle(ring, flank)], axis=1)[:-1],
-        np.stack([radius, angle], axis=1),
-        np.stack([np.full(5, ring.root_radius), np.linspace(angle[-1], land, 5)], axis=1)[1:],
-    ]
-    return np.concatenate(parts)
-
-
 @dataclass(frozen=True, eq=False)
 class Section:
-    """Triangulated teeth, the loaded one about the x axis."""
+    """Triangulated teeth of a ring, the loaded one about the x axis."""
 
     ring: RingGear
-    mesh: MeshTri
-    basis: Basis
-    factor: object
-    free: Array
+    teeth: PlaneTeeth
 
     @classmethod
     def of(cls, ring: RingGear) -> "Section":
         """Eleven teeth; their outside is held."""
-        border, fine = [], []
-        for tooth in range(-TEETH_BESIDE, TEETH_BESIDE + 1):
-            half = half_outline(ring, 0.04 if tooth == 0 else 0.35)
-            whole = np.concatenate([half[::-1] * [1.0, -1.0], half[1:]])
-            whole[:, 1] += 2.0 * math.pi * tooth / ring.tooth_count
-            border.append(whole[:-1] if tooth < TEETH_BESIDE else whole)
-            if tooth == 0:
-                fine = whole
-        inner = np.concatenate(border)
-        ends = inner[0, 1], inner[-1, 1]
-        count = 24 * (2 * TEETH_BESIDE + 1)
-        outside = np.stack([np.full(count, ring.outer_radius), np.linspace(ends[1], ends[0], count)], axis=1)
-        line = polar(*np.concatenate([inner, outside]).T)
-        polygon, tree = Path(line), cKDTree(polar(*fine.T))
-        everywhere = cKDTree(line)
-        points = [line]
-        low, high = line.min(axis=0), line.max(axis=0)
-        for (size, reach), (_, nearer) in zip(SIZES, (*SIZES[1:], (0.0, 0.0)), strict=True):
-            x, y = np.meshgrid(*(np.arange(a, b, size) for a, b in zip(low, high, strict=True)), indexing="ij")
-            grid = np.stack([x + 0.5 * size * (np.arange(x.shape[1]) % 2), y], axis=-1).reshape(-1, 2)
-            grid = grid[polygon.contains_points(grid)]
-            distance = tree.query(grid)[0]
-            grid = grid[(distance < reach) & (distance >= nearer) & (everywhere.query(grid)[0] > 0.45 * size)]
-            points.append(grid)
-        place = np.concatenate(points)
-        triangles = Delaunay(place).simplices
-        triangles = triangles[polygon.contains_points(place[triangles].mean(axis=1))]
-        corners = place[triangles]
-        sides = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        area = np.abs(sides[0][:, 0] * sides[1][:, 1] - sides[0][:, 1] * sides[1][:, 0])
-        mesh = MeshTri(place.T.copy(), triangles[area > 1e-7].T.copy()).remove_unused_nodes()
-        basis = Basis(mesh, ElementVector(ElementTriP2()))
-        stiffness = linear_elasticity(*lame_parameters(STEEL.youngs_modulus, STEEL.poisson_ratio)).assemble(basis)
-        held = basis.get_dofs(lambda x: np.hypot(*x) > 0.9999 * ring.outer_radius).all()
-        free = basis.complement_dofs(held)
-        return cls(ring, mesh, basis, splu(stiffness[free][:, free].tocsc()), free)
+        return cls(ring, PlaneTeeth.of(ring, ring.outer_radius))
 
     def under_strip(self, radius: float) -> tuple[float, float]:
         """Displacement along the force [mm per N/mm] of a strip on the flank, and the largest tension at its fillet."""
@@ -132,26 +66,25 @@ class Section:
             offset = x[0] - point[0], x[1] - point[1]
             return offset[0] * normal[0] + offset[1] * normal[1], offset[0] * along[0] + offset[1] * along[1]
 
-        near = self.mesh.facets_satisfying(
+        near = self.teeth.mesh.facets_satisfying(
             lambda x: (np.abs(away(x)[0]) < 0.02) & (np.abs(away(x)[1]) < 2.0 * HALF_WIDTH), boundaries_only=True
         )
-        face = FacetBasis(self.mesh, self.basis.elem, facets=near, intorder=12)
-        plain = FacetBasis(self.mesh, ElementTriP2(), facets=near, intorder=12)
+        face = FacetBasis(self.teeth.mesh, self.teeth.basis.elem, facets=near, intorder=12)
+        plain = FacetBasis(self.teeth.mesh, ElementTriP2(), facets=near, intorder=12)
 
         def pressure(x: Array) -> Array:
             return np.sqrt(np.maximum(0.0, 1.0 - (away(x)[1] / HALF_WIDTH) ** 2))
 
         load = LinearForm(lambda v, w: pressure(w.x) * (normal[0] * v[0] + normal[1] * v[1])).assemble(face)
         load /= LinearForm(lambda v, w: pressure(w.x) * v).assemble(plain).sum()
-        displacement = np.zeros(self.basis.N)
-        displacement[self.free] = self.factor.solve(load[self.free])
+        displacement = self.teeth.displacement(load)
         return float(load @ displacement), self._tension(displacement)
 
     def _tension(self, displacement: Array) -> float:
         """Largest stress along the loaded fillet, from the strain at its surface."""
         ring = self.ring
         land = math.pi / ring.tooth_count
-        facets = self.mesh.facets_satisfying(
+        facets = self.teeth.mesh.facets_satisfying(
             lambda x: (
                 (np.hypot(*x) > ring.form_radius - 0.05)
                 & (np.hypot(*x) < ring.root_radius + 1e-3)
@@ -160,7 +93,7 @@ class Section:
             ),
             boundaries_only=True,
         )
-        face = FacetBasis(self.mesh, self.basis.elem, facets=facets, intorder=2)
+        face = FacetBasis(self.teeth.mesh, self.teeth.basis.elem, facets=facets, intorder=2)
         gradient = face.interpolate(displacement).grad
         n = face.normals
         t = np.stack([-n[1], n[0]])
