@@ -21,7 +21,15 @@ from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, re
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.revolution import STATES_AT_A_TIME, CarriedPart, carried_over_revolution, pitches_apart
-from loaded_tca.loaded.supported import POSITIONS, Loads, SupportedCycle, given_motions, loads_at, moved_by
+from loaded_tca.loaded.supported import (
+    POSITIONS,
+    Loads,
+    SupportedCycle,
+    given_motions,
+    loads_at,
+    moved_by,
+    wheel_torques,
+)
 from loaded_tca.loaded.supported import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
@@ -362,6 +370,7 @@ class _OnSupports(_Numbers):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.drive_rate = np.full(len(self.path), math.nan)
+        self.wheel_torque = np.zeros(len(self.path))
         pinion, wheel = (np.full((len(self.path), len(one)), math.nan) for one in self.held)
         self.loads = pinion, wheel
 
@@ -372,5 +381,6 @@ class _OnSupports(_Numbers):
         rows = slice(part.positions.start, part.positions.stop)
         at = [[share.loaded for share in part.shared[0, n].shares] for n in range(len(part.positions))]
         self.drive_rate[rows] = part.drive_stiffness[0]
+        self.wheel_torque[rows] = wheel_torques(at)
         for of_gear, own in zip(self.loads, loads_at(self.bending.supports, at), strict=True):
             of_gear[rows] = own

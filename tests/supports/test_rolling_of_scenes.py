@@ -303,6 +303,23 @@ def test_command_shows_elements_pressures_and_lives(tmp_path: Path, capsys: pyte
     assert_allclose(float(rows[0]["life_Mrev"]), bearing.life(line.bearing_motions[0]))
 
 
+def test_overview_has_forces_and_lives_of_bearings(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", SCENE]) == 0
+    lines = {line[:44].strip(): line[44:].split() for line in capsys.readouterr().out.splitlines()}
+    first = shaft_lines(read_scene(SCENE))[:3]
+    forces = [f"{np.linalg.norm(line.bearing_forces[0, :3]):.1f}" for line in first]
+    assert lines["pinion, bearing 0 at -130 mm: force [N]"] == forces
+    assert "wheel, bearing 1 at 60 mm: force [N]" in lines
+    assert len(lines["life [million revolutions]"]) == 3
+
+
+def test_overview_refuses_bearings_that_do_not_hold(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = read_scene(SCENE).with_changes({"pinion.shaft.bearings": [ball_table()]})
+    (tmp_path / "scene.toml").write_text(scene.to_toml())
+    assert main(["check", str(tmp_path / "scene.toml")]) == 2
+    assert "pinion.shaft: bearings: 1 bearing leaves the shaft free about" in capsys.readouterr().err
+
+
 def test_pictures_of_supports_are_among_those_of_the_result(result: MeshCycle) -> None:
     figures = result_figures(result)
     assert {"misalignment", "bearing_loads", "shaft"} <= set(figures)
