@@ -17,11 +17,13 @@ from loaded_tca.plots import plot_pressure_envelope, plot_root_stress, plot_root
 
 DOCS = Path(__file__).parent
 EXAMPLES = {
+    "guide/hypoid_pair.png": "plot_hypoid_pair",
     "guide/study_heat_map.png": "plot_micro_geometry",
     "guide/vh_check.png": "plot_vh_check",
     "guide/vh_under_load.png": "plot_vh_under_load",
     "how_it_works/contact_pattern.png": "plot_contact_pattern",
     "how_it_works/ease_off.png": "plot_ease_off",
+    "how_it_works/local_synthesis.png": "plot_local_synthesis",
     "how_it_works/teeth_in_contact.png": "plot_tooth_3d",
     "how_it_works/tip_relief_and_rounding.png": "plot_tip_relief_and_rounding",
 }

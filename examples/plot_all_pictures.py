@@ -38,6 +38,10 @@ def main() -> None:
     check = vh_check(lambda v, h: BEVEL.with_changes({V: v, H: h}).pair(), STEPS, STEPS)
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
     drawn["shafts"] = plots.plot_shafts(shaft_lines(read_scene(SCENES / "helical_on_shafts.toml")))
+    on = read_scene(SCENES / "helical_on_rolling_bearings.toml").with_changes(FEW | {"analysis.torques_Nm": [40, 130]})
+    on_bearings, rigid = analyse(on), analyse(on.with_changes({"pinion.shaft": None, "wheel.shaft": None}))
+    drawn |= {kind: getattr(plots, f"plot_{kind}")(on_bearings) for kind in ("misalignment", "bearing_loads")}
+    drawn["face_load_on_supports"] = plots.plot_face_load_on_supports(on_bearings, rigid)
     few = HELICAL.with_changes(FEW)
     turn = analyse_revolution(few.with_changes({"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
     drawn |= {name: draw(turn) for name, draw in plots.REVOLUTION_PICTURES.items()}

@@ -38,6 +38,48 @@ AT_EDGES = "results/test_sensitivities_at_edges.py::"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
 FAULTS = (
     Fault(
+        "hypoid: the wheel is turned by the offset angle the other way",
+        "gears/hypoid.py",
+        "zeta = self.pitch_angles, hand * self.offset_angle",
+        "zeta = self.pitch_angles, -hand * self.offset_angle",
+        "gears/test_hypoid.py::test_pitch_cones_touch_in_the_pitch_plane_at_p",
+    ),
+    Fault(
+        "hypoid: machine centre to back of scenes counts from the pitch apex",
+        "scene/hypoid.py",
+        "machine_centre_to_back=machine.machine_centre_to_back - beyond",
+        "machine_centre_to_back=machine.machine_centre_to_back",
+        "scene/test_hypoid_scene.py::test_scene_of_gears_is_their_pair",
+    ),
+    Fault(
+        "hypoid: the offset error moves the wheel along y instead of the common normal",
+        "pairs/bevel.py",
+        "+ self.offset * frame.common_normal",
+        "+ np.array([0.0, self.offset, 0.0])",
+        "pairs/test_hypoid_pair.py::test_mounting_errors_move_the_wheel_about_the_common_normal",
+    ),
+    Fault(
+        "hypoid: base radii have the ratio of the pitch radii",
+        "pairs/bevel.py",
+        "radius * math.cos(pressure) * wheel.teeth / pinion.teeth",
+        "cones.radii[1] * math.cos(pressure)",
+        "pairs/test_hypoid_pair.py::test_base_radii_have_the_ratio_of_the_teeth_as_levers_have",
+    ),
+    Fault(
+        "hypoid: flanks are turned to the middle of the face instead of the calculation point",
+        "flanks/face_milled.py",
+        "if blank.calculation_cone_distance is None else blank.mean_cone_distance",
+        "if blank.calculation_cone_distance is None else blank.middle_cone_distance",
+        "flanks/test_hypoid_synthesis.py::test_pair_touches_in_p_with_the_ratio_of_the_teeth",
+    ),
+    Fault(
+        "local synthesis: the conjugate flank does not bend by its motion",
+        "flanks/hypoid_synthesis.py",
+        "(bends - np.outer(bends[1], bends[1]) / bends[1, 1]) / ratio",
+        "bends / ratio",
+        "flanks/test_hypoid_synthesis.py::test_conjugate_flank_is_what_the_wheel_sweeps",
+    ),
+    Fault(
         "REXS: axial forces of gears on the same shaft point the other way",
         "exchange/shafts.py",
         "axial = -math.copysign(1.0, torque) * hand",

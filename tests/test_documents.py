@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from validation.__main__ import CASES, LONG
+
 ROOT = Path(__file__).parents[1]
 BUILT = {"_build", "gallery", "generated", "api"}  # folders of docs/ that building the site fills
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
@@ -84,3 +86,10 @@ def test_every_picture_has_a_script_that_draws_it():
     listed = subprocess.run(["git", "ls-files", "docs"], cwd=ROOT, capture_output=True, text=True, check=False).stdout
     stems = {re.sub(r"_\d+$", "_", Path(line).stem) for line in listed.splitlines() if line.endswith(".png")}
     assert stems - words == set()
+
+
+def test_cases_that_the_table_of_errors_names_are_there():
+    table = (ROOT / "docs" / "how_it_works" / "errors.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"`(\w+\.\w+)`", "".join(line for line in table.splitlines() if line.startswith("|"))))
+    assert named, "the table names no case"
+    assert named - {*CASES, *LONG} == set()

@@ -29,8 +29,10 @@ EXPECTED = {
     "plot_load_sharing": (1.0, 1e-3),  # half a pitch before and behind: the two pairs of one position
     "plot_revolution": (1.0, 1e-4),  # an eccentric wheel turns as far as its axis is off, loaded as unloaded
     "plot_drive_stage": (1.0, 2e-3),  # bearings carry what the teeth press, whose normals lie 2 deg about one another
+    "plot_rolling_bearings": (1.0, 1e-3),  # all forces of rollers are radial, and linear near the mean load
     "plot_planetary_stage": (1.0, 1e-9),  # a sun that floats among three planets is pressed evenly
     "plot_bevel_blank": (1.165, 2.5e-3),  # printed of virtual gears; of these flanks 1.1631
+    "plot_local_synthesis": (1.0, 1e-3),  # motion curve asked for, by differences that leave a fourth derivative
     "plot_tribology": (1.0, 1e-9),  # torques of friction do the friction power
     "plot_root_stress": (1.0, 1e-3),  # a pitch further the mesh is the same
     "plot_loaded_transmission_error": (1.0, 1e-3),  # a pitch further the mesh is the same
@@ -39,6 +41,7 @@ EXPECTED = {
     "plot_ease_off": (1.0, 1e-3),  # the crownings of both gears add up, to first order
     "plot_vh_check": (-1.0, 0.03),  # shifts under opposite errors: first order
     "plot_vh_under_load": (-1.0, 0.03),  # shifts under opposite errors: first order
+    "plot_hypoid_pair": (1.0, 1e-7),  # levers where P is held have the ratio of the teeth
     "plot_sensitivities": (1.0, 2e-3),  # the line of action turns the centre distance into sin(alpha_wt) of it
     "plot_monte_carlo": (1.0, 0.03),  # either sign of misalignment gathers the load; positions at 1 % of accuracy
     "plot_micro_geometry": (1.0, 1e-12),  # every step of crowning
@@ -49,6 +52,13 @@ EXPECTED = {
 
 SHORTER = {
     "plot_tip_relief_and_rounding": {"RELIEFS": lambda _: [0.0, 12.0], "SCENE": lambda scene: few(scene, 3)},
+    "plot_rolling_bearings": {
+        "CHANGES": lambda _: {
+            "analysis.positions": 3,
+            "analysis.compliance": "contact",
+            "analysis.torques_Nm": [40.0, 130.0],
+        }
+    },
     "plot_drive_stage": {
         "CHANGES": lambda changes: changes | {"analysis.positions": 3, "analysis.compliance": "contact"}
     },

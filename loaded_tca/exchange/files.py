@@ -82,6 +82,7 @@ def with_attributes(content: bytes, more: Mapping[str, Mapping[str, Attribute]],
     InputError
         If the content is no REXS model.
     """
+    parse_rexs(content, source)  # refuses what is no model
     if content.startswith(b"PK"):
         return _with_attributes_in_zip(content, more, source)
     if _is_json(content):
@@ -112,7 +113,7 @@ def _with_attributes_in_json(content: bytes, more: Mapping[str, Mapping[str, Att
     whole = _json(content, source)
     for one in _tables(whole["model"], "components", source):
         attributes = more.get(str(one.get("id")), {})
-        kept = [each for each in one.get("attributes") or [] if each.get("id") not in attributes]
+        kept = [each for each in one.get("attributes") or [] if str(each.get("id")) not in attributes]
         one["attributes"] = kept + [_json_attribute(name, each) for name, each in attributes.items()]
     return json.dumps(whole, indent=1, ensure_ascii=False).encode() + b"\n"
 
@@ -203,7 +204,7 @@ def _of_xml(content: bytes, source: str) -> Model:
         Relation(
             _need(one, "type", source),
             {_need(ref, "role", source): _need(ref, "id", source) for ref in one},
-            int(_number_of(one.get("order", "0"), f"{source}: relation: order")),
+            _order(one.get("order", "0"), source),
         )
         for one in parts.get("relations", ())
     )
@@ -304,7 +305,7 @@ def _of_json(content: bytes, source: str) -> Model:
         Relation(
             str(_key(one, "type", source)),
             {str(_key(ref, "role", source)): str(_key(ref, "id", source)) for ref in _tables(one, "refs", source)},
-            int(_number_of(one.get("order") or 0, f"{source}: relation: order")),
+            _order(one.get("order") or 0, source),
         )
         for one in _tables(model, "relations", source)
     )
@@ -367,11 +368,11 @@ def _frozen(value: Any) -> Value:
     return value if isinstance(value, bool | int | float) else str(value)
 
 
-def _number_of(value: Any, where: str) -> float:
+def _order(value: Any, source: str) -> int:
     try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{where}: found {value!r:.40}; allowed a number") from None
+        return round(float(value))
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{source}: relation: order: found {value!r:.40}; allowed a number") from None
 
 
 def _by_id(components: list[Component], source: str) -> dict[str, Component]:

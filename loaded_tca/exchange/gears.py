@@ -20,7 +20,7 @@ from loaded_tca.exchange.units import (
     HEAT,
     LENGTH,
     PRESSURE,
-    ROUGHNESS,
+    SMALL_LENGTH,
     TORQUE,
 )
 
@@ -338,7 +338,7 @@ def gear_section(
         section |= _cutter(reading, component, flank)
     elif bore := reading.number(component, "inner_diameter", LENGTH):
         section["bore_diameter_mm"] = bore
-    roughness = reading.number(component, "arithmetic_average_roughness_flank", ROUGHNESS)
+    roughness = reading.number(component, "arithmetic_average_roughness_flank", SMALL_LENGTH)
     if roughness:
         section["roughness_Ra_um"] = round(roughness, DIGITS)
     return section

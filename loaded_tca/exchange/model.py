@@ -119,7 +119,7 @@ def _finite(component: Component, name: str, value: Value) -> float:
     """A number of a file, which may have it as text."""
     try:
         number = math.nan if isinstance(value, bool | tuple) else float(value)
-    except ValueError:
+    except (ValueError, OverflowError):
         number = math.nan
     sound = abs(number) <= LARGEST_NUMBER  # not of NaN
     require((sound, f"{component}: {name}: found {value!r:.40}; allowed a number of up to {LARGEST_NUMBER:g}"))

@@ -19,6 +19,8 @@ MICROMETRES = 1e3
 """Per millimetre."""
 CLOSE_um = 1e-3
 """Difference of amounts that are the same."""
+LEAST = 1e-3
+"""Part of the face or of the profile over which an amount is given at the least; less tells nothing of it."""
 POWERS = {"linear": 1, "parabolic": 2, "circular": 2}
 """Shapes of reliefs; arcs of a circle are parabolas to the fourth order of the amount over the length."""
 
@@ -123,6 +125,8 @@ def _helix_crowning(reading: Reading, one: Component, teeth: Teeth) -> Keys:
     shape = reading.take(one, "shape_of_helix_crowning").text("shape_of_helix_crowning")
     if abs(highest) > 1e-3 * teeth.face_width:
         raise _Left(f"helix_highest_point: found {highest:g} mm; allowed 0, the middle of the face")
+    if min(at) < LEAST * half:
+        raise _Left("its amounts are given in the middle of the face")
     ends = [_removed(amount * (half / place) ** 2) for amount, place in zip(amounts, at, strict=True)]
     if abs(ends[0] - ends[1]) < CLOSE_um:
         return {"lead_crowning_um": ends[0]} | ({"lead_crowning_form": "circular"} if shape == "circular" else {})
@@ -136,7 +140,9 @@ def _helix_slope(reading: Reading, one: Component, teeth: Teeth) -> Keys:
     amount = _amount(reading, one, "helix_slope")
     ends = [reading.number(one, f"helix_evaluation_{end}", LENGTH) for end in ("start", "end")]
     reading.take(one, "helix_evaluation_reference")
-    if ends[0] is not None and ends[1] is not None and abs(ends[1] - ends[0]) > 0.0:
+    if ends[0] is not None and ends[1] is not None:
+        if abs(ends[1] - ends[0]) < LEAST * teeth.face_width:
+            raise _Left("helix_evaluation_start: found at helix_evaluation_end")
         amount *= teeth.face_width / abs(ends[1] - ends[0])
     reading.note(f"{one}: a positive helix_slope removes material towards the face opposite to the datum face")
     return {"helix_slope_um": _um(-teeth.datum * amount)}
@@ -181,7 +187,7 @@ def _relief(end: str) -> Callable[[Reading, Component, Teeth], Keys]:
         power = _power(reading, one)
         if (last - start) * inwards >= 0.0:
             raise _Left(f"it starts beyond the {'tip' if end == 'tip' else 'start of the active profile'}")
-        if where is not None and (teeth.roll(where) - start) * inwards < 0.0:
+        if where is not None and (teeth.roll(where) - start) * inwards < -LEAST * abs(last - start):
             amount *= ((last - start) / (teeth.roll(where) - start)) ** power
         starts: Keys = (
             {f"{end}_relief_start_length_mm": start} if diameter is None else {f"{end}_relief_start_mm": diameter}
@@ -208,9 +214,9 @@ def _profile_crowning(reading: Reading, one: Component, teeth: Teeth) -> Keys:
     reading.take(one, "shape_of_profile_crowning")
     if abs(amounts[0] - amounts[1]) > CLOSE_um:
         raise _Left(f"found {amounts[0]:g} um at the tip and {amounts[1]:g} um at the root; allowed equal amounts")
-    if tip <= root:
-        raise _Left("its amounts are given at one place of the profile")
     half, own = 0.5 * (tip - root), 0.5 * (teeth.tip_roll - teeth.start_roll)
+    if half < LEAST * own:
+        raise _Left("its amounts are given at one place of the profile")
     shifted = 0.5 * (teeth.tip_roll + teeth.start_roll) - 0.5 * (tip + root)
     keys: Keys = {"profile_crowning_um": _removed(amounts[0] * (own / half) ** 2)}
     slope = 4.0 * amounts[0] * shifted * own / half**2  # a parabola about another middle has a slope about this one
@@ -222,8 +228,8 @@ def _profile_crowning(reading: Reading, one: Component, teeth: Teeth) -> Keys:
 def _profile_slope(reading: Reading, one: Component, teeth: Teeth) -> Keys:
     amount = _amount(reading, one, "profile_slope")
     tip, root = _ends_of_profile(reading, one, teeth, "profile_evaluation_end", "profile_evaluation_start")
-    if tip <= root:
-        raise _Left("profile_evaluation_start: found beyond profile_evaluation_end")
+    if tip - root < LEAST * (teeth.tip_roll - teeth.start_roll):
+        raise _Left("profile_evaluation_start: found at profile_evaluation_end, or beyond")
     reading.note(f"{one}: a positive profile_slope removes material towards the tip")
     return {"profile_slope_um": _um(amount * (teeth.tip_roll - teeth.start_roll) / (tip - root))}
 

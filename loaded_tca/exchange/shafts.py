@@ -1,7 +1,7 @@
 """Shafts of a REXS stage as sections of a scene: their parts, bearings, and the loads of everything else on them.
 
 Places along a shaft count from the middle of the gear's face, axes are those of the gear's own frame. Bearings are
-linear: by the stiffness of the operating point where the file has it, else by radial, axial and tilting stiffness.
+those of :mod:`loaded_tca.exchange.bearings`.
 """
 
 from __future__ import annotations
@@ -14,22 +14,18 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
+from loaded_tca.exchange.bearings import BEARINGS, bearing_rows
 from loaded_tca.exchange.gearbox import Gearbox, Stage
 from loaded_tca.exchange.gears import NAMES
 from loaded_tca.exchange.model import Component, Reading
-from loaded_tca.exchange.units import ANGLE, COUPLING, FORCE, LENGTH, STIFFNESS, TILTING, TORQUE
+from loaded_tca.exchange.units import ANGLE, FORCE, LENGTH, TORQUE
 
-RIGID_N_per_mm, RIGID_Nmm_per_rad = 1e9, 1e13
-"""Stiffnesses of bearings that files call rigid: 1e20 N/m and more would leave no digits for the shaft."""
-NO_STIFFNESS = 1e-9
 STEEPEST = math.radians(89.0)
 """Helix angle above which gears are none."""
 STEPS = 8
 """Cylinders that a cone becomes."""
 GAP = 1e-3
 """Between two parts of a shaft that follow each other [mm]."""
-BEARINGS = "concept_bearing", "rolling_bearing_with_catalog_geometry", "rolling_bearing_with_detailed_geometry"
-ROLLING = "rolling_bearing_with_catalog_geometry", "rolling_bearing_with_detailed_geometry"
 DIGITS = 9
 """Of lengths and forces that were computed."""
 
@@ -200,21 +196,21 @@ class ShaftFrame:
         thrust = self._thrust()
         for place, one, side in self.held_by():
             self._touch_rows(one)
-            stiffness = self._stiffness(one, thrust)
-            if stiffness is None:
+            rows = bearing_rows(self.reading, one, thrust, self.sign, self.turn)
+            if rows is None:
                 without.append(one)
                 continue
             self._note_other_part(one, side)
-            bearings.append({"at_mm": place, **stiffness})
+            bearings += [{"at_mm": round(place + self.sign * beside, DIGITS) + 0.0, **row} for beside, row in rows]
         if without:
             raise NotTaken(
-                "no stiffness of "
+                "neither stiffness nor inner geometry of "
                 + ", ".join(one.label for one in without)
                 + ": give radial_stiffness in the file, or write the bearings into the scene"
             )
         if not bearings:
             raise NotTaken("it has no bearings")
-        return bearings
+        return sorted(bearings, key=lambda one: float(one["at_mm"]))
 
     def _touch_rows(self, bearing: Component) -> None:
         for row in self.reading.model.related("ordered_assembly", "assembly", bearing.id, "part"):
@@ -226,78 +222,6 @@ class ShaftFrame:
         parts = self.reading.model.related("side", "assembly", bearing.id, other)
         if parts and parts[0].type != "gear_casing":
             self.reading.note(f"{bearing}: its other side, {parts[0]}, is rigid in the scene")
-
-    def _stiffness(self, one: Component, thrust: float) -> dict[str, Any] | None:
-        """Keys of the stiffness of a bearing; None where it has none."""
-        matrix = self._operating_point(one)
-        if matrix is not None:
-            return {"stiffness": [[round(value, DIGITS) + 0.0 for value in row] for row in matrix.tolist()]}
-        radial = self.reading.number(one, "radial_stiffness", STIFFNESS, 0.0) or 0.0
-        axial = self.reading.number(one, "axial_stiffness", STIFFNESS, 0.0) or 0.0
-        tilting = self.reading.number(one, "bending_stiffness", TILTING, 0.0) or 0.0
-        radial = (
-            0.0
-            if self.reading.take(one, "radial_force_absorption").flag("radial_force_absorption") is False
-            else radial
-        )
-        if max(radial, axial, tilting) <= NO_STIFFNESS:
-            return None
-        axial = self._axial(one, radial, axial, thrust)
-        if max(radial, axial) > RIGID_N_per_mm or tilting > RIGID_Nmm_per_rad:
-            self.reading.note(
-                f"{one}: rigid directions have {1e-3 * RIGID_N_per_mm:g} N/um, {1e-6 * RIGID_Nmm_per_rad:g} N m/mrad"
-            )
-        keys = {"radial_stiffness_N_per_um": 1e-3 * min(radial, RIGID_N_per_mm)}
-        if axial > 0.0:
-            keys["axial_stiffness_N_per_um"] = 1e-3 * min(axial, RIGID_N_per_mm)
-        if tilting > 0.0:
-            keys["tilting_stiffness_Nm_per_mrad"] = 1e-6 * min(tilting, RIGID_Nmm_per_rad)
-        return keys
-
-    def _axial(self, one: Component, radial: float, axial: float, thrust: float) -> float:
-        """Axial stiffness: none where the bearing takes no thrust of this direction [N/mm]."""
-        absorption = self.reading.take(one, "axial_force_absorption").text("axial_force_absorption")
-        if absorption == "no_direction":
-            return 0.0
-        if absorption in ("positive", "negative") and thrust:
-            if (thrust > 0.0) != (absorption == "positive"):
-                self.reading.note(
-                    f"{one}: it takes no axial force in the scene: that on its shaft points the other way"
-                )
-                return 0.0
-            self.reading.note(
-                f"{one}: it takes axial forces of both directions in the scene, {absorption} ones in the file"
-            )
-        if not axial and absorption and one.type in ROLLING and radial > RIGID_N_per_mm:
-            return math.inf  # rigid, of a file that gives no stiffness where a direction is held
-        return axial
-
-    def _operating_point(self, one: Component) -> Array | None:
-        """Stiffness (5, 5) at the operating point in the gear's own frame [N, mm, rad]; None where it is not whole."""
-        forces = [("f_u", "dF_u"), ("f_v", "dF_v"), ("f_w", "dF_w"), ("m_v", "dM_v"), ("m_w", "dM_w")]
-        motions = [("d_u", "d_u"), ("d_v", "d_v"), ("d_w", "d_w"), ("rot_v", "d_v_rot"), ("rot_w", "d_w_rot")]
-        matrix = np.zeros((6, 6))  # along u, v, w, about u, v, w
-        rows = 0, 1, 2, 4, 5
-        for n, (force, old_force) in enumerate(forces):
-            for m, (motion, old_motion) in enumerate(motions):
-                moment, turn = n >= 3, m >= 3
-                units = (TILTING if moment else COUPLING) if turn else (COUPLING if moment else STIFFNESS)
-                names = (
-                    f"operating_point_stiffness_{force}_{motion}",
-                    f"operating_point_stiffness_{old_force}_{old_motion}",
-                )
-                name = next((each for each in names if each in one.attributes), None)
-                value = None if name is None else self.reading.number(one, name, units)
-                if value is None:
-                    return None
-                matrix[rows[n], rows[m]] = value
-        if not matrix.any():
-            return None
-        turn_both = np.zeros((6, 6))
-        turn_both[:3, :3] = turn_both[3:, 3:] = self.turn
-        turned = turn_both @ (0.5 * (matrix + matrix.T)) @ turn_both.T
-        self.reading.note(f"{one}: its stiffness is that of the operating point in the file")
-        return np.asarray(turned[:5, :5])
 
     # loads
 

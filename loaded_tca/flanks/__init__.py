@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from loaded_tca.flanks.bevel import SphericalInvoluteFlank
     from loaded_tca.flanks.cylindrical import InvoluteFlank
     from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank
+    from loaded_tca.flanks.hypoid_synthesis import Mismatch, synthesised_gears
     from loaded_tca.flanks.modification import FlankModifications, ModifiedFlank
     from loaded_tca.flanks.rounding import EdgeRounding, RoundedFlank
     from loaded_tca.flanks.spline import SplineFlank, fitted, measured
@@ -28,6 +29,7 @@ __all__ = [
     "InvoluteFlank",
     "MeasuredDeviations",
     "MeasuredPoints",
+    "Mismatch",
     "ModifiedFlank",
     "RoundedFlank",
     "SphericalInvoluteFlank",
@@ -36,4 +38,5 @@ __all__ = [
     "fitted",
     "measured",
     "read_topography",
+    "synthesised_gears",
 ]

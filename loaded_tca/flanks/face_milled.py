@@ -1,6 +1,7 @@
 r"""Generated flanks of face-milled bevel gears: exact by the equations of generation, or as a B-spline of them.
 
-The flank is turned about the axis of its gear until it holds the pitch point at the mean cone distance (theta = 0).
+The flank is turned about the axis of its gear until it holds the pitch point at the mean cone distance R_m of its blank
+(theta = 0).
 Between form line, face cone, toe and heel every point is found from the generating equations
 (:mod:`loaded_tca.flanks.cradle`). Beyond these edges there is no flank, but searches step over them: there Theta goes
 on as the B-spline does, as a parabola from the edge.
@@ -190,7 +191,7 @@ class GeneratedFlank(ToothRegion):
 
     def _place(self, distance: float, angle: float) -> str:
         """A cone distance and a cone angle in words, before this flank has its frame."""
-        frame = ConeFrame(self.gear.blank.pitch_angle, self.gear.blank.mean_cone_distance)
+        frame = ConeFrame(self.gear.blank.pitch_angle, self.gear.blank.middle_cone_distance)
         return frame.place(distance * math.sin(angle), distance * math.cos(angle))
 
     def _require(self, rho: Array, z: Array) -> GeneratedPoints:
@@ -206,7 +207,8 @@ class GeneratedFlank(ToothRegion):
 
     @property
     def _pitch_point(self) -> tuple[Array, Array]:
-        distance, delta = self.mean_cone_distance, self.gear.blank.pitch_angle
+        blank, delta = self.gear.blank, self.gear.blank.pitch_angle
+        distance = self.mean_cone_distance if blank.calculation_cone_distance is None else blank.mean_cone_distance
         return np.array([distance * math.sin(delta)]), np.array([distance * math.cos(delta)])
 
     @cached_property

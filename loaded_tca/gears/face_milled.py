@@ -255,6 +255,8 @@ class FaceMilledBlank:
     hand : {"right", "left"}
     face_apex, root_apex : float [mm]
         How far the apexes of the face and root cones lie beyond that of the pitch cone, away from the teeth.
+    calculation_cone_distance : float [mm], optional
+        R_m of the calculation point, where both pitch cones touch; default: in the middle of the face.
 
     Raises
     ------
@@ -270,6 +272,7 @@ class FaceMilledBlank:
     hand: Literal["right", "left"] = "right"
     face_apex: float = 0.0
     root_apex: float = 0.0
+    calculation_cone_distance: float | None = None
 
     def __post_init__(self) -> None:
         width, outer = self.face_width, self.outer_cone_distance
@@ -282,10 +285,19 @@ class FaceMilledBlank:
             face_check(width, outer, "outer_cone_distance"),
             (0.0 < root <= pitch <= face < pi, f"root_angle: {cones} does not hold"),
         )
+        mean, (inner, outer) = self.mean_cone_distance, self.cone_distances
+        on_face = f"calculation_cone_distance: {mean} mm is not on the face, between {inner:.6g} and {outer:.6g} mm"
+        require((inner < mean < outer, on_face))
 
     @property
     def mean_cone_distance(self) -> float:
-        """R_m = R_e - b/2 [mm]."""
+        """R_m of the calculation point; R_e - b/2 where no other is given [mm]."""
+        given = self.calculation_cone_distance
+        return self.middle_cone_distance if given is None else given
+
+    @property
+    def middle_cone_distance(self) -> float:
+        """Cone distance of the middle of the face, R_e - b/2 [mm]."""
         return self.outer_cone_distance - 0.5 * self.face_width
 
     @property
@@ -375,6 +387,11 @@ class FaceMilledMesh:
     pinion: FaceMilledGear
     wheel: FaceMilledGear
     shaft_angle: float
+
+    @property
+    def offset(self) -> float:
+        """Hypoid offset a [mm]: none where the axes meet."""
+        return 0.0
 
     @property
     def gears(self) -> tuple[FaceMilledGear, FaceMilledGear]:

@@ -22,6 +22,7 @@ from loaded_tca.exchange.files import LARGEST_FILE, parse_rexs, with_attributes
 from loaded_tca.exchange.gearbox import Gearbox, Stage
 from loaded_tca.exchange.model import Attribute, Model, Reading
 from loaded_tca.exchange.shafts import ShaftFrame
+from loaded_tca.exchange.units import LENGTH
 from loaded_tca.input_files import read_bytes
 from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
 from loaded_tca.results.files import replace_file
@@ -170,14 +171,18 @@ def _of_shaft(line: ShaftLine, frame: ShaftFrame) -> dict[str, Attribute]:
 def _of_bearings(forces: Array, places: Sequence[float], frame: ShaftFrame) -> Results:
     """Forces [N] and tilting moments [N m] on the shaft and on the other side of bearings, by forces (n, 6) on them.
 
-    A bearing of the scene is that of the model at its place; the scene may have others, too.
+    A bearing of the scene is that of the model at its place, or a row of it; the scene may have others, too.
     """
     results: Results = {}
     for at, bearing, side in frame.held_by():
-        found = [n for n, place in enumerate(places) if abs(place - at) < SAME_PLACE_mm]
+        beside = 0.5 * (bearing.number("distance_between_bearing_rows", LENGTH) or 0.0) + SAME_PLACE_mm
+        found = [n for n, place in enumerate(places) if abs(place - at) < beside]
         if not found:
             continue
-        along, about = forces[found[0], :3] @ frame.turn, 1e-3 * forces[found[0], 3:] @ frame.turn
+        force, moment = forces[found, :3].sum(axis=0), forces[found, 3:].sum(axis=0)
+        for n in found:  # rows beside the middle of the bearing tilt it
+            moment = moment + np.cross([0.0, 0.0, places[n] - at], forces[n, :3])
+        along, about = force @ frame.turn, 1e-3 * moment @ frame.turn
         other = "outer" if side == "inner" else "inner"
         own: dict[str, Any] = {}
         for part, sign in ((side, -1.0), (other, 1.0)):

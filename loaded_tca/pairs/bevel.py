@@ -14,8 +14,13 @@ where the pinion is withdrawn by P, the wheel comes nearer along the pinion's ax
 
 Pairs of face-milled spiral bevel gears, cut after machine settings.
 
-Frames, senses of rotation and mounting errors are those of :mod:`loaded_tca.pairs.bevel`. phi1 = phi2 = 0 where both
-flanks hold the pitch point at the mean cone distance.
+Frames, senses of rotation and mounting errors are the same. phi1 = phi2 = 0 where both flanks hold the pitch point at
+the mean cone distance.
+
+Hypoid pairs: the pinion's pitch apex stays the origin, and x points towards the calculation point P, in which both
+pitch cones touch (:mod:`loaded_tca.gears.hypoid`). The offset E is counted along the common normal of the axes, on the
+side of +y, and the shaft angle grows about it. The base radii have the ratio of the teeth, as the levers of a common
+normal do: that of the pinion is r1 cos(alpha_t) at P.
 """
 
 from __future__ import annotations
@@ -24,14 +29,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import unmodified
-from loaded_tca.flanks.face_milled import GeneratedFlank
+from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.gears.bevel import BevelMesh
 from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
+from loaded_tca.gears.hypoid import HypoidCones, OffsetFrame
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
@@ -72,6 +79,17 @@ class BevelMounting:
         sine, cosine = math.sin(shaft_angle + self.shaft_angle_error), math.cos(shaft_angle + self.shaft_angle_error)
         axes = np.array([[-cosine, 0.0, sine], [0.0, -1.0, 0.0], [sine, 0.0, cosine]])
         return np.array([0.0, self.offset, -self.pinion_axial]) + self.wheel_axial * axes[2], axes
+
+    def place_with_offset(self, frame: OffsetFrame) -> tuple[Array, Array]:
+        """Origin (3,) and axes (3, 3), in rows, of the wheel frame of a hypoid pair in the frame of the pinion.
+
+        E runs along the common normal of the axes, about which the shaft angle grows, P and G along the axes.
+        """
+        wheel_point = frame.crossing_points[1]
+        turn = Rotation.from_rotvec(self.shaft_angle_error * frame.common_normal)
+        axes = turn.apply(frame.axes)
+        origin = wheel_point + turn.apply(frame.origin - wheel_point) + self.offset * frame.common_normal
+        return origin - np.array([0.0, 0.0, self.pinion_axial]) + self.wheel_axial * axes[2], axes
 
 
 def bevel_pair(
@@ -130,11 +148,13 @@ def bevel_pair(
         driving=drive,
         module=mesh.pinion.mean_normal_module,
         base_radii=(mesh.pinion.mean_base_radius, mesh.wheel.mean_base_radius),
-        face_width=mesh.pinion.face_width,
+        face_width=min(mesh.pinion.face_width, mesh.wheel.face_width),
     )
 
 
 _EQUAL = 1e-6
+_ROLLING = 0.01
+"""By how much mean normal modules of a hypoid pair may differ: cones of the standard do by 0.4 %."""
 
 
 def face_milled_pair(
@@ -148,6 +168,7 @@ def face_milled_pair(
     mounting: BevelMounting = BevelMounting(),
     materials: tuple[Material, Material] = (Material(), Material()),
     exact: bool = False,
+    offset: float = 0.0,
 ) -> GearPair:
     """Pair of face-milled gears.
 
@@ -169,6 +190,9 @@ def face_milled_pair(
     materials : (Material, Material)
     exact : bool
         Solve the generating equations at every point; default: B-splines of the flanks.
+    offset : float [mm]
+        Hypoid offset a; positive: the pinion follows the hand of the wheel. The pitch cones have to close on it and on
+        the shaft angle (then a right angle by default) within 1e-6; :meth:`HypoidCones.closing` makes them so.
 
     Returns
     -------
@@ -189,7 +213,9 @@ def face_milled_pair(
     >>> face_milled_pair(*spread_blade(blank))
     GearPair(20/30, module 3.59349 mm, face 22 mm)
     """
-    _require_mating_gears(pinion, wheel, pinion_flank)
+    if offset:
+        cones = _closed_cones(pinion, wheel, offset, 0.5 * math.pi if shaft_angle is None else shaft_angle)
+    _require_mating_gears(pinion, wheel, pinion_flank, rolling=not offset)
     drive = signs_of(driving, "positive")[1]
     side, blanks = pinion.side(pinion_flank), (pinion.blank, wheel.blank)
     first, second = (
@@ -198,11 +224,21 @@ def face_milled_pair(
     )
     flanks = [unmodified(gear.nominal_flank) for gear in (first, second)]
     angles = [flank.angles for flank in flanks if isinstance(flank, GeneratedFlank)]
-    spiral = 0.5 * sum(abs(one.spiral) for one in angles)
-    pressure = 0.5 * sum(one.transverse_pressure for one in angles)
-    distance = 0.5 * sum(blank.mean_cone_distance for blank in blanks)
-    radii = [distance * math.sin(blank.pitch_angle) for blank in blanks]
-    origin, axes = mounting.place(sum(blank.pitch_angle for blank in blanks) if shaft_angle is None else shaft_angle)
+    if offset:
+        _require_rolling(cones, (pinion.teeth, wheel.teeth), angles)
+        spiral, pressure = abs(angles[0].spiral), angles[0].transverse_pressure
+        radius = cones.radii[0]
+        base_radii = radius * math.cos(pressure), radius * math.cos(pressure) * wheel.teeth / pinion.teeth
+        origin, axes = mounting.place_with_offset(cones.frame(pinion.mirror))
+    else:
+        spiral = 0.5 * sum(abs(one.spiral) for one in angles)
+        pressure = 0.5 * sum(one.transverse_pressure for one in angles)
+        distance = 0.5 * sum(blank.mean_cone_distance for blank in blanks)
+        radius, mating = (distance * math.sin(blank.pitch_angle) for blank in blanks)
+        base_radii = radius * math.cos(pressure), mating * math.cos(pressure)
+        origin, axes = mounting.place(
+            sum(blank.pitch_angle for blank in blanks) if shaft_angle is None else shaft_angle
+        )
     return GearPair(
         pinion=first,
         wheel=second,
@@ -211,24 +247,59 @@ def face_milled_pair(
         wheel_axes=axes,
         sense=side * drive,
         driving=drive,
-        module=2.0 * radii[0] * math.cos(spiral) / pinion.teeth,
-        base_radii=(radii[0] * math.cos(pressure), radii[1] * math.cos(pressure)),
+        module=2.0 * radius * math.cos(spiral) / pinion.teeth,
+        base_radii=base_radii,
         face_width=min(blank.face_width for blank in blanks),
     )
 
 
-def _require_mating_gears(pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_flank: str) -> None:
-    """Refuse gears whose pitch cones do not roll on each other."""
+def _require_mating_gears(pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_flank: str, *, rolling: bool) -> None:
+    """Refuse gears of one hand, or whose pitch cones do not roll on each other."""
     problems = []
     if pinion_flank not in ("concave", "convex"):
         problems.append(f"pinion_flank: {pinion_flank!r} is not 'concave' or 'convex'")
     if pinion.blank.hand == wheel.blank.hand:
         problems.append(f"hand: pinion and wheel are both {pinion.blank.hand}-hand; they must be opposite")
     sines = [math.sin(gear.blank.pitch_angle) * gear.blank.mean_cone_distance for gear in (pinion, wheel)]
-    if not math.isclose(sines[0] * wheel.teeth, sines[1] * pinion.teeth, rel_tol=_EQUAL):
+    if rolling and not math.isclose(sines[0] * wheel.teeth, sines[1] * pinion.teeth, rel_tol=_EQUAL):
         problems.append(
             f"pitch_angle: mean pitch radii {sines[0]:.6g} and {sines[1]:.6g} mm do not roll on each other with "
             f"{pinion.teeth}/{wheel.teeth} teeth"
         )
     if problems:
         raise InputError(problems)
+
+
+def _closed_cones(pinion: FaceMilledGear, wheel: FaceMilledGear, offset: float, shaft_angle: float) -> HypoidCones:
+    """Pitch cones of a hypoid pair; refuses those that do not close on the offset and the shaft angle."""
+    blanks = pinion.blank, wheel.blank
+    angles = blanks[0].pitch_angle, blanks[1].pitch_angle
+    distances = blanks[0].mean_cone_distance, blanks[1].mean_cone_distance
+    cones = HypoidCones.closing(angles, distances, offset, shaft_angle)
+    if not math.isclose(cones.pitch_angles[0], angles[0], rel_tol=_EQUAL):
+        raise InputError(
+            f"pitch_angle: the axes close on an offset of {offset:g} mm and a shaft angle of {shaft_angle:.6g} rad "
+            f"with a pinion of {cones.pitch_angles[0]:.9g} rad, not {angles[0]:.9g}"
+        )
+    return cones
+
+
+def _require_rolling(cones: HypoidCones, teeth: tuple[int, int], angles: list[FlankAngles]) -> None:
+    """Refuse flanks whose spiral angles belong to the opposite offset, or do not roll on each other at P."""
+    pinion, wheel = (abs(one.spiral) for one in angles)
+    told = f"the flanks have spiral angles of {math.degrees(pinion):.4g} and {math.degrees(wheel):.4g} deg at P"
+    if abs(pinion - wheel + cones.offset_angle) < abs(pinion - wheel - cones.offset_angle):
+        larger, sign = ("larger", "positive") if cones.offset > 0.0 else ("smaller", "negative")
+        raise InputError(
+            f"offset: {cones.offset:g} mm; {told}; with a {sign} offset that of the pinion is the {larger} one: turn "
+            "the sign of the offset"
+        )
+    rolls = [
+        radius * math.cos(spiral) / number
+        for radius, spiral, number in zip(cones.radii, (pinion, wheel), teeth, strict=True)
+    ]
+    if not math.isclose(*rolls, rel_tol=_ROLLING):
+        raise GeometryError(
+            f"{told}: half the normal modules there, {rolls[0]:.5g} and {rolls[1]:.5g} mm, differ by more than "
+            f"{_ROLLING:.0%}: the flanks do not roll on each other"
+        )

@@ -66,7 +66,7 @@ from loaded_tca.plots.study import (
 from loaded_tca.plots.study_panels import plot_study_ranking
 from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
 from loaded_tca.plots.style import chosen_torque, png_of, save_figure
-from loaded_tca.plots.supports import plot_bearing_loads, plot_misalignment
+from loaded_tca.plots.supports import plot_bearing_loads, plot_face_load_on_supports, plot_misalignment
 from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
 from loaded_tca.plots.tribology import (
     TRIBOLOGY_PICTURES,
@@ -102,6 +102,7 @@ __all__ = [
     "plot_ease_off",
     "plot_efficiency",
     "plot_face_load",
+    "plot_face_load_on_supports",
     "plot_film_ratio",
     "plot_first_order_scatter",
     "plot_friction_power",

@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
+from loaded_tca.plots.sharing import draw_face_load
 from loaded_tca.plots.style import (
     ACCENT,
     DISTINCT_COLOURS,
@@ -68,6 +69,42 @@ def plot_misalignment(result: MeshCycle) -> Figure:
     axes.set_xlim(left=0.0, right=1.05 * float(torque.max()) if torque.max() > 0.0 else None)
     widen(axes, SMALLEST_SPAN_UM)
     return finished(figure, axes, result, f"misalignment over the torque, {loads(result)}", range_of_positions(result))
+
+
+def plot_face_load_on_supports(result: MeshCycle, rigid: MeshCycle, torque: int | None = None) -> Figure:
+    """Load over the face width with supports that give way, and beside it that of the same gears on rigid ones.
+
+    Parameters
+    ----------
+    result : MeshCycle
+        On supports.
+    rigid : MeshCycle
+        Of the scene without them, under the same torques.
+    torque : int, optional
+        Index of the torque; default: the largest one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the torques are not the same, a result has one position, or there is no such torque.
+    """
+    torque = chosen_torque(result, torque)
+    same = np.array_equal(result.torque, rigid.torque)
+    require(
+        (same, "rigid: other torques than those of the result on supports; allowed the same ones"),
+        (
+            min(len(result.path), len(rigid.path)) > 1,
+            "face load: a mean over a pitch; found 1 position, allowed 2 or more",
+        ),
+    )
+    figure, axes = one_panel()
+    for one, label, colour in ((result, "with supports", DISTINCT_COLOURS[0]), (rigid, "rigid", ACCENT)):
+        draw_face_load(axes, one, [(torque, label, colour, "")])
+    return finished(figure, axes, result, f"load over the face width, {load(result, torque)}", "mean over a pitch")
 
 
 def plot_bearing_loads(result: MeshCycle, torque: int | None = None) -> Figure:

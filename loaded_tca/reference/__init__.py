@@ -1,4 +1,4 @@
-"""Closed forms that tests and users share: Hertz, punches, the wedge, ISO 6336, ISO 1328, Weber and Banaschek."""
+"""Closed forms that tests and users share: Hertz, punches, wedge, ISO 1328, 6336, 10300, Weber and Banaschek."""
 
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
         iso6336_20,
         iso6336_21,
         iso6336_22,
+        iso10300,
         punch,
         weber_banaschek,
         wedge,
@@ -30,6 +31,7 @@ __all__ = [
     "iso6336_20",
     "iso6336_21",
     "iso6336_22",
+    "iso10300",
     "punch",
     "weber_banaschek",
     "wedge",

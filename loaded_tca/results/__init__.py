@@ -7,6 +7,7 @@ from loaded_tca.results.revolution import Revolution, Spectrum
 from loaded_tca.results.root_stress import RootStressMap
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.stress_below import StressBelow, stress_below
+from loaded_tca.results.supports import element_forces
 from loaded_tca.results.tolerances import default_tolerances, key_figure_slopes
 
 load_result = MeshCycle.load
@@ -22,6 +23,7 @@ __all__ = [
     "StressBelow",
     "compare_results",
     "default_tolerances",
+    "element_forces",
     "key_figure_slopes",
     "load_result",
     "reached_edges",

@@ -16,7 +16,7 @@ from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
 from loaded_tca.pairs.bevel import BevelMounting, face_milled_pair
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
-from loaded_tca.scene import face_milled_rows, sections, spiral
+from loaded_tca.scene import face_milled_rows, hypoid, sections, spiral
 from loaded_tca.scene.blank import opposite_hands
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
@@ -45,6 +45,11 @@ class Geometry(Pair):
 
     type: Literal["face_milled"] = key(Choice(("face_milled",)), "kind of gear pair")
     shaft_angle_deg: float = key(spiral.SHAFT_ANGLE_deg, "shaft angle Sigma", 90.0)
+    offset_mm: float = key(
+        Number(-1000.0, 1000.0),
+        "hypoid offset a; positive: the pinion follows the hand of the wheel, and has the larger spiral angle",
+        0.0,
+    )
     driving: Driving = key(DRIVING, "the gear that drives", "pinion")
     pinion_flank: spiral.Side | None = key(
         spiral.SIDE, "flank of the pinion that is in contact (drive side: concave)", None, '"concave", or by `sense`'
@@ -62,14 +67,22 @@ class Blank(Section):
     outer_cone_distance_mm: float = key(LENGTH_mm, "outer cone distance R_e")
     face_width_mm: float = key(LENGTH_mm, "face width b")
     pitch_angle_deg: float = key(
-        CONE_deg, "pitch angle delta, as teeth and shaft angle ask for; its last digits are taken from them"
+        CONE_deg,
+        "pitch angle delta, as teeth and shaft angle (and of a pinion with an offset the other cones) ask for; its "
+        "last digits are taken from them",
     )
     face_angle_deg: float = key(CONE_deg, "face angle delta_a")
     root_angle_deg: float = key(CONE_deg, "root angle delta_f")
     face_apex_mm: float = key(
-        SETTING_mm, "how far the apex of the face cone lies beyond the pitch apex, away from the teeth", 0.0
+        SETTING_mm,
+        "how far the apex of the face cone lies beyond the crossing point of the axes (without an offset the pitch "
+        "apex), away from the teeth",
+        0.0,
     )
     root_apex_mm: float = key(SETTING_mm, "likewise the apex of the root cone", 0.0)
+    calculation_cone_distance_mm: float | None = key(
+        LENGTH_mm, "cone distance R_m of the calculation point, where the pitch cones touch", None, "in the middle of b"
+    )
 
     rules: ClassVar[tuple[Rule, ...]] = (
         rule(("root_angle_deg", "pitch_angle_deg"), operator.le, "found {0:g}; allowed up to pitch_angle_deg = {1:g}"),
@@ -81,6 +94,7 @@ class Blank(Section):
             operator.lt,
             "found {0:g}; allowed below outer_cone_distance_mm = {1:g}",
         ),
+        hypoid.ON_FACE,
     )
 
 
@@ -92,7 +106,10 @@ class Machine(Section):
     cradle_angle_deg: float = key(TURN_deg, "cradle angle q at the centre of roll")
     root_angle_deg: float | None = key(CONE_deg, "machine root angle gamma_m", None, "that of the blank")
     machine_centre_to_back_mm: float = key(
-        SETTING_mm, "machine centre to back, Delta X_D; positive withdraws the blank along its axis", 0.0
+        SETTING_mm,
+        "machine centre to back, Delta X_D, of the crossing point of the axes; positive withdraws the blank along its "
+        "axis",
+        0.0,
     )
     sliding_base_mm: float = key(
         SETTING_mm, "sliding base Delta X_B; positive moves the blank away from the blade tips", 0.0
@@ -183,6 +200,15 @@ def _same_spheres(name: str) -> Rule:
     return rule((f"wheel.blank.{name}", f"pinion.blank.{name}"), partial(isclose, rel_tol=SAME_SPHERES), problem)
 
 
+_SAME_POINT = rule(
+    ("wheel.blank.calculation_cone_distance_mm", "pinion.blank.calculation_cone_distance_mm"),
+    lambda wheel, pinion: (
+        wheel == pinion or (None not in (wheel, pinion) and isclose(wheel, pinion, rel_tol=SAME_SPHERES))
+    ),
+    "found {0}; allowed pinion.blank.calculation_cone_distance_mm = {1}: without an offset both gears have one R_m",
+)
+
+
 def _pitch_cone(member: int, name: str) -> Rule:
     """Rule: a pitch angle is the one at which the pitch cones roll on each other."""
 
@@ -232,10 +258,12 @@ class FaceMilledScene(SpiralScene):
     rules: ClassVar[tuple[Rule, ...]] = (
         *Scene.rules,
         opposite_hands("blank."),
-        _same_spheres("outer_cone_distance_mm"),
-        _same_spheres("face_width_mm"),
-        _pitch_cone(0, "pinion"),
-        _pitch_cone(1, "wheel"),
+        hypoid.where_axes_meet(_same_spheres("outer_cone_distance_mm")),
+        hypoid.where_axes_meet(_same_spheres("face_width_mm")),
+        hypoid.where_axes_meet(_SAME_POINT),
+        hypoid.where_axes_meet(_pitch_cone(0, "pinion")),
+        hypoid.where_axes_meet(_pitch_cone(1, "wheel")),
+        hypoid.CLOSED_AXES,
         spiral.AXES_THAT_MEET,
     )
 
@@ -248,30 +276,43 @@ class FaceMilledScene(SpiralScene):
 
     @property
     def face_middles(self) -> tuple[float, float]:
-        """Axial coordinates of the mean pitch circles of both gears, from the crossing point of the axes [mm]."""
+        """Axial coordinates of the mean pitch circles of both gears, from the apexes of their pitch cones [mm]."""
         first, second = (gear.blank.mean_cone_distance * cos(gear.blank.pitch_angle) for gear in self.mesh().gears)
         return first, second
 
     def mesh(self) -> FaceMilledMesh:
         """Return blanks, machine settings and cutters of both gears."""
-        shaft_angle = radians(self.geometry.shaft_angle_deg)
-        first, second = pitch_angles((self.pinion.teeth, self.wheel.teeth), shaft_angle)
-        return FaceMilledMesh(_gear(self.pinion, "pinion", first), _gear(self.wheel, "wheel", second), shaft_angle)
+        shaft_angle, offset = radians(self.geometry.shaft_angle_deg), self.geometry.offset_mm
+
+        def gears(angles: tuple[float, float]) -> tuple[FaceMilledGear, FaceMilledGear]:
+            return _gear(self.pinion, "pinion", angles[0]), _gear(self.wheel, "wheel", angles[1])
+
+        if not offset:
+            return FaceMilledMesh(*gears(pitch_angles((self.pinion.teeth, self.wheel.teeth), shaft_angle)), shaft_angle)
+        blanks = self.pinion.blank, self.wheel.blank
+        first, second = (
+            hypoid.mean_distance(one.outer_cone_distance_mm, one.face_width_mm, one.calculation_cone_distance_mm)
+            for one in blanks
+        )
+        angles = radians(blanks[0].pitch_angle_deg), radians(blanks[1].pitch_angle_deg)
+        return hypoid.hypoid_mesh(gears, angles, (first, second), offset, shaft_angle)
 
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two generated flanks in space."""
         sides, mesh = self.sides(sense), self.mesh()
         _require_blades(mesh, sides)
-        return face_milled_pair(
-            mesh.pinion,
-            mesh.wheel,
-            pinion_flank=sides[0],
-            driving=self.geometry.driving,
-            shaft_angle=mesh.shaft_angle,
-            modifications=build_modifications(self.pinion, self.wheel),
-            mounting=BevelMounting(**in_base_units(self.mounting)),
-            materials=build_materials(self.materials),
-        )
+        with hypoid.offset_by_its_key():
+            return face_milled_pair(
+                mesh.pinion,
+                mesh.wheel,
+                pinion_flank=sides[0],
+                driving=self.geometry.driving,
+                shaft_angle=mesh.shaft_angle,
+                modifications=build_modifications(self.pinion, self.wheel),
+                mounting=BevelMounting(**in_base_units(self.mounting)),
+                materials=build_materials(self.materials),
+                offset=self.geometry.offset_mm,
+            )
 
     def active_starts(self) -> tuple[float, float]:
         """Return the form lines of pinion and wheel, from which their profiles are counted."""

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from math import cos, degrees, isnan, nan, pi, sin
 
 import numpy as np
 
-from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
+from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank, tooth_angle
 from loaded_tca.gears.cylindrical_mesh import Room
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
+from loaded_tca.gears.hypoid import limit_pressure_angle
+from loaded_tca.gears.hypoid_mesh import HypoidMesh
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.spiral import Point, Side, pitch_point
 
@@ -37,7 +40,7 @@ def geometry_rows(mesh: FaceMilledMesh, sides: Sides) -> list[Row]:
         ("hand of the spiral", *(gear.blank.hand for gear in mesh.gears)),
         ("flank in contact", *sides),
         *_blank_rows(mesh, points),
-        *_flank_rows(mesh, flanks),
+        *_flank_rows(flanks),
         *_machine_rows(mesh),
         *_blade_rows(mesh, sides),
     ]
@@ -45,6 +48,8 @@ def geometry_rows(mesh: FaceMilledMesh, sides: Sides) -> list[Row]:
 
 def _pair_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
     blank, (pinion, wheel) = mesh.pinion.blank, (flank.angles for flank in flanks)
+    if isinstance(mesh, HypoidMesh):
+        return _hypoid_rows(mesh, pinion, wheel)
     toe, heel = blank.cone_distances
     misses = (abs(pinion.spiral) - abs(wheel.spiral), pinion.pressure - wheel.pressure)
     return [
@@ -55,16 +60,43 @@ def _pair_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFlan
     ]
 
 
+def _hypoid_rows(mesh: HypoidMesh, pinion: FlankAngles, wheel: FlankAngles) -> list[Row]:
+    """Lines on the axes of a hypoid pair, on where its pitch cones stand on them, and how far its flanks fit these."""
+    cones, blanks = mesh.cones, (mesh.pinion.blank, mesh.wheel.blank)
+    spirals = cones.rolling_spiral_angles((mesh.pinion.teeth, mesh.wheel.teeth))
+    limit = limit_pressure_angle(cones, spirals)
+    misses = abs(pinion.spiral) - abs(wheel.spiral) - cones.offset_angle, pinion.pressure - wheel.pressure
+    ends = [(blank.outer_cone_distance, blank.mean_cone_distance, blank.cone_distances[0]) for blank in blanks]
+    return [
+        ("shaft angle Sigma [deg]", _deg(mesh.shaft_angle)),
+        ("hypoid offset a [mm]", f"{mesh.offset:.4f}"),
+        ("offset angles zeta_m, zeta_mp [deg]", _deg(cones.axial_offset_angle), _deg(cones.offset_angle)),
+        ("limit pressure angle alpha_lim [deg]", _deg(limit)),
+        ("spiral angles that roll on each other [deg]", *(_deg(angle) for angle in spirals)),
+        ("crossing point to P, t_zm [mm]", *(f"{part:.4f}" for part in cones.crossing_distances)),
+        ("pitch apex beyond crossing point, t_z [mm]", *(f"{part:.4f}" for part in cones.apexes)),
+        ("pinion: R_e, R_m, R_i [mm]", *(f"{part:.4f}" for part in ends[0])),
+        ("wheel: R_e, R_m, R_i [mm]", *(f"{part:.4f}" for part in ends[1])),
+        ("face widths b [mm]", *(f"{blank.face_width:.4f}" for blank in blanks)),
+        ("smallest clearance at the roots [mm]", *(f"{part:.4f}" for part in mesh.tip_clearances)),
+        ("pinion less wheel: spiral less zeta_mp, pressure [deg]", *(_deg(miss) for miss in misses)),
+    ]
+
+
 def _blank_rows(mesh: FaceMilledMesh, points: tuple[Point, Point]) -> list[Row]:
     def both(value: Callable[[FaceMilledGear], float]) -> tuple[str, ...]:
         return tuple(f"{value(gear):.4f}" for gear in mesh.gears)
+
+    def shown(beyond: Iterable[float]) -> tuple[str, ...]:
+        """Apexes from the crossing points of the axes."""
+        return tuple(f"{part + apex:.4f}" for part, apex in zip(beyond, _pitch_apexes(mesh), strict=True))
 
     return [
         ("pitch angle delta [deg]", *both(lambda gear: degrees(gear.blank.pitch_angle))),
         ("face angle delta_a [deg]", *both(lambda gear: degrees(gear.blank.face_angle))),
         ("root angle delta_f [deg]", *both(lambda gear: degrees(gear.blank.root_angle))),
-        ("apex of the face cone beyond [mm]", *both(lambda gear: gear.blank.face_apex)),
-        ("apex of the root cone beyond [mm]", *both(lambda gear: gear.blank.root_apex)),
+        ("apex of the face cone beyond [mm]", *shown(gear.blank.face_apex for gear in mesh.gears)),
+        ("apex of the root cone beyond [mm]", *shown(gear.blank.root_apex for gear in mesh.gears)),
         ("outer pitch diameter d_e [mm]", *both(_outer_diameter)),
         ("outer transverse module m_et [mm]", *both(lambda gear: _outer_diameter(gear) / gear.teeth)),
         ("mean point, radius rho [mm]", *(f"{rho:.4f}" for rho, _ in points)),
@@ -72,15 +104,23 @@ def _blank_rows(mesh: FaceMilledMesh, points: tuple[Point, Point]) -> list[Row]:
     ]
 
 
+def _pitch_apexes(mesh: FaceMilledMesh) -> tuple[float, float]:
+    """How far the pitch apexes lie beyond the crossing points of the axes [mm]."""
+    return mesh.cones.apexes if isinstance(mesh, HypoidMesh) else (0.0, 0.0)
+
+
 def _outer_diameter(gear: FaceMilledGear) -> float:
     return 2.0 * gear.blank.outer_cone_distance * sin(gear.blank.pitch_angle)
 
 
-def _flank_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
+def _flank_rows(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
     """What the settings make of the flanks in contact, at their mean points."""
-    distance = mesh.pinion.blank.mean_cone_distance
     heights = [
-        tuple(distance * (angle - flank.gear.blank.pitch_angle) for angle in flank.mean_cone_angles) for flank in flanks
+        tuple(
+            flank.gear.blank.middle_cone_distance * (angle - flank.gear.blank.pitch_angle)
+            for angle in flank.mean_cone_angles
+        )
+        for flank in flanks
     ]
     return [
         ("mean spiral angle beta_m [deg]", *(_deg(abs(flank.angles.spiral)) for flank in flanks)),
@@ -125,7 +165,10 @@ def _shown(length: float) -> str:
 
 
 def _machine_rows(mesh: FaceMilledMesh) -> list[Row]:
-    first, second = (gear.machine for gear in mesh.gears)
+    first, second = (
+        replace(gear.machine, machine_centre_to_back=gear.machine.machine_centre_to_back + apex)
+        for gear, apex in zip(mesh.gears, _pitch_apexes(mesh), strict=True)
+    )
     settings = (
         ("radial setting S_r [mm]", first.radial, second.radial),
         ("cradle angle q [deg]", degrees(first.cradle_angle), degrees(second.cradle_angle)),

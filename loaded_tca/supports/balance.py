@@ -26,6 +26,8 @@ LOOSE = 1e-7
 """Part of the stiffness of a joint that a rolling bearing has at least: none of its elements may be loaded."""
 IN_BALANCE = 1e-10
 """Forces that are left over, over those on the shaft, where Newton's method ends."""
+ROUNDING = 4.0 * float(np.finfo(float).eps)
+"""Of forces in the shaft."""
 MOST_STEPS, SHORTEST = 100, 2.0**-60
 """Steps of Newton's method; part of one that is none."""
 SUFFICIENT = 1e-4
@@ -83,7 +85,7 @@ def balanced(stiffness: Array, load: Array, free: Array, seats: Sequence[Seat]) 
     whole = _Whole(stiffness, load, free, seats)
     now = whole.at(solved(whole.joints, load, free))
     for _ in range(MOST_STEPS):
-        if whole.size(now.rest) <= IN_BALANCE * whole.carried(now):
+        if whole.size(now.rest) <= max(IN_BALANCE * whole.carried(now), whole.rounding(now)):
             return now.motion, now.reactions
         now = whole.after_a_step(now)
     raise InputError(
@@ -125,6 +127,11 @@ class _Whole:
         for seat, reaction in zip(self.seats, state.reactions, strict=True):
             forces[seat.motions] = np.maximum(forces[seat.motions], np.abs(reaction.force))
         return self.size(forces)
+
+    def rounding(self, state: _State) -> float:
+        """Rounding of the forces in the shaft, which is stiff: ways through clearances make more than small loads."""
+        inner = np.abs(self.stiffness) @ np.abs(state.motion)
+        return ROUNDING * self.size(inner)
 
     def at(self, motion: Array) -> _State:
         reactions = [seat.bearing.reaction(motion[seat.motions]) for seat in self.seats]

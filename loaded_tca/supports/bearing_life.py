@@ -105,7 +105,7 @@ def roller_rating(rollers: int, diameter: float, pitch_diameter: float, contact_
     Examples
     --------
     >>> round(roller_rating(14, 10.0, 60.0, 0.0, 12.0), -2)
-    56600.0
+    57800.0
     """
     factor = roller_factor(diameter * math.cos(contact_angle) / pitch_diameter)
     along = (length * math.cos(contact_angle)) ** (7.0 / 9.0)

@@ -291,7 +291,7 @@ class RollerBearing(RollingBearing):
     --------
     >>> bearing = RollerBearing(at=0.0, elements=14, diameter=10.0, pitch_diameter=60.0, length=12.0)
     >>> bearing.reaction(np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])).force.round()[:3]
-    array([4863.,    0.,    0.])
+    array([4054.,    0.,    0.])
     """
 
     length: float

@@ -249,6 +249,8 @@ class BevelTooth(ToothGeometry):
             (form, face),
             (gear.inner_cone_distance, gear.outer_cone_distance),
             (below, above),
+            gear.calculation_distance,
+            gear.cutter_circle,
         )
 
     def modified(self, nominal: Flank) -> Flank:
@@ -314,7 +316,7 @@ class FaceMilledTooth(ToothGeometry):
         """The flank with its modifications; the profile runs from the form line to the tip."""
         generated, blank = unmodified(nominal), self.gear.blank
         assert isinstance(generated, GeneratedFlank)
-        distance, (tip, foot) = blank.mean_cone_distance, generated.mean_cone_angles
+        distance, (tip, foot) = blank.middle_cone_distance, generated.mean_cone_angles
 
         def diameter(angle: float) -> float:
             sine = math.sin(angle)

@@ -190,6 +190,15 @@ def test_more_attributes_change_nothing_else(form: str) -> None:
         }
 
 
+def test_attributes_join_no_file_that_is_no_model() -> None:
+    for content in (
+        b'{"model": {"version": "1.7", "components": [{"id": 1, "type": "shaft", "attributes": ["u"]}]}}',
+        b"<a/>",
+    ):
+        with pytest.raises(InputError):
+            with_attributes(content, {"1": {"width": Attribute(1.0, "mm")}})
+
+
 def test_a_zip_keeps_its_other_files() -> None:
     content = with_attributes(CONTENTS["rexsz"], {"10": {"face_load_factor_flank": Attribute(1.25)}})
     with zipfile.ZipFile(BytesIO(content)) as archive:

@@ -178,6 +178,16 @@ LEFT = {
         {"helix_crowning_amount_datum_face": 0.005, "helix_highest_point": 3.0},
         "helix_highest_point: found 3 mm; allowed 0",
     ),
+    "crowning in the middle": (
+        "helix_crowning",
+        {"helix_crowning_amount_datum_face": 0.005, "coordinate_where_helix_crowning_is_specified_datum_face": 1e-9},
+        "its amounts are given in the middle of the face",
+    ),
+    "slope over nothing": (
+        "helix_slope",
+        {"helix_slope": 0.005, "helix_evaluation_start": 3.0, "helix_evaluation_end": 3.0},
+        "helix_evaluation_start: found at helix_evaluation_end",
+    ),
     "unequal crowning": (
         "profile_crowning",
         {"profile_crowning_at_tip": 0.005, "profile_crowning_at_root": 0.002},
@@ -196,7 +206,7 @@ LEFT = {
     "slope turned round": (
         "profile_slope",
         {"profile_slope": 0.005, "profile_evaluation_start": 58.0, "profile_evaluation_end": 52.0},
-        "profile_evaluation_start: found beyond profile_evaluation_end",
+        "profile_evaluation_start: found at profile_evaluation_end, or beyond",
     ),
 }
 

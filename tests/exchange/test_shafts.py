@@ -123,7 +123,7 @@ def test_bearings_without_stiffness_leave_the_shaft_out_and_are_named() -> None:
     assert imported.scene.pinion.shaft is None
     assert imported.scene.wheel.shaft is not None
     sentence = next(one for one in imported.not_taken if one.startswith("shaft 3"))
-    assert "no stiffness of concept_bearing 91" in sentence
+    assert "neither stiffness nor inner geometry of concept_bearing 91" in sentence
     assert sentence.endswith("pinion without a support")
 
 

@@ -127,6 +127,20 @@ def test_bearings_that_the_scene_has_elsewhere_get_no_forces(result) -> None:
     assert "92" not in results
 
 
+def test_rows_of_a_bearing_hold_as_one(result) -> None:
+    """Bearing 92 as two rows 10 mm apart, of half its stiffness each: their sum, and the moment of their difference."""
+    rows = {"stiffness": None, "radial_stiffness_N_per_um": 150.0, "axial_stiffness_N_per_um": 0.0}
+    first, _ = (vars(one) for one in result.scene.pinion.shaft.bearings)
+    bearings = [first, *({**first, **rows, "at_mm": 70.0 + beside} for beside in (-5.0, 5.0))]
+    double = analyse(result.scene.with_changes({"pinion.shaft.bearings": bearings, "analysis.torques_Nm": [150.0]}))
+    own = rexs_results(double, changed(attributes={"92.distance_between_bearing_rows": (10.0, "mm")}), "10")["92"]
+    force = double.pinion_bearing_force[0, :-1].mean(axis=0)[1:]
+    # x = w, y = -v, z = u
+    assert own["force_acting_on_outer_component_w"].value == pytest.approx(force[:, 0].sum(), rel=1e-9)
+    tilting = 1e-3 * 5.0 * (force[1, 0] - force[0, 0])  # about y = -v, N m
+    assert own["torque_acting_on_outer_component_v"].value == pytest.approx(-tilting, rel=1e-6)
+
+
 @pytest.mark.parametrize("suffix", ["rexs", "rexsj"])
 def test_written_models_are_read_again(result, tmp_path, suffix: str) -> None:
     model = tmp_path / f"model.{suffix}"

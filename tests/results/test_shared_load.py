@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from loaded_tca import AccuracyWarning, InputError, analyse, load_result, read_scene
 from loaded_tca.output.result_files import positions_csv, summary_json
 from loaded_tca.pairs import mating_teeth
-from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
+from loaded_tca.plots import MORE_PICTURES, ON_SUPPORTS, PICTURES, plot_all
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.results.teeth import teeth_in_space
@@ -280,7 +280,7 @@ def test_every_picture_of_a_shared_load_is_drawn(make, tmp_path, request):
     if make is helical:
         request.getfixturevalue("blank_pictures")  # the tests of its report draw them
     drawn = {path.stem for path in plot_all(make(), tmp_path, more=True)}
-    on_request = {name for name in PICTURES if name.startswith("root_stress")}
+    on_request = {name for name in PICTURES if name.startswith("root_stress")} | set(ON_SUPPORTS)
     assert drawn >= set(PICTURES) - on_request - {"pressure_map_edge", "pressure_map_hertz"}
 
 

@@ -83,7 +83,7 @@ ONE_PROBLEM = [
     ({"pair.shaft_angle_deg": 180.0}, "pair.shaft_angle_deg: found 180.0; allowed a number from 1 to 179"),
     (
         {"pair.outer_module_mm": 4.0},
-        "pair.outer_module_mm: unknown key; allowed type, shaft_angle_deg, driving, pinion_flank, sense",
+        "pair.outer_module_mm: unknown key; allowed type, shaft_angle_deg, offset_mm, driving, pinion_flank, sense",
     ),
     (
         {"pinion.face_width_mm": 20.0},

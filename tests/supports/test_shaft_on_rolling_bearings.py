@@ -80,6 +80,28 @@ def test_compliance_is_the_slope_of_the_motions(name: str) -> None:
     assert_allclose(compliance, compliance.T, atol=1e-9 * scale.max())
 
 
+@pytest.mark.parametrize("seed", range(30))
+def test_shafts_find_their_balance_whatever_bearings_and_load(seed: int) -> None:
+    """Loads from 1 N on, in clearances up to a tenth of a millimetre, preloads, pressed rings."""
+    random = np.random.default_rng(seed)
+    first, second = -180.0 + random.uniform(0.0, 80.0), -10.0 + random.uniform(0.0, 30.0)
+    size, clearance = random.uniform(5.0, 20.0), random.choice([-0.01, 0.0, 0.02, 0.1])
+    ball = BallBearing(at=first, elements=9, diameter=size, pitch_diameter=5.0 * size, clearance=clearance)
+    roller = RollerBearing(at=second, elements=12, diameter=size, pitch_diameter=5.0 * size, length=1.5 * size)
+    angle, preload = math.radians(random.uniform(10.0, 40.0)), random.choice([-0.05, 0.0, 0.02])
+    set_against = replace(ball, contact_angle=angle, clearance=0.0, preload=preload)
+    tapered = replace(roller, contact_angle=angle, preload=preload)
+    bearings = [
+        (ball, replace(roller, clearance=clearance)),
+        (set_against, replace(set_against, at=second, side=-1)),
+        (replace(tapered, at=first), replace(tapered, side=-1)),
+    ][seed % 3]
+    load = 10.0 ** random.uniform(0.0, 4.5) * random.normal(size=6) * [1.0, 1.0, 1.0, 30.0, 30.0, 30.0]
+    solved = shaft(*bearings).solved([0.0], load)
+    forces = (solved.on_bearings @ np.append(load, 1.0))[:, :3].sum(axis=0)
+    assert_allclose(forces, load[:3], atol=1e-6 * np.abs(load).max())
+
+
 def test_forces_of_bearings_are_linear_near_the_load() -> None:
     one, change = shaft(BALL, ROLLER), np.array([5.0, -3.0, 2.0, 100.0, -50.0, 0.0])
     near = one.solved([0.0], OVERHUNG)

@@ -4,6 +4,8 @@ Every scene is one of ``examples/scenes`` or of this folder, its ``[analysis]`` 
 here. Each is analysed in a process of its own on one thread, with the models of teeth and roots neither kept nor found
 kept; the processor time is that of ``loaded_tca.analyse`` alone, the time told that of ``loaded-tca check``.
 
+Eight jobs of all commands stand before them: files of ``examples`` as they are, each in such a process.
+
 Run from the root of the repository: ``python -m validation.loaded.user_scenes``; it writes
 ``docs/studies/how_long.md``.
 """
@@ -22,8 +24,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from loaded_tca import analyse, parse_scene
+from loaded_tca import analyse, analyse_revolution, parse_scene, read_scene
 from loaded_tca.analysis import expected_effort
+from loaded_tca.stages import analyse_stage, read_stage
 from validation.page import ROOT, SCENES, Page, machine, table, write_page
 
 HERE = Path(__file__).parent
@@ -63,7 +66,7 @@ SPUR_RELIEFS = {
 }
 HELICAL_RELIEFS = {**SPUR_RELIEFS, f"{PINION}tip_relief_start_mm": 108.5, f"{WHEEL}tip_relief_start_mm": 179.5}
 TORQUE, WIDTHS = "load.pinion_torque_Nm", ("pinion.face_width_mm", "wheel.face_width_mm")
-ROOTS = {"analysis.root_stress": True}
+ROOTS: dict[str, object] = {"analysis.root_stress": True}
 
 USER_SCENES = (
     UserScene("electric drive: short reliefs, misaligned", "ev_stage"),
@@ -100,6 +103,39 @@ USER_SCENES = (
     UserScene("helical, measured wheel flank", "measured_flank"),
     UserScene("helical, root stress", "helical", ROOTS),
     UserScene("spiral bevel, root stress", "spiral_bevel", ROOTS),
+)
+
+
+@dataclass(frozen=True)
+class Job:
+    """What one asks of a file of the examples.
+
+    Attributes
+    ----------
+    what : str
+    kind : str
+        "run", "tribology", "stage" or "revolution".
+    file : str
+        In the folder of examples.
+    changes : mapping
+    """
+
+    what: str
+    kind: str
+    file: str
+    changes: Mapping[str, object] = field(default_factory=dict)
+
+
+USUAL: dict[str, object] = {"analysis.accuracy": 1e-2}
+JOBS = (
+    Job("helical pair, 21 positions", "run", "scenes/helical.toml", USUAL),
+    Job("the same with root stress", "run", "scenes/helical.toml", USUAL | ROOTS),
+    Job("drive stage on its shafts, 17 positions, 2 torques, with its oil", "tribology", "scenes/drive_stage.toml"),
+    Job("spiral bevel pair from its data sheet, 21 positions", "run", "scenes/spiral_bevel_blank.toml"),
+    Job("face-milled pair by machine settings, 21 positions", "run", "scenes/face_milled_19x62_matched.toml", USUAL),
+    Job("planet and ring, 15 positions", "run", "scenes/planet_ring.toml"),
+    Job("planetary stage, 2 torques", "stage", "stages/helical_automotive.toml"),
+    Job("a turn of the wheel with pitch deviations, 2 torques", "revolution", "scenes/revolution_helical.toml"),
 )
 
 
@@ -140,6 +176,38 @@ class Taken:
     parts: Mapping[str, float]
 
 
+def job_alone() -> None:
+    """Do the job that the command line of this process holds; print its processor time [s] as JSON."""
+    kind, file, changes = json.loads(sys.argv[1])
+    path = SCENES.parent / file
+    if kind == "stage":
+        stage = read_stage(path)
+        start = time.process_time()
+        analyse_stage(stage)
+    else:
+        scene = read_scene(path)
+        scene = scene.with_changes(changes) if changes else scene
+        start = time.process_time()
+        if kind == "revolution":
+            analyse_revolution(scene)
+        elif kind == "tribology":
+            analyse(scene).tribology().summary()
+        else:
+            analyse(scene)
+    print(json.dumps(time.process_time() - start))
+
+
+def jobs() -> str:
+    """Table of the jobs."""
+    lines = []
+    for job in JOBS:
+        seconds = _in_a_process("job_alone", [job.kind, job.file, dict(job.changes)], job.what)
+        command = "run, tribology" if job.kind == "tribology" else job.kind
+        lines.append(f"{job.what} | `{command}` | `examples/{job.file}` | {seconds:.1f}")
+        print(lines[-1], file=sys.stderr)
+    return table("job | command | file | s", lines)
+
+
 def measure(scene: UserScene) -> Taken:
     """Analyse a scene in two processes of its own: one for the time, the other for where it goes."""
     taken, parts = (_run(scene, profiled=profiled) for profiled in (False, True))
@@ -153,13 +221,18 @@ def measure(scene: UserScene) -> Taken:
 
 
 def _run(scene: UserScene, *, profiled: bool) -> dict[str, Any]:
+    return dict(_in_a_process("alone", [str(scene.path), dict(scene.changes), profiled], scene.what))
+
+
+def _in_a_process(function: str, given: list[object], what: str) -> Any:
+    """What a function of this module prints as JSON, on one thread and without kept models."""
     environment = os.environ | {"OMP_NUM_THREADS": "1", "LOADED_TCA_CACHE": "off"}
-    given = json.dumps([str(scene.path), dict(scene.changes), profiled])
-    command = [sys.executable, "-W", "ignore", "-c", "from validation.loaded.user_scenes import alone; alone()", given]
+    code = f"from validation.loaded.user_scenes import {function}; {function}()"
+    command = [sys.executable, "-W", "ignore", "-c", code, json.dumps(given)]
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise RuntimeError(f"{scene.what}: {done.stderr.strip().splitlines()[-1]}")
-    return dict(json.loads(done.stdout))
+        raise RuntimeError(f"{what}: {done.stderr.strip().splitlines()[-1]}")
+    return json.loads(done.stdout)
 
 
 def alone() -> None:
@@ -202,10 +275,22 @@ def page() -> Page:
         )
         print(lines[-1], file=sys.stderr)
     head = "scene | told s | taken s | told over taken | contacts | largest grid | where the time goes"
-    return Page("how_long", TEXT.format(table=table(head, lines), machine=machine()))
+    return Page(
+        "how_long", TEXT.format(jobs=jobs(), load=os.getloadavg()[1], table=table(head, lines), machine=machine())
+    )
 
 
 TEXT = """# How long does it take?
+
+## Eight typical jobs
+
+Processor time on one thread, each in a process of its own, without models of teeth or roots kept from an earlier
+analysis: files of the examples, with an accuracy of 1e-2. Pictures and files of the commands come on top, some seconds.
+The load of the machine was {load:.0f} meanwhile: above its number of cores, times are up to a third longer.
+
+{jobs}
+
+## Scenes by defaults
 
 Scenes as users write them, by the defaults of `[analysis]` alone: 21 positions, accuracy 1e-2, teeth that bend, load
 shared, free edges. *Told* is what `loaded-tca check`, and the analysis before it starts, say; *taken* is the processor
