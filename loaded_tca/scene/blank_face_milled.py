@@ -95,19 +95,9 @@ class BlankFaceMilledScene(BevelScene):
     rules: ClassVar[tuple[Rule, ...]] = (
         *BevelScene.rules,
         rule(
-            ("wheel.face_width_mm", "pinion.face_width_mm"),
-            lambda wheel, pinion: wheel == pinion,
-            "found {0:g}; allowed pinion.face_width_mm = {1:g}: both face-milled gears end on the same spheres",
-        ),
-        rule(
             ("pair.blank.lengthwise_curve",),
             lambda curve: curve == "logarithmic",
             'found "{0}"; not allowed with face-milled gears, whose flanks run as the cutter leaves them',
-        ),
-        rule(
-            ("pair.blank.outer_face_share",),
-            lambda share: share == 0.5,
-            "found {0:g}; allowed 0.5 of face-milled gears, whose calculation point lies in the middle of the face",
         ),
     )
 

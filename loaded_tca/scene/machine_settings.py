@@ -101,7 +101,7 @@ class Settings(Section):
         return MeanContact(
             motion_fall=UNITS["arcsec"].factor * fall,
             path_angle=radians(path),
-            contact_length=self.contact_length_mm or USUAL_LENGTH * blanks.face_width,
+            contact_length=self.contact_length_mm or USUAL_LENGTH * min(blanks.face_widths),
         )
 
     def gears(self, blanks: BevelBlank, pinion_hand: Hand, flank: FlankName) -> Gears:
