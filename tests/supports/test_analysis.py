@@ -233,8 +233,10 @@ def test_edges_are_those_of_the_gears_where_they_stand() -> None:
     assert np.abs(result.pinion_motion[..., 2]).min() > 0.1  # mm
     assert result.on_edge.any()
     assert (reached_edges(result).any(axis=-1) == result.on_edge).all()
-    radius = result.tribology().slices()["relative_radius"]
-    rigid = analyse(scene).tribology().slices()["relative_radius"]
-    assert radius.notna().all()
-    # the flanks are the same: the middle of the radii of a pitch differs by how the contact wanders alone
-    assert radius.median() == pytest.approx(rigid.median(), rel=0.05)
+    on_supports, rigid = (one.tribology().slices() for one in (result, analyse(scene)))
+    place, radius = (rigid.sort_values("pinion_radius")[name] for name in ("pinion_radius", "relative_radius"))
+    within = on_supports["pinion_radius"].between(place.min(), place.max())
+    expected = np.interp(on_supports["pinion_radius"], place, radius)
+    # the same flanks: over a tooth the radius follows the involute; slices of different positions miss each other a bit
+    assert_allclose(on_supports["relative_radius"][within], expected[within], rtol=0.02)
+    assert within.mean() > 0.8
