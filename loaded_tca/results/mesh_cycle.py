@@ -305,8 +305,8 @@ class MeshCycle(CycleNumbers):
                 f"{path}: a whole revolution, not the result of a mesh cycle; read it with Revolution.load"
             )
         if kind == "stage":
-            reader = "StageResult.load"
-            raise InputError(f"{path}: a planetary stage, not the result of a mesh cycle; read it with {reader}")
+            beside = "sun_mesh.nc and ring_mesh.nc beside it are such results; StageResult.load reads the stage"
+            raise InputError(f"{path}: a planetary stage, not the result of a mesh cycle; {beside}")
         if kind in ("study", "design"):
             reader = f"loaded_tca.studies.load_{kind}"
             raise InputError(f"{path}: a {kind}, not the result of a mesh cycle; read it with {reader}")
