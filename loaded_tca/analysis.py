@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from functools import partial
 
 import numpy as np
 
@@ -252,11 +251,9 @@ def _on_supports(
     bending = model_of(scene, pair, apart)
     assert bending is not None
     supported = SupportedCycle(pair, bending, angles, grid, load_sharing=wanted.load_sharing)
-    cycles: list[CarriedOnSupports] = []
+    cycles = supported.under(scene.torques, progress)
     at_edges: dict[tuple[int, int, int], PeakAtEdge] = {}
-    for t, torque in enumerate(scene.torques):
-        report = None if progress is None else partial(_of_all, progress, t, len(scene.torques))
-        cycles.append(one := supported.under(torque, report))
+    for t, one in enumerate(cycles):
         peaks = pressures_at_rounded_edges(
             one.pair, one.carried, one.bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
         )
@@ -264,11 +261,6 @@ def _on_supports(
     carried = all_torques(supported.at_rest, cycles, load_sharing=wanted.load_sharing)
     column = {number: k for k, number in enumerate(carried.pairs.tolist())}
     return carried, {(t, n, column[number]): peak for (t, n, number), peak in at_edges.items()}, cycles
-
-
-def _of_all(progress: Progress, torque: int, torques: int, done: int, total: int) -> None:
-    """Report the positions of one torque among those of all."""
-    progress(torque * total + done, torques * total)
 
 
 def grid_of(scene: Scene) -> GridChoice:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from functools import partial
 from importlib.metadata import version
 
 import numpy as np
@@ -15,19 +16,32 @@ from loaded_tca.analysis import Effort, expected_effort, grid_of, roots_of
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, model_of
 from loaded_tca.compliance.body import body_torsion
+from loaded_tca.compliance.model import SumOfParts
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.revolution import STATES_AT_A_TIME, CarriedPart, carried_over_revolution, pitches_apart
+from loaded_tca.loaded.supported import (
+    POSITIONS,
+    Loads,
+    SupportedCycle,
+    given_motions,
+    loads_at,
+    moved_by,
+    wheel_torques,
+)
+from loaded_tca.loaded.supported import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import Place, numbers_and_maps
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.revolution import Revolution, open_turns, revolution_dataset
+from loaded_tca.results.revolution import OF_TEETH, Revolution, open_turns, revolution_dataset
 from loaded_tca.results.root_stress import root_stress_of_gear
+from loaded_tca.results.supports import support_arrays, warn_of_motions
 from loaded_tca.results.warnings import at_places, place_of, reasons_of, rotation_reasons, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
+from loaded_tca.supports import SupportCompliance, support_compliance
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded.revolution import RevolutionPath, trace_revolution
 
@@ -100,7 +114,6 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
             pair, wanted, asked = scene.pair(), scene.analysis, _asked(scene)
             require(
                 (wanted.load_sharing, "analysis.load_sharing: found false; allowed true in a whole revolution"),
-                (not scene.is_supported, "pinion.support, wheel.support: allowed none in a whole revolution"),
                 (not (effort := expected_revolution_effort(scene)).is_refused, f"analysis.cells: {effort}"),
             )
             pitches = asked.count(pair.teeth)
@@ -110,33 +123,124 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
             warn_of_gears(scene, pair, whole_revolution=True)
             for gear in open_turns(scene, pitches):
                 give_accuracy_warning(kinds.OPEN_REVOLUTION.sentence(pitches=pitches, gear=gear))
-            path = trace_revolution(
-                pair,
-                scene.tooth_deviations(pair),
-                pitches,
-                asked.positions_per_pitch,
-                asked.first_teeth(pair.teeth),
-                scene.tooth_flanks(),
-            )
             grid = grid_of(scene)
-            roots = roots_of(scene, pair)
-            bending = model_of(scene, pair, pitches_apart(path))
-            numbers = _Numbers(pair, path, np.asarray(scene.torques), grid, roots, frozenset(maps))
-            for part in carried_over_revolution(path, numbers.torques, grid, bending, progress):
-                numbers.add(part)
-            torsion = 0.0 if bending is None else sum(body_torsion(pair))
-            for sentence in numbers.sentences(torsion):
-                give_accuracy_warning(sentence)
+            numbers: Sequence[_Numbers]
+            if scene.is_supported:
+                numbers = supported = _on_supports(scene, pair, grid, pitches, frozenset(maps), progress)
+                arrays = _joined(scene, _trace(scene, pair, pitches), supported)
+            else:
+                path = _trace(scene, pair, pitches)
+                bending = model_of(scene, pair, pitches_apart(path))
+                alone = _Numbers(pair, path, np.asarray(scene.torques), grid, roots_of(scene, pair), frozenset(maps))
+                for part in carried_over_revolution(path, alone.torques, grid, bending, progress):
+                    alone.add(part)
+                numbers, arrays = [alone], alone.whole()
+            torsion = 0.0 if wanted.compliance == "contact" else sum(body_torsion(pair))
+            for one in numbers:
+                for sentence in one.sentences(torsion):
+                    give_accuracy_warning(sentence)
         about = {
             "version": version("loaded_tca"),
             "date": datetime.now(UTC).isoformat(timespec="seconds"),
             "warnings": "\n".join(dict.fromkeys(warned)),
         }
-        return Revolution(scene=scene, dataset=revolution_dataset(numbers.whole(), **about), maps=numbers.maps)
+        kept = {(t + first, n): row for first, one in enumerate(numbers) for (t, n), row in one.maps.items()}
+        return Revolution(scene=scene, dataset=revolution_dataset(arrays, **about), maps=kept)
 
 
 def _asked(scene: Scene) -> RevolutionSection:
     return scene.revolution or RevolutionSection()
+
+
+def _trace(
+    scene: Scene, pair: GearPair, pitches: int, move: Callable[[GearPair], GearPair] | None = None
+) -> RevolutionPath:
+    """Unloaded contact over so many pitches of a pair of the scene.
+
+    ``move``: where the gears of each pairing of teeth with flanks of their own stand; default: at rest.
+    """
+    asked, flanks = _asked(scene), scene.tooth_flanks()
+    if flanks is not None and move is not None:
+        flanks = replace(flanks, gears={kinds: move(gears) for kinds, gears in flanks.gears.items()})
+    deviations, first_teeth = scene.tooth_deviations(pair), asked.first_teeth(pair.teeth)
+    return trace_revolution(pair, deviations, pitches, asked.positions_per_pitch, first_teeth, flanks)
+
+
+def _on_supports(
+    scene: Scene,
+    pair: GearPair,
+    grid: GridChoice,
+    pitches: int,
+    maps: frozenset[int],
+    progress: Progress | None,
+) -> list[_OnSupports]:
+    """Numbers of gears on supports, torque by torque, moved by the mean load of a pitch of teeth that are alike."""
+    at_rest = support_compliance(scene, pair)
+    assert at_rest is not None
+    roots, numbers = roots_of(scene, pair), list[_OnSupports]()
+    angles = pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1)
+    apart = max(pitches_of_cycle(at_rest, max(scene.torques), angles), pitches_apart(_trace(scene, pair, pitches)))
+    bending = model_of(scene, pair, apart)
+    assert bending is not None
+    cycle = SupportedCycle(pair, bending, angles, grid, load_sharing=True)
+    for t, held in enumerate(cycle.settled(scene.torques)):
+        near = at_rest.under(held)
+
+        def moved(gears: GearPair, near: SupportCompliance = near, held: Loads = held) -> GearPair:
+            return moved_by(replace(near, pair=gears), held)
+
+        there, torque = bending.on_supports(near).mounted(moved(pair)), np.array(scene.torques[t : t + 1])
+        path = _trace(scene, moved(pair), pitches, moved)
+        one = _OnSupports(path.pair, path, torque, grid, roots, maps, bending=there, held=held)
+        given = partial(near.mounted(path.pair).opened, motions=given_motions(near, held))
+        report = None if progress is None else partial(_report, progress, t, len(scene.torques))
+        for part in carried_over_revolution(path, one.torques, grid, there, report, given):
+            one.add(part)
+        numbers.append(one)
+    warn_of_motions(pair, numbers)
+    return numbers
+
+
+def _report(progress: Progress, torque: int, torques: int, done: int, whole: int) -> None:
+    """Report the states of one torque among those of all."""
+    progress(torque * whole + done, torques * whole)
+
+
+OF_NO_PAIR: dict[str, float | bool] = {
+    "load_share": 0.0,
+    "normal_force": 0.0,
+    "peak_pressure": math.nan,
+    "tooth_deflection": math.nan,
+    "on_edge": False,
+}
+"""Numbers of tooth pairs that are out of reach."""
+
+
+def _joined(scene: Scene, path: RevolutionPath, numbers: Sequence[_OnSupports]) -> dict[str, Array]:
+    """Arrays of all torques, whose gears stand elsewhere: of all tooth pairs that one of them, or none, brings near."""
+    parts, paths = [one.whole() for one in numbers], [path, *(one.path for one in numbers)]
+    pairs = np.unique(np.concatenate([one.pairs for one in paths]))
+    arrays = dict(parts[0])
+    for name, values in parts[0].items():
+        if name in OF_NO_PAIR:
+            arrays[name] = np.full((len(parts), len(path), len(pairs)), OF_NO_PAIR[name], dtype=values.dtype)
+            for t, (one, part) in enumerate(zip(numbers, parts, strict=True)):
+                arrays[name][t][:, np.searchsorted(pairs, one.path.pairs)] = part[name][0]
+        elif name not in AS_AT_REST:
+            arrays[name] = np.concatenate([part[name] for part in parts])
+    for name in ("pinion_tooth", "wheel_tooth"):
+        arrays[name] = np.zeros((len(path), len(pairs)), dtype=int)
+        for own in paths:
+            arrays[name][:, np.searchsorted(pairs, own.pairs)] = getattr(own, name)
+    angle, _ = scene.transverse_angles
+    pair = path.pair
+    per_rate = 1.0 / (1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width)
+    supported = support_arrays(pair, numbers, pressure_angle=angle, stiffness_per_rate=per_rate)
+    return arrays | supported | {"pair": pairs, "rigid_transmission_error": path.transmission_error}
+
+
+AS_AT_REST = {"pinion_angle", "pair", "wheel_base_radius", "face_width", *OF_TEETH, "rigid_transmission_error"}
+"""Numbers that are the same under all torques."""
 
 
 @dataclass(eq=False)
@@ -254,3 +358,29 @@ class _Numbers:
             "mesh_stiffness": stiffness / lengths,
             "loaded_pairs": (arrays["normal_force"] > 0.0).sum(axis=-1),
         }
+
+
+@dataclass(eq=False, kw_only=True)
+class _OnSupports(_Numbers):
+    """The same under one torque, of the pair moved by the loads that are ``held``, and its ``bending``."""
+
+    bending: SumOfParts
+    held: Loads
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.drive_rate = np.full(len(self.path), math.nan)
+        self.wheel_torque = np.zeros(len(self.path))
+        pinion, wheel = (np.full((len(self.path), len(one)), math.nan) for one in self.held)
+        self.loads = pinion, wheel
+
+    def add(self, part: CarriedPart) -> None:
+        """Take the loads of the supports, too."""
+        super().add(part)
+        assert self.bending.supports is not None
+        rows = slice(part.positions.start, part.positions.stop)
+        at = [[share.loaded for share in part.shared[0, n].shares] for n in range(len(part.positions))]
+        self.drive_rate[rows] = part.drive_stiffness[0]
+        self.wheel_torque[rows] = wheel_torques(at)
+        for of_gear, own in zip(self.loads, loads_at(self.bending.supports, at), strict=True):
+            of_gear[rows] = own

@@ -78,7 +78,7 @@ def test_slope_to_the_deviation_of_one_tooth_is_its_share_of_the_tangent_stiffne
     """
     scene = helical(changes)
     one = analyse(scene.with_changes({"analysis.positions": 5}))
-    states, pitch = one.states[1], scene.pair().pitch
+    (states,), pitch = one.states[1], scene.pair().pitch
     for position in (1, 3):
         phase = round(4.0 * one.pinion_angle[position] / pitch)
         grids, rates = states.grids[position], states.by_rotation[position]

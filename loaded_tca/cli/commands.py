@@ -453,16 +453,21 @@ def ease_off(options: argparse.Namespace) -> None:
 
 
 def settings(options: argparse.Namespace) -> None:
-    """Write the face-milled scene of a bevel blank, with its basic machine settings."""
+    """Write the face-milled scene of a bevel blank, with all its machine settings."""
     from loaded_tca.results.files import replace_file
     from loaded_tca.scene.bevel import BevelScene
+    from loaded_tca.scene.blank_face_milled import BlankFaceMilledScene
 
     scene = scene_of(options)
-    kind = f"{options.scene}: pair.type: allowed straight_bevel or spiral_bevel, with [pair.blank]"
+    kind = f"{options.scene}: pair.type: allowed straight_bevel, spiral_bevel or face_milled, with [pair.blank]"
     require((isinstance(scene, BevelScene), kind))
     assert isinstance(scene, BevelScene)
     check_files([options.out], Path(options.scene))
-    replace_file(options.out, scene.face_milled(options.method).to_toml().encode())
+    if isinstance(scene, BlankFaceMilledScene):
+        cut: Scene = scene.with_method(options.method).cut if options.method else scene.cut
+    else:
+        cut = scene.face_milled(options.method or "duplex_spread_blade")
+    replace_file(options.out, cut.to_toml().encode())
     print_files([options.out])
 
 

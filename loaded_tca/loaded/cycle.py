@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from itertools import islice
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +16,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, named
 from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair, tooth_pairs_at, torque_shared
-from loaded_tca.loaded.loaded_contact import LoadedContact, Result, Steps, found_together
+from loaded_tca.loaded.loaded_contact import LoadedContact, Steps, found_together, with_gears
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice, contact_under_load
 from loaded_tca.pairs.gear_pair import GearPair
@@ -93,29 +95,7 @@ def carried_by_one(
     given : callable, optional
         Displacement of the slices of a grid that does not depend on the forces; default: none.
     """
-    shape = len(torques), len(path)
-    contacts: Contacts = [[[None] for _ in range(shape[1])] for _ in range(shape[0])]
-    rotation, deflection = np.full((2, *shape), math.nan)
-
-    def steps(t: int, n: int) -> Steps[LoadedContact | None]:
-        contact = path[n]
-        if not contact.in_contact:
-            return None
-        with told_where(torques[t], contact.pinion_angle):
-            load = torques[t] / contact.pinion_lever
-            return (yield from contact_under_load(pair, contact, load, grid, bending, coupling=given))
-
-    for (t, n), loaded in _found(pair, shape, steps, progress):
-        contacts[t][n][0] = loaded
-        if loaded is not None:
-            deflection[t, n] = loaded.own_tooth_deflection
-            if loaded.coupling_deflection is not None and loaded.solution.load > 0.0:
-                deflection[t, n] += loaded.slice_shares @ loaded.coupling_deflection
-            rotation[t, n] = loaded.solution.approach / loaded.contact.wheel_lever
-    share = np.broadcast_to(np.where(path.in_contact, 1.0, math.nan)[:, None], (*shape, 1)).copy()
-    number = np.zeros(1, dtype=int)
-    states = _loaded_states(number, contacts, bending)
-    return Carried(path, torques, number, (path,), contacts, rotation, states, share, deflection[..., None])
+    return carried_together([OnePairsCycle(pair, path, torques, grid, bending, given)], progress)[0]
 
 
 def carried_by_all(
@@ -136,33 +116,123 @@ def carried_by_all(
     pair, torques, grid, bending, progress, given
         As of :func:`carried_by_one`.
     """
-    angles, shape = mesh.pinion_angle, (len(torques), len(mesh))
-    tooth_pairs = [tooth_pairs_at(mesh, n) for n in range(len(mesh))]
-    shared = torques_shared(
-        pair, list(zip(angles.tolist(), tooth_pairs, strict=True)), torques, grid, bending, progress, given
-    )
-    carrying = {0} | {share.tooth_pair.pair for one in shared.values() for share in one.shares}
-    columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
-    pairs = mesh.pairs[columns].tolist()
-    contacts: Contacts = [[[None] * len(pairs) for _ in tooth_pairs] for _ in torques]
-    share, deflection = np.zeros((2, *shape, len(pairs)))
-    for t, n in np.ndindex(shape):
-        for part in shared[t, n].shares:
-            place = t, n, pairs.index(part.tooth_pair.pair)
-            contacts[t][n][place[2]], deflection[place] = part.loaded, part.tooth_deflection
-            share[place] = part.torque / torques[t] if shared[t, n].torque > 0.0 else 1.0
-    leading, paths = in_gear_angles(mesh)
-    return Carried(
-        path=leading,
-        torque=torques,
-        pairs=mesh.pairs[columns],
-        paths=tuple(paths[number] for number in pairs),
-        contacts=contacts,
-        rotation=np.array([one.rotation for one in shared.values()]).reshape(shape),
-        states=_loaded_states(mesh.pairs[columns], contacts, bending),
-        share=share,
-        tooth_deflection=deflection,
-    )
+    return carried_together([AllPairsCycle(pair, mesh, torques, grid, bending, given)], progress)[0]
+
+
+class MeshStates(Protocol):
+    """Positions of a pitch of one pair of gears under torques, to be solved beside those of other ones."""
+
+    @property
+    def pair(self) -> GearPair:
+        """The gears."""
+
+    def steps(self) -> list[Steps[Any]]:
+        """Steps of every state, torque by torque."""
+
+    def carried(self, results: Sequence[Any]) -> Carried:
+        """What the tooth pairs carry by the results of the steps."""
+
+
+def carried_together(cycles: Sequence[MeshStates], progress: Progress | None = None) -> list[Carried]:
+    """What the tooth pairs carry in several pairs of gears, whose states are worked on together."""
+    alone = len(cycles) == 1
+    steps = [one.steps() for one in cycles]
+    every = [
+        own if alone else with_gears(cycle.pair, own)
+        for cycle, of_cycle in zip(cycles, steps, strict=True)
+        for own in of_cycle
+    ]
+    report = None if progress is None else lambda done: progress(done, len(every))
+    results = iter(found_together(cycles[0].pair, every, report))
+    return [cycle.carried([*islice(results, len(own))]) for cycle, own in zip(cycles, steps, strict=True)]
+
+
+@dataclass(frozen=True, eq=False)
+class OnePairsCycle:
+    """States of one tooth pair that carries the whole load; arguments as of :func:`carried_by_one`."""
+
+    pair: GearPair
+    path: ContactPath
+    torques: Array
+    grid: GridChoice
+    bending: BendingModel | None = None
+    given: Coupling | None = None
+
+    def steps(self) -> list[Steps[LoadedContact | None]]:
+        """Steps of every state, torque by torque."""
+        return [self._steps(t, n) for t, n in np.ndindex(len(self.torques), len(self.path))]
+
+    def _steps(self, t: int, n: int) -> Steps[LoadedContact | None]:
+        contact = self.path[n]
+        if not contact.in_contact:
+            return None
+        with told_where(self.torques[t], contact.pinion_angle):
+            load = self.torques[t] / contact.pinion_lever
+            return (
+                yield from contact_under_load(self.pair, contact, load, self.grid, self.bending, coupling=self.given)
+            )
+
+    def carried(self, results: Sequence[LoadedContact | None]) -> Carried:
+        """What the tooth pair carries by the results of the steps."""
+        shape = len(self.torques), len(self.path)
+        contacts: Contacts = [[[None] for _ in range(shape[1])] for _ in range(shape[0])]
+        rotation, deflection = np.full((2, *shape), math.nan)
+        for (t, n), loaded in zip(np.ndindex(shape), results, strict=True):
+            contacts[t][n][0] = loaded
+            if loaded is not None:
+                deflection[t, n] = loaded.own_tooth_deflection
+                if loaded.coupling_deflection is not None and loaded.solution.load > 0.0:
+                    deflection[t, n] += loaded.slice_shares @ loaded.coupling_deflection
+                rotation[t, n] = loaded.solution.approach / loaded.contact.wheel_lever
+        share = np.broadcast_to(np.where(self.path.in_contact, 1.0, math.nan)[:, None], (*shape, 1)).copy()
+        number = np.zeros(1, dtype=int)
+        states = _loaded_states(number, contacts, self.bending)
+        paths, deflections = (self.path,), deflection[..., None]
+        return Carried(self.path, self.torques, number, paths, contacts, rotation, states, share, deflections)
+
+
+@dataclass(frozen=True, eq=False)
+class AllPairsCycle:
+    """States of all tooth pairs, which share the load; arguments as of :func:`carried_by_all`."""
+
+    pair: GearPair
+    mesh: MeshPath
+    torques: Array
+    grid: GridChoice
+    bending: BendingModel | None = None
+    given: Coupling | None = None
+
+    def steps(self) -> list[Steps[SharedLoad]]:
+        """Steps of every state, torque by torque."""
+        angles, tooth_pairs = self.mesh.pinion_angle, [tooth_pairs_at(self.mesh, n) for n in range(len(self.mesh))]
+        positions = list(zip(angles.tolist(), tooth_pairs, strict=True))
+        return steps_of_shared(self.pair, positions, self.torques, self.grid, self.bending, self.given)
+
+    def carried(self, results: Sequence[SharedLoad]) -> Carried:
+        """What the tooth pairs carry by the results of the steps."""
+        mesh, torques, shape = self.mesh, self.torques, (len(self.torques), len(self.mesh))
+        carrying = {0} | {share.tooth_pair.pair for one in results for share in one.shares}
+        columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
+        pairs = mesh.pairs[columns].tolist()
+        contacts: Contacts = [[[None] * len(pairs) for _ in range(shape[1])] for _ in torques]
+        share, deflection = np.zeros((2, *shape, len(pairs)))
+        for (t, n), shared in zip(np.ndindex(shape), results, strict=True):
+            for part in shared.shares:
+                place = t, n, pairs.index(part.tooth_pair.pair)
+                contacts[t][n][place[2]], deflection[place] = part.loaded, part.tooth_deflection
+                share[place] = part.torque / torques[t] if shared.torque > 0.0 else 1.0
+        leading, paths = in_gear_angles(mesh)
+        return Carried(
+            path=leading,
+            torque=torques,
+            pairs=mesh.pairs[columns],
+            paths=tuple(paths[number] for number in pairs),
+            contacts=contacts,
+            rotation=np.array([one.rotation for one in results]).reshape(shape),
+            states=_loaded_states(mesh.pairs[columns], contacts, self.bending),
+            share=share,
+            tooth_deflection=deflection,
+        )
 
 
 def torques_shared(
@@ -188,6 +258,21 @@ def torques_shared(
     dict
         By the indices of torque and position, torque by torque.
     """
+    shape = len(torques), len(positions)
+    steps = steps_of_shared(pair, positions, torques, grid, bending, given)
+    report = None if progress is None else lambda done: progress(done, len(steps))
+    return dict(zip(np.ndindex(shape), found_together(pair, steps, report), strict=True))
+
+
+def steps_of_shared(
+    pair: GearPair,
+    positions: Sequence[tuple[float, Sequence[ToothPair]]],
+    torques: Array,
+    grid: GridChoice,
+    bending: BendingModel | None = None,
+    given: Coupling | None = None,
+) -> list[Steps[SharedLoad]]:
+    """Steps of every torque at every position, torque by torque; arguments as of :func:`torques_shared`."""
     alike = [one.contact for _, all_at in positions for one in all_at if one.gears is None]
     relative_curvatures(pair, alike)  # kept for all torques
 
@@ -196,7 +281,7 @@ def torques_shared(
         with told_where(torques[t], angle):
             return (yield from torque_shared(pair, tooth_pairs, float(torques[t]), grid, bending, given))
 
-    return dict(_found(pair, (len(torques), len(positions)), steps, progress))
+    return [steps(*state) for state in np.ndindex(len(torques), len(positions))]
 
 
 def in_gear_angles(mesh: MeshPath) -> tuple[ContactPath, dict[int, ContactPath]]:
@@ -206,19 +291,6 @@ def in_gear_angles(mesh: MeshPath) -> tuple[ContactPath, dict[int, ContactPath]]
         turned = mesh.pair.ratio * (angles - path.pinion_angle)
         paths[number] = replace(path, pinion_angle=angles, wheel_angle=path.wheel_angle + turned)
     return replace(mesh.leading_contact, pinion_angle=angles, wheel_angle=mesh.wheel_angle), paths
-
-
-def _found(
-    pair: GearPair,
-    shape: tuple[int, int],
-    steps: Callable[[int, int], Steps[Result]],
-    progress: Progress | None,
-) -> list[tuple[tuple[int, int], Result]]:
-    """Results of all torques and positions, worked on together, with their indices; the progress is told."""
-    states = list(np.ndindex(shape))
-    report = None if progress is None else lambda done: progress(done, len(states))
-    results = found_together(pair, [steps(*state) for state in states], report)
-    return list(zip(states, results, strict=True))
 
 
 def _loaded_states(pairs: NDArray[np.int_], contacts: Contacts, bending: BendingModel | None) -> LoadedStates:

@@ -10,7 +10,7 @@ forces on the slices,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -20,8 +20,10 @@ from scipy.sparse import csr_array
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.loaded.sensitivity import LoadedGrid, block_diagonal
+from loaded_tca.pairs.gear_pair import ContactGrid
 from loaded_tca.separation import Separation
 
+GivenDisplacement = Callable[[ContactGrid], Array]
 STEP = 1e-2
 """By which the line of the forces is shifted to see how the bending changes, over the width of its grid."""
 
@@ -41,7 +43,9 @@ class LoadedSlices:
         return cls(grid.y[loaded], grid.origin, grid.axes, grid.force_line[loaded] + shift)
 
 
-def bending_by_shift(grids: Sequence[LoadedGrid], state: Indices, bending: BendingModel) -> csr_array:
+def bending_by_shift(
+    grids: Sequence[LoadedGrid], state: Indices, bending: BendingModel, given: GivenDisplacement | None = None
+) -> csr_array:
     """Deflection of the slices of all grids, in one row, by the shift of each across its contact, the forces held.
 
     Parameters
@@ -51,6 +55,8 @@ def bending_by_shift(grids: Sequence[LoadedGrid], state: Indices, bending: Bendi
     state : (grids,) array
         That each belongs to.
     bending : BendingModel
+    given : callable, optional
+        Displacement of the slices of a grid (ny,) [mm] beside what the forces do; default: none.
 
     Returns
     -------
@@ -58,10 +64,10 @@ def bending_by_shift(grids: Sequence[LoadedGrid], state: Indices, bending: Bendi
         Of one state only the slices that carry forces depend on each other.
     """
     in_states = np.split(np.arange(len(grids)), np.flatnonzero(np.diff(state)) + 1)
-    return block_diagonal([_of_state([grids[i] for i in numbers], bending) for numbers in in_states])
+    return block_diagonal([_of_state([grids[i] for i in numbers], bending, given) for numbers in in_states])
 
 
-def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel) -> Array:
+def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel, given: GivenDisplacement | None) -> Array:
     """The same of one state, (slices, slices)."""
     forces = [grid.slice_force for grid in grids]
     first = np.cumsum([0, *(force.size for force in forces)])
@@ -85,4 +91,6 @@ def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel) -> Array:
         at, under = first[i] + loaded[i], first[j] + loaded[j]
         by_shift[at, at] += by_place @ forces[j][loaded[j]]
         by_shift[np.ix_(under, at)] += by_place.T * forces[i][loaded[i]]
+        if given is not None and i == j:
+            by_shift[at, at] += (given(beyond[i][1]) - given(held[i][1])) / steps[i]
     return by_shift

@@ -32,7 +32,7 @@ from loaded_tca.errors import AccuracyWarning, InputError, LoadedTCAError
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair, tooth_pairs_at, torque_shared
 from loaded_tca.loaded.loaded_contact import Ends, Gap, Result, Steps
-from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.separation import Separation
@@ -176,6 +176,8 @@ class HeldContacts:
     cells : (int, int)
         Of every grid.
     bending : BendingModel, optional
+    given : callable, optional
+        Displacement of the slices of a grid that does not depend on the forces; default: none.
 
     Attributes
     ----------
@@ -193,7 +195,9 @@ class HeldContacts:
         torque: float,
         cells: tuple[int, int],
         bending: BendingModel | None = None,
+        given: Coupling | None = None,
     ) -> None:
+        self.given = given
         self.scene, self.pair, self.mesh, self.keys = scene, mesh.pair, mesh, tuple(ranges)
         self.start = np.array([value_at(scene, key) for key in self.keys])
         self._torque, self._cells = torque, cells
@@ -350,7 +354,7 @@ class ShapedContacts:
         beyond = [one.initial_separation + self._lowest[one.contact] / one.contact.wheel_lever for one in there]
         first = min(beyond)
         tooth_pairs = [replace(one, initial_separation=rest - first) for one, rest in zip(there, beyond, strict=True)]
-        steps = torque_shared(pair, tooth_pairs, torque, grid, contacts.bending)
+        steps = torque_shared(pair, tooth_pairs, torque, grid, contacts.bending, contacts.given)
         answer = yield from self._answered(steps)
         unloaded = float(contacts.mesh.transmission_error[position])
         return unloaded - pair.driving * (first + answer.rotation), answer

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.model import BendingModel
+from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.loaded.cycle import Progress, torques_shared
 from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair
 from loaded_tca.loaded.sensitivity import LoadedGrid, loaded_states
-from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.loaded.supported import on_rigid_supports
+from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
 from loaded_tca.unloaded.revolution import RevolutionPath
 
 STATES_AT_A_TIME = 128
@@ -29,12 +30,15 @@ class CarriedPart:
     shared : dict of SharedLoad
         By the indices of torque and position, that counted from the first one of the part.
     stiffness : (torques, positions) array [N mm/rad]
-        Tangent of the pinion torque over the rotation of the wheel.
+        Tangent of the pinion torque over the rotation of the wheel, supports held.
+    drive_stiffness : (torques, positions) array [N mm/rad]
+        The same with what the supports give way.
     """
 
     positions: range
     shared: dict[tuple[int, int], SharedLoad]
     stiffness: Array
+    drive_stiffness: Array
 
 
 def carried_over_revolution(
@@ -43,6 +47,7 @@ def carried_over_revolution(
     grid: GridChoice,
     bending: BendingModel | None = None,
     progress: Progress | None = None,
+    given: Coupling | None = None,
 ) -> Iterator[CarriedPart]:
     """Let all tooth pairs in contact share the load, position by position of a revolution.
 
@@ -56,6 +61,8 @@ def carried_over_revolution(
         Of the teeth beneath the contacts; default: none.
     progress : callable, optional
         Called with the states that are done, and how many there are.
+    given : callable, optional
+        Displacement of the slices of a grid that does not depend on the forces; default: none.
 
     Yields
     ------
@@ -67,10 +74,18 @@ def carried_over_revolution(
         before = first * len(torques)
         report = None if progress is None else partial(_report, progress, before, whole)
         at = [(float(path.pinion_angle[n]), tooth_pairs_of(path, n)) for n in positions]
-        shared = torques_shared(pair, at, torques, grid, bending, report)
+        shared = torques_shared(pair, at, torques, grid, bending, report, given)
+        shape = len(torques), len(positions)
         states = [[LoadedGrid.of(one.tooth_pair.pair, one.loaded) for one in each.shares] for each in shared.values()]
-        stiffness = loaded_states(states, bending).stiffness.reshape(len(torques), len(positions))
-        yield CarriedPart(positions, shared, stiffness)
+        drive = stiffness = loaded_states(states, bending).stiffness.reshape(shape)
+        if isinstance(bending, SumOfParts) and bending.supports is not None:
+            teeth = bending.on_rigid_supports
+            held = [
+                [on_rigid_supports(one.tooth_pair.pair, one.loaded, teeth) for one in each.shares]
+                for each in shared.values()
+            ]
+            stiffness = loaded_states(held, teeth).stiffness.reshape(shape)
+        yield CarriedPart(positions, shared, stiffness, drive)
 
 
 def _report(progress: Progress, before: int, whole: int, done: int, _: int) -> None:

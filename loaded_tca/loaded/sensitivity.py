@@ -211,6 +211,11 @@ class Tangents:
         """DLambda (..., states) [rad] by changes (..., n) of the gaps [mm] and (..., states) of the torques [N mm]."""
         return np.asarray((self.summed(gaps * self.weights) + torques) / self.stiffness)
 
+    def force_change(self, gaps: Array, torques: Array | float = 0.0) -> Array:
+        """Changes of the forces (n,) [N] by changes (n,) of the gaps [mm] and (states,) of the torques [N mm]."""
+        turned = self.spread(self.rotation_change(gaps, torques))
+        return self.solved(self.wheel_levers * turned - gaps)
+
     def functional_change(self, slopes: Array, gaps: Array, torques: Array | float = 0.0) -> Array:
         """Changes (..., states) of a number J(f) of each state.
 

@@ -19,29 +19,31 @@ Deuflhard 2011, Newton Methods for Nonlinear Problems, chapter 2.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any, Protocol
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.model import SumOfParts
+from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.errors import ConvergenceError, GeometryError, named
 from loaded_tca.loaded.cycle import (
+    AllPairsCycle,
     Carried,
     Contacts,
+    OnePairsCycle,
     Progress,
-    carried_by_all,
-    carried_by_one,
+    carried_together,
     farthest_apart,
     in_gear_angles,
 )
-from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.loaded_contact import LoadedContact, Result, Steps
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation import Separation
 from loaded_tca.supports import SupportCompliance, moved_pair
 from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
 
@@ -62,6 +64,30 @@ Loads = tuple[Array, Array]
 """Of the stations of pinion and wheel, (6 m,) each [N, N mm], in the axes of each gear's own frame."""
 
 
+class OnSupports(Protocol):
+    """Gears at positions under one torque on supports that give way, as :class:`CarriedOnSupports` has them."""
+
+    @property
+    def bending(self) -> SumOfParts:
+        """Of the moved pair, supports included."""
+
+    @property
+    def held(self) -> Loads:
+        """Loads of pinion and wheel whose motions the pair is moved by."""
+
+    @property
+    def loads(self) -> Loads:
+        """Those at the positions, (n, 6 m) each."""
+
+    @property
+    def wheel_torque(self) -> Array:
+        """Torques on the wheel (n,) [N mm]."""
+
+    @property
+    def drive_rate(self) -> Array:
+        """Tangent of the torque over the rotation (n,) with the supports [N mm/rad]."""
+
+
 @dataclass(frozen=True, eq=False)
 class CarriedOnSupports:
     """What the tooth pairs carry under one torque, on supports that give way.
@@ -74,6 +100,8 @@ class CarriedOnSupports:
         Of that pair, supports included.
     carried : Carried
         Under the one torque, from the moved pair on.
+    held : tuple of (6 m,) arrays
+        Loads of pinion and wheel whose motions the pair is moved by.
     loads : tuple of (n, 6 m) arrays
         Of pinion and wheel at the positions; NaN where nothing is in contact.
     mesh_rate : (n,) array [N mm/rad]
@@ -83,12 +111,48 @@ class CarriedOnSupports:
     pair: GearPair
     bending: SumOfParts
     carried: Carried
+    held: Loads
     loads: tuple[Array, Array]
     mesh_rate: Array
 
+    @property
+    def wheel_torque(self) -> Array:
+        """Torques on the wheel (n,) [N mm]."""
+        return wheel_torques(self.carried.contacts[0])
+
+    @property
+    def drive_rate(self) -> Array:
+        """Tangent of the torque over the rotation (n,) with the supports [N mm/rad]."""
+        return np.asarray(self.carried.torque_rate[0])
+
+
+@dataclass(frozen=True, eq=False)
+class _MovedCycle:
+    """States of the pair moved by loads of its supports under one torque [N mm], and its bending with them."""
+
+    torque: float
+    held: Loads
+    bending: SumOfParts
+    states: OnePairsCycle | AllPairsCycle
+
+    @property
+    def pair(self) -> GearPair:
+        return self.states.pair
+
+    @property
+    def supports(self) -> SupportCompliance:
+        assert self.bending.supports is not None
+        return self.bending.supports
+
+    def steps(self) -> list[Steps[Any]]:
+        return [_told(own, self.torque) for own in self.states.steps()]
+
+    def carried(self, results: Sequence[Any]) -> Carried:
+        return self.states.carried(results)
+
 
 class SupportedCycle:
-    """Mesh cycles of a pair on supports, torque by torque.
+    """Mesh cycles of a pair on supports.
 
     Parameters
     ----------
@@ -115,8 +179,8 @@ class SupportedCycle:
         """The pair as other loads alone move it."""
         return moved_by(self.supports, _no_loads(self.supports))
 
-    def under(self, torque: float, progress: Progress | None = None) -> CarriedOnSupports:
-        """Mesh cycle under a pinion torque [N mm].
+    def under(self, torques: Sequence[float], progress: Progress | None = None) -> list[CarriedOnSupports]:
+        """Mesh cycles under pinion torques [N mm], worked on together.
 
         Raises
         ------
@@ -125,33 +189,67 @@ class SupportedCycle:
         ConvergenceError
             If the motions do not settle, or a contact is not solved.
         """
-        loads = self._settled(torque) if torque > 0.0 else _no_loads(self.supports)
-        pair, bending, carried = self._carried(torque, loads, self.angles, progress)
-        assert bending.supports is not None
-        return CarriedOnSupports(
-            pair, bending, carried, loads_of(bending.supports, carried), _rate_on_rigid_supports(carried, bending)
-        )
+        held = self.settled(torques)
+        cycles = [self._moved(*one, self.angles, self.grid) for one in zip(torques, held, strict=True)]
+        carried = carried_together(cycles, progress)
+        for t in range(len(cycles)):
+            mean = _mean_load(cycles[t].supports, carried[t])
+            if not (torques[t] in _ends(torques) or self._is_near(cycles[t].supports, mean, held[t])):
+                cycles[t] = self._moved(torques[t], mean, self.angles, self.grid)
+                (carried[t],) = carried_together([cycles[t]])
+        return [
+            CarriedOnSupports(
+                one.pair,
+                one.bending,
+                own,
+                one.held,
+                loads_of(one.supports, own),
+                _rate_on_rigid_supports(own, one.bending),
+            )
+            for one, own in zip(cycles, carried, strict=True)
+        ]
 
-    def _settled(self, torque: float) -> Loads:
-        """Mean loads whose motions of the geometry are those that follow from it."""
+    def settled(self, torques: Sequence[float]) -> list[Loads]:
+        """Mean loads under pinion torques [N mm] whose motions of the geometry are those that follow from them.
+
+        Loads are nearly in proportion to the torque: those between the smallest and the largest one follow from these.
+        """
+        low, high = _ends(torques)
+        if high == 0.0:
+            return [_no_loads(self.supports) for _ in torques]
+        last = self._settled(high, loads_at_first_contact(self.supports, self.at_rest, high))
+        first = last if low == high else self._settled(low, _scaled(last, low / high))
+
+        def between(torque: float) -> Loads:
+            part = (torque - low) / (high - low) if high > low else 1.0
+            pinion, wheel = (
+                torque * ((1.0 - part) / low * one + part / high * other)
+                for one, other in zip(first, last, strict=True)
+            )
+            return pinion, wheel
+
+        return [between(torque) if torque > 0.0 else _no_loads(self.supports) for torque in torques]
+
+    def _settled(self, torque: float, loads: Loads) -> Loads:
+        """The same under one torque, from loads that are near."""
         count = min(POSITIONS, len(self.angles))
         spread = (np.arange(count) - 0.5 * (count - 1)) / count * self.pair.pitch if count > 1 else self.angles
-        loads = loads_at_first_contact(self.supports, self.at_rest, torque)
         roughly = replace(self.grid, agreement=ROUGHLY, accuracy=max(self.grid.accuracy, ROUGH_PEAK))
         for _ in range(MOST_STEPS):
-            _, bending, carried = self._carried(torque, loads, spread, grid=roughly)
-            supports = bending.supports
-            assert supports is not None
-            pinion, wheel = (np.nanmean(load, axis=0) for load in loads_of(supports, carried))
-            before, loads = loads, (pinion, wheel)
-            whole = self._distance(supports, loads, _no_loads(supports))
-            if self._distance(supports, loads, before) <= (SETTLED if supports.is_linear else NEARER) * whole:
+            cycle = self._moved(torque, loads, spread, roughly)
+            before, loads = loads, _mean_load(cycle.supports, carried_together([cycle])[0])
+            if self._is_near(cycle.supports, loads, before):
                 return loads
         raise ConvergenceError(
             f"supports: motions under {1e-3 * torque:g} N m not settled in {MOST_STEPS} steps: the supports are too "
             "soft for these gears",
             last=loads,
         )
+
+    def _is_near(self, supports: SupportCompliance, loads: Loads, before: Loads) -> bool:
+        """Whether the motions by loads are those by the ones before."""
+        whole = self._distance(supports, loads, _no_loads(supports))
+        return self._distance(supports, loads, before) <= (SETTLED if supports.is_linear else NEARER) * whole
 
     def _distance(self, supports: SupportCompliance, one: Loads, other: Loads) -> float:
         """Largest way of the two gears between two loads, at a lever of half the face width [mm]."""
@@ -162,31 +260,51 @@ class SupportedCycle:
         ]
         return float(np.abs(ways).max())
 
-    def _carried(
-        self,
-        torque: float,
-        loads: Loads,
-        angles: Array,
-        progress: Progress | None = None,
-        grid: GridChoice | None = None,
-    ) -> tuple[GearPair, SumOfParts, Carried]:
-        """The pair moved by loads, its bending with supports that are linear there, and what its tooth pairs carry."""
+    def _moved(self, torque: float, loads: Loads, angles: Array, grid: GridChoice) -> _MovedCycle:
+        """States of the pair moved by loads, with supports that are linear there."""
         near = self.supports.under(loads)
         pair, torques = moved_by(near, loads), np.array([torque])
         bending = (self.bending if near is self.supports else self.bending.on_supports(near)).mounted(pair)
-        assert bending.supports is not None
-        given = partial(_given, bending.supports, loads)
-        try:
-            with named("supports"):
-                if self.load_sharing:
-                    mesh = trace_teeth(pair, angles)
-                    carried = carried_by_all(pair, mesh, torques, grid or self.grid, bending, progress, given)
-                else:
-                    path = trace_contact(pair, angles)
-                    carried = carried_by_one(pair, path, torques, grid or self.grid, bending, progress, given)
-                return pair, bending, carried
-        except GeometryError as error:
-            raise _moved_too_far(error, torque) from None
+        given = partial(near.mounted(pair).opened, motions=given_motions(near, loads))
+        states: OnePairsCycle | AllPairsCycle
+        with _told_of(torque):
+            if self.load_sharing:
+                states = AllPairsCycle(pair, trace_teeth(pair, angles), torques, grid, bending, given)
+            else:
+                states = OnePairsCycle(pair, trace_contact(pair, angles), torques, grid, bending, given)
+        return _MovedCycle(torque, loads, bending, states)
+
+
+def _ends(torques: Sequence[float]) -> tuple[float, float]:
+    """Smallest torque above zero, and the largest one."""
+    loaded = [torque for torque in torques if torque > 0.0]
+    return min(loaded, default=0.0), max(loaded, default=0.0)
+
+
+def _scaled(loads: Loads, factor: float) -> Loads:
+    pinion, wheel = (factor * one for one in loads)
+    return pinion, wheel
+
+
+def _mean_load(supports: SupportCompliance, carried: Carried) -> Loads:
+    pinion, wheel = (np.nanmean(load, axis=0) for load in loads_of(supports, carried))
+    return pinion, wheel
+
+
+@contextmanager
+def _told_of(torque: float) -> Iterator[None]:
+    """Say of errors that the supports move the gears under a torque [N mm]."""
+    try:
+        with named("supports"):
+            yield
+    except GeometryError as error:
+        raise _moved_too_far(error, torque) from None
+
+
+def _told(steps: Steps[Result], torque: float) -> Steps[Result]:
+    """Steps whose errors say so."""
+    with _told_of(torque):
+        return (yield from steps)
 
 
 def _no_loads(supports: SupportCompliance) -> Loads:
@@ -234,17 +352,6 @@ def loads_at_first_contact(supports: SupportCompliance, at_rest: GearPair, torqu
     return pinion, wheel
 
 
-def near_torque(bending: SumOfParts | None, torque: float) -> SumOfParts | None:
-    """A bending model whose rolling bearings have the stiffness of a pinion torque [N mm]; itself without any.
-
-    The force of the torque acts where the flanks touch first without load.
-    """
-    if bending is None or (supports := bending.supports) is None or supports.is_linear:
-        return bending
-    at_rest = moved_by(supports, _no_loads(supports))
-    return bending.on_supports(supports.under(loads_at_first_contact(supports, at_rest, torque)))
-
-
 @dataclass(frozen=True, eq=False)
 class _OnePoint:
     """A contact of one slice at a contact point."""
@@ -268,19 +375,25 @@ class _OnePoint:
         return np.stack([np.zeros(3), np.zeros(3), self.contact.normal])
 
 
-def _given(supports: SupportCompliance, loads: Loads, separation: Separation) -> Array:
-    """Displacement of the slices of a grid (ny,) [mm] beside what the forces do, in the pair moved by loads."""
-    both = list(zip(supports.supports, loads, strict=True))
-    other_loads = [np.zeros(len(load)) if support.motion is None else support.motion for support, load in both]
-    bodies = [support.at_middle(support.moved(load)) for support, load in both]
-    return np.asarray(supports.opened(separation, other_loads) - supports.opened_rigidly(separation, bodies))
+def given_motions(supports: SupportCompliance, loads: Loads) -> list[Array]:
+    """Motions (6 m,) of the stations beside those by the forces, in the pair moved by loads: d = a . this."""
+    motions = []
+    for support, load in zip(supports.supports, loads, strict=True):
+        body = support.with_middle(support.at_middle(support.moved(load)))
+        motions.append(-body if support.motion is None else support.motion - body)
+    return motions
 
 
 def loads_of(supports: SupportCompliance, carried: Carried) -> tuple[Array, Array]:
     """Loads (n, 6 m) of pinion and wheel at the positions under the one torque; NaN where nothing is in contact."""
+    return loads_at(supports, carried.contacts[0])
+
+
+def loads_at(supports: SupportCompliance, contacts: Sequence[Sequence[LoadedContact | None]]) -> tuple[Array, Array]:
+    """The same of contacts by position."""
     at_positions: list[tuple[Array, Array]] = []
-    for contacts in carried.contacts[0]:
-        there = [one for one in contacts if one is not None]
+    for at in contacts:
+        there = [one for one in at if one is not None]
         pinion, wheel = (np.full(len(support.compliance), 0.0 if there else math.nan) for support in supports.supports)
         for one in there:
             on_pinion, on_wheel = supports.loads(one.separation)
@@ -290,19 +403,26 @@ def loads_of(supports: SupportCompliance, carried: Carried) -> tuple[Array, Arra
     return np.stack(pinions), np.stack(wheels)
 
 
+def wheel_torques(contacts: Sequence[Sequence[LoadedContact | None]]) -> Array:
+    """Torques on the wheel (n,) [N mm] by the contacts of each position."""
+    return np.array(
+        [sum(one.solution.load * one.contact.wheel_lever for one in at if one is not None) for at in contacts]
+    )
+
+
 def _rate_on_rigid_supports(carried: Carried, bending: SumOfParts) -> Array:
     """Tangent (n,) of the torque over the rotation, the supports held [N mm/rad]."""
     teeth = bending.on_rigid_supports
     numbers = carried.pairs.tolist()
     states = [
-        [_on_rigid_supports(number, one, teeth) for number, one in zip(numbers, at, strict=True) if one is not None]
+        [on_rigid_supports(number, one, teeth) for number, one in zip(numbers, at, strict=True) if one is not None]
         for at in carried.contacts[0]
     ]
     stiffness = loaded_states(states, teeth).stiffness
     return np.where(np.isnan(carried.rotation[0]), math.nan, stiffness)
 
 
-def _on_rigid_supports(number: int, loaded: LoadedContact, teeth: SumOfParts | None) -> LoadedGrid:
+def on_rigid_supports(number: int, loaded: LoadedContact, teeth: BendingModel | None) -> LoadedGrid:
     """What the tangent needs of a loaded contact whose supports do not give way."""
     one = LoadedGrid.of(number, loaded)
     bent = None if teeth is None else teeth.within(number, loaded.separation)

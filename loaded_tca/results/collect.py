@@ -115,7 +115,7 @@ def mesh_cycle(
         path=path,
         paths=tuple(carried.paths[k] for k in order),
         maps=stacked,
-        states=None if on_supports else (scene, carried.states),
+        states=(scene, tuple(one.carried.states for one in on_supports) or (carried.states,)),
     )
 
 

@@ -68,6 +68,15 @@ class GapGrowth:
             none, self.kinks[:, some], self.lever_torques[:, some], self.motions[:, some], self.turns[:, some]
         )
 
+    def with_parts(self, parts: Array, others: GapGrowth) -> GapGrowth:
+        """The same with parts (keys, m) of m others, of the same grids, added."""
+        kinks = self.kinks + np.abs(parts) @ others.kinks
+        added = {
+            one.name: getattr(self, one.name) + np.tensordot(parts, getattr(others, one.name), 1)
+            for one in fields(self)
+        }
+        return replace(GapGrowth(**added), kinks=kinks)
+
     def at_keys(self, at: Sequence[int], count: int) -> GapGrowth:
         """The same as rows ``at`` of so many keys, of which the others change nothing."""
 

@@ -20,6 +20,7 @@ from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.separation.box import Box
 from loaded_tca.separation.sample import Separation, sample_separations
+from loaded_tca.supports import SupportCompliance
 from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
 from loaded_tca.unloaded.curvature import relative_curvatures
 
@@ -27,8 +28,14 @@ SAME = 1e-6
 """Distance of two contact points, over the module, that are the same."""
 
 
-def states_of_maps(result: CycleNumbers) -> LoadedStates:
+def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = None) -> LoadedStates:
     """Contact problems that the pressure maps of a result solve, and how they answer.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    supports : SupportCompliance, optional
+        What the gears stand on, as it gives way where they stand; default: they are rigid.
 
     Raises
     ------
@@ -37,7 +44,12 @@ def states_of_maps(result: CycleNumbers) -> LoadedStates:
     """
     pair, wanted, numbers = result.gear_pair, result.scene.analysis, result.pair.tolist()
     unloaded, apart = _unloaded_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
-    bending = model_of(result.scene, pair, apart)
+    if supports is None:
+        bending = model_of(result.scene, pair, apart)
+    else:
+        at_rest = model_of(result.scene, result.scene.pair(), apart)
+        assert at_rest is not None
+        bending = at_rest.on_supports(supports).mounted(pair)
     places = np.argwhere(result.normal_force > 0.0).tolist()
     maps = [one for t, n, k in places if (one := result.maps[t][n][k]) is not None]
     contacts = [unloaded[n][numbers[k]] for _, n, k in places if numbers[k] in unloaded[n]]

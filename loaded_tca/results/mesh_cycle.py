@@ -72,9 +72,10 @@ class MeshCycle(CycleNumbers):
         Unloaded contact of each pair, in the angles of the gears; NaN where it is out of reach.
     maps : tuple of tuple of tuple of PressureMap or None
         ``maps[torque][position][pair]`` by index; None where a pair carries nothing.
-    states : (Scene, LoadedStates) or None
+    states : (Scene, tuple of LoadedStates) or None
         The contact problems behind the maps, of all positions torque by torque, for sensitivities, and the scene they
-        belong to; None if the result comes from a file, which does not keep them: they are made again when needed.
+        belong to; on supports, where the gears stand elsewhere under each torque, those of each by themselves. None if
+        the result comes from a file, which does not keep them: they are made again when needed.
     """
 
     def __repr__(self) -> str:
@@ -103,7 +104,9 @@ class MeshCycle(CycleNumbers):
         ----------
         keys : sequence of str
             As of ``scene.with_changes``: of the modifications of either gear, of machine settings and cutters, of
-            mounting errors, and ``load.pinion_torque_Nm``, which stands for the torque of each row.
+            mounting errors, and ``load.pinion_torque_Nm``, which stands for the torque of each row; numbers of
+            [pinion.shaft] and [wheel.shaft], as ``pinion.shaft.bearings.0.at_mm``. Where gears stand on supports, how
+            far these move them changes with every key.
 
         Returns
         -------

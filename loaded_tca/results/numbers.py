@@ -68,7 +68,7 @@ class CycleNumbers:
     path: ContactPath
     paths: tuple[ContactPath, ...]
     maps: Maps
-    states: tuple[Scene, LoadedStates] | None = field(default=None, repr=False, compare=False)
+    states: tuple[Scene, tuple[LoadedStates, ...]] | None = field(default=None, repr=False, compare=False)
 
     def __getattr__(self, name: str) -> Any:
         if name in (*ROOT_PARTS, "root_stress") and not self.has_root_stress:

@@ -138,7 +138,21 @@ SUPPORT_QUANTITIES: dict[str, Part] = {
         "misalignment F_beta of the motions over the common face, signs as of mounting.misalignment_um; NaN for bevel "
         "gears",
     ),
+    "wind_up": (
+        CYCLE,
+        "rad",
+        "part of the transmission error by the rotation of both gears about their axes against their shafts' ends",
+    ),
     "drive_stiffness": (CYCLE, "N/(mm um)", "mesh stiffness with what the supports give way"),
+    **{
+        f"{gear}_support_load": (
+            ("torque", f"{gear}_support"),
+            "N, N mm",
+            f"forces along x, y, z and moments about them, station by station, whose motions the {gear} is moved by "
+            f"before the contact is traced, axes of the {gear}'s own frame",
+        )
+        for gear in GEARS
+    },
 }
 """Numbers that a result has where its scene has supports."""
 BEARING_QUANTITIES: dict[str, Part] = {

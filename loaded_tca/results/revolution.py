@@ -20,7 +20,16 @@ from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import InputError, require
 from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replace_file, variables_of
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.quantities import CYCLE, GEARS, OVER_CYCLE, QUANTITIES, ROOT_QUANTITIES
+from loaded_tca.results.quantities import (
+    BEARING_QUANTITIES,
+    CYCLE,
+    GEARS,
+    OVER_CYCLE,
+    QUANTITIES,
+    ROLLING_QUANTITIES,
+    ROOT_QUANTITIES,
+    SUPPORT_QUANTITIES,
+)
 from loaded_tca.results.summary import shown
 from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
@@ -55,6 +64,8 @@ ROOTS: dict[str, Part] = {
     "root_tension_tooth": (OVER_CYCLE, "1", "tooth of the pinion and of the wheel that has the tension, from 0"),
 }
 """Those of scenes that ask for root stress."""
+OF_SUPPORTS = SUPPORT_QUANTITIES | BEARING_QUANTITIES | ROLLING_QUANTITIES
+"""Those of gears on supports; of shafts and of rolling bearings where there are any."""
 COORDINATES = "torque", "pinion_angle", "pair"
 
 
@@ -86,7 +97,8 @@ class Revolution:
     scene : Scene
         What was analysed.
     dataset : xarray.Dataset
-        Numbers of ``REVOLUTION_QUANTITIES`` with their units, over torque [N mm], position (``pinion_angle`` [rad]) and
+        Numbers of ``REVOLUTION_QUANTITIES``, of gears on supports also motions of both gears and forces on bearings,
+        with their units, over torque [N mm], position (``pinion_angle`` [rad]) and
         pair; NaN where a pair carries nothing, but its force and share, which are zero.
     maps : mapping
         Pressure maps by the indices of torque and position, for each pair one or None, of the positions whose maps were
@@ -378,7 +390,8 @@ class Revolution:
             raise InputError(f"{path}: not a whole revolution; read it with load_result")
         try:
             scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml", folder=None)
-            arrays = arrays_of(file, REVOLUTION_QUANTITIES | (ROOTS if "root_tension" in file else {}))
+            on_supports = {name: part for name, part in OF_SUPPORTS.items() if name in file}
+            arrays = arrays_of(file, REVOLUTION_QUANTITIES | (ROOTS if "root_tension" in file else {}) | on_supports)
         except InputError as error:
             raise InputError([f"{path}: not a whole revolution", *error.problems]) from None
         about = {name: str(file.attrs[name]) for name in ("version", "date", "warnings") if name in file.attrs}
@@ -386,10 +399,13 @@ class Revolution:
 
 
 def revolution_dataset(arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
-    """Make the dataset of a revolution of the arrays of ``REVOLUTION_QUANTITIES``, with those of ``ROOTS`` if any."""
+    """Make the dataset of a revolution of the arrays of ``REVOLUTION_QUANTITIES``.
+
+    With those of ``ROOTS`` and ``OF_SUPPORTS`` that there are.
+    """
     import xarray
 
-    parts = REVOLUTION_QUANTITIES | {name: part for name, part in ROOTS.items() if name in arrays}
+    parts = REVOLUTION_QUANTITIES | {name: part for name, part in (ROOTS | OF_SUPPORTS).items() if name in arrays}
     variables = variables_of(parts, arrays)
     coordinates = {name: variables.pop(name) for name in COORDINATES}
     return xarray.Dataset(variables, coordinates, about)

@@ -411,10 +411,7 @@ class Sensitivities:
         return changes
 
 
-NOT_ON_SUPPORTS = (
-    "sensitivities: the gears stand on supports that give way, which move their geometry under load; derivatives hold "
-    "for rigid ones: leave out [pinion.support] and [wheel.support], or vary the keys in a study"
-)
+NO_LOAD = "sensitivities: no tooth pair of the result carries load"
 
 
 def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
@@ -427,24 +424,36 @@ def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
         *((isinstance(key, str), f"keys: {key!r:.60} is no text; allowed are keys of the scene") for key in keys),
         *((keys.count(key) < 2, f"keys: {key} is given twice") for key in dict.fromkeys(map(str, keys))),
     )
-    require((not result.scene.is_supported, NOT_ON_SUPPORTS))
+    with one_blas_thread():
+        made, moves_lines = (_on_supports if result.scene.is_supported else _of_rigid_gears)(result, keys)
+    if moves_lines:
+        warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts, stacklevel=4)
+    return made
+
+
+def _of_rigid_gears(result: CycleNumbers, keys: Sequence[str]) -> tuple[Sensitivities, bool]:
+    """Derivatives of gears that stand still, and whether a key moves lines on the flanks through contacts."""
     named = [key for key in keys if key != TORQUE]
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
-    solved, states = result.states or (None, None)
-    loaded = states if states is not None and solved == result.scene else states_of_maps(result)
+    solved, states = result.states or (None, ())
+    (loaded,) = states if solved == result.scene else (states_of_maps(result),)
     count = [len(state) for state in loaded.grids]
-    require((any(count), "sensitivities: no tooth pair of the result carries load"))
+    require((any(count), NO_LOAD))
     pairs = result.pair.tolist()
     places = np.array(np.unravel_index(np.flatnonzero(count), result.transmission_error.shape))
-    with one_blas_thread():
-        tangents = loaded.tangents(LINEAR)
-        if loaded.bending is not None:
-            tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, loaded.bending))
-        columns = np.array([pairs.index(grid.number) for grid in tangents.grids])
-        growth = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
+    tangents = loaded.tangents(LINEAR)
+    if loaded.bending is not None:
+        tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, loaded.bending))
+    columns = np.array([pairs.index(grid.number) for grid in tangents.grids])
+    growth = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
     by_key = dict(zip(named, changes, strict=True))
     every = tuple(by_key.get(key) for key in keys)
     made = Sensitivities(tuple(keys), result, tangents, places, columns, growth.at_keys(at, len(keys)), every)
-    if any(not change.holds_lines for change in changes):
-        warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts, stacklevel=4)
-    return made
+    return made, any(not change.holds_lines for change in changes)
+
+
+def _on_supports(result: CycleNumbers, keys: Sequence[str]) -> tuple[Sensitivities, bool]:
+    """The same of gears on supports."""
+    from loaded_tca.results.sensitivities_on_supports import sensitivities_on_supports  # which joins several of these
+
+    return sensitivities_on_supports(result, keys)

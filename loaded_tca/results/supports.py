@@ -11,7 +11,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.cycle import Carried
-from loaded_tca.loaded.supported import CarriedOnSupports
+from loaded_tca.loaded.supported import CarriedOnSupports, OnSupports
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.quantities import GEARS
@@ -26,7 +26,7 @@ LARGEST_WAY, LARGEST_TURN = 0.1, 5e-3
 
 
 def support_arrays(
-    pair: GearPair, cycles: Sequence[CarriedOnSupports], *, pressure_angle: float, stiffness_per_rate: float
+    pair: GearPair, cycles: Sequence[OnSupports], *, pressure_angle: float, stiffness_per_rate: float
 ) -> dict[str, Array]:
     """Arrays of ``SUPPORT_QUANTITIES``; of ``BEARING_QUANTITIES`` of gears with shafts, ``ROLLING_QUANTITIES`` of some.
 
@@ -56,12 +56,14 @@ def support_arrays(
             "pinion_motion": np.stack([one[0] for one in motions]),
             "wheel_motion": np.stack([one[1] for one in motions]),
             "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),
-            "drive_stiffness": np.stack([one.carried.torque_rate[0] for one in cycles]) * stiffness_per_rate,
+            "wind_up": -pair.driving * np.stack([_wind_up(one) for one in cycles]),
+            "drive_stiffness": np.stack([one.drive_rate for one in cycles]) * stiffness_per_rate,
+            **{f"{gear}_support_load": np.stack([one.held[n] for one in cycles]) for n, gear in enumerate(GEARS)},
         }
     )
 
 
-def _of_rolling_bearings(cycles: Sequence[CarriedOnSupports]) -> dict[str, Array]:
+def _of_rolling_bearings(cycles: Sequence[OnSupports]) -> dict[str, Array]:
     """Arrays of ``ROLLING_QUANTITIES`` of the gears whose shafts have rolling bearings; NaN of linear ones beside."""
     arrays: dict[str, Array] = {}
     for n, gear in enumerate(GEARS):
@@ -117,7 +119,7 @@ def element_forces(result: CycleNumbers, gear: str, torque: int) -> dict[int, tu
     }
 
 
-def warn_of_motions(pair: GearPair, cycles: Sequence[CarriedOnSupports]) -> None:
+def warn_of_motions(pair: GearPair, cycles: Sequence[OnSupports]) -> None:
     """Give an AccuracyWarning if gears on supports move so far that their units are in doubt."""
     motions = np.abs(np.stack([_motions(one) for one in cycles]))
     way, turn = (float(np.nanmax(part, initial=0.0)) for part in (motions[..., :3], motions[..., 3:]))
@@ -158,13 +160,24 @@ def secant_on_rigid_supports(carried: Carried, cycles: Sequence[CarriedOnSupport
     return secant
 
 
-def _parts(one: CarriedOnSupports) -> SupportCompliance:
+def _wind_up(one: OnSupports) -> Array:
+    """How far the wheel stays behind (n,) [rad] by what both gears turn about their axes, from no torque on."""
+    supports, moments = _parts(one).supports, one.wheel_torque
+    work = np.zeros(len(moments))
+    for support, loads in zip(supports, one.loads, strict=True):
+        rest = support.at_rest.reshape(-1, 6)
+        turns = np.stack([support.moved(load).reshape(-1, 6)[:, 5] for load in loads]) - rest[:, 5]
+        work += (loads.reshape(len(loads), -1, 6)[..., 5] * turns).sum(axis=1)
+    return np.where(moments > 0.0, work / np.where(moments > 0.0, moments, 1.0), 0.0 * work)
+
+
+def _parts(one: OnSupports) -> SupportCompliance:
     supports = one.bending.supports
     assert supports is not None
     return supports
 
 
-def _motions(one: CarriedOnSupports) -> Array:
+def _motions(one: OnSupports) -> Array:
     """Motions (2, n, 6) of the middles of both faces [mm, rad], in the axes of the fixed frame."""
     motions = []
     for support, loads, axes in zip(_parts(one).supports, one.loads, _parts(one).axes, strict=True):

@@ -188,9 +188,9 @@ def describe_keys() -> str:
             if path and path not in shared:
                 lines += _section_lines(path, section, f"{about} ({kinds})")
         for own, when in VARIANTS.get(scene, {}).items():
-            of_family = {section for section, _ in table.values()}
+            of_families = {section for each in tables for section, _ in each.values()}
             for path, (section, about) in _sections(own, "", {}):
-                if path and section not in of_family:
+                if path and section not in of_families:
                     lines += _section_lines(path, section, f"{about} ({when})", {})
     for path, keys_of in shared.items():
         lines += _section_lines(path, *keys_of)

@@ -124,15 +124,31 @@ def _pair_change(scene: Scene, pair: GearPair, key: str) -> PairChange:
     return PairChange(key, below, above, high - low)
 
 
-def value_at(scene: Scene, key: str) -> float:
-    """Value of a key that shapes or moves flanks; InputError if it does not."""
-    *sections, name = key.split(".")
+def _value_of(scene: Scene, key: str) -> object:
+    """Whatever a scene has for a key."""
     value: object = scene
-    for part in (*sections, name):
+    for part in key.split("."):
         inner = contents(value) if isinstance(value, Section) else {}
+        if isinstance(value, tuple) and value and isinstance(value[0], Section):
+            inner = {str(n): one for n, one in enumerate(value)}
         if part not in inner:
             raise InputError("unknown key")
         value = inner[part]
+    return value
+
+
+def number_at(scene: Scene, key: str) -> float:
+    """Value of a key; InputError if it is unknown or no number."""
+    value = _value_of(scene, key)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise InputError(f"found {value!r:.60}; allowed a key whose value is one number")
+    return float(value)
+
+
+def value_at(scene: Scene, key: str) -> float:
+    """Value of a key that shapes or moves flanks; InputError if it does not."""
+    *sections, name = key.split(".")
+    _value_of(scene, key)
     moves = sections == ["mounting"]
     shapes = len(sections) > 1 and sections[0] in ("pinion", "wheel") and sections[1] in SECTIONS
     if not (moves or shapes) or name.rpartition("_")[2] not in STEPS:
@@ -140,6 +156,4 @@ def value_at(scene: Scene, key: str) -> float:
         raise InputError(
             f"does not change the gap alone; allowed are lengths and angles of [mounting], {places}, and of the wheel"
         )
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise InputError(f"found {value!r:.60}; allowed a key whose value is one number")
-    return float(value)
+    return number_at(scene, key)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -30,12 +30,14 @@ from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.load_sharing import SharedLoad
 from loaded_tca.loaded.loaded_contact import found_together
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
-from loaded_tca.loaded.supported import near_torque
+from loaded_tca.loaded.supported import SupportedCycle, given_motions, moved_by, pitches_apart
 from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import value_at
 from loaded_tca.studies.design_figures import FIGURES, SMOOTHING, FigureOfErrors
 from loaded_tca.studies.study import Distribution, Study, is_finite, is_whole, told_distribution
+from loaded_tca.supports import support_compliance
 from loaded_tca.unloaded import ContactPoint, trace_teeth
 
 CELLS = (24, 40)
@@ -123,7 +125,7 @@ class DesignModel:
         self.own_deviations = [np.array([one.get(key, 0.0) for key in self.keys]) for one in self.deviations]
         with named("within the ranges, with the scatter"):
             self.held = [self._sample(*one) for one in zip(self.deviations, self.own_deviations, strict=True)]
-        pair = self.held[0].pair
+        pair = self.held[0][0].pair
         self.driving, self.micrometres = pair.driving, 1e3 * pair.base_radii[1]
         self.roots = roots_of(scene, pair)
 
@@ -211,11 +213,13 @@ class DesignModel:
         states = list(np.ndindex(len(self.held), self.torques.size, self.positions))
         solved: dict[tuple[int, ...], tuple[float, SharedLoad]] = {}
         while states:
-            shaped = [ShapedContacts(*one) for one in zip(self.held, values + self.own_deviations, strict=True)]
-            steps = [shaped[s].shared(n, float(self.torques[t]), grid) for s, t, n in states]
-            solved |= zip(states, found_together(self.held[0].pair, steps), strict=True)
+            shaped: dict[HeldContacts, ShapedContacts] = {}
+            for by_torque, own in zip(self.held, values + self.own_deviations, strict=True):
+                shaped |= {held: ShapedContacts(held, own) for held in dict.fromkeys(by_torque)}
+            steps = [shaped[self.held[s][t]].shared(n, float(self.torques[t]), grid) for s, t, n in states]
+            solved |= zip(states, found_together(self.held[0][0].pair, steps), strict=True)
             # once more those on grids that another state has outgrown meanwhile
-            states = [state for state, (_, one) in solved.items() if not self.held[state[0]].holds(one)]
+            states = [state for state, (_, one) in solved.items() if not self.held[state[0]][state[1]].holds(one)]
         idle = {t for (_, t, _), (_, one) in solved.items() if one.torque == 0.0}
         require(
             *((False, f"torques: {self.torques[t]:g} N mm loads no tooth pair; allowed more") for t in sorted(idle))
@@ -264,17 +268,41 @@ class DesignModel:
             scattered[key] = by + (values.get(key, value_at(self.scene, key)) if shapes else 0.0)
         return scattered
 
-    def _sample(self, deviation: Mapping[str, float], own: Array) -> HeldContacts:
+    def _sample(self, deviation: Mapping[str, float], own: Array) -> tuple[HeldContacts, ...]:
+        """Held contacts of a sample, torque by torque; those of rigid gears are the same for all."""
         scene = self.scene.with_changes(self._at(deviation, dict(zip(self.keys, self.start.tolist(), strict=True))))
         pair = scene.pair()
-        mesh = trace_teeth(pair, pair.pitch * (np.arange(self.positions) / self.positions - 0.5))
+        angles = pair.pitch * (np.arange(self.positions) / self.positions - 0.5)
         if without_bodies := scene.analysis.without_bodies:
             require_teeth(pair, without_bodies)
-        bending = near_torque(model_of(scene, pair, farthest_apart(mesh)), float(self.torques.max()))
         ranges = {
             key: (low + by, high + by) for (key, (low, high)), by in zip(self.variables.items(), own, strict=True)
         }
-        return HeldContacts(scene, mesh, ranges, float(self.torques.max()), self.cells, bending)
+        if scene.is_supported:
+            return self._sample_on_supports(scene, pair, angles, ranges)
+        mesh = trace_teeth(pair, angles)
+        bending = model_of(scene, pair, farthest_apart(mesh))
+        held = HeldContacts(scene, mesh, ranges, float(self.torques.max()), self.cells, bending)
+        return (held,) * self.torques.size
+
+    def _sample_on_supports(
+        self, scene: Scene, pair: GearPair, angles: Array, ranges: Mapping[str, tuple[float, float]]
+    ) -> tuple[HeldContacts, ...]:
+        """The same where gears move: under each torque they stand where its mean load moves the scene's."""
+        supports = support_compliance(scene, pair)
+        assert supports is not None
+        bending = model_of(scene, pair, pitches_apart(supports, float(self.torques.max()), angles))
+        assert bending is not None
+        grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=scene.analysis.free_edges)
+        cycle, held = SupportedCycle(pair, bending, angles, grid, load_sharing=True), []
+        torques = self.torques.tolist()
+        for torque, loads in zip(torques, cycle.settled(torques), strict=True):
+            near = supports.under(loads)
+            moved = moved_by(near, loads)
+            there, given = bending.on_supports(near).mounted(moved), given_motions(near, loads)
+            opened = partial(near.mounted(moved).opened, motions=given)
+            held.append(HeldContacts(scene, trace_teeth(moved, angles), ranges, torque, self.cells, there, opened))
+        return tuple(held)
 
     def _check(self) -> None:
         wanted, torques = self.scene.analysis, self.torques
@@ -411,7 +439,7 @@ class Evaluation:
                 self._found[name, s, t] = figure.of(errors, self.model.smoothing)
             else:
                 positions = [self._grids[s, t, n] for n in range(self.model.positions)]
-                value, slopes = figure.of(self.model.roots, self.model.held[s], positions)
+                value, slopes = figure.of(self.model.roots, self.model.held[s][t], positions)
                 grids = (grid for position in positions for grid in position)
                 active = [slope[grid.active] for slope, grid in zip(slopes, grids, strict=True)]
                 self._found[name, s, t] = value, np.concatenate(active)
@@ -429,12 +457,13 @@ class Evaluation:
         """Linear answers of all positions, and the growth of the gaps at their active cells (keys, n) [mm per unit]."""
         if (s, t) not in self._tangents:
             states = [self._grids[s, t, n] for n in range(self.model.positions)]
-            tangents = Tangents(states, self.model.held[s].bending, LINEAR)
-            gaps = tangents.gathered(self._slopes[s][grid.contact] for grid in tangents.grids)
+            tangents = Tangents(states, self.model.held[s][t].bending, LINEAR)
+            gaps = tangents.gathered(self._slopes[self.model.held[s][t]][grid.contact] for grid in tangents.grids)
             self._tangents[s, t] = tangents, gaps
         return self._tangents[s, t]
 
     @cached_property
-    def _slopes(self) -> list[dict[ContactPoint, Array]]:
+    def _slopes(self) -> dict[HeldContacts, dict[ContactPoint, Array]]:
         """Derivatives of the gaps of each sample."""
-        return [one.slopes(self.x + own) for one, own in zip(self.model.held, self.model.own_deviations, strict=True)]
+        samples = zip(self.model.held, self.model.own_deviations, strict=True)
+        return {held: held.slopes(self.x + own) for by_torque, own in samples for held in dict.fromkeys(by_torque)}

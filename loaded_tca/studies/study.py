@@ -148,9 +148,10 @@ class Study:
         table = as_table(self.scene)
         for key in self.keys:  # what the scene itself has there is of no account
             *sections, name = key.split(".")
-            place = table
+            place: Any = table
             for section in sections:
-                place = place.get(section, {})
+                in_list = {str(n): one for n, one in enumerate(place)} if isinstance(place, tuple) else place
+                place = in_list.get(section, {})
             if isinstance(place, dict):
                 place.pop(name, None)
             elif int(name) < len(place):  # a place in a list

@@ -125,17 +125,31 @@ class Support:
         """Motion (6,) of the middle of the face by those of the stations (6 m,)."""
         return np.asarray(self.shares(np.array([self.middle]))[0] @ motions.reshape(-1, 6))
 
+    def with_middle(self, motion: Array) -> Array:
+        """Motions of the stations (6 m,) on a rigid body whose middle of the face moves by (6,)."""
+        moved = np.tile(motion, (len(self.places), 1))
+        beyond = self.places - self.middle
+        moved[:, 0] += motion[4] * beyond
+        moved[:, 1] -= motion[3] * beyond
+        return moved.ravel()
+
     def shares(self, axial: Array) -> Array:
         """Shares (n, m) of the stations in forces at axial coordinates (n,) [mm]; all of the last one beyond it."""
-        places = self.places
-        return np.stack([np.interp(axial, places, row) for row in np.eye(len(places))], axis=-1)
+        numbers = np.arange(len(self.places))
+        return np.maximum(1.0 - np.abs(np.interp(axial, self.places, numbers)[:, None] - numbers), 0.0)
 
-    def loads(self, points: Array, forces: Array) -> Array:
-        """Loads (n, 6 m) on the stations by forces (n, 3) [N] at points (n, 3) [mm] of the gear's own frame."""
-        arms = points[:, None] - self.places[:, None] * AXIS
-        moments = np.cross(arms, forces[:, None])
-        both = np.concatenate([np.broadcast_to(forces[:, None], moments.shape), moments], axis=-1)
-        return np.asarray((self.shares(points[:, 2])[..., None] * both).reshape(len(points), -1))
+    def loads(self, points: Array, force: Array) -> Array:
+        """Loads (n, 6 m) on the stations by a force (3,) [N] at each of points (n, 3) [mm] of the gear's own frame."""
+        x, y, z = force
+        turning = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])  # points @ turning: points x force
+        loads = np.empty((len(points), len(self.places), 6))
+        loads[..., :3] = force
+        loads[..., 3:] = (points @ turning)[:, None]
+        loads[..., 3] += self.places * y
+        loads[..., 4] -= self.places * x
+        if len(self.places) > 1:
+            loads *= self.shares(points[:, 2])[..., None]
+        return loads.reshape(len(points), -1)
 
 
 def rotation(vector: Array) -> Array:
@@ -229,13 +243,11 @@ class SupportCompliance:
     def loads(self, grid: ContactGrid) -> tuple[Array, Array]:
         """Loads of pinion and wheel (ny, 6 m) each by a unit normal force on every slice of a contact [1, mm]."""
         points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
-        normals = np.broadcast_to(grid.axes[2], points.shape)
-        origins = np.zeros(3), self.pair.wheel_origin
-        pinion, wheel = (
-            support.loads((points - origin) @ own.T, sign * normals @ own.T)
-            for support, origin, own, sign in zip(self.supports, origins, self.axes, (-1.0, 1.0), strict=True)
+        (pinion, wheel), (of_pinion, of_wheel), normal = self.supports, self.axes, grid.axes[2]
+        return (
+            pinion.loads(points @ of_pinion.T, -of_pinion @ normal),
+            wheel.loads((points - self.pair.wheel_origin) @ of_wheel.T, of_wheel @ normal),
         )
-        return pinion, wheel
 
     def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:  # noqa: ARG002
         """Deflection of every slice under a unit force on each, or on each of ``under`` [mm/N]."""
@@ -260,8 +272,9 @@ class SupportCompliance:
 
     def opened_rigidly(self, grid: ContactGrid, motions: Sequence[Array]) -> Array:
         """The same by motions (6,) of both gears as rigid bodies, with the middles of their faces."""
-        pinion, wheel = (Support(support.middle, np.zeros((6, 6))) for support in self.supports)
-        return replace(self, supports=(pinion, wheel)).opened(grid, motions)
+        return self.opened(
+            grid, [support.with_middle(motion) for support, motion in zip(self.supports, motions, strict=True)]
+        )
 
     def _between(self, at: ContactGrid, under: ContactGrid) -> Array:
         there, here = self.loads(at), self.loads(under)

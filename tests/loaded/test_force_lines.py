@@ -80,7 +80,7 @@ def tangents(times=1.0):
         result = analyse(read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(changes))
     states = [
         [replace(grid, bending=Bilinear().within(grid.number, grid.separation)) for grid in state]
-        for state in result.states[1].grids
+        for state in result.states[1][0].grids
     ]
     held = Tangents(states)
     return held, held.with_lines(times * bending_by_shift(held.grids, held.state, Bilinear()))

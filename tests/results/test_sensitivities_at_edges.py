@@ -98,7 +98,7 @@ def test_contact_points_on_the_start_of_a_linear_relief_move_as_by_whole_analyse
     form = {"tip_relief_form": "linear", "tip_relief_um": 16.0, "tip_relief_start_mm": START}
     relief = {f"wheel.modifications.{name}": value for name, value in form.items()}
     result, length = solved("mesh_cycle_helical", 64, 5, **FLANKS_ALONE, **relief)
-    assert any(grid.contact.on_relief_start for state in result.states[1].grids for grid in state)
+    assert any(grid.contact.on_relief_start for state in result.states[1][0].grids for grid in state)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # starts beside contact points
         found = result.sensitivities([key]).transmission_error[0, :, 0]
@@ -118,7 +118,7 @@ def test_contacts_on_a_relief_start_that_an_edge_cuts_follow_the_start_and_leave
     key = "wheel.modifications.tip_relief_start_mm"
     scene = random_scene(13, compliance="contact+tooth", positions=2, cells=(48, 96), accuracy=None)
     result, value = analyse(scene), value_at(scene, key)
-    held = [grid for grid in result.states[1].grids[0] if grid.contact.on_relief_start]
+    held = [grid for grid in result.states[1][0].grids[0] if grid.contact.on_relief_start]
     assert any((grid.separation.cover < 1.0)[grid.pressure > 0.0].any() for grid in held)
     low, high = (analyse(scene.with_changes({key: value + by})).transmission_error[0] for by in (-0.02, 0.02))
     length = MICROMETRES * result.gear_pair.base_radii[1]

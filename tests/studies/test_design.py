@@ -117,14 +117,14 @@ def test_held_contacts_have_the_errors_of_the_whole_analysis(changes, allowed):
 
 def test_a_contact_that_outgrows_its_grid_gets_a_larger_one():
     narrow = model(variables={CROWNING: (4.9, 5.1)}, scatter=None)
-    contacts = narrow.held[0]
+    contacts = narrow.held[0][0]
     contact = contacts.contacts[0][0]
     across, along = contacts[contact].separation.box.half_lengths
     wanted = narrow.evaluate(narrow.start).transmission_error
     contacts.grow(contact, (0.4 * across, 0.4 * along))
     found = narrow.evaluate(narrow.start).transmission_error
     assert min(np.divide(contacts[contact].separation.box.half_lengths, (across, along))) > 0.4
-    length = 1e6 * narrow.held[0].pair.base_radii[1]
+    length = 1e6 * narrow.held[0][0].pair.base_radii[1]
     assert_allclose(length * found, length * wanted, atol=20.0)  # on other cells of a grid of 16 x 24 of them
 
 

@@ -49,12 +49,21 @@ def random_matrix(size: int, seed: int) -> Array:
 def test_loads_have_the_sum_of_the_forces_and_their_moment() -> None:
     support = Support(3.0, np.zeros((18, 18)), np.array([-10.0, 0.0, 12.0]))
     rng = np.random.default_rng(1)
-    points, forces = rng.uniform(-10.0, 10.0, (6, 3)), rng.normal(size=(6, 3))
-    loads = support.loads(points, forces).sum(axis=0).reshape(3, 6)
+    points, force = rng.uniform(-10.0, 10.0, (6, 3)), rng.normal(size=3)
+    loads = support.loads(points, force).sum(axis=0).reshape(3, 6)
     stations = support.places[:, None] * np.array([0.0, 0.0, 1.0])
     moments = loads[:, 3:] + np.cross(stations, loads[:, :3])
-    assert_allclose(loads[:, :3].sum(axis=0), forces.sum(axis=0), atol=ROUNDING)
-    assert_allclose(moments.sum(axis=0), np.cross(points, forces).sum(axis=0), atol=1e-10)
+    assert_allclose(loads[:, :3].sum(axis=0), 6.0 * force, atol=ROUNDING)
+    assert_allclose(moments.sum(axis=0), np.cross(points, force).sum(axis=0), atol=1e-10)
+
+
+def test_stations_on_a_rigid_body_do_the_work_of_its_middle() -> None:
+    support, rng = Support(3.0, np.zeros((18, 18)), np.array([-10.0, 0.0, 12.0])), np.random.default_rng(2)
+    points, force, motion = rng.uniform(-10.0, 10.0, (6, 3)), rng.normal(size=3), rng.normal(size=6)
+    alone = Support(3.0, np.zeros((6, 6)))
+    moved = support.loads(points, force) @ support.with_middle(motion)
+    assert_allclose(moved, alone.loads(points, force) @ motion, atol=1e-12)
+    assert_allclose(support.at_middle(support.with_middle(motion)), motion, atol=ROUNDING)
 
 
 def test_motion_of_the_middle_lies_between_the_stations() -> None:

@@ -236,7 +236,7 @@ def _stiffness_of_contacts(one: MeshCycle, pair: GearPair, position: int) -> dic
 def _row_sums(one: MeshCycle, position: int) -> dict[int, float]:
     """Part of each pair in the forces that a rotation brings to all: row sums of the inverse compliance."""
     assert one.states is not None
-    states = one.states[1]
+    (states,) = one.states[1]
     grids, rates = states.grids[position], states.by_rotation[position]
     ends = np.cumsum([grid.active.sum() for grid in grids])[:-1]
     forces = [
