@@ -29,7 +29,6 @@ from loaded_tca.loaded.supported import (
     given_motions,
     loads_at,
     moved_by,
-    wheel_torques,
 )
 from loaded_tca.loaded.supported import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.tooth_contact import GridChoice
@@ -372,7 +371,6 @@ class _OnSupports(_Numbers):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.drive_rate = np.full(len(self.path), math.nan)
-        self.wheel_torque = np.zeros(len(self.path))
         pinion, wheel = (np.full((len(self.path), len(one)), math.nan) for one in self.held)
         self.loads = pinion, wheel
 
@@ -383,6 +381,5 @@ class _OnSupports(_Numbers):
         rows = slice(part.positions.start, part.positions.stop)
         at = [[share.loaded for share in part.shared[0, n].shares] for n in range(len(part.positions))]
         self.drive_rate[rows] = part.drive_stiffness[0]
-        self.wheel_torque[rows] = wheel_torques(at)
         for of_gear, own in zip(self.loads, loads_at(self.bending.supports, at), strict=True):
             of_gear[rows] = own

@@ -83,10 +83,6 @@ class OnSupports(Protocol):
         """Those at the positions, (n, 6 m) each."""
 
     @property
-    def wheel_torque(self) -> Array:
-        """Torques on the wheel (n,) [N mm]."""
-
-    @property
     def drive_rate(self) -> Array:
         """Tangent of the torque over the rotation (n,) with the supports [N mm/rad]."""
 
@@ -117,11 +113,6 @@ class CarriedOnSupports:
     held: Loads
     loads: tuple[Array, Array]
     mesh_rate: Array
-
-    @property
-    def wheel_torque(self) -> Array:
-        """Torques on the wheel (n,) [N mm]."""
-        return wheel_torques(self.carried.contacts[0])
 
     @property
     def drive_rate(self) -> Array:
@@ -404,13 +395,6 @@ def loads_at(supports: SupportCompliance, contacts: Sequence[Sequence[LoadedCont
         at_positions.append((pinion, wheel))
     pinions, wheels = zip(*at_positions, strict=True)
     return np.stack(pinions), np.stack(wheels)
-
-
-def wheel_torques(contacts: Sequence[Sequence[LoadedContact | None]]) -> Array:
-    """Torques on the wheel (n,) [N mm] by the contacts of each position."""
-    return np.array(
-        [sum(one.solution.load * one.contact.wheel_lever for one in at if one is not None) for at in contacts]
-    )
 
 
 def _rate_on_rigid_supports(carried: Carried, bending: SumOfParts) -> Array:
