@@ -748,6 +748,41 @@ FAULTS = (
             ),
         )
     ),
+    Fault(
+        "rolling bearings: balls without the stiffness of their turning direction",
+        "supports/rolling.py",
+        "tangent += (radial.T * turning) @ radial + (axial.T * turning) @ axial",
+        "tangent += 0.0 * (radial.T @ radial)",
+        "supports/test_rolling.py::test_force_and_tangent_are_derivatives_of_the_energy",
+    ),
+    Fault(
+        "rolling bearings: preload of tapered rollers against their side",
+        "supports/rolling.py",
+        "given = self.preload * sine",
+        "given = -self.preload * sine",
+        "supports/test_rolling.py::test_preload_is_a_motion_in_the_sense_of_the_side",
+    ),
+    Fault(
+        "rolling bearings: clearance of balls counted on both sides",
+        "supports/rolling.py",
+        "math.cos(self.contact_angle) - 0.5 * self.clearance + radial @ motion",
+        "math.cos(self.contact_angle) - self.clearance + radial @ motion",
+        "supports/test_rolling.py::test_balls_give_way_and_last_as_a_commercial_program_has_them",
+    ),
+    Fault(
+        "rolling bearings: motions of the shaft extrapolated from no load",
+        "supports/shaft.py",
+        "motions[:, -1] = moved - motions[:, :-1] @ given",
+        "motions[:, -1] = moved",
+        "supports/test_shaft_on_rolling_bearings.py::test_forces_on_bearings_balance_the_load",
+    ),
+    Fault(
+        "rolling bearings: lives of rollers by balls' exponent",
+        "supports/bearing_life.py",
+        "return float(used.sum() ** (-8.0 / 9.0))",
+        "return float(used.sum() ** -0.9)",
+        "supports/test_rolling.py::test_lives_fall_with_powers_of_the_load",
+    ),
 )
 
 
