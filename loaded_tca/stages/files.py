@@ -85,8 +85,8 @@ def describe_stage_keys() -> str:
 
     Examples
     --------
-    >>> print(describe_stage_keys().splitlines()[4][:60])
-    | `type` | "planetary" | `"planetary"` | kind of stage: the
+    >>> print(describe_stage_keys().splitlines()[4])
+    | `type` | "planetary" | `"planetary"` | kind of stage: the ring stands still |
     """
     sections: tuple[tuple[str, type[Section], str], ...] = (
         ("stage", PlanetaryStage, "planets, pins, and how the sun is held"),
