@@ -38,6 +38,41 @@ AT_EDGES = "results/test_sensitivities_at_edges.py::"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
 FAULTS = (
     Fault(
+        "local synthesis: the path leans to the other end of the face",
+        "pairs/mean_point.py",
+        "axes = np.array([along, [-along[1], along[0]]])",
+        "axes = np.array([along * (-1.0, 1.0), [along[1], along[0]]])",
+        "pairs/test_synthesis.py::test_contact_at_the_mean_point_is_as_asked_for",
+    ),
+    Fault(
+        "local synthesis: the other flank of the tooth is left out",
+        "pairs/synthesis.py",
+        "            rows.append((there.slopes - own.slopes) * size)",
+        "            rows.append((there.slopes - own.slopes) * size * (flank == self.drive))",
+        "pairs/test_synthesis.py::test_other_flank_touches_at_its_mean_point_too",
+    ),
+    Fault(
+        "blanks: the pinion's face is counted from the middle of the wheel's",
+        "gears/bevel_blank.py",
+        "(mean - (1.0 - self.outer_share) * width, mean, mean + self.outer_share * width)",
+        "(mean - 0.5 * width, mean, mean + 0.5 * width)",
+        "scene/test_bevel_blank.py::test_unequal_faces_meet_at_one_calculation_point",
+    ),
+    Fault(
+        "blanks: measured thicknesses leave no backlash",
+        "gears/blank_factors.py",
+        "return difference, max(left, 0.0) * cos(pressure_angle)",
+        "return difference, 0.0",
+        "scene/test_bevel_blank.py::test_means_of_a_blank_give_the_same_blank",
+    ),
+    Fault(
+        "bevel teeth along a circle: its bend is left out of the derivatives",
+        "flanks/bevel.py",
+        "lambda: slope / along - tangent / along**2",
+        "lambda: -tangent / along**2",
+        "flanks/test_bevel.py::test_derivatives_along_a_circle_agree_with_differences",
+    ),
+    Fault(
         "hypoid: the wheel is turned by the offset angle the other way",
         "gears/hypoid.py",
         "zeta = self.pitch_angles, hand * self.offset_angle",

@@ -56,6 +56,7 @@ def support_arrays(
             "pinion_motion": np.stack([one[0] for one in motions]),
             "wheel_motion": np.stack([one[1] for one in motions]),
             "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),
+            "wind_up": -pair.driving * np.stack([_wind_up(one) for one in cycles]),
             "drive_stiffness": np.stack([one.drive_rate for one in cycles]) * stiffness_per_rate,
             **{f"{gear}_support_load": np.stack([one.held[n] for one in cycles]) for n, gear in enumerate(GEARS)},
         }
@@ -157,6 +158,17 @@ def secant_on_rigid_supports(carried: Carried, cycles: Sequence[CarriedOnSupport
                 rotation = carried.rotation[t, n] - work / moment
                 secant[t, n] = carried.torque[t] / rotation if rotation > 0.0 else math.nan
     return secant
+
+
+def _wind_up(one: OnSupports) -> Array:
+    """How far the wheel stays behind (n,) [rad] by what both gears turn about their axes, from no torque on."""
+    supports, moments = _parts(one).supports, one.wheel_torque
+    work = np.zeros(len(moments))
+    for support, loads in zip(supports, one.loads, strict=True):
+        rest = support.at_rest.reshape(-1, 6)
+        turns = np.stack([support.moved(load).reshape(-1, 6)[:, 5] for load in loads]) - rest[:, 5]
+        work += (loads.reshape(len(loads), -1, 6)[..., 5] * turns).sum(axis=1)
+    return np.where(moments > 0.0, work / np.where(moments > 0.0, moments, 1.0), 0.0 * work)
 
 
 def _parts(one: OnSupports) -> SupportCompliance:

@@ -154,7 +154,7 @@ class Blank(Section):
     )
     outer_face_share: float = key(
         Number(0.05, 0.95),
-        "c_be2, part of either face width between the calculation point R_m and the heel; both points are one",
+        "c_be2, part of either face width between the calculation point R_m and the heel; both gears have one R_m",
         0.5,
     )
     allow_undercut: bool = key(
@@ -310,6 +310,8 @@ def settings_table(gear: FaceMilledGear) -> dict[str, Any]:
         for name in lengths
     }
     table["blank"]["hand"] = blank.hand
+    if blank.calculation_cone_distance is not None:
+        table["blank"]["calculation_cone_distance_mm"] = blank.calculation_cone_distance
     table["machine"] |= {
         name: getattr(machine, name) for name in ("ratio_of_roll", "modified_roll_2c", "modified_roll_6d", "generation")
     }

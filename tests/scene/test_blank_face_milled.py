@@ -1,6 +1,7 @@
 """Face-milled scenes given by [pair.blank]: settings by each method, what is asked of the contact, what is refused."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -149,12 +150,12 @@ def test_usual_contact_of_the_convex_flank_is_the_mirror_image(example):
             'pair.settings.cutter_number: found 7; not allowed with method = "spread_blade"',
         ),
         ({"pair.settings.path_angle_deg": 0.0}, "pair.settings.path_angle_deg: found 0.0; allowed a number from 5 to"),
+        ({"pair.offset_mm": 15.0}, r"pair.offset_mm: found 15; with \[pair.blank\] axes meet: give the settings of a"),
         ({"pair.settings.methods": "x"}, "pair.settings.methods: unknown key; did you mean .pair.settings.method"),
         (
-            {"pinion.face_width_mm": 27.0},
-            r"wheel.face_width_mm: found 25.4; allowed pinion.face_width_mm = 27: both face-milled gears",
+            {"pair.blank.lengthwise_curve": "cutter_circle"},
+            'pair.blank.lengthwise_curve: found "cutter_circle"; not allowed with face-milled gears',
         ),
-        ({"pair.blank.outer_face_share": 0.45}, "pair.blank.outer_face_share: found 0.45; allowed 0.5 of face-milled"),
         ({"pinion.profile_shift": 0.2}, r"pinion.profile_shift: found 0.2; not allowed with \[pair.blank\]"),
     ],
 )
@@ -167,6 +168,25 @@ def test_contact_that_cannot_be_is_refused_by_its_section(example):
     scene = example.with_changes({"pair.settings.path_angle_deg": 175.0, "pair.settings.contact_length_mm": 2.0})
     with pytest.raises(GeometryError, match=r"pair\.settings: path_angle: a path at 175 deg .* a path more across"):
         scene.pair()
+
+
+@pytest.mark.parametrize("method", ["local_synthesis", "duplex_spread_blade"])
+def test_unequal_faces_are_cut_about_one_calculation_point(example, method):
+    changes = {"pinion.face_width_mm": 27.4, "pair.blank.outer_face_share": 0.45}
+    if method != "local_synthesis":
+        changes["pair.settings"] = {"method": method}
+    scene = example.with_changes(changes)
+    pair, blanks = scene.pair(), scene.blanks()
+    for gear, blank in ((pair.pinion, blanks.pinion), (pair.wheel, blanks.wheel)):
+        rho, z = gear.flank.grid(5, 5)
+        distances = np.hypot(rho, z)[2]
+        assert_allclose((distances[0], distances[-1]), blank.cone_distances[::2], rtol=1e-9)
+    path = trace_contact(pair, [0.0])
+    if method == "local_synthesis":  # at the calculation point, not in the middle of either face
+        assert_allclose(np.hypot(path.pinion_radius, path.pinion_axial), blanks.mean_cone_distance, rtol=1e-6)
+        assert_allclose(path.transmission_error, 0.0, atol=1e-9)
+    assert pair.face_width == pytest.approx(25.4)
+    assert parse_scene(scene.cut.to_toml()) == scene.cut
 
 
 def test_internal_bevel_gears_are_refused(example):
@@ -203,3 +223,22 @@ def test_command_synthesises_settings_of_a_spiral_bevel_scene(run, tmp_path):
     assert code == 0
     path = trace_contact(read_scene(tmp_path / "cut.toml").pair(), [0.0])
     assert_allclose(path.transmission_error, 0.0, atol=1e-9)
+
+
+def test_normals_of_basic_settings_are_told_apart(example):
+    """Blades of a group bring both flanks near to each other; a uniform depth has no such settings: degrees apart."""
+    basic = {"pair.settings": {"method": "duplex_spread_blade"}}
+    label = "normals of both flanks there apart by [arcmin]"
+    apart = [
+        [float(cell) for cell in row(example.with_changes(changes), label)]
+        for changes in ({}, basic, basic | {"pair.blank.taper": "uniform"})
+    ]
+    assert max(apart[0]) == 0.0
+    assert 0.5 < max(apart[1]) < 10.0
+    assert max(apart[2]) > 60.0
+
+
+def test_scene_can_be_sent_to_another_process(example):
+    again = pickle.loads(pickle.dumps(example))
+    assert again == example
+    assert again.cut == example.cut
