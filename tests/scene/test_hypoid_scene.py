@@ -109,7 +109,7 @@ def test_rows_tell_the_cones_on_their_axes(scene):
     assert rows["hypoid offset a [mm]"] == ["15.0000"]
     assert rows["offset angles zeta_m, zeta_mp [deg]"] == ["10.6031", "11.3896"]  # F.3: 10.603, 11.390
     assert_allclose([float(cell) for cell in rows["crossing point to P, t_zm [mm]"]], [69.727, 26.621], atol=1.5e-3)
-    assert rows["pinion less wheel: spiral less zeta_mp, pressure [deg]"] == ["0.0000", "0.0000"]
+    assert rows["pinion less wheel: spiral - zeta_mp, pressure"] == ["0.0000", "0.0000"]
     assert not scene.interferences()
 
 
