@@ -35,7 +35,8 @@ Both = tuple[float, float]
 
 MOST_ROUNDS = 100
 CLOSED, MISSED = 1e-15, 1e-10
-"""Changes of the offset angle [rad] that end the search, and the part of the offset that may be missed then."""
+"""Changes of the offset angle [rad] that end the search, and the part of the cone distances by which the offset may be
+missed then."""
 ETA_STEPS = 60
 """Parts of the range of the wheel offset angle in which method 1 is looked for."""
 
@@ -153,7 +154,7 @@ class HypoidCones:
 
         zeta = _secant(open_by, start, start * (1.0 + 1e-6))
         first = first_at(zeta)
-        if not (0.0 < first < 0.5 * pi and abs(open_by(zeta)) < MISSED * abs(offset)):
+        if not (0.0 < first < 0.5 * pi and abs(open_by(zeta)) < MISSED * sum(mean_cone_distances)):
             raise InputError(
                 f"pitch_angles: with a wheel of {second:.6g} rad no pinion closes on an offset of {offset:g} mm and a "
                 f"shaft angle of {shaft_angle:.6g} rad"
@@ -243,9 +244,13 @@ def _secant(function: Callable[[float], float], before: float, at: float) -> flo
 
 
 def _offset_angle(pitch_angles: Both, distances: Both, offset: float, shaft_angle: float) -> float:
-    """zeta_mp [rad] of an offset [mm]; InputError where it is too large for the cones."""
+    """zeta_mp [rad] of an offset [mm]; InputError where it is too large for the cones, or these stand nowhere."""
     first = pitch_angles[0]
     reach = _reach(pitch_angles, distances)
+    if not (first < 0.5 * pi and reach > 0.0):
+        raise InputError(
+            f"pitch_angles: no pinion of {first:.6g} rad stands beside a wheel of {pitch_angles[1]:.6g} rad"
+        )
     sine = offset / reach * sin(shaft_angle) / cos(first)
     if not (abs(offset) < reach and abs(sine) < 1.0):
         largest = reach * min(1.0, cos(first) / sin(shaft_angle))
