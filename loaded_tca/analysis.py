@@ -20,7 +20,7 @@ from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Carried, Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.rounded_edges import PeakAtEdge, pressures_at_rounded_edges
-from loaded_tca.loaded.supported import CarriedOnSupports, SupportedCycle, all_torques, pitches_apart
+from loaded_tca.loaded.supported import CarriedOnSupports, SupportedCycle, all_torques, at_rest, pitches_apart
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import mesh_cycle
@@ -30,7 +30,7 @@ from loaded_tca.results.warnings import warn_of_accuracy, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread
-from loaded_tca.unloaded import trace_contact, trace_teeth
+from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
 
 START_SECONDS, STATE_SECONDS, SHARED_SECONDS, SHARED_EXPONENT = 0.4, 0.015, 2.2e-3, 3.2
 """Of the first analysis of a process; of each position under each torque where teeth bend, and how that grows with the
@@ -247,8 +247,13 @@ def _on_supports(
     wanted = scene.analysis
     supports = support_compliance(scene, pair)
     assert supports is not None
-    apart = pitches_apart(supports, max(scene.torques), angles) if wanted.load_sharing else 1
-    bending = model_of(scene, pair, apart)
+    unmoved: MeshPath | ContactPath
+    if wanted.load_sharing:
+        unmoved = trace_teeth(at_rest(supports), angles)
+        bending = model_of(scene, pair, pitches_apart(supports, max(scene.torques), unmoved))
+    else:
+        unmoved = trace_contact(at_rest(supports), angles)
+        bending = model_of(scene, pair, 1)
     assert bending is not None
     supported = SupportedCycle(pair, bending, angles, grid, load_sharing=wanted.load_sharing)
     cycles = supported.under(scene.torques, progress)
@@ -258,7 +263,7 @@ def _on_supports(
             one.pair, one.carried, one.bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
         )
         at_edges |= {(t, n, int(one.carried.pairs[k])): peak for (_, n, k), peak in peaks.items()}
-    carried = all_torques(supported.at_rest, cycles, load_sharing=wanted.load_sharing)
+    carried = all_torques(unmoved, cycles)
     column = {number: k for k, number in enumerate(carried.pairs.tolist())}
     return carried, {(t, n, column[number]): peak for (t, n, number), peak in at_edges.items()}, cycles
 

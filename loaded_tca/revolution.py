@@ -25,10 +25,10 @@ from loaded_tca.loaded.supported import (
     POSITIONS,
     Loads,
     SupportedCycle,
+    at_rest,
     given_motions,
     loads_at,
     moved_by,
-    wheel_torques,
 )
 from loaded_tca.loaded.supported import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.tooth_contact import GridChoice
@@ -43,6 +43,7 @@ from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 from loaded_tca.supports import SupportCompliance, support_compliance
 from loaded_tca.threads import one_blas_thread
+from loaded_tca.unloaded import trace_teeth
 from loaded_tca.unloaded.revolution import RevolutionPath, trace_revolution
 
 KEPT = "normal_force", "peak_pressure", "on_edge"
@@ -175,16 +176,16 @@ def _on_supports(
     progress: Progress | None,
 ) -> list[_OnSupports]:
     """Numbers of gears on supports, torque by torque, moved by the mean load of a pitch of teeth that are alike."""
-    at_rest = support_compliance(scene, pair)
-    assert at_rest is not None
+    supports = support_compliance(scene, pair)
+    assert supports is not None
     roots, numbers = roots_of(scene, pair), list[_OnSupports]()
-    angles = pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1)
-    apart = max(pitches_of_cycle(at_rest, max(scene.torques), angles), pitches_apart(_trace(scene, pair, pitches)))
+    mesh = trace_teeth(at_rest(supports), pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1))
+    apart = max(pitches_of_cycle(supports, max(scene.torques), mesh), pitches_apart(_trace(scene, pair, pitches)))
     bending = model_of(scene, pair, apart)
     assert bending is not None
-    cycle = SupportedCycle(pair, bending, angles, grid, load_sharing=True)
+    cycle = SupportedCycle(pair, bending, mesh.pinion_angle, grid, load_sharing=True)
     for t, held in enumerate(cycle.settled(scene.torques)):
-        near = at_rest.under(held)
+        near = supports.under(held)
 
         def moved(gears: GearPair, near: SupportCompliance = near, held: Loads = held) -> GearPair:
             return moved_by(replace(near, pair=gears), held)
@@ -370,7 +371,6 @@ class _OnSupports(_Numbers):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.drive_rate = np.full(len(self.path), math.nan)
-        self.wheel_torque = np.zeros(len(self.path))
         pinion, wheel = (np.full((len(self.path), len(one)), math.nan) for one in self.held)
         self.loads = pinion, wheel
 
@@ -381,6 +381,5 @@ class _OnSupports(_Numbers):
         rows = slice(part.positions.start, part.positions.stop)
         at = [[share.loaded for share in part.shared[0, n].shares] for n in range(len(part.positions))]
         self.drive_rate[rows] = part.drive_stiffness[0]
-        self.wheel_torque[rows] = wheel_torques(at)
         for of_gear, own in zip(self.loads, loads_at(self.bending.supports, at), strict=True):
             of_gear[rows] = own

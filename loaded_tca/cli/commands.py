@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from loaded_tca.stages import Stage, StageResult
     from loaded_tca.studies import DesignResult
 
+STAGE = "stage.nc"
+"""File of a stage in its directory."""
 REACHED_WITHIN = 10.0
 """Seconds for a scheduler to answer."""
 
@@ -93,15 +95,17 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
 
 
 def result_file(path: Path) -> Path:
-    """The file of a result that is named by itself or by its directory."""
+    """The file of a result that is named by itself or by its directory; that of a stage is refused by its reader."""
     from loaded_tca.output.result_files import RESULT
 
-    return path / RESULT if os.path.isdir(path) else path
+    if not os.path.isdir(path):
+        return path
+    return path / (STAGE if (path / STAGE).is_file() and not (path / RESULT).exists() else RESULT)
 
 
 def file_of_report(path: Path) -> Path:
     """The file of a result, a stage, a study or a design that is named by itself or by its directory."""
-    result, *others = (path / name for name in ("result.nc", "stage.nc", "study.nc", "design.nc"))
+    result, *others = (path / name for name in ("result.nc", STAGE, "study.nc", "design.nc"))
     if not os.path.isdir(path):
         return path
     return next((one for one in (result, *others) if one.is_file()), result)

@@ -45,10 +45,13 @@ from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_state
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.supports import SupportCompliance, moved_pair
-from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
+from loaded_tca.unloaded import ContactPath, ContactPoint, MeshPath, trace_contact, trace_teeth
 
-POSITIONS = 4
-"""Positions of a pitch whose mean load moves the geometry: motions follow the load's place to 1e-3."""
+POSITIONS = 2
+"""Positions of a pitch whose mean load moves the geometry on the way: motions follow the load's place to a few 1e-3."""
+CLOSE, ENOUGH = 4e-3, 4
+"""Change of the motions from there to the mean of the whole cycle, over the motions, from which on it is done again,
+where it has so many positions and more: a hundredth of that is left in the transmission error where gears are soft."""
 SETTLED = 0.02
 """Change of the motions from one step to the next, over the motions, from which the geometry stays where it is: what
 is left of them is coupled, and what that leaves out is of their product with the motions themselves."""
@@ -78,10 +81,6 @@ class OnSupports(Protocol):
     @property
     def loads(self) -> Loads:
         """Those at the positions, (n, 6 m) each."""
-
-    @property
-    def wheel_torque(self) -> Array:
-        """Torques on the wheel (n,) [N mm]."""
 
     @property
     def drive_rate(self) -> Array:
@@ -114,11 +113,6 @@ class CarriedOnSupports:
     held: Loads
     loads: tuple[Array, Array]
     mesh_rate: Array
-
-    @property
-    def wheel_torque(self) -> Array:
-        """Torques on the wheel (n,) [N mm]."""
-        return wheel_torques(self.carried.contacts[0])
 
     @property
     def drive_rate(self) -> Array:
@@ -174,11 +168,6 @@ class SupportedCycle:
         self.pair, self.bending, self.supports = pair, bending, bending.supports
         self.angles, self.grid, self.load_sharing = angles, grid, load_sharing
 
-    @property
-    def at_rest(self) -> GearPair:
-        """The pair as other loads alone move it."""
-        return moved_by(self.supports, _no_loads(self.supports))
-
     def under(self, torques: Sequence[float], progress: Progress | None = None) -> list[CarriedOnSupports]:
         """Mesh cycles under pinion torques [N mm], worked on together.
 
@@ -193,8 +182,8 @@ class SupportedCycle:
         cycles = [self._moved(*one, self.angles, self.grid) for one in zip(torques, held, strict=True)]
         carried = carried_together(cycles, progress)
         for t in range(len(cycles)):
-            mean = _mean_load(cycles[t].supports, carried[t])
-            if not (torques[t] in _ends(torques) or self._is_near(cycles[t].supports, mean, held[t])):
+            mean = _mean_load(cycles[t].supports, carried[t], whole=len(self.angles) > 1)
+            if torques[t] > 0.0 and len(self.angles) > ENOUGH and not self._are_near(cycles[t], mean, CLOSE):
                 cycles[t] = self._moved(torques[t], mean, self.angles, self.grid)
                 (carried[t],) = carried_together([cycles[t]])
         return [
@@ -217,7 +206,7 @@ class SupportedCycle:
         low, high = _ends(torques)
         if high == 0.0:
             return [_no_loads(self.supports) for _ in torques]
-        last = self._settled(high, loads_at_first_contact(self.supports, self.at_rest, high))
+        last = self._settled(high, loads_at_first_contact(self.supports, at_rest(self.supports), high))
         first = last if low == high else self._settled(low, _scaled(last, low / high))
 
         def between(torque: float) -> Loads:
@@ -237,8 +226,8 @@ class SupportedCycle:
         roughly = replace(self.grid, agreement=ROUGHLY, accuracy=max(self.grid.accuracy, ROUGH_PEAK))
         for _ in range(MOST_STEPS):
             cycle = self._moved(torque, loads, spread, roughly)
-            before, loads = loads, _mean_load(cycle.supports, carried_together([cycle])[0])
-            if self._is_near(cycle.supports, loads, before):
+            loads = _mean_load(cycle.supports, carried_together([cycle])[0])
+            if self._are_near(cycle, loads, SETTLED if cycle.supports.is_linear else NEARER):
                 return loads
         raise ConvergenceError(
             f"supports: motions under {1e-3 * torque:g} N m not settled in {MOST_STEPS} steps: the supports are too "
@@ -246,10 +235,10 @@ class SupportedCycle:
             last=loads,
         )
 
-    def _is_near(self, supports: SupportCompliance, loads: Loads, before: Loads) -> bool:
-        """Whether the motions by loads are those by the ones before."""
-        whole = self._distance(supports, loads, _no_loads(supports))
-        return self._distance(supports, loads, before) <= (SETTLED if supports.is_linear else NEARER) * whole
+    def _are_near(self, cycle: _MovedCycle, loads: Loads, part: float) -> bool:
+        """Whether the motions by loads are those of a cycle, but for a part of them."""
+        whole = self._distance(cycle.supports, loads, _no_loads(self.supports))
+        return self._distance(cycle.supports, loads, cycle.held) <= part * whole
 
     def _distance(self, supports: SupportCompliance, one: Loads, other: Loads) -> float:
         """Largest way of the two gears between two loads, at a lever of half the face width [mm]."""
@@ -286,9 +275,11 @@ def _scaled(loads: Loads, factor: float) -> Loads:
     return pinion, wheel
 
 
-def _mean_load(supports: SupportCompliance, carried: Carried) -> Loads:
-    pinion, wheel = (np.nanmean(load, axis=0) for load in loads_of(supports, carried))
-    return pinion, wheel
+def _mean_load(supports: SupportCompliance, carried: Carried, *, whole: bool = False) -> Loads:
+    """Mean over the positions; of a ``whole`` pitch its end is the beginning of the next one."""
+    pinion, wheel = loads_of(supports, carried)
+    own = slice(None, -1 if whole else None)
+    return np.nanmean(pinion[own], axis=0), np.nanmean(wheel[own], axis=0)
 
 
 @contextmanager
@@ -318,26 +309,29 @@ def moved_by(supports: SupportCompliance, loads: Loads) -> GearPair:
     return moved_pair(supports.pair, supports.supports, motions) if any(one.any() for one in motions) else supports.pair
 
 
+def at_rest(supports: SupportCompliance) -> GearPair:
+    """The pair of supports as other loads alone move it."""
+    return moved_by(supports, _no_loads(supports))
+
+
 def _moved_too_far(error: GeometryError, torque: float) -> GeometryError:
     return GeometryError(f"{error}; under {1e-3 * torque:g} N m the supports let the gears move too far")
 
 
-def pitches_apart(supports: SupportCompliance, torque: float, angles: Array) -> int:
+def pitches_apart(supports: SupportCompliance, torque: float, mesh: MeshPath) -> int:
     """How many pitches tooth pairs within reach are apart, at rest and moved by a pinion torque [N mm].
 
-    The force of the torque acts where the flanks touch first without load.
+    The force of the torque acts where the flanks touch first without load; ``mesh``: contact of the pair at rest.
 
     Raises
     ------
     GeometryError
         If the moved flanks are not in contact.
     """
-    at_rest = moved_by(supports, _no_loads(supports))
-    apart = farthest_apart(trace_teeth(at_rest, angles))
     try:
-        loads = loads_at_first_contact(supports, at_rest, torque)
+        loads = loads_at_first_contact(supports, mesh.pair, torque)
         moved = moved_by(supports.under(loads), loads)
-        return max(apart, farthest_apart(trace_teeth(moved, angles)))
+        return max(farthest_apart(mesh), farthest_apart(trace_teeth(moved, mesh.pinion_angle)))
     except GeometryError as error:
         raise _moved_too_far(error, torque) from None
 
@@ -403,13 +397,6 @@ def loads_at(supports: SupportCompliance, contacts: Sequence[Sequence[LoadedCont
     return np.stack(pinions), np.stack(wheels)
 
 
-def wheel_torques(contacts: Sequence[Sequence[LoadedContact | None]]) -> Array:
-    """Torques on the wheel (n,) [N mm] by the contacts of each position."""
-    return np.array(
-        [sum(one.solution.load * one.contact.wheel_lever for one in at if one is not None) for at in contacts]
-    )
-
-
 def _rate_on_rigid_supports(carried: Carried, bending: SumOfParts) -> Array:
     """Tangent (n,) of the torque over the rotation, the supports held [N mm/rad]."""
     teeth = bending.on_rigid_supports
@@ -430,16 +417,15 @@ def on_rigid_supports(number: int, loaded: LoadedContact, teeth: BendingModel | 
     return replace(one, problem=replace(one.problem, slice_compliance=slices), bending=bent)
 
 
-def all_torques(pair: GearPair, cycles: Sequence[CarriedOnSupports], *, load_sharing: bool) -> Carried:
+def all_torques(unloaded: MeshPath | ContactPath, cycles: Sequence[CarriedOnSupports]) -> Carried:
     """What the tooth pairs carry under all torques, each in its own pair.
 
     Parameters
     ----------
-    pair : GearPair
-        As it stands without load.
+    unloaded : MeshPath or ContactPath
+        Contact of the pair as it stands without load, of all tooth pairs or of one.
     cycles : sequence of CarriedOnSupports
         By torque.
-    load_sharing : bool
 
     Returns
     -------
@@ -447,14 +433,14 @@ def all_torques(pair: GearPair, cycles: Sequence[CarriedOnSupports], *, load_sha
         Its paths are those of the unloaded pair, and of the moved one where a tooth pair comes into reach by load only;
         its rotation is that from the unloaded pair on, motions of the gears included.
     """
-    angles = cycles[0].carried.path.pinion_angle
     paths = {int(k): path for one in cycles for k, path in zip(one.carried.pairs, one.carried.paths, strict=True)}
     numbers = np.array(sorted(paths))
-    if load_sharing:
-        path, at_rest = in_gear_angles(trace_teeth(pair, angles))
+    if isinstance(unloaded, MeshPath):
+        path, at_rest = in_gear_angles(unloaded)
         paths |= at_rest
     else:
-        path = paths[0] = trace_contact(pair, angles)
+        path = paths[0] = unloaded
+    driving = cycles[0].pair.driving
     shape = len(cycles), len(path), len(numbers)
     contacts: Contacts = [[[None] * shape[2] for _ in range(shape[1])] for _ in cycles]
     share, deflection = np.zeros((2, *shape))
@@ -464,7 +450,7 @@ def all_torques(pair: GearPair, cycles: Sequence[CarriedOnSupports], *, load_sha
         columns = np.searchsorted(numbers, carried.pairs)
         share[t][:, columns], deflection[t][:, columns] = carried.share[0], carried.tooth_deflection[0]
         moved = path.transmission_error - carried.path.transmission_error
-        rotation[t] = carried.rotation[0] + pair.driving * moved
+        rotation[t] = carried.rotation[0] + driving * moved
         for n, at in enumerate(carried.contacts[0]):
             for column, loaded in zip(columns.tolist(), at, strict=True):
                 contacts[t][n][column] = loaded

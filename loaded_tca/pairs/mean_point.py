@@ -206,6 +206,11 @@ class MeanField:
         turned = np.outer(slopes, by_angle[1:])
         return by_angle[0] * np.outer(slopes, slopes) + turned + turned.T + self.hessian[1:, 1:]
 
+    def tilt(self, flank: LocalFlank) -> float:
+        """Angle between the normals of a flank of the pinion and of the wheel at the mean point [rad]."""
+        own, mating = (np.array([-slopes[0], 1.0 / self.rho, -slopes[1]]) for slopes in (flank.slopes, self.slopes))
+        return float(np.arctan2(np.linalg.norm(np.cross(own, mating)), own @ mating))
+
     def contact(self, flank: LocalFlank, teeth: int) -> MeanContact:
         """How a flank of the pinion touches that has the slopes asked for.
 

@@ -147,16 +147,33 @@ def local_synthesis(
 def mean_contact(
     pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_flank: FlankName, place: tuple[Array, Array] | None = None
 ) -> MeanContact:
-    """How a flank of the pinion that holds the normal of its mating flank touches it at the mean point.
+    """How a flank of the pinion touches its mating flank at the mean point.
+
+    Normals that differ there (see :func:`mean_tilt`) are taken as one: the contact lies beside the mean point then.
 
     Raises
     ------
     GeometryError
-        If they cut into each other there.
+        If the flanks cut into each other there, or the wheel runs ahead.
     """
-    field = MeanField.of(pinion, wheel, pinion_flank, place or _meeting(pinion, wheel))
+    field, own = _at_mean_point(pinion, wheel, pinion_flank, place)
+    return field.contact(own, pinion.teeth)
+
+
+def mean_tilt(
+    pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_flank: FlankName, place: tuple[Array, Array] | None = None
+) -> float:
+    """Angle between the normals of both flanks at the mean point, which are one where they touch there [rad]."""
+    field, own = _at_mean_point(pinion, wheel, pinion_flank, place)
+    return field.tilt(own)
+
+
+def _at_mean_point(
+    pinion: FaceMilledGear, wheel: FaceMilledGear, flank: FlankName, place: tuple[Array, Array] | None
+) -> tuple[MeanField, LocalFlank]:
+    field = MeanField.of(pinion, wheel, flank, place or _meeting(pinion, wheel))
     rho, z = (np.array([part]) for part in mean_point(pinion))
-    return field.contact(local_flank(pinion, generated_at(pinion, pinion_flank, rho, z)), pinion.teeth)
+    return field, local_flank(pinion, generated_at(pinion, flank, rho, z))
 
 
 def with_tooth_angle(gear: FaceMilledGear, angle: float) -> FaceMilledGear:

@@ -162,13 +162,12 @@ def secant_on_rigid_supports(carried: Carried, cycles: Sequence[CarriedOnSupport
 
 def _wind_up(one: OnSupports) -> Array:
     """How far the wheel stays behind (n,) [rad] by what both gears turn about their axes, from no torque on."""
-    supports, moments = _parts(one).supports, one.wheel_torque
-    work = np.zeros(len(moments))
-    for support, loads in zip(supports, one.loads, strict=True):
-        rest = support.at_rest.reshape(-1, 6)
-        turns = np.stack([support.moved(load).reshape(-1, 6)[:, 5] for load in loads]) - rest[:, 5]
-        work += (loads.reshape(len(loads), -1, 6)[..., 5] * turns).sum(axis=1)
-    return np.where(moments > 0.0, work / np.where(moments > 0.0, moments, 1.0), 0.0 * work)
+    torques = np.abs(one.loads[1].reshape(len(one.loads[1]), -1, 6)[..., 5].sum(axis=1))
+    work = np.zeros(len(torques))
+    for support, loads in zip(_parts(one).supports, one.loads, strict=True):
+        moved = np.stack([support.moved(load) for load in loads]) - support.at_rest
+        work += (loads * moved).reshape(len(loads), -1, 6)[..., 5].sum(axis=1)
+    return np.asarray(work / np.where(torques > 0.0, torques, 1.0))
 
 
 def _parts(one: OnSupports) -> SupportCompliance:

@@ -142,6 +142,11 @@ class Geometry(Pair):
             "found {0:g} beside pressure_angle_deg = {1:g}; give one of the two",
         ),
         Rule(("normal_pressure_angle_deg", "spiral_angle_deg"), too_steep),
+        rule(
+            ("blank.lengthwise_curve", "spiral_angle_deg"),
+            lambda curve, spiral: curve == "logarithmic" or bool(spiral),
+            'found "{0}"; allowed with a spiral_angle_deg above 0 alone',
+        ),
     )
 
 

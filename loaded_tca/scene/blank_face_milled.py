@@ -14,7 +14,7 @@ from loaded_tca.scene.bevel import SIZES, BevelScene, GearSection, one_size, too
 from loaded_tca.scene.bevel_blank import Blank
 from loaded_tca.scene.blank_rows import blank_rows, common_blank_rows
 from loaded_tca.scene.face_milled import FaceMilledScene
-from loaded_tca.scene.keys import Choice, key
+from loaded_tca.scene.keys import Choice, Number, key
 from loaded_tca.scene.machine_settings import Method, Settings, mean_contact_rows
 from loaded_tca.scene.model import Row, variant
 from loaded_tca.scene.section import Rule, rule, subsection
@@ -43,11 +43,20 @@ class Geometry(bevel.Geometry):
     pinion_flank: spiral.Side | None = key(
         spiral.SIDE, "flank of the pinion that is in contact (drive side: concave)", None, '"concave", or by `sense`'
     )
+    offset_mm: float = key(
+        Number(-1000.0, 1000.0), "hypoid offset: 0 here; settings of hypoid pairs are given, or by `HypoidBlank`", 0.0
+    )
     blank: Blank = subsection(Blank, "depths and thicknesses after ISO 23509")
     settings: Settings = subsection(Settings, "how machine settings and cutters follow from the blanks")
 
     rules: ClassVar[tuple[Rule, ...]] = (
         Rule(SIZES, one_size),
+        rule(
+            ("offset_mm",),
+            lambda offset: offset == 0.0,
+            "found {0:g}; with [pair.blank] axes meet: give the settings of a hypoid pair, as gears.HypoidBlank and "
+            "flanks.hypoid_synthesis make them",
+        ),
         spiral.FLANK_OR_SENSE,
         rule(
             ("normal_pressure_angle_deg", "pressure_angle_deg"),

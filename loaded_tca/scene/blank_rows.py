@@ -24,7 +24,7 @@ def common_blank_rows(blanks: BevelBlank, section: Any, data_type: str) -> list[
         ("mean working depth h_mw, whole depth h_m [mm]", *_numbers(blanks.working_depth, blanks.whole_depth)),
         ("clearance c, normal to the cones [mm]", *_numbers(blanks.clearance)),
         ("cutter radius r_c0 [mm]", f"{blanks.cutter_radius:.4f}" if blanks.cutter_radius else "none"),
-        ("flanks along the face", section.lengthwise_curve.replace("_", " ")),
+        ("flanks along the face", section.lengthwise_curve.replace("_", " ") if blanks.spiral_angle else "straight"),
         ("cutter's spiral angle at heel, mean, toe [deg]", *_numbers(*map(degrees, spirals[::-1]))),
         (
             "backlash j_en, j_et2 at the heel [mm]",

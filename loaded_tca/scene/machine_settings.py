@@ -11,7 +11,7 @@ from loaded_tca.gears.basic_settings import Gears, duplex_spread_blade, spread_b
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.face_milled import FlankName
 from loaded_tca.pairs.mean_point import OTHER_FLANK, MeanContact
-from loaded_tca.pairs.synthesis import local_synthesis, mean_contact, with_tooth_angle
+from loaded_tca.pairs.synthesis import local_synthesis, mean_contact, mean_tilt, with_tooth_angle
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Hand, Row
 from loaded_tca.scene.section import Rule, Section, rule
@@ -177,6 +177,7 @@ def _mirrored(aim: MeanContact) -> MeanContact:
 def mean_contact_rows(gears: Gears, flank: FlankName) -> list[Row]:
     """Return what the settings make of the contact at the mean point, of both flanks of the pinion."""
     flanks = flank, OTHER_FLANK[flank]
+    tilts = (f"{60.0 * degrees(mean_tilt(*gears, each)):.3f}" for each in flanks)
     rows: list[tuple[str, ...]] = []
     for each in flanks:
         try:
@@ -184,13 +185,8 @@ def mean_contact_rows(gears: Gears, flank: FlankName) -> list[Row]:
         except GeometryError:
             rows.append(("none", "none", "none"))
             continue
-        rows.append(
-            (
-                f"{contact.motion_fall / UNITS['arcsec'].factor:.3f}",
-                f"{contact.path_angle / UNITS['deg'].factor:.3f}",
-                f"{contact.contact_length:.3f}",
-            )
-        )
+        fall = contact.motion_fall / UNITS["arcsec"].factor
+        rows.append((f"{fall:.3f}", f"{degrees(contact.path_angle):.3f}", f"{contact.contact_length:.3f}"))
     labels = (
         "  fall of the motion curve at half a pitch [arcsec]",
         "  path of contact from the tooth trace [deg]",
@@ -198,5 +194,6 @@ def mean_contact_rows(gears: Gears, flank: FlankName) -> list[Row]:
     )
     return [
         ("contact at the mean point, flanks of the pinion", *flanks),
+        ("  normals of both flanks there apart by [arcmin]", *tilts),
         *((label, *cells) for label, cells in zip(labels, zip(*rows, strict=True), strict=True)),
     ]

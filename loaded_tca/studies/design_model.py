@@ -30,7 +30,7 @@ from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.load_sharing import SharedLoad
 from loaded_tca.loaded.loaded_contact import found_together
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
-from loaded_tca.loaded.supported import SupportedCycle, given_motions, moved_by, pitches_apart
+from loaded_tca.loaded.supported import SupportedCycle, at_rest, given_motions, moved_by, pitches_apart
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
@@ -291,7 +291,8 @@ class DesignModel:
         """The same where gears move: under each torque they stand where its mean load moves the scene's."""
         supports = support_compliance(scene, pair)
         assert supports is not None
-        bending = model_of(scene, pair, pitches_apart(supports, float(self.torques.max()), angles))
+        unmoved = trace_teeth(at_rest(supports), angles)
+        bending = model_of(scene, pair, pitches_apart(supports, float(self.torques.max()), unmoved))
         assert bending is not None
         grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=scene.analysis.free_edges)
         cycle, held = SupportedCycle(pair, bending, angles, grid, load_sharing=True), []

@@ -487,6 +487,15 @@ def test_circle_of_a_large_cutter_is_no_logarithmic_spiral():
         )
 
 
+def test_straight_teeth_run_along_no_circle():
+    straight = {"pair.type": "straight_bevel", "pair.spiral_angle_deg": None, "pair.blank.taper": "standard"}
+    assert {name: cells for name, *cells in annex_f2(**straight).geometry_rows()}["flanks along the face"] == [
+        "straight"
+    ]
+    with pytest.raises(InputError, match=r"pair\.blank\.lengthwise_curve: .* a spiral_angle_deg above 0 alone"):
+        annex_f2(**straight, **{"pair.blank.lengthwise_curve": "cutter_circle"})
+
+
 def test_standard_of_the_geometry_is_told_where_it_is_that_of_the_blanks():
     assert annex_f2().geometry_standard == "ISO 23509"
     assert annex_f2(**{"pair.blank": None}).geometry_standard == "depths by outer modules, about one apex"

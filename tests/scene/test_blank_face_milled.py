@@ -1,6 +1,7 @@
 """Face-milled scenes given by [pair.blank]: settings by each method, what is asked of the contact, what is refused."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -149,6 +150,7 @@ def test_usual_contact_of_the_convex_flank_is_the_mirror_image(example):
             'pair.settings.cutter_number: found 7; not allowed with method = "spread_blade"',
         ),
         ({"pair.settings.path_angle_deg": 0.0}, "pair.settings.path_angle_deg: found 0.0; allowed a number from 5 to"),
+        ({"pair.offset_mm": 15.0}, r"pair.offset_mm: found 15; with \[pair.blank\] axes meet: give the settings of a"),
         ({"pair.settings.methods": "x"}, "pair.settings.methods: unknown key; did you mean .pair.settings.method"),
         (
             {"pair.blank.lengthwise_curve": "cutter_circle"},
@@ -221,3 +223,22 @@ def test_command_synthesises_settings_of_a_spiral_bevel_scene(run, tmp_path):
     assert code == 0
     path = trace_contact(read_scene(tmp_path / "cut.toml").pair(), [0.0])
     assert_allclose(path.transmission_error, 0.0, atol=1e-9)
+
+
+def test_normals_of_basic_settings_are_told_apart(example):
+    """Blades of a group bring both flanks near to each other; a uniform depth has no such settings: degrees apart."""
+    basic = {"pair.settings": {"method": "duplex_spread_blade"}}
+    label = "normals of both flanks there apart by [arcmin]"
+    apart = [
+        [float(cell) for cell in row(example.with_changes(changes), label)]
+        for changes in ({}, basic, basic | {"pair.blank.taper": "uniform"})
+    ]
+    assert max(apart[0]) == 0.0
+    assert 0.5 < max(apart[1]) < 10.0
+    assert max(apart[2]) > 60.0
+
+
+def test_scene_can_be_sent_to_another_process(example):
+    again = pickle.loads(pickle.dumps(example))
+    assert again == example
+    assert again.cut == example.cut
