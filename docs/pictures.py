@@ -23,6 +23,7 @@ EXAMPLES = {
     "guide/vh_under_load.png": "plot_vh_under_load",
     "how_it_works/contact_pattern.png": "plot_contact_pattern",
     "how_it_works/ease_off.png": "plot_ease_off",
+    "how_it_works/local_synthesis.png": "plot_local_synthesis",
     "how_it_works/teeth_in_contact.png": "plot_tooth_3d",
     "how_it_works/tip_relief_and_rounding.png": "plot_tip_relief_and_rounding",
 }

@@ -1,8 +1,8 @@
 """A stage of a drive on its shafts, with its oil
 ==============================================
 
-The pinion overhangs its bearings, so that it tilts under load: the load over the face under two torques, what a helix
-slope makes up for, and how the stage runs with its oil. Writes drive_stage.png and prints the numbers.
+The pinion overhangs its bearings, so that it tilts under load: the load over the face beside that on rigid supports,
+what a helix slope makes up for, and how the stage runs with its oil. Writes drive_stage.png and prints the numbers.
 """
 
 from pathlib import Path
@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from loaded_tca import analyse, read_scene
-from loaded_tca.plots import plot_face_load, save_figure
+from loaded_tca.plots import plot_face_load_on_supports, save_figure
 
 SCENE = Path(__file__).parent / "scenes" / "drive_stage.toml"
 CHANGES: dict[str, object] = {"analysis.positions": 9, "analysis.accuracy": 0.03}
@@ -27,7 +27,7 @@ def main() -> float:
     for name, one in {"rigid supports": rigid, "shafts": result, "shafts, helix slope -20 um": corrected}.items():
         print(f"K_Hbeta, {name}:", one.face_load_factor)
     print(result.tribology().summary())
-    save_figure(plot_face_load(result), "drive_stage.png")
+    save_figure(plot_face_load_on_supports(result, rigid), "drive_stage.png")
 
     on_bearings = result.dataset["pinion_bearing_force"][..., :3].sum("pinion_bearing").values
     normal_force = result.torque / (rigid.gear_pair.base_radii[0] * np.cos(scene.mesh().pinion.base_helix_angle))

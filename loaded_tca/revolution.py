@@ -21,7 +21,15 @@ from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, re
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.revolution import STATES_AT_A_TIME, CarriedPart, carried_over_revolution, pitches_apart
-from loaded_tca.loaded.supported import POSITIONS, Loads, SupportedCycle, at_rest, given_motions, loads_at, moved_by
+from loaded_tca.loaded.supported import (
+    POSITIONS,
+    Loads,
+    SupportedCycle,
+    at_rest,
+    given_motions,
+    loads_at,
+    moved_by,
+)
 from loaded_tca.loaded.supported import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair

@@ -32,6 +32,7 @@ EXPECTED = {
     "plot_rolling_bearings": (1.0, 1e-3),  # all forces of rollers are radial, and linear near the mean load
     "plot_planetary_stage": (1.0, 1e-9),  # a sun that floats among three planets is pressed evenly
     "plot_bevel_blank": (1.165, 2.5e-3),  # printed of virtual gears; of these flanks 1.1631
+    "plot_local_synthesis": (1.0, 1e-3),  # motion curve asked for, by differences that leave a fourth derivative
     "plot_tribology": (1.0, 1e-9),  # torques of friction do the friction power
     "plot_root_stress": (1.0, 1e-3),  # a pitch further the mesh is the same
     "plot_loaded_transmission_error": (1.0, 1e-3),  # a pitch further the mesh is the same

@@ -15,6 +15,7 @@ import xarray
 
 from loaded_tca import InputError, load_result, parse_scene, read_scene
 from loaded_tca.compliance import flexibility
+from loaded_tca.exchange import files
 from loaded_tca.flanks import topography
 from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.scene import parse
@@ -209,4 +210,4 @@ def test_distribution_of_a_study_is_no_other_name_of_python(folder, name):
 def test_note_tells_the_sizes_that_are_read():
     text = (ROOT / "SECURITY.md").read_text(encoding="utf-8")
     told = {int(number) * 2**20 for number in re.findall(r"(\d+) MiB", text)}
-    assert told == {parse.LARGEST_FILE, topography.LARGEST_FILE, read.LARGEST_TABLE}
+    assert told == {parse.LARGEST_FILE, topography.LARGEST_FILE, read.LARGEST_TABLE, files.LARGEST_FILE}

@@ -45,6 +45,7 @@ CASES = (
     "face_milled.swept_cutter",
     "face_milled.duplex_paper",
     "face_milled.hypoid_pair",
+    "face_milled.synthesis",
     "cylindrical.iso_tr_6336_30",
     "cylindrical.nrel_5mw_stage_3",
     "cylindrical.metric_gear_technology",

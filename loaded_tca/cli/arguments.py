@@ -37,8 +37,9 @@ EASE_OFF = """files in DIR:
   ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
                             corners, and its angles, crownings and twist"""
 SETTINGS = """SCENE has bevel gears with a section [pair.blank] and the radius of its cutter. FILE is a scene of type
-face_milled with the same blanks, and with machine settings and cutters in closed form: a start to be mended by what its
-contact shows ('loaded-tca run', 'vh', 'ease-off')."""
+face_milled with the same blanks, and with all machine settings and cutters: in closed form, a start to be mended by
+what its contact shows ('loaded-tca run', 'vh', 'ease-off'), or with the pinion's by local synthesis, whose contact at
+the mean point is what [pair.settings] of a scene of type face_milled asks for, or what is usual."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
 touch.
 
@@ -261,9 +262,9 @@ def _add_tables_and_maps(command: Command) -> None:
     cut = command("settings", run_by.settings, "write the face-milled scene of a bevel blank", SETTINGS)
     _add_scene(cut)
     cut.add_argument("--out", metavar="FILE", required=True, type=_path, help="scene file to write")
-    methods = "duplex_spread_blade", "spread_blade"
-    text = f"how both gears are cut; default: {methods[0]}"
-    cut.add_argument("--method", choices=methods, default=methods[0], help=text)
+    methods = "duplex_spread_blade", "spread_blade", "local_synthesis"
+    text = f"how both gears are cut; default: pair.settings.method of the scene, else {methods[0]}"
+    cut.add_argument("--method", choices=methods, help=text)
     shaft = command("shaft", run_by.shaft, "show how the shafts of a scene bend, without contact", SHAFT)
     _add_scene(shaft)
     shaft.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: none is written")

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from loaded_tca.stages import Stage, StageResult
     from loaded_tca.studies import DesignResult
 
+STAGE = "stage.nc"
+"""File of a stage in its directory."""
 REACHED_WITHIN = 10.0
 """Seconds for a scheduler to answer."""
 
@@ -93,15 +95,17 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
 
 
 def result_file(path: Path) -> Path:
-    """The file of a result that is named by itself or by its directory."""
+    """The file of a result that is named by itself or by its directory; that of a stage is refused by its reader."""
     from loaded_tca.output.result_files import RESULT
 
-    return path / RESULT if os.path.isdir(path) else path
+    if not os.path.isdir(path):
+        return path
+    return path / (STAGE if (path / STAGE).is_file() and not (path / RESULT).exists() else RESULT)
 
 
 def file_of_report(path: Path) -> Path:
     """The file of a result, a stage, a study or a design that is named by itself or by its directory."""
-    result, *others = (path / name for name in ("result.nc", "stage.nc", "study.nc", "design.nc"))
+    result, *others = (path / name for name in ("result.nc", STAGE, "study.nc", "design.nc"))
     if not os.path.isdir(path):
         return path
     return next((one for one in (result, *others) if one.is_file()), result)
@@ -453,16 +457,21 @@ def ease_off(options: argparse.Namespace) -> None:
 
 
 def settings(options: argparse.Namespace) -> None:
-    """Write the face-milled scene of a bevel blank, with its basic machine settings."""
+    """Write the face-milled scene of a bevel blank, with all its machine settings."""
     from loaded_tca.results.files import replace_file
     from loaded_tca.scene.bevel import BevelScene
+    from loaded_tca.scene.blank_face_milled import BlankFaceMilledScene
 
     scene = scene_of(options)
-    kind = f"{options.scene}: pair.type: allowed straight_bevel or spiral_bevel, with [pair.blank]"
+    kind = f"{options.scene}: pair.type: allowed straight_bevel, spiral_bevel or face_milled, with [pair.blank]"
     require((isinstance(scene, BevelScene), kind))
     assert isinstance(scene, BevelScene)
     check_files([options.out], Path(options.scene))
-    replace_file(options.out, scene.face_milled(options.method).to_toml().encode())
+    if isinstance(scene, BlankFaceMilledScene):
+        cut: Scene = scene.with_method(options.method).cut if options.method else scene.cut
+    else:
+        cut = scene.face_milled(options.method or "duplex_spread_blade")
+    replace_file(options.out, cut.to_toml().encode())
     print_files([options.out])
 
 
@@ -562,6 +571,6 @@ def check(options: argparse.Namespace) -> None:
     """Show the geometry of a scene or of a stage."""
     from loaded_tca.output.overview import describe_scene
     from loaded_tca.output.stage_overview import describe_stage
-    from loaded_tca.stages.sections import is_stage_file
+    from loaded_tca.stages.files import is_stage_file
 
     print(describe_stage(stage_of(options)) if is_stage_file(options.scene) else describe_scene(scene_of(options)))

@@ -48,6 +48,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import ConeFrame, Flank, Jet, cone_angle, cone_distance, of_cone_angle
 from loaded_tca.flanks.tensor_spline import polynomial
+from loaded_tca.gears.cutter_circle import CutterCircle
 
 NODES = 11
 """Cone distances at which a curve over R is known; they resolve it to the last digits."""
@@ -205,7 +206,8 @@ class SphericalInvoluteFlank(Flank):
     pressure_angle : float [rad]
         alpha, transverse.
     spiral_angle : float [rad]
-        beta_m on the pitch cone, positive for a right-hand gear; the same at every cone distance.
+        beta_m on the pitch cone, positive for a right-hand gear; the same at every cone distance, or with a
+        circle at R_m.
     side : int
         s, +1 or -1.
     cone_angles : (float, float) [rad]
@@ -214,6 +216,10 @@ class SphericalInvoluteFlank(Flank):
         Toe and heel.
     apexes : (float, float) [mm]
         How far the apexes of both cones lie beyond that of the pitch cone, away from the teeth.
+    zero_distance : float [mm], optional
+        R_m, where theta = 0 on the pitch cone; None: in the middle of the face.
+    circle : CutterCircle, optional
+        That the teeth follow lengthwise, through R_m; None: a logarithmic spiral.
 
     Raises
     ------
@@ -230,6 +236,8 @@ class SphericalInvoluteFlank(Flank):
         cone_angles: tuple[float, float],
         cone_distances: tuple[float, float],
         apexes: tuple[float, float] = (0.0, 0.0),
+        zero_distance: float | None = None,
+        circle: CutterCircle | None = None,
     ) -> None:
         base = math.asin(math.sin(pitch_angle) * math.cos(pressure_angle))
         seen = [
@@ -247,8 +255,10 @@ class SphericalInvoluteFlank(Flank):
         self.base_angle, self.side = base, side
         self.cone_angles, self.cone_distances, self.apexes = cone_angles, cone_distances, apexes
         self.mean_cone_distance = self.profile_unit = 0.5 * (cone_distances[0] + cone_distances[1])
+        self.zero_distance = self.mean_cone_distance if zero_distance is None else zero_distance
         self.roll_unit = math.sin(base)
         self._spiral = math.tan(spiral_angle) / math.sin(pitch_angle)
+        self._circle, self._turning = circle, math.copysign(1.0 / math.sin(pitch_angle), spiral_angle)
         self._pitch_involute = float(spherical_involute(np.array(pitch_angle), base))
         rho, z = self.grid(9, 2)
         self.extent = (float(np.ptp(rho)), float(np.ptp(z)))
@@ -269,11 +279,17 @@ class SphericalInvoluteFlank(Flank):
         )
         if self._spiral == 0.0:
             return profile
+        if self._circle is not None:
+            return profile + self._along_circle(self._circle, distance)
         inverse = 1.0 / distance.value
-        logarithm = distance.compose(
-            np.log(distance.value / self.mean_cone_distance), inverse, lambda: -inverse * inverse
-        )
+        logarithm = distance.compose(np.log(distance.value / self.zero_distance), inverse, lambda: -inverse * inverse)
         return profile + logarithm * self._spiral
+
+    def _along_circle(self, circle: CutterCircle, distance: Jet) -> Jet:
+        """Turn of the tooth along the circle of a cutter."""
+        along, (tangent, slope, _) = distance.value, circle.tangent(distance.value)
+        turn = distance.compose(circle.turn(along), tangent / along, lambda: slope / along - tangent / along**2)
+        return turn * self._turning
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Face cone and root cone, along the normals of the cones, toe and heel sphere."""
@@ -310,12 +326,25 @@ class SphericalInvoluteFlank(Flank):
         return self._cone_distance(rho, z) + Jet(-self.mean_cone_distance)
 
     def gradient_norm(self, rho: Array, z: Array) -> Jet:
-        """|grad F|, which falls with 1/R and is the same all along the profile."""
+        """|grad F|, which is the same all along the profile, and falls with 1/R but for the bend of a circle."""
+        if self._circle is not None:
+            return self._gradient_along_circle(self._circle, self._cone_distance(rho, z))
         size = math.hypot(1.0 / math.sin(self.base_angle), self._spiral)
         distance = self._cone_distance(rho, z)
         value = size / distance.value
         slope = -value / distance.value
         return distance.compose(value, slope, lambda: -2.0 * slope / distance.value)
+
+    def _gradient_along_circle(self, circle: CutterCircle, distance: Jet) -> Jet:
+        """sqrt(1/sin^2 delta_b + tan^2 beta/sin^2 delta)/R, with its derivatives."""
+        along = distance.value
+        tangent, slope, bend = (part * abs(self._turning) for part in circle.tangent(along))
+        size = np.hypot(1.0 / math.sin(self.base_angle), tangent)
+        growth = tangent * slope / size
+        value = size / along
+        change = (growth - value) / along
+        curved = (slope**2 + tangent * bend - growth**2) / size
+        return distance.compose(value, change, lambda: (curved - 2.0 * change) / along)
 
     def _cone_distance(self, rho: Array, z: Array) -> Jet:
         return cone_distance(rho, z, self.mean_cone_distance)

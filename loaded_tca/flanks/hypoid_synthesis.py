@@ -29,6 +29,7 @@ idea; conditions and unknowns here are others.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import atan, atan2, cos, hypot, pi, sin
 
@@ -37,7 +38,7 @@ from scipy.linalg import null_space
 from scipy.optimize import root
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import GeometryError, require
+from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.flanks.base import Jet
 from loaded_tca.flanks.cradle import CradleGeneration, GeneratedPoints
 from loaded_tca.flanks.face_milled import GeneratedFlank
@@ -143,7 +144,7 @@ def synthesised_gears(
     )
     # settings are those of right-hand members: a right-hand pinion stands for both
     mating = _wheel(blank, wheel, edge_radii[1])
-    pinion = _Pinion(blank, mating, (mismatch, coast_mismatch), edge_radii[0]).solved()
+    pinion = _Pinion(blank, mating, (mismatch, coast_mismatch), edge_radii[0]).solved(STRENGTHS[wheel])
     if pinion_hand == "right":
         return pinion, mating
     return replace(pinion, blank=replace(pinion.blank, hand="left")), replace(
@@ -303,12 +304,17 @@ EASY = np.array([3.0, 0.2, 5.0, 5.0, 5.0, 0.02, 2.0, 0.05, 0.05, 2.0, 2.0, 0.1, 
 """By how much the unknowns of the pinion change as easily as each other [mm, rad]: radial, ratio of roll, blank offset,
 machine centre to back, sliding base, root angle, helical motion, tilt about the radial line and along it, point radii
 of outside and inside blade, their angles."""
+ROOT, LEAST_ROOT = 5, 0.01
+"""Place of the machine root angle among them, and the least that it becomes [rad]."""
 DIFFERENCE = 1e-6
 """Step of differences, in parts of them."""
 HARD = 9
 """Conditions that are met."""
 WEIGHTS = np.array([5.0, 20.0, 20.0, 20.0])
 """1/mm: of the change of depth along half the face, and of what the coast flank misses its mismatch by."""
+STRENGTHS: dict[Generation, tuple[float, ...]] = {"generated": (1.0, 0.25), "formate": (16.0, 4.0, 1.0)}
+"""Factors of these weights, tried one after the other: the pinion of a formate wheel is cut by a tilted cutter that
+stands for it, far from the start, and with the full weight its settings may leave the machine."""
 
 
 class _Pinion:
@@ -378,9 +384,12 @@ class _Pinion:
         Raises
         ------
         GeometryError
-            If a blade cuts nothing there.
+            If the settings are none of a machine, or a blade cuts nothing there.
         """
-        points = _cuts(self.cut(unknowns), *self.place)
+        try:
+            points = _cuts(self.cut(unknowns), *self.place)
+        except InputError as error:
+            raise GeometryError(f"pinion: no settings of a machine meet the conditions: {error}") from None
         if not all(one.converged.all() for one in points):
             raise GeometryError("pinion: on the way to its settings a blade cuts nothing; change the blank or mismatch")
         drive, coast = (self._departures(*pair) for pair in zip(points, self.targets, strict=True))
@@ -401,36 +410,46 @@ class _Pinion:
         wanted = np.array([mismatch.profile, mismatch.lengthwise, mismatch.twist])
         return np.concatenate([self.ways @ less_slopes, removed - wanted])
 
-    def solved(self) -> FaceMilledGear:
+    def solved(self, strengths: tuple[float, ...]) -> FaceMilledGear:
         """Pinion whose settings meet the conditions, and are otherwise a compromise.
 
         Raises
         ------
         GeometryError
-            If they meet them nowhere.
+            If they meet them with none of the weights.
         """
-        unknowns = self.start
+        for strength in strengths[:-1]:
+            with suppress(GeometryError):
+                return self._centred(self._compromise(strength * WEIGHTS))
+        return self._centred(self._compromise(strengths[-1] * WEIGHTS))
+
+    def _compromise(self, weights: Array) -> Array:
+        """Unknowns that meet the conditions and have the smallest sum of squares of the rest (13,)."""
+        unknowns, moving = self.start, np.ones(EASY.size)
         for _ in range(MOST_STEPS):
-            values, slopes = self.conditions(unknowns), self._slopes(unknowns)
+            values, slopes = self.conditions(unknowns), self._slopes(unknowns) * moving
             step = -np.linalg.lstsq(slopes[:HARD], values[:HARD], rcond=None)[0]
             free = null_space(slopes[:HARD])
-            soft = np.vstack([WEIGHTS[:, None] * slopes[HARD:], np.eye(EASY.size)])
-            left = np.concatenate([WEIGHTS * values[HARD:], (unknowns - self.start) / EASY]) + soft @ step
-            step -= free @ np.linalg.lstsq(soft @ free, left, rcond=None)[0]
+            soft = np.vstack([weights[:, None] * slopes[HARD:], np.eye(EASY.size)])
+            left = np.concatenate([weights * values[HARD:], (unknowns - self.start) / EASY]) + soft @ step
+            step = (step - free @ np.linalg.lstsq(soft @ free, left, rcond=None)[0]) * moving
             size = float(np.abs(step).max())
             unknowns = unknowns + EASY * step * min(1.0, LARGEST_STEP / size)
+            if unknowns[ROOT] < LEAST_ROOT:
+                unknowns[ROOT], moving[ROOT] = LEAST_ROOT, 0.0
             if size < SETTLED:
                 break
         for _ in range(3):  # the last digits of the conditions alone
             met = self.conditions(unknowns)[:HARD]
-            unknowns = unknowns - EASY * np.linalg.lstsq(self._slopes(unknowns)[:HARD], met, rcond=None)[0]
+            slopes = self._slopes(unknowns)[:HARD] * moving
+            unknowns = unknowns - EASY * np.linalg.lstsq(slopes, met, rcond=None)[0]
         miss = float(np.abs(self.conditions(unknowns)[:HARD]).max())
         if miss > MET:
             raise GeometryError(
                 f"pinion: no settings meet all conditions at the calculation point; what is left is {miss:.3g} mm; "
                 "change the mismatch, the taper or the radius of the cutter"
             )
-        return self._centred(unknowns)
+        return unknowns
 
     def _slopes(self, unknowns: Array) -> Array:
         """Derivatives (13, 13) of the conditions by the unknowns, over ``EASY``."""

@@ -201,15 +201,18 @@ def _gears(blank: BevelBlank, pinion_hand: Hand, edge_radius: float, number: flo
     assert radius is not None
 
     def cut(gear: BlankGear, hand: Hand) -> FaceMilledGear:
+        toe, mean, heel = gear.cone_distances
+        own = blank.has_own_faces
         outline = FaceMilledBlank(
-            outer_cone_distance=blank.outer_cone_distance,
-            face_width=blank.face_width,
+            outer_cone_distance=heel if own else blank.outer_cone_distance,
+            face_width=heel - toe if own else blank.face_width,
             pitch_angle=gear.pitch_angle,
             face_angle=gear.face_angle,
             root_angle=gear.root_angle,
             hand=hand,
             face_apex=gear.face_apex,
             root_apex=gear.root_apex,
+            calculation_cone_distance=mean if own else None,
         )
         outside, inside = (
             Blade(radius + offset, gear.pressure_angle, edge_radius=edge_radius)

@@ -21,6 +21,7 @@ from loaded_tca.gears.checks import (
     spiral_check,
     teeth_checks,
 )
+from loaded_tca.gears.cutter_circle import CutterCircle
 from loaded_tca.gears.cylindrical_mesh import Room
 
 _EQUAL = 1e-9
@@ -49,7 +50,7 @@ def pitch_angles(teeth: tuple[int, int], shaft_angle: float) -> tuple[float, flo
 
 @dataclass(frozen=True)
 class BevelGear:
-    """Bevel gear with spherical involute teeth, straight or with a logarithmic spiral.
+    """Bevel gear with spherical involute teeth, straight, along a logarithmic spiral or the circle of a cutter.
 
     Parameters
     ----------
@@ -64,7 +65,8 @@ class BevelGear:
     pressure_angle : float [rad]
         alpha, transverse, on the pitch cone.
     spiral_angle : float [rad]
-        beta_m on the pitch cone, at every cone distance; right hand positive, left hand negative.
+        beta_m on the pitch cone, right hand positive, left hand negative; at every cone distance, or with a cutter
+        radius at R_m.
     profile_shift : float
         Coefficient x, in outer transverse modules.
     face_angle, root_angle : float [rad], optional
@@ -77,7 +79,11 @@ class BevelGear:
         How far the apexes of face and root cone lie beyond that of the pitch cone, away from the teeth, as
         ``BlankGear`` has them.
     mean_normal_thickness : float [mm], optional
-        s_mn on the pitch cone at mid-face; None: as the profile shift makes it.
+        s_mn on the pitch cone at R_m; None: as the profile shift makes it.
+    calculation_distance : float [mm], optional
+        R_m, of the calculation point; None: in the middle of the face.
+    cutter_radius : float [mm], optional
+        r_c0, whose circle the teeth follow lengthwise, with beta_m at R_m; None: a logarithmic spiral.
 
     Raises
     ------
@@ -111,6 +117,8 @@ class BevelGear:
     face_apex: float = 0.0
     root_apex: float = 0.0
     mean_normal_thickness: float | None = None
+    calculation_distance: float | None = None
+    cutter_radius: float | None = None
 
     def __post_init__(self) -> None:
         require(
@@ -137,6 +145,8 @@ class BevelGear:
                 f"{self.name}: face_width {self.face_width:.6g} mm reaches the apex: no face width is left at the toe; "
                 f"it must be below the outer cone distance {self.outer_cone_distance:.6g} mm"
             )
+        if self.cutter_circle is not None:
+            self.cutter_circle.check(self.name, (self.inner_cone_distance, self.outer_cone_distance))
         if self.root_cone_angle <= 0.0:
             raise GeometryError(
                 f"{self.name}: the root cone, {_degrees(self.root_cone_angle)}, reaches the axis; raise profile_shift"
@@ -149,6 +159,14 @@ class BevelGear:
                 f"{largest:.6g} mm"
             )
         ends = (self.inner_cone_distance, self.mean_cone_distance, self.outer_cone_distance)
+        require(
+            (
+                ends[0] < ends[1] < ends[2],
+                f"calculation_distance: {ends[1]:.6g} mm does not lie on the face, between {ends[0]:.6g} and"
+                f" {ends[2]:.6g} mm",
+            ),
+            owner=self.name,
+        )
         highest = max(self.tip_angle_at(distance) for distance in ends)
         face = f"{self.name}: the face cone, {_degrees(highest)},"
         if highest >= pi - self.base_angle:
@@ -171,8 +189,17 @@ class BevelGear:
 
     @property
     def mean_cone_distance(self) -> float:
-        """R_m = R_e - b/2 [mm]."""
+        """R_m, of the calculation point: R_e - b/2 unless it is given [mm]."""
+        if self.calculation_distance is not None:
+            return self.calculation_distance
         return self.outer_cone_distance - 0.5 * self.face_width
+
+    @property
+    def cutter_circle(self) -> CutterCircle | None:
+        """Circle that the teeth follow lengthwise; None: a logarithmic spiral."""
+        if self.cutter_radius is None or self.spiral_angle == 0.0:
+            return None
+        return CutterCircle(self.mean_cone_distance, abs(self.spiral_angle), self.cutter_radius)
 
     @property
     def mean_normal_module(self) -> float:
@@ -316,7 +343,8 @@ class BevelMesh:
     Parameters
     ----------
     pinion, wheel : BevelGear
-        Of one outer module, face width and pressure angle, with opposite hands.
+        Of one outer module, face width and pressure angle, with opposite hands; of one mean cone distance and module
+        there where both have their calculation points.
 
     Raises
     ------
@@ -335,11 +363,19 @@ class BevelMesh:
 
     def __post_init__(self) -> None:
         first, second, shaft_angle = self.pinion, self.wheel, _degrees(self.shaft_angle)
-        rolls = isclose(first.outer_cone_distance, second.outer_cone_distance, rel_tol=_EQUAL)
+        own_points = None not in (first.calculation_distance, second.calculation_distance)
+        of_both = () if own_points else ("outer_module", "face_width")
+        rolls = isclose(first.mean_cone_distance, second.mean_cone_distance, rel_tol=_EQUAL)
+        modules = [gear.mean_normal_module for gear in (first, second)]
+        rolls = rolls and isclose(*modules, rel_tol=_EQUAL)
         pitches = f"{_degrees(first.pitch_angle)} and {_degrees(second.pitch_angle)}"
         require(
-            *pair_checks(first, second, ("outer_module", "face_width"), "spiral_angle"),
+            *pair_checks(first, second, of_both, "spiral_angle"),
             (rolls, f"pitch_angle: {pitches} do not roll on each other with {first.teeth}/{second.teeth} teeth"),
+            (
+                first.cutter_radius == second.cutter_radius,
+                f"cutter_radius: {first.cutter_radius} and {second.cutter_radius} mm must be equal",
+            ),
             (self.shaft_angle < pi, f"pitch_angle: the shaft angle, {shaft_angle}, is not below 180 deg"),
         )
 
@@ -405,7 +441,7 @@ class BevelMesh:
         pinion, wheel = (
             toe * (self.shaft_angle - gear.root_cone_angle_at(toe) - mating.tip_angle_at(toe))
             for gear, mating in both_ways
-            for toe in [gear.inner_cone_distance]
+            for toe in [max(gear.inner_cone_distance, mating.inner_cone_distance)]
         )
         return pinion, wheel
 
@@ -418,9 +454,14 @@ class BevelMesh:
     @property
     def overlap_ratio(self) -> float:
         """eps_beta: turn of the pinion over which the spiral passes the face, in pitches."""
-        gear = self.pinion
-        turn = abs(tan(gear.spiral_angle)) / sin(gear.pitch_angle)
-        return turn * log(gear.outer_cone_distance / gear.inner_cone_distance) * gear.teeth / (2.0 * pi)
+        gear, circle = self.pinion, self.pinion.cutter_circle
+        heel = min(self.pinion.outer_cone_distance, self.wheel.outer_cone_distance)
+        toe = max(self.pinion.inner_cone_distance, self.wheel.inner_cone_distance)
+        if circle is None:
+            turn = abs(tan(gear.spiral_angle)) / sin(gear.pitch_angle) * log(heel / toe)
+        else:
+            turn = float(circle.turn(heel) - circle.turn(toe)) / sin(gear.pitch_angle)
+        return turn * gear.teeth / (2.0 * pi)
 
 
 def bevel_mesh(

@@ -24,84 +24,18 @@ _MAX_DEPTH_ANGLE = radians(45)
 _TOOL_DEPTH = 1.1
 # "modified" taper: the most by which the dedendum angles may exceed the standard ones (ISO 23509, annex C.5).
 _LARGEST_TAPER = 1.3
+# Part by which rounded angles of a drawing may miss the sum of a duplex taper: half a minute of 8 deg.
+_ROUNDED = 1e-3
 # Part of the face width that the overlap of ISO 10300-1 counts.
 _EFFECTIVE_WIDTH = 0.85
 
 
-def crown_gear_factors(
-    addendum_share: float, depth: float = 2.0, clearance: float = 0.125, thickness: float = 0.0
-) -> dict[str, float]:
-    """Parameters of :class:`BevelBlank` from the factors of data type II.
-
-    Parameters
-    ----------
-    addendum_share : float
-        c_ham, mean addendum of the wheel over the working depth.
-    depth : float
-        k_d, working depth in mean normal modules.
-    clearance : float
-        k_c, clearance over the working depth.
-    thickness : float
-        k_t, circular thickness factor.
-
-    Returns
-    -------
-    dict
-        ``profile_shift``, ``addendum_factor``, ``dedendum_factor``, ``thickness_modification``.
-
-    References
-    ----------
-    ISO 23509:2016, table 4.
-
-    Examples
-    --------
-    >>> {key: round(value, 5) for key, value in crown_gear_factors(0.24737, thickness=0.0915).items()}
-    {'profile_shift': 0.50526, 'addendum_factor': 1.0, 'dedendum_factor': 1.25, 'thickness_modification': 0.04575}
-    """
-    return {
-        "profile_shift": depth * (0.5 - addendum_share),
-        "addendum_factor": 0.5 * depth,
-        "dedendum_factor": depth * (clearance + 0.5),
-        "thickness_modification": 0.5 * thickness,
-    }
-
-
-def usual_factors(teeth: tuple[int, int], shaft_angle: float = 0.5 * pi) -> dict[str, float]:
-    r"""Mean addendum and thickness factor of data type II where a drawing has none.
-
-    .. math:: c_{ham} = 0.21 + 0.29/u_a^2, \quad
-              k_t = -0.088 + 0.092 u_a - 0.004 u_a^2 + 0.0016 (z_1 - 30)(u_a - 1), \quad
-              u_a = \sqrt{u \cos\delta_1 / \cos\delta_2}
-
-    Parameters
-    ----------
-    teeth : (int, int)
-    shaft_angle : float [rad]
-        Sigma; the equivalent ratio u_a is u = z2/z1 where it is 90 deg.
-
-    Returns
-    -------
-    dict
-        ``addendum_share`` and ``thickness``, as :func:`crown_gear_factors` takes them.
-
-    References
-    ----------
-    ISO 23509:2016, annex C; the numbers of annex F.2 follow from them.
-
-    Examples
-    --------
-    >>> {key: round(value, 4) for key, value in usual_factors((14, 39)).items()}
-    {'addendum_share': 0.2474, 'thickness': 0.0915}
-    """
-    first, second = pitch_angles(teeth, shaft_angle)
-    ratio = teeth[1] / teeth[0]
-    if cos(first) > 0.0 < cos(second):
-        ratio = sqrt(ratio * cos(first) / cos(second))
-    thickness = -0.088 + 0.092 * ratio - 0.004 * ratio**2 + 0.0016 * (teeth[0] - 30) * (ratio - 1.0)
-    return {"addendum_share": 0.21 + 0.29 / ratio**2, "thickness": thickness}
-
-
 BacklashKind = Literal["outer_normal", "outer_transverse", "mean_normal", "mean_transverse"]
+
+
+Cones = tuple[tuple[float, float] | None, tuple[float, float] | None]
+"""Face and root cone of a gear: angle [rad] and how far the apex lies beyond the crossing point [mm]."""
+NO_CONES: Cones = (None, None)
 
 
 @dataclass(frozen=True)
@@ -126,7 +60,7 @@ class BevelBlank:
     outer_module : float [mm]
         m_et, transverse, at the heel; see :meth:`from_wheel_diameter` for d_e2 instead.
     face_width : float [mm]
-        b, along the pitch cone.
+        b, along the pitch cone; of the wheel where the pinion has another.
     shaft_angle : float [rad]
         Sigma, between 0 and pi.
     pressure_angle : float [rad]
@@ -148,6 +82,12 @@ class BevelBlank:
         theta_a2 and theta_f2 instead of those of the taper.
     allow_undercut : bool
         Accept undercut teeth, for members that are not generated.
+    pinion_face_width : float [mm], optional
+        b1, where it is not b.
+    outer_share : float
+        c_be2, part of either face width that lies beyond the calculation point R_m, towards the heel.
+    cones : ((float, float) or None, (float, float) or None) of pinion and wheel [rad], [mm]
+        Face and root cone of a drawing, angle and t_z, instead of those that follow.
 
     Raises
     ------
@@ -189,6 +129,9 @@ class BevelBlank:
     taper: Taper = "standard"
     wheel_angles: tuple[float, float] | None = None
     allow_undercut: bool = False
+    pinion_face_width: float | None = None
+    outer_share: float = 0.5
+    cones: tuple[Cones, Cones] = (NO_CONES, NO_CONES)
 
     @classmethod
     def from_wheel_diameter(
@@ -199,15 +142,24 @@ class BevelBlank:
 
     def with_backlash(self, backlash: float, kind: BacklashKind) -> BevelBlank:
         """The same blanks with a backlash j_en, j_et2, j_mn or j_mt2 [mm] (ISO 23509:2016, formulas 201 to 204)."""
-        outer = cos(self.spiral_angle_at(self.cone_distances[2]))
-        from_mean = self.outer_cone_distance / self.mean_cone_distance
-        normal = {
+        return replace(self, outer_normal_backlash=backlash / self._backlash_ratios[kind])
+
+    @property
+    def backlashes(self) -> dict[BacklashKind, float]:
+        """j_en, j_et2, j_mn and j_mt2 [mm]."""
+        return {kind: ratio * self.outer_normal_backlash for kind, ratio in self._backlash_ratios.items()}
+
+    @property
+    def _backlash_ratios(self) -> dict[BacklashKind, float]:
+        """Backlashes over j_en."""
+        outer = cos(self.spiral_angle_at(self.outer_cone_distance))
+        to_mean = self.mean_cone_distance / (self.outer_cone_distance * outer)
+        return {
             "outer_normal": 1.0,
-            "outer_transverse": cos(self.pressure_angle) * outer,
-            "mean_normal": outer * from_mean / cos(self.spiral_angle),
-            "mean_transverse": cos(self.pressure_angle) * outer * from_mean,
+            "outer_transverse": 1.0 / (cos(self.pressure_angle) * outer),
+            "mean_normal": cos(self.spiral_angle) * to_mean,
+            "mean_transverse": to_mean / cos(self.pressure_angle),
         }
-        return replace(self, outer_normal_backlash=backlash * normal[kind])
 
     def __post_init__(self) -> None:
         self._check_inputs()
@@ -215,10 +167,24 @@ class BevelBlank:
         self._check_cones()
         for gear in (self.pinion, self.wheel):
             gear.check(self.allow_undercut)
+        for gear, clearances in zip((self.pinion, self.wheel), self.clearances, strict=True):
+            if not min(clearances) > 0.0:
+                place = SECTIONS[clearances.index(min(clearances))]
+                raise GeometryError(
+                    f"{gear.name}: the clearance above its root is {min(clearances):.4f} mm at the {place}: tips of the"
+                    " mating gear would cut into it; its root cone or the mating face cone is not that of this pair"
+                )
 
     def _check_inputs(self) -> None:
         """Refuse values out of their own ranges, then depths and tapers that do not go together."""
-        positive = "outer_module", "face_width", "cutter_radius", "addendum_factor", "dedendum_factor"
+        positive = (
+            "outer_module",
+            "face_width",
+            "cutter_radius",
+            "addendum_factor",
+            "dedendum_factor",
+            "pinion_face_width",
+        )
         backlash, spiral = self.outer_normal_backlash, self.spiral_angle
         shallow = self.wheel_angles is None or all(abs(angle) < _MAX_DEPTH_ANGLE for angle in self.wheel_angles)
         require(
@@ -230,15 +196,21 @@ class BevelBlank:
                 0.0 <= spiral < LARGEST_SPIRAL_ANGLE,
                 f"spiral_angle: {spiral:.6g} rad is not from 0 to below 1.047 rad (60 deg)",
             ),
+            (0.0 < self.outer_share < 1.0, f"outer_share: {self.outer_share} is not between 0 and 1"),
+            *(
+                half_turn
+                for cone in (one for both in self.cones for one in both if one is not None)
+                for half_turn in half_turn_checks(cones=cone[0])
+            ),
             (shallow, f"wheel_angles: {self.wheel_angles} rad are not within 0.785 rad (45 deg)"),
         )
         smallest = self.mean_cone_distance * sin(spiral)
         any_cutter = self.taper not in ("duplex", "modified") or self.wheel_angles is not None
         require(
             (
-                self.dedendum_factor >= self.addendum_factor,
-                f"dedendum_factor: {self.dedendum_factor} is below addendum_factor {self.addendum_factor}: tips of the"
-                " mating gear would cut into the root",
+                self.dedendum_factor > self.addendum_factor,
+                f"dedendum_factor: {self.dedendum_factor} is not above addendum_factor {self.addendum_factor}: no"
+                " clearance is left, tips of the mating gear would cut into the root",
             ),
             (self.taper in get_args(Taper), f"taper: {self.taper!r} is not one of {', '.join(get_args(Taper))}"),
             (
@@ -250,12 +222,16 @@ class BevelBlank:
 
     def _check_face(self) -> None:
         """Refuse faces without toe, or beyond the reach of the cutter."""
-        if self.face_width >= self.outer_cone_distance:
-            raise GeometryError(
-                f"face_width {self.face_width:.6g} mm reaches the apex: no face is left at the toe; it must be below"
-                f" the outer cone distance {self.outer_cone_distance:.6g} mm"
-            )
-        for place, distance in zip(SECTIONS, self.cone_distances, strict=True):
+        for width, distances in zip(
+            (self.face_widths[1], self.face_widths[0]), self._both_distances[::-1], strict=True
+        ):
+            if not distances[0] > 0.0:
+                raise GeometryError(
+                    f"face_width {width:.6g} mm reaches the apex: no face is left at the toe; it must be below"
+                    f" the outer cone distance {distances[2]:.6g} mm"
+                )
+        both = [pair for distances in self._both_distances[::-1] for pair in zip(SECTIONS, distances, strict=True)]
+        for place, distance in both:
             if not abs(self._sine_of_spiral(distance)) < 1.0:
                 raise GeometryError(
                     f"cutter_radius {self.cutter_radius} mm: its circle does not cross the cone distance"
@@ -285,14 +261,40 @@ class BevelBlank:
 
     @property
     def mean_cone_distance(self) -> float:
-        """R_m = R_e - b/2 [mm]."""
-        return self.outer_cone_distance - 0.5 * self.face_width
+        """R_m = R_e - c_be2 b, of the calculation point [mm]."""
+        return self.outer_cone_distance - self.outer_share * self.face_width
+
+    @property
+    def face_widths(self) -> tuple[float, float]:
+        """b1, b2 [mm]."""
+        return self.pinion_face_width or self.face_width, self.face_width
+
+    @property
+    def has_own_faces(self) -> bool:
+        """Whether the faces are unlike, or their calculation point lies off their middles."""
+        return self.face_widths[0] != self.face_widths[1] or self.outer_share != 0.5
 
     @property
     def cone_distances(self) -> Triple:
-        """R_i, R_m, R_e [mm]."""
-        outer, half = self.outer_cone_distance, 0.5 * self.face_width
-        return outer - 2.0 * half, outer - half, outer
+        """R_i, R_m, R_e of the wheel, and of the pinion where its face is as wide [mm]."""
+        return self._both_distances[1]
+
+    @property
+    def _both_distances(self) -> tuple[Triple, Triple]:
+        """R_i, R_m, R_e of pinion and wheel [mm]."""
+        mean = self.mean_cone_distance
+        pinion, wheel = (
+            (mean - (1.0 - self.outer_share) * width, mean, mean + self.outer_share * width)
+            for width in self.face_widths
+        )
+        return pinion, wheel
+
+    @property
+    def clearances(self) -> tuple[Triple, Triple]:
+        """Clearances above the roots of pinion and wheel at toe, calculation point and heel [mm]."""
+        both_ways = (self.pinion, self.wheel), (self.wheel, self.pinion)
+        pinion, wheel = (tuple((own.dedenda - mating.addenda).tolist()) for own, mating in both_ways)
+        return pinion, wheel
 
     @property
     def mean_transverse_module(self) -> float:
@@ -381,8 +383,12 @@ class BevelBlank:
 
     @property
     def has_constant_slots(self) -> bool:
-        """Whether the taper leaves slots of constant width for a circular cutter."""
-        return self.cutter_radius is not None and isclose(sum(self.dedendum_angles), self.constant_slot_taper)
+        """Whether the root cones leave slots of constant width for a circular cutter, as far as angles are rounded."""
+        angles = [
+            theta if root is None else pitch - root[0]
+            for theta, pitch, (_, root) in zip(self.dedendum_angles, self.pitch_angles, self.cones, strict=True)
+        ]
+        return self.cutter_radius is not None and isclose(sum(angles), self.constant_slot_taper, rel_tol=_ROUNDED)
 
     @property
     def _mean_addenda(self) -> tuple[float, float]:
@@ -415,7 +421,7 @@ class BevelBlank:
         """x_hm that keeps the straight blade of the tool, at toe and heel, outside the flank of a gear."""
         module, pressure = self.mean_normal_module, self.pressure_angle
         needed = []
-        for distance in (self.cone_distances[0], self.cone_distances[2]):
+        for distance in self._both_distances[member][::2]:
             depth = self.addendum_factor * module
             depth += (distance - self.mean_cone_distance) * tan(self.dedendum_angles[member])
             spiral = self.spiral_angle_at(distance)
@@ -427,18 +433,18 @@ class BevelBlank:
     def _gear(self, member: int) -> BlankGear:
         sign = (1.0, -1.0)[member]
         shift, module = sign * self.profile_shift, self.mean_normal_module
-        toe, middle, heel = self.cone_distances
+        toe, middle, heel = self._both_distances[member]
         # What the backlash takes from the thickness modification of either gear: j_en at the heel brought to R_m.
-        narrower = middle * cos(self.spiral_angle) / (heel * cos(self.spiral_angle_at(heel)))
+        outer = self.outer_cone_distance
+        narrower = middle * cos(self.spiral_angle) / (outer * cos(self.spiral_angle_at(outer)))
         backlash = self.outer_normal_backlash * narrower / (4.0 * module * cos(self.pressure_angle))
         thickening = sign * self.thickness_modification - backlash
-        face_apex, root_apex = self._apexes[member]
-        return BlankGear(
+        gear = BlankGear(
             name=("pinion", "wheel")[member],
             teeth=self.teeth[member],
             pitch_angle=self.pitch_angles[member],
             pressure_angle=self.pressure_angle,
-            cone_distances=self.cone_distances,
+            cone_distances=(toe, middle, heel),
             spiral_angles=(self.spiral_angle_at(toe), self.spiral_angle_at(middle), self.spiral_angle_at(heel)),
             mean_addendum=self._mean_addenda[member],
             mean_dedendum=self._mean_dedenda[member],
@@ -447,10 +453,12 @@ class BevelBlank:
             mean_normal_thickness=module * (0.5 * pi + 2.0 * (thickening + shift * tan(self.pressure_angle))),
             profile_shift=shift,
             smallest_profile_shift=self._smallest_profile_shift(member),
-            face_apex=face_apex,
-            root_apex=root_apex,
+            face_apex=self._apexes[member][0],
+            root_apex=self._apexes[member][1],
             constant_slots=self.has_constant_slots,
         )
+        face, root = self.cones[member]
+        return gear.with_cones(face, root)
 
     @cached_property
     def pinion(self) -> BlankGear:

@@ -1,13 +1,15 @@
 """One gear of a pair of bevel blanks: what follows from its cones, depths and thicknesses (ISO 23509).
 
-Lengths are in mm, angles in rad; arrays of three are values at toe, mid-face and heel. Along the face the depth follows
-straight cones; the tooth thickness follows the normal pitch, or where slots are of constant width what these leave.
+Lengths are in mm, angles in rad; arrays of three are values at toe, mean point and heel. Along the face the depth
+follows straight cones; the tooth thickness follows the normal pitch, or where slots are of constant width what these
+leave.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import acos, cos, pi, sin, tan
+from dataclasses import dataclass, replace
+from math import acos, cos, inf, pi, sin, tan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +19,7 @@ from loaded_tca.gears.involute import involute
 
 Triple = tuple[float, float, float]
 
-SECTIONS = ("toe", "mid-face", "heel")
+SECTIONS = ("toe", "mean point", "heel")
 
 # Height over radius, or angle, below which the virtual gear is a rack: cancellation would cost more than curvature.
 _RACK = 1e-8
@@ -61,7 +63,7 @@ class BlankGear:
     pitch_angle, pressure_angle : float [rad]
         delta and alpha_n.
     cone_distances, spiral_angles : (float, float, float) [mm], [rad]
-        R and beta at toe, mid-face, heel.
+        R and beta at toe, mean point, heel.
     mean_addendum, mean_dedendum : float [mm]
         h_am and h_fm, normal to the pitch cone.
     addendum_angle, dedendum_angle : float [rad]
@@ -138,6 +140,35 @@ class BlankGear:
         return self.pitch_diameters - 2.0 * cos(self.pitch_angle) * self.dedenda
 
     @property
+    def mean_point_to_crossing(self) -> float:
+        """t_zm = R_m cos(delta): calculation point from the crossing point of the axes, along the own axis [mm]."""
+        return self.cone_distances[1] * cos(self.pitch_angle)
+
+    @property
+    def outer_whole_depth(self) -> float:
+        r"""h_t, whole depth at the heel, normal to the root cone [mm].
+
+        .. math:: h_t = \frac{t_{xo} + t_{zF}}{\cos\delta_a} \sin(\theta_a + \theta_f)
+                  - (t_{zR} - t_{zF}) \sin\delta_f
+        """
+        along = (float(self.crown_to_crossing[2]) + self.face_apex) / cos(self.face_angle)
+        between = sin(self.addendum_angle + self.dedendum_angle)
+        return along * between - (self.root_apex - self.face_apex) * sin(self.root_angle)
+
+    @property
+    def thickness_coefficient(self) -> float:
+        """x_sm: what thickens the tooth beyond pi/2 and profile shift, over two mean normal modules; backlash in it."""
+        module = float(self.normal_pitches[1]) / pi
+        thick = 0.5 * self.mean_normal_thickness / module
+        return thick - 0.25 * pi - self.profile_shift * tan(self.pressure_angle)
+
+    @property
+    def virtual_diameter(self) -> float:
+        """d_mn of the virtual spur gear in the mean normal section; infinite of a crown gear [mm]."""
+        bend = float(self.virtual_curvatures[1])
+        return 2.0 / bend if bend else inf
+
+    @property
     def crown_to_crossing(self) -> NDArray[np.float64]:
         """t_xi, t_xm, t_xo: tip from the crossing point of the axes, along the own axis [mm]."""
         return cos(self.pitch_angle) * np.array(self.cone_distances) - sin(self.pitch_angle) * self.addenda
@@ -158,7 +189,7 @@ class BlankGear:
 
     @property
     def mean_slot_width(self) -> float:
-        """W_m, width of the slot at its bottom at mid-face, the theoretical point width of a cutter [mm]."""
+        """W_m, width of the slot at its bottom at the mean point, the theoretical point width of a cutter [mm]."""
         return float(self.slot_widths[1])
 
     @property
@@ -198,6 +229,33 @@ class BlankGear:
         angle = self.mean_normal_thickness * bend
         rise = 0.0 if abs(angle) < _RACK else sin(0.5 * angle) ** 2 / bend
         return self.mean_addendum + cos(self.pitch_angle) * rise
+
+    def with_cones(self, face: tuple[float, float] | None = None, root: tuple[float, float] | None = None) -> BlankGear:
+        """Return the gear between other cones, given by angle [rad] and t_z [mm]; its depths follow from them."""
+        changes: dict[str, Any] = {}
+        for name, cone, sign in (("addendum", face, 1.0), ("dedendum", root, -1.0)):
+            if cone is not None:
+                angle, apex = cone
+                above = angle - self.pitch_angle
+                height = (self.cone_distances[1] * sin(above) + apex * sin(angle)) / cos(above)
+                changes |= {f"{name}_angle": sign * above, f"mean_{name}": sign * height}
+                changes["face_apex" if face is cone else "root_apex"] = apex
+        return replace(self, **changes) if changes else self
+
+    @property
+    def edge_radius_of_slot(self) -> float:
+        r"""Largest radius of the blade tips that fit side by side on the bottom of the slot where it is narrowest [mm].
+
+        .. math:: r = \frac{W}{2 \tan(45° - \alpha_n/2)}
+        """
+        return 0.5 * float(self.slot_widths.min()) / tan(0.25 * pi - 0.5 * self.pressure_angle)
+
+    def edge_radius_of_clearance(self, clearance: float) -> float:
+        r"""Largest radius of the blade tips whose rounding stays below the mating gear's tip, c above the root [mm].
+
+        .. math:: r = \frac{c}{1 - \sin\alpha_n}
+        """
+        return clearance / (1.0 - sin(self.pressure_angle))
 
     def check(self, allow_undercut: bool) -> None:
         """Raise GeometryError where this gear cannot exist; the message says where, and what to change."""

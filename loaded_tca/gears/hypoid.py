@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, asin, atan, atan2, cos, hypot, inf, pi, sin, sqrt, tan
+from math import acos, asin, atan, atan2, cos, hypot, inf, nan, pi, sin, sqrt, tan
 
 import numpy as np
 from scipy.optimize import brentq
@@ -34,8 +34,9 @@ Both = tuple[float, float]
 """Of pinion and wheel."""
 
 MOST_ROUNDS = 100
-CLOSED = 1e-15
-"""Changes of the offset angle [rad] below which cones close."""
+CLOSED, MISSED = 1e-15, 1e-10
+"""Changes of the offset angle [rad] that end the search, and the part of the cone distances by which the offset may be
+missed then."""
 ETA_STEPS = 60
 """Parts of the range of the wheel offset angle in which method 1 is looked for."""
 
@@ -138,23 +139,27 @@ class HypoidCones:
         ----------
         ISO 23509:2016, formulas 113 and 114.
         """
-        first, second = pitch_angles
-        zeta = nan = float("nan")
-        for _ in range(MOST_ROUNDS):
-            before = zeta
-            zeta = _offset_angle((first, second), mean_cone_distances, offset, shaft_angle)
+        second = pitch_angles[1]
+        start = _offset_angle(pitch_angles, mean_cone_distances, offset, shaft_angle)
+
+        def first_at(zeta: float) -> float:
             size = hypot(cos(second) * cos(zeta), sin(second))
-            first = nan
-            if abs(cos(shaft_angle)) <= size:
-                first = acos(cos(shaft_angle) / size) - atan2(sin(second), cos(second) * cos(zeta))
-            if not 0.0 < first < 0.5 * pi:
-                break
-            if abs(zeta - before) <= CLOSED:
-                return cls((first, second), mean_cone_distances, zeta)
-        raise InputError(
-            f"pitch_angles: with a wheel of {second:.6g} rad no pinion closes on an offset of {offset:g} mm and a "
-            f"shaft angle of {shaft_angle:.6g} rad"
-        )
+            turned = cos(shaft_angle) / size
+            return acos(turned) - atan2(sin(second), cos(second) * cos(zeta)) if abs(turned) <= 1.0 else nan
+
+        def open_by(zeta: float) -> float:
+            first = first_at(zeta)
+            reach = _reach((first, second), mean_cone_distances)
+            return reach * sin(zeta) * cos(first) / sin(shaft_angle) - offset
+
+        zeta = _secant(open_by, start, start * (1.0 + 1e-6))
+        first = first_at(zeta)
+        if not (0.0 < first < 0.5 * pi and abs(open_by(zeta)) < MISSED * sum(mean_cone_distances)):
+            raise InputError(
+                f"pitch_angles: with a wheel of {second:.6g} rad no pinion closes on an offset of {offset:g} mm and a "
+                f"shaft angle of {shaft_angle:.6g} rad"
+            )
+        return cls((first, second), mean_cone_distances, zeta)
 
     @property
     def radii(self) -> Both:
@@ -227,15 +232,36 @@ class HypoidCones:
         return OffsetFrame(origin, np.array([radial, np.cross(axis, radial), axis]), normal, points)
 
 
+def _secant(function: Callable[[float], float], before: float, at: float) -> float:
+    """Root by the secant method; where the function is not a number that ends it."""
+    last, value = function(before), function(at)
+    for _ in range(MOST_ROUNDS):
+        if not abs(at - before) > CLOSED or value == last:
+            break
+        before, at, last = at, at - value * (at - before) / (value - last), value
+        value = function(at)
+    return at
+
+
 def _offset_angle(pitch_angles: Both, distances: Both, offset: float, shaft_angle: float) -> float:
-    """zeta_mp [rad] of an offset [mm]; InputError where it is too large for the cones."""
-    first, second = pitch_angles
-    reach = distances[1] * sin(second) + distances[0] * sin(first) * cos(second) / cos(first)
+    """zeta_mp [rad] of an offset [mm]; InputError where it is too large for the cones, or these stand nowhere."""
+    first = pitch_angles[0]
+    reach = _reach(pitch_angles, distances)
+    if not (first < 0.5 * pi and reach > 0.0):
+        raise InputError(
+            f"pitch_angles: no pinion of {first:.6g} rad stands beside a wheel of {pitch_angles[1]:.6g} rad"
+        )
     sine = offset / reach * sin(shaft_angle) / cos(first)
     if not (abs(offset) < reach and abs(sine) < 1.0):
         largest = reach * min(1.0, cos(first) / sin(shaft_angle))
         raise InputError(f"offset: {offset:g} mm is too large for these pitch cones; allowed below {largest:.6g} mm")
     return asin(sine)
+
+
+def _reach(pitch_angles: Both, distances: Both) -> float:
+    """a/sin(zeta_m) [mm], half of d_m2 + d_m1 cos(delta_2)/cos(delta_1)."""
+    first, second = pitch_angles
+    return distances[1] * sin(second) + distances[0] * sin(first) * cos(second) / cos(first)
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,17 @@ import math
 from collections.abc import Iterator
 from itertools import chain
 
+import numpy as np
+
 from loaded_tca.analysis import expected_effort, rounded
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
+from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
+from loaded_tca.output.shafts import rolling_figures
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figures import RIM_LABEL
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
+from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.root_stress import rim_factor
 from loaded_tca.results.summary import shown
 from loaded_tca.results.warnings import questions, warn_of_gears
@@ -58,6 +63,7 @@ def scene_sections(scene: Scene) -> dict[str, list[Row]]:
         "geometry": [*scene.geometry_rows()],
         "path of contact": [*_path_rows(scene, pair)],
         "load and analysis": [*_asked_rows(scene, pair)],
+        "bearings": [*_bearing_rows(scene)],
         "ISO 6336": [*_standard_rows(scene, pair)],
         "mounting errors, edges and modifications": [*_departures(scene)],
         "flanks described by points": [*_spline_rows(scene, pair)],
@@ -98,6 +104,25 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
             "bore and outside of the ring held rigid [mm]" if scene.wheel.teeth < 0 else "bores or journals held rigid"
         )
         yield held, *(f"{bore:.4f}" for bore in pair.rigid_bores)
+
+
+def _bearing_rows(scene: Scene) -> Iterator[Row]:
+    """Forces on the bearings of shafts, and what rolling bearings make of them, without contact."""
+    if not any(scene.have_shafts):
+        return
+    torques = _shown_torques(scene)
+    by_gear: dict[str, list[ShaftLine]] = {gear: [] for gear in GEARS}
+    for line in shaft_lines(scene):
+        if line.torque in torques:
+            by_gear[line.gear].append(line)
+    for gear, lines in by_gear.items():
+        for n, bearing in enumerate(lines[0].shaft.bearings if lines else ()):
+            forces = (float(np.linalg.norm(line.bearing_forces[n, :3])) for line in lines)
+            yield f"{gear}, bearing {n} at {bearing.at:g} mm: force [N]", *(f"{force:.1f}" for force in forces)
+            inside = [rolling_figures(line, n) for line in lines]
+            if any(inside):
+                yield "  largest element force [N]", *(f"{one['element_force_N']:.1f}" for one in inside)
+                yield "  life [million revolutions]", *(f"{one['life_Mrev']:.4g}" for one in inside)
 
 
 def _shown_torques(scene: Scene) -> tuple[float, ...]:

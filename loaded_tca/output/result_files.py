@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.results.files import Buffer, FilePath, Part, replace_together
+from loaded_tca.results.findings import NAMES as EDGES
+from loaded_tca.results.findings import reached_edges
 from loaded_tca.results.key_figures import ARCSEC
-from loaded_tca.results.mesh_cycle import NAMES as EDGES
-from loaded_tca.results.mesh_cycle import MeshCycle, reached_edges
+from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.quantities import (
     BEARING_QUANTITIES,
     CYCLE,

@@ -55,6 +55,7 @@ def stage_json(result: StageResult) -> str:
         "ring_mesh_phase": result.ring_mesh_phase.tolist(),
         "torques": rows,
         "orders_under_the_last_torque": orders,
+        "findings": list(result.findings()),
         "warnings": list(result.warnings),
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"

@@ -5,6 +5,8 @@ from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, MatingTeeth, Sense, mating_teeth
 from loaded_tca.pairs.internal import internal_pair
+from loaded_tca.pairs.mean_point import MeanContact
+from loaded_tca.pairs.synthesis import local_synthesis, mean_contact
 
 __all__ = [
     "BevelMounting",
@@ -12,11 +14,14 @@ __all__ = [
     "Gear",
     "GearPair",
     "MatingTeeth",
+    "MeanContact",
     "Mounting",
     "Sense",
     "bevel_pair",
     "cylindrical_pair",
     "face_milled_pair",
     "internal_pair",
+    "local_synthesis",
     "mating_teeth",
+    "mean_contact",
 ]

@@ -148,7 +148,7 @@ def bevel_pair(
         driving=drive,
         module=mesh.pinion.mean_normal_module,
         base_radii=(mesh.pinion.mean_base_radius, mesh.wheel.mean_base_radius),
-        face_width=mesh.pinion.face_width,
+        face_width=min(mesh.pinion.face_width, mesh.wheel.face_width),
     )
 
 

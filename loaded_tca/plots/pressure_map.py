@@ -44,6 +44,7 @@ from loaded_tca.plots.style import (
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.stress_below import NAMES, Quantity, StressBelow, depth_of_largest
+from loaded_tca.results.support_growth import standing
 from loaded_tca.separation import slice_middles
 from loaded_tca.unloaded.scan import edge_distances
 
@@ -140,7 +141,7 @@ def draw_map(
     """
     one = result.maps[torque][at[0]][at[1]]
     assert one is not None
-    _draw_pressure(axes, result.gear_pair, one, highest)
+    _draw_pressure(axes, standing(result, torque)[0].gear_pair, one, highest)
     names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
     minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
     if math.isfinite(pressure):
@@ -364,6 +365,7 @@ def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array
     Of each map all cells, and from each position to the next the ridge of the pressure, which no place between sees
     anything higher than.
     """
+    pair = standing(result, torque)[0].gear_pair
     for passage in zip(*result.maps[torque], strict=True):
         before = None
         for one in passage:
@@ -374,7 +376,7 @@ def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array
             cells = points_of_cells(one, loaded, to_picture, field)
             pressure = np.repeat(one.pressure[loaded], cells.shape[1]).reshape(cells.shape[:2])
             if np.isinf(one.gap).any():  # cells that an edge cuts reach beyond the flanks
-                within = edge_distances(result.gear_pair, cells).min(axis=-1) >= 0.0
+                within = edge_distances(pair, cells).min(axis=-1) >= 0.0
                 cells, pressure = cells[within], pressure[within]
             yield to_picture(cells).reshape(-1, 2), pressure.ravel()
             points, height = _ridge(one)

@@ -72,10 +72,9 @@ def scene_content(scene: Scene) -> dict[str, Any]:
     """Return what the templates take of a scene: what was asked, the geometry, the text of the file."""
     sections = scene_sections(scene)
     asked = [*sections["load and analysis"], *sections["mounting errors, edges and modifications"]]
-    standard = "ISO 21771" if scene.path_points else "ISO 23509"
     path = sections["path of contact"]
     geometry = [
-        *tables_of(sections["geometry"], f"Geometry ({standard})"),
+        *tables_of(sections["geometry"], f"Geometry ({scene.geometry_standard})"),
         *([Table(tuple(path[1:]), tuple(path[0]), "Path of contact")] if path else []),
         *tables_of(sections["ISO 6336"], "ISO 6336"),
         *tables_of(sections["flanks described by points"], "Flanks described by points"),

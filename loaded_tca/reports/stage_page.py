@@ -32,6 +32,7 @@ def stage_content(result: StageResult) -> dict[str, Any]:
         "cancelled": phases[-1],
         "key_figures": [_key_figures(result, part) for part in parts_of(result.torque.tolist(), MOST_TORQUES)],
         "shares": _shares(result),
+        "findings": result.findings(),
         "orders": _orders(result),
         "files": FILES[1:],
         "warnings": explained(result.warnings),

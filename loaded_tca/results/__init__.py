@@ -1,7 +1,8 @@
 """Results of an analysis: the mesh cycle, its figures and file, stresses below the flanks, comparisons."""
 
 from loaded_tca.results.comparison import Comparison, compare_results
-from loaded_tca.results.mesh_cycle import MeshCycle, reached_edges
+from loaded_tca.results.findings import reached_edges
+from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.revolution import Revolution, Spectrum
 from loaded_tca.results.root_stress import RootStressMap

@@ -256,6 +256,13 @@ FIGURES: dict[str, Figure] = {
         is_compared=True,
         needs="misalignment",
     ),
+    "wind_up_mean_um": Figure(
+        of=lambda under: mean_over_a_pitch(under.wind_up) * under.length,
+        axis="mean wind-up",
+        label="wind-up in it, mean",
+        is_compared=True,
+        needs="wind_up",
+    ),
     "drive_stiffness_mean_N_per_mm_um": Figure(
         of=lambda under: mean_over_a_pitch(under.drive_stiffness), axis="mean drive stiffness", needs="drive_stiffness"
     ),
@@ -358,6 +365,7 @@ SUMMARY: tuple[Line, ...] = (
     Line(*STIFFNESS_ROW),
     Line("  with supports [N/(mm um)]", ("drive_stiffness_mean_N_per_mm_um",)),
     Line("misalignment of the supports, mean [um]", ("misalignment_mean_um",)),
+    Line("wind-up of the shafts in the transmission error, mean [um]", ("wind_up_mean_um",)),
     Line("largest element force in bearings of pinion | wheel [N]", tuple(f"{gear}_element_force_N" for gear in GEARS)),
     Line("  largest pressure there [MPa]", tuple(f"{gear}_element_pressure_MPa" for gear in GEARS)),
     Line("  shortest life [million revolutions]", tuple(f"{gear}_bearing_life_Mrev" for gear in GEARS)),

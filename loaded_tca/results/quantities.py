@@ -138,6 +138,11 @@ SUPPORT_QUANTITIES: dict[str, Part] = {
         "misalignment F_beta of the motions over the common face, signs as of mounting.misalignment_um; NaN for bevel "
         "gears",
     ),
+    "wind_up": (
+        CYCLE,
+        "rad",
+        "part of the transmission error by the rotation of both gears about their axes against their shafts' ends",
+    ),
     "drive_stiffness": (CYCLE, "N/(mm um)", "mesh stiffness with what the supports give way"),
     **{
         f"{gear}_support_load": (

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -73,6 +74,23 @@ class UnderOneTorque(CycleNumbers):
             for support, load in zip(self.supports.supports, self.held, strict=True)
         )
         return pinion, wheel
+
+
+_STANDING: WeakKeyDictionary[CycleNumbers, dict[int, UnderOneTorque]] = WeakKeyDictionary()
+"""Results on supports, in the gears as they stand, by the index of the torque."""
+
+
+def standing(result: CycleNumbers, torque: int) -> tuple[CycleNumbers, int]:
+    """A result whose gears stand as they do under a torque, by its index, and the index that it has there.
+
+    The result itself where no support gives way, else that of :func:`under_one_torque`, which is kept.
+    """
+    if not result.scene.is_supported:
+        return result, torque
+    kept = _STANDING.setdefault(result, {})
+    if torque not in kept:
+        kept[torque] = under_one_torque(result, torque)
+    return kept[torque], 0
 
 
 def under_one_torque(result: CycleNumbers, torque: int) -> UnderOneTorque:

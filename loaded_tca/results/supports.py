@@ -56,6 +56,7 @@ def support_arrays(
             "pinion_motion": np.stack([one[0] for one in motions]),
             "wheel_motion": np.stack([one[1] for one in motions]),
             "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),
+            "wind_up": -pair.driving * np.stack([_wind_up(one) for one in cycles]),
             "drive_stiffness": np.stack([one.drive_rate for one in cycles]) * stiffness_per_rate,
             **{f"{gear}_support_load": np.stack([one.held[n] for one in cycles]) for n, gear in enumerate(GEARS)},
         }
@@ -157,6 +158,16 @@ def secant_on_rigid_supports(carried: Carried, cycles: Sequence[CarriedOnSupport
                 rotation = carried.rotation[t, n] - work / moment
                 secant[t, n] = carried.torque[t] / rotation if rotation > 0.0 else math.nan
     return secant
+
+
+def _wind_up(one: OnSupports) -> Array:
+    """How far the wheel stays behind (n,) [rad] by what both gears turn about their axes, from no torque on."""
+    torques = np.abs(one.loads[1].reshape(len(one.loads[1]), -1, 6)[..., 5].sum(axis=1))
+    work = np.zeros(len(torques))
+    for support, loads in zip(_parts(one).supports, one.loads, strict=True):
+        moved = np.stack([support.moved(load) for load in loads]) - support.at_rest
+        work += (loads * moved).reshape(len(loads), -1, 6)[..., 5].sum(axis=1)
+    return np.asarray(work / np.where(torques > 0.0, torques, 1.0))
 
 
 def _parts(one: OnSupports) -> SupportCompliance:

@@ -8,11 +8,12 @@ module, with ``@family`` and its types over its class, and one line of import be
 
 # ruff: noqa: I001  -- the order of import is the order in which messages and documents name the families
 
-from loaded_tca.scene import cylindrical, internal, bevel, face_milled
+from loaded_tca.scene import cylindrical, internal, bevel, face_milled, blank_face_milled
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.internal import InternalScene
 from loaded_tca.scene.bevel import BevelScene
 from loaded_tca.scene.face_milled import FaceMilledScene
+from loaded_tca.scene.blank_face_milled import BlankFaceMilledScene
 from loaded_tca.scene.parse import describe_keys
 from loaded_tca.scene.hypoid_table import hypoid_table
 from loaded_tca.scene.flank_form import FlankForm, Measurement
@@ -23,6 +24,7 @@ from loaded_tca.scene.sections import Analysis, ElasticMaterial, Load, Modificat
 __all__ = [
     "Analysis",
     "BevelScene",
+    "BlankFaceMilledScene",
     "CylindricalScene",
     "ElasticMaterial",
     "FaceMilledScene",
@@ -33,6 +35,7 @@ __all__ = [
     "Modifications",
     "Scene",
     "bevel",
+    "blank_face_milled",
     "cylindrical",
     "describe_keys",
     "face_milled",

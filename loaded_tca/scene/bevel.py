@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan, cos, degrees, radians, sin, tan
-from typing import ClassVar, Literal, get_args
+from typing import ClassVar, Literal
 
 from loaded_tca.errors import require
-from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.checks import LARGEST_PRESSURE_ANGLE
@@ -17,10 +15,12 @@ from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import spiral
-from loaded_tca.scene.bevel_blank import Blank, blank_rows, settings_table
+from loaded_tca.scene.bevel_blank import MEASURED, MEASURED_RULES, Blank, Measured, settings_table
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
+from loaded_tca.scene.blank_rows import blank_rows, common_blank_rows
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
+from loaded_tca.scene.machine_settings import METHODS, Method, Settings
 from loaded_tca.scene.model import Row, Scene, family, scene_from_table
 from loaded_tca.scene.section import Rule, as_table, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, ERROR_mm, Pair
@@ -28,6 +28,7 @@ from loaded_tca.scene.spiral import MountingErrors, SpiralScene
 
 SPIRAL_deg = Number(0.0, 59.0)
 CONE_deg = above_zero(179.0)
+DEPTH_mm = above_zero(1000.0)
 PRESSURE_deg = Number(1.0, 44.0)
 USUAL_PRESSURE_deg = 20.0
 OF_BLANK = "face_angle", "root_angle", "face_apex", "root_apex", "mean_normal_thickness"
@@ -40,14 +41,14 @@ OF_EQUATIONS = (
     "root_angle_deg",
     "face_apex_mm",
     "root_apex_mm",
+    *MEASURED,
 )
 """Keys of a gear that a face-milled one has in its blank, or not."""
-Method = Literal["duplex_spread_blade", "spread_blade"]
 ROUNDING = 1e-9
 """Cone angles closer than this [rad] are the same."""
 
 
-def _too_steep(normal: float | None, spiral: float | None) -> str | None:
+def too_steep(normal: float | None, spiral: float | None) -> str | None:
     """What is wrong with a normal pressure angle [deg] whose transverse one is more than a gear may have."""
     largest = degrees(atan(tan(LARGEST_PRESSURE_ANGLE) * cos(radians(spiral or 0.0))))
     if normal is None or normal <= largest:
@@ -59,7 +60,8 @@ def _too_steep(normal: float | None, spiral: float | None) -> str | None:
 SIZES = "outer_module_mm", "mean_normal_module_mm", "wheel_outer_diameter_mm"
 
 
-def _one_size(*values: float | None) -> str | None:
+def one_size(*values: float | None) -> str | None:
+    """What is wrong with the sizes that are given."""
     given = [name for name, value in zip(SIZES, values, strict=True) if value is not None]
     if len(given) == 1:
         return None
@@ -117,7 +119,7 @@ class Geometry(Pair):
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        Rule(SIZES, _one_size),
+        Rule(SIZES, one_size),
         rule(
             ("spiral_angle_deg", "type"),
             lambda spiral, kind: not spiral or kind == "spiral_bevel",
@@ -139,7 +141,12 @@ class Geometry(Pair):
             lambda *both: None in both,
             "found {0:g} beside pressure_angle_deg = {1:g}; give one of the two",
         ),
-        Rule(("normal_pressure_angle_deg", "spiral_angle_deg"), _too_steep),
+        Rule(("normal_pressure_angle_deg", "spiral_angle_deg"), too_steep),
+        rule(
+            ("blank.lengthwise_curve", "spiral_angle_deg"),
+            lambda curve, spiral: curve == "logarithmic" or bool(spiral),
+            'found "{0}"; allowed with a spiral_angle_deg above 0 alone',
+        ),
     )
 
 
@@ -153,6 +160,19 @@ class GearSection(BlankGearSection):
         ERROR_mm, "apex t_zF of the face cone, beyond the crossing point of the axes, away from the teeth", None, "0"
     )
     root_apex_mm: float | None = key(ERROR_mm, "apex t_zR of the root cone, likewise", None, "0")
+    mean_addendum_mm: float | None = key(
+        DEPTH_mm, "with [pair.blank]: measured mean addendum h_am, instead of data type I or II", None, "by the blank"
+    )
+    mean_dedendum_mm: float | None = key(
+        DEPTH_mm, "with [pair.blank]: measured mean dedendum h_fm, likewise", None, "by the blank"
+    )
+    mean_normal_thickness_mm: float | None = key(
+        DEPTH_mm,
+        "with [pair.blank]: measured mean normal thickness s_mn, circular, of both gears: backlash and thickness "
+        "modification follow",
+        None,
+        "by the blank",
+    )
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankGearSection.rules,
@@ -205,20 +225,12 @@ class BevelScene(SpiralScene, BlankScene):
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankScene.rules,
         rule(
-            ("wheel.face_width_mm", "pinion.face_width_mm"),
-            operator.eq,
+            ("wheel.face_width_mm", "pinion.face_width_mm", "pair.blank"),
+            lambda wheel, pinion, blank: blank is not None or wheel == pinion,
             "found {0:g}; allowed pinion.face_width_mm = {1:g}: both gears end on the same spheres",
         ),
         spiral.AXES_THAT_MEET,
-        *(
-            rule(
-                (f"{gear}.{name}", "pair.blank"),
-                lambda value, blank: blank is None or not value,
-                "found {0:g}; not allowed with [pair.blank], which has the depths and thicknesses",
-            )
-            for gear in ("pinion", "wheel")
-            for name in ("profile_shift", "face_angle_deg", "root_angle_deg")
-        ),
+        *MEASURED_RULES,
     )
 
     @property
@@ -249,7 +261,8 @@ class BevelScene(SpiralScene, BlankScene):
         assert wanted.mean_normal_module_mm is not None  # by the rules of the section
         pitch, _ = pitch_angles((self.pinion.teeth, self.wheel.teeth), radians(wanted.shaft_angle_deg))
         mean = wanted.mean_normal_module_mm / cos(radians(wanted.spiral_angle_deg or 0.0))
-        return mean + self.pinion.face_width_mm * sin(pitch) / self.pinion.teeth
+        outside = 1.0 if wanted.blank is None else 2.0 * wanted.blank.outer_face_share
+        return mean + outside * self.wheel.face_width_mm * sin(pitch) / self.pinion.teeth
 
     @property
     def normal_pressure_angle(self) -> float:
@@ -268,29 +281,31 @@ class BevelScene(SpiralScene, BlankScene):
             return None
         return self.geometry.blank.build(
             (self.pinion.teeth, self.wheel.teeth),
-            self.pinion.face_width_mm,
+            (self.pinion.face_width_mm, self.wheel.face_width_mm),
             shaft_angle=radians(self.geometry.shaft_angle_deg),
             spiral_angle=radians(self.geometry.spiral_angle_deg or 0.0),
             pressure_angle=self.normal_pressure_angle,
             outer_module=self.outer_module,
+            measured=Measured.of(self.pinion, self.wheel),
         )
 
-    def face_milled(self, method: Method = "duplex_spread_blade") -> Scene:
-        """Return the face-milled scene of the blanks, with basic machine settings and cutters in closed form.
+    def face_milled(self, method: Method | Settings = "duplex_spread_blade") -> Scene:
+        """Return the face-milled scene of the blanks, with machine settings and cutters.
 
         Modifications, mounting errors, material, load and analysis are those of this scene.
 
         Parameters
         ----------
-        method : {"duplex_spread_blade", "spread_blade"}
-            See :mod:`loaded_tca.gears.basic_settings`.
+        method : {"duplex_spread_blade", "spread_blade", "local_synthesis"} or Settings
+            See :mod:`loaded_tca.gears.basic_settings` and :mod:`loaded_tca.pairs.synthesis`; or the section
+            [pair.settings], with what local synthesis is to reach.
 
         Raises
         ------
         InputError
-            If the scene has no [pair.blank] with a cutter radius, or the method is neither of the two.
+            If the scene has no [pair.blank] with a cutter radius, or the method is none of the three.
         GeometryError
-            If the gears cannot exist.
+            If the gears cannot exist, or there are no such settings.
 
         Examples
         --------
@@ -299,16 +314,18 @@ class BevelScene(SpiralScene, BlankScene):
         GearPair(14/39, module 3.20333 mm, face 25.4 mm)
         """
         blanks = self.blanks()
+        known = isinstance(method, Settings) or method in METHODS
         require(
-            (method in get_args(Method), f"method: {method!r} is not one of {', '.join(get_args(Method))}"),
+            (known, f"method: {method!r} is not one of {', '.join(METHODS)}"),
             (
                 blanks is not None and blanks.cutter_radius is not None,
                 "pair.blank.cutter_radius_mm: missing; machine settings follow from blanks and their cutter",
             ),
         )
         assert blanks is not None
-        settings = {"spread_blade": spread_blade, "duplex_spread_blade": duplex_spread_blade}[method]
-        gears = settings(blanks, self.hands[0])
+        settings = method if isinstance(method, Settings) else Settings(method=method)
+        flank = self.sides(self.sense)[0]
+        gears = settings.gears(blanks, self.hands[0], flank)
         table = {name: value for name, value in as_table(self).items() if name not in ("pair", "pinion", "wheel")}
         table["pair"] = {
             "type": "face_milled",
@@ -334,6 +351,12 @@ class BevelScene(SpiralScene, BlankScene):
             if blanks is not None:
                 blank = blanks.pinion if name == "pinion" else blanks.wheel
                 values |= {each: getattr(blank, each) for each in OF_BLANK}
+                if self.geometry.blank is not None and self.geometry.blank.lengthwise_curve == "cutter_circle":
+                    values["cutter_radius"] = blanks.cutter_radius
+                if blanks.has_own_faces:
+                    _, mean, outer = blank.cone_distances
+                    values["outer_module"] = 2.0 * outer * sin(pitch_angle) / own.teeth
+                    values["calculation_distance"] = mean
             return BevelGear(**values, pitch_angle=pitch_angle, name=name)
 
         pitches = pitch_angles((self.pinion.teeth, self.wheel.teeth), radians(self.geometry.shaft_angle_deg))
@@ -362,15 +385,16 @@ class BevelScene(SpiralScene, BlankScene):
         return mesh.pinion.unwound_arc(pinion), mesh.wheel.unwound_arc(wheel)
 
     def geometry_rows(self) -> Sequence[Row]:
-        """Return cones, cone distances, modules and contact ratios."""
-        mesh = self.mesh()
-        gear = mesh.pinion
+        """Return cones, cone distances, modules and contact ratios, and of blanks the dimension sheet."""
+        mesh, blanks = self.mesh(), self.blanks()
+        gear = mesh.wheel if blanks is not None and blanks.has_own_faces else mesh.pinion
         distances = (gear.outer_cone_distance, gear.mean_cone_distance, gear.inner_cone_distance)
         modules = (gear.outer_module, gear.mean_normal_module / cos(gear.spiral_angle))
         stated = self.geometry.normal_pressure_angle_deg
         if stated is None and self.geometry.blank is not None and self.geometry.pressure_angle_deg is None:
             stated = USUAL_PRESSURE_deg
         pressures = (gear.pressure_angle, atan(tan(gear.pressure_angle) * cos(gear.spiral_angle)))
+        widths = (gear.face_width,) if blanks is None or not blanks.has_own_faces else blanks.face_widths
         return [
             ("shaft angle Sigma [deg]", f"{degrees(mesh.shaft_angle):.4f}"),
             ("cone distances R_e, R_m, R_i [mm]", *(f"{distance:.4f}" for distance in distances)),
@@ -383,14 +407,27 @@ class BevelScene(SpiralScene, BlankScene):
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.transverse_contact_ratio + mesh.overlap_ratio:.4f}"),
-            ("face width b [mm]", f"{gear.face_width:.4f}"),
+            ("face width b [mm]", *(f"{width:.4f}" for width in widths)),
+            *(() if blanks is None else common_blank_rows(blanks, self.geometry.blank, self.data_type)),
             ("", "pinion", "wheel"),
             ("teeth z", str(mesh.pinion.teeth), str(mesh.wheel.teeth)),
             ("hand of the spiral", *(self.hands if gear.spiral_angle else ("none", "none"))),
             ("flank in contact", *self.contact_sides),
-            *_cone_rows(mesh),
-            *(_depth_rows(mesh) if (blanks := self.blanks()) is None else blank_rows(blanks, self.geometry.blank)),
+            *_cone_rows(mesh, seen=blanks is not None),
+            *(_depth_rows(mesh) if blanks is None else blank_rows(blanks)),
         ]
+
+    @property
+    def geometry_standard(self) -> str:
+        """ISO 23509 where the blanks are the standard's."""
+        return "depths by outer modules, about one apex" if self.geometry.blank is None else "ISO 23509"
+
+    @property
+    def data_type(self) -> str:
+        """Type of the data of the blanks: I, II or measured."""
+        blank = self.geometry.blank
+        assert blank is not None
+        return blank.data_type if Measured.of(self.pinion, self.wheel).addenda is None else "measured"
 
     def interferences(self) -> Sequence[str]:
         """Return how the whole gears interfere without mounting errors."""
@@ -407,23 +444,34 @@ class BevelScene(SpiralScene, BlankScene):
         return spiral.force_rows((pair.pinion.nominal_flank, pair.wheel.nominal_flank), (first, second), torques)
 
 
-def _cone_rows(mesh: BevelMesh) -> list[Row]:
-    """Cone angles of both gears, diameters and depths at their pitch cones, and whether tips reach into fillets."""
+def _cone_rows(mesh: BevelMesh, *, seen: bool) -> list[Row]:
+    """Cone angles of both gears, diameters and depths at their pitch cones, and whether tips reach into fillets.
+
+    Angles of cones with apexes of their own are those ``seen`` from the pitch apex at mid-face.
+    """
+    aside = ", seen at R_m" if seen else ""
     gears = mesh.pinion, mesh.wheel
     starts = [active[0] for active in mesh.active_cones]
     angles = (
         ("pitch angle delta [deg]", [gear.pitch_angle for gear in gears]),
-        ("face angle delta_a [deg]", [gear.tip_angle for gear in gears]),
+        (f"face angle delta_a{aside} [deg]", [gear.tip_angle for gear in gears]),
         ("start of active profile, cone angle [deg]", starts),
         ("root form cone angle [deg]", [gear.form_angle for gear in gears]),
-        ("root angle delta_f [deg]", [gear.root_cone_angle for gear in gears]),
+        (f"root angle delta_f{aside} [deg]", [gear.root_cone_angle for gear in gears]),
         ("base cone angle delta_b [deg]", [gear.base_angle for gear in gears]),
     )
     lengths = (
-        ("outer pitch diameter d_e [mm]", [2.0 * gear.outer_cone_distance * sin(gear.pitch_angle) for gear in gears]),
-        ("mean pitch diameter d_m [mm]", [2.0 * gear.mean_cone_distance * sin(gear.pitch_angle) for gear in gears]),
-        ("mean addendum h_am [mm]", [_height(gear, gear.tip_angle) for gear in gears]),
-        ("mean dedendum h_fm [mm]", [-_height(gear, gear.root_cone_angle) for gear in gears]),
+        ()
+        if seen
+        else (
+            (
+                "outer pitch diameter d_e [mm]",
+                [2.0 * gear.outer_cone_distance * sin(gear.pitch_angle) for gear in gears],
+            ),
+            ("mean pitch diameter d_m [mm]", [2.0 * gear.mean_cone_distance * sin(gear.pitch_angle) for gear in gears]),
+            ("mean addendum h_am [mm]", [_height(gear, gear.tip_angle) for gear in gears]),
+            ("mean dedendum h_fm [mm]", [-_height(gear, gear.root_cone_angle) for gear in gears]),
+        )
     )
     interference = [start - gear.form_angle < ROUNDING for start, gear in zip(starts, gears, strict=True)]
     return [

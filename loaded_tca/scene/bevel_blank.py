@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import degrees, pi, radians, tan
+from math import cos, degrees, pi, radians, sin, tan
 from typing import Any, ClassVar, Literal
 
 from loaded_tca.errors import InputError
-from loaded_tca.gears.bevel_blank import BacklashKind, BevelBlank, Taper, crown_gear_factors, usual_factors
-from loaded_tca.gears.blank_gear import SECTIONS
+from loaded_tca.gears.bevel import pitch_angles
+from loaded_tca.gears.bevel_blank import BacklashKind, BevelBlank, Cones, Taper
+from loaded_tca.gears.blank_factors import crown_gear_factors, measured_depths, measured_thicknesses, usual_factors
 from loaded_tca.gears.face_milled import FaceMilledGear
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
-from loaded_tca.scene.model import Row
 from loaded_tca.scene.section import Rule, Section, rule
 
 FACTOR = Number(-5.0, 5.0)
@@ -44,6 +45,97 @@ def _one_of(*names: str) -> Rule:
     return Rule(names, complain)
 
 
+MEASURED = "mean_addendum_mm", "mean_dedendum_mm", "mean_normal_thickness_mm"
+"""Keys of a gear that stand for the data of type I or II."""
+GEARS = "pinion", "wheel"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What the gears of a drawing have instead of data, or of what follows from them.
+
+    Attributes
+    ----------
+    addenda, dedenda, thicknesses : (float, float), optional [mm]
+        h_am, h_fm and s_mn of pinion and wheel.
+    cones : of :class:`BevelBlank`
+    """
+
+    addenda: tuple[float, float] | None
+    dedenda: tuple[float, float] | None
+    thicknesses: tuple[float, float] | None
+    cones: tuple[Cones, Cones]
+
+    @classmethod
+    def of(cls, pinion: Any, wheel: Any) -> Measured:
+        """Of the sections of both gears."""
+
+        def both(name: str) -> tuple[float, float] | None:
+            first, second = getattr(pinion, name), getattr(wheel, name)
+            return None if first is None or second is None else (first, second)
+
+        def cone(gear: Any, name: str) -> tuple[float, float] | None:
+            angle, apex = getattr(gear, f"{name}_angle_deg"), getattr(gear, f"{name}_apex_mm")
+            return None if angle is None or apex is None else (radians(angle), apex)
+
+        first, second = ((cone(gear, "face"), cone(gear, "root")) for gear in (pinion, wheel))
+        addenda, dedenda, thicknesses = (both(name) for name in MEASURED)
+        return cls(addenda, dedenda, thicknesses, (first, second))
+
+
+def _measured_rules() -> Iterator[Rule]:
+    """Rules of a scene: what a gear may have of its own beside [pair.blank]."""
+    for gear in GEARS:
+        yield rule(
+            (f"{gear}.profile_shift", "pair.blank"),
+            lambda value, blank: blank is None or not value,
+            "found {0:g}; not allowed with [pair.blank], which has that of the pinion",
+        )
+        for cone in ("face", "root"):
+            yield rule(
+                (f"{gear}.{cone}_angle_deg", f"{gear}.{cone}_apex_mm", "pair.blank"),
+                lambda angle, apex, blank: blank is None or angle is None or apex is not None,
+                f"found {{0:g}}; with [pair.blank] allowed with {gear}.{cone}_apex_mm: cones of a drawing are angle "
+                "and apex",
+            )
+        for name in MEASURED:
+            yield rule(
+                (f"{gear}.{name}", "pair.blank"),
+                lambda value, blank: blank is not None or value is None,
+                "found {0:g}; allowed with a section [pair.blank]",
+            )
+    depths = tuple(f"{gear}.{name}" for name in MEASURED[:2] for gear in GEARS)
+    thicknesses = tuple(f"{gear}.{MEASURED[2]}" for gear in GEARS)
+    yield Rule((*depths, "pair.blank"), _all_depths)
+    yield Rule((*thicknesses, depths[0], "pair.blank"), _thicknesses)
+
+
+def _all_depths(*values: Any) -> str | None:
+    depths, blank = values[:4], values[4]
+    if all(value is None for value in depths) or blank is None:
+        return None
+    if None in depths:
+        return "measured depths need mean_addendum_mm and mean_dedendum_mm of both gears"
+    others = [name for name in (*TYPE_I, *TYPE_II) if getattr(blank, name) is not None]
+    if not others:
+        return None
+    kind = "I" if others[0] in TYPE_I else "II"
+    return f"measured depths beside pair.blank.{others[0]}, of data type {kind}; give one of the two"
+
+
+def _thicknesses(first: Any, second: Any, depth: Any, blank: Any) -> str | None:
+    if (first is None and second is None) or blank is None:
+        return None
+    if first is None or second is None or depth is None:
+        return "measured thicknesses need those of both gears, with mean_addendum_mm and mean_dedendum_mm"
+    given = [name for name in BACKLASHES if getattr(blank, name) is not None]
+    return f"measured thicknesses beside pair.blank.{given[0]}, which follows from them" if given else None
+
+
+MEASURED_RULES = tuple(_measured_rules())
+"""Of a scene with gears that may have a blank."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Blank(Section):
     """[pair.blank]: teeth of data type I or II on face and root cones with apexes of their own (ISO 23509).
@@ -53,6 +145,20 @@ class Blank(Section):
 
     taper: Taper = key(
         Choice(("standard", "uniform", "duplex", "modified")), "how the depth falls from heel to toe", "standard"
+    )
+    lengthwise_curve: Literal["logarithmic", "cutter_circle"] = key(
+        Choice(("logarithmic", "cutter_circle")),
+        "how straight and spiral bevel flanks run along the face: a logarithmic spiral, of one spiral angle, or the "
+        "circle of the cutter, through beta_m at R_m",
+        "logarithmic",
+    )
+    outer_face_share: float = key(
+        Number(0.05, 0.95),
+        "c_be2, part of either face width between the calculation point R_m and the heel; both gears have one R_m",
+        0.5,
+    )
+    allow_undercut: bool = key(
+        Choice((False, True)), "whether undercut teeth are taken, as of gears that are not generated", False
     )
     cutter_radius_mm: float | None = key(
         above_zero(10000.0), "radius r_c0 of the face-milling cutter", None, "none; required for duplex and modified"
@@ -66,7 +172,7 @@ class Blank(Section):
     )
     depth_factor: float | None = key(above_zero(6.0), "type II: k_d, working depth in mean normal modules", None, "2")
     clearance_factor: float | None = key(
-        Number(0.0, 1.0), "type II: k_c, clearance over the working depth", None, "0.125"
+        above_zero(1.0), "type II: k_c, clearance over the working depth", None, "0.125"
     )
     thickness_factor: float | None = key(FACTOR, "type II: k_t", None, "by the ratio and z1, see `usual_factors`")
     wheel_slot_width_mm: float | None = key(
@@ -83,6 +189,11 @@ class Blank(Section):
     mean_transverse_backlash_mm: float | None = key(BACKLASH_mm, "backlash j_mt2, instead of j_en", None, "by j_en")
 
     rules: ClassVar[tuple[Rule, ...]] = (
+        rule(
+            ("lengthwise_curve", "cutter_radius_mm"),
+            lambda curve, radius: radius is not None or curve == "logarithmic",
+            'found "{0}"; allowed with cutter_radius_mm, the radius of that circle',
+        ),
         Rule((*TYPE_I, *TYPE_II), _one_type),
         _one_of("thickness_factor", "wheel_slot_width_mm"),
         _one_of(*BACKLASHES),
@@ -106,12 +217,13 @@ class Blank(Section):
     def build(
         self,
         teeth: tuple[int, int],
-        face_width: float,
+        face_widths: tuple[float, float],
         *,
         shaft_angle: float,
         spiral_angle: float,
         pressure_angle: float,
         outer_module: float,
+        measured: Measured,
     ) -> BevelBlank:
         """Return the blanks; lengths in mm, angles in rad, as :class:`BevelBlank` takes them.
 
@@ -129,19 +241,35 @@ class Blank(Section):
             "pressure_angle": pressure_angle,
             "cutter_radius": self.cutter_radius_mm,
             "taper": self.taper,
+            "allow_undercut": self.allow_undercut,
+            "outer_share": self.outer_face_share,
+            "cones": measured.cones,
         }
+        if face_widths[0] != face_widths[1]:
+            about["pinion_face_width"] = face_widths[0]
         if angles[0] is not None and angles[1] is not None:
             # theta_f1 = theta_a2: what BevelBlank takes are the dedendum angles of pinion and wheel
             about["wheel_angles"] = (radians(angles[0]), radians(angles[1]))
-        about |= self._factors(teeth, shaft_angle)
+        backlashes = {kind: getattr(self, name) for name, kind in BACKLASHES.items()}
         try:
-            blank = BevelBlank(teeth, outer_module, face_width, **about)
+            if measured.addenda is None or measured.dedenda is None:
+                about |= self._factors(teeth, shaft_angle)
+            else:
+                outer = 0.5 * teeth[0] * outer_module / sin(pitch_angles(teeth, shaft_angle)[0])
+                module = outer_module * cos(spiral_angle) * (1.0 - self.outer_face_share * face_widths[1] / outer)
+                about |= measured_depths(measured.addenda, measured.dedenda, module)
+                if measured.thicknesses is not None:
+                    shift = about["profile_shift"]
+                    about["thickness_modification"], backlashes["mean_normal"] = measured_thicknesses(
+                        measured.thicknesses, shift, module, pressure_angle
+                    )
+            blank = BevelBlank(teeth, outer_module, face_widths[1], **about)
             if self.wheel_slot_width_mm is not None:
                 slot = self.wheel_slot_width_mm / (2.0 * blank.mean_normal_module)
                 slot += blank.dedendum_factor * tan(pressure_angle)
                 blank = replace(blank, thickness_modification=slot - 0.25 * pi)
-            for name, kind in BACKLASHES.items():
-                if (backlash := getattr(self, name)) is not None:
+            for kind, backlash in backlashes.items():
+                if backlash is not None:
                     blank = blank.with_backlash(backlash, kind)
         except InputError as error:
             raise InputError(f"pair.blank: {problem}" for problem in error.problems) from None
@@ -150,13 +278,7 @@ class Blank(Section):
     def _factors(self, teeth: tuple[int, int], shaft_angle: float) -> dict[str, float]:
         """Parameters of data type I, as given or from type II."""
         if self.data_type == "I":
-            usual = {
-                "profile_shift": 0.0,
-                "addendum_factor": 1.0,
-                "dedendum_factor": 1.25,
-                "thickness_modification": 0.0,
-            }
-            return {name: usual[name] if getattr(self, name) is None else getattr(self, name) for name in TYPE_I}
+            return {name: USUAL_I[name] if getattr(self, name) is None else getattr(self, name) for name in TYPE_I}
         named = {
             "addendum_share": self.mean_addendum_factor,
             "depth": self.depth_factor,
@@ -167,58 +289,20 @@ class Blank(Section):
         return crown_gear_factors(**(usual_factors(teeth, shaft_angle) | factors))
 
 
-def blank_rows(blanks: BevelBlank, section: Blank | None) -> list[Row]:
-    """Return the rows of a dimension sheet: depths, cones with their apexes, thicknesses, slots, contact ratios."""
-    gears = blanks.pinion, blanks.wheel
-    kind = "given" if section is None else section.data_type
-    profile, lengthwise = blanks.virtual_contact_ratios
-    spirals = blanks.pinion.spiral_angles if blanks.cutter_radius else (blanks.spiral_angle,) * 3
-    slots = "constant" if blanks.has_constant_slots else "as the pitch"
-    rows: list[Row] = [
-        ("blank after ISO 23509: data type, taper", kind, blanks.taper),
-        ("slots along the face", slots),
-        (
-            "working, whole depth h_mw, h_m; clearance c [mm]",
-            *_numbers(blanks.working_depth, blanks.whole_depth, blanks.clearance),
-        ),
-        ("contact ratios eps_va, eps_vb by 0.85 b", *_numbers(profile, lengthwise)),
-        ("cutter's spiral angle at toe, mid, heel [deg]", *_numbers(*map(degrees, spirals))),
-        ("outer normal backlash j_en [mm]", *_numbers(blanks.outer_normal_backlash)),
-        ("face angle delta_a of the cone itself [deg]", *_numbers(*(degrees(gear.face_angle) for gear in gears))),
-        ("  its apex t_zF beyond the crossing point [mm]", *_numbers(*(gear.face_apex for gear in gears))),
-        ("root angle delta_f of the cone itself [deg]", *_numbers(*(degrees(gear.root_angle) for gear in gears))),
-        ("  its apex t_zR beyond the crossing point [mm]", *_numbers(*(gear.root_apex for gear in gears))),
-        ("mean normal thickness s_mn [mm]", *_numbers(*(gear.mean_normal_thickness for gear in gears))),
-        ("  its chord s_mnc [mm]", *_numbers(*(gear.chordal_thickness for gear in gears))),
-        ("  addendum above it h_amc [mm]", *_numbers(*(gear.chordal_addendum for gear in gears))),
-    ]
-    along = {
-        "addendum h_a": "addenda",
-        "dedendum h_f": "dedenda",
-        "tip diameter d_a": "tip_diameters",
-        "crown to crossing point t_x": "crown_to_crossing",
-        "normal thickness s_n": "normal_thicknesses",
-        "slot width W": "slot_widths",
-        "top land s_an": "tip_thicknesses",
-    }
-    for label, name in along.items():
-        first, second = (getattr(gear, name) for gear in gears)
-        for place, pinion, wheel in zip(SECTIONS, first, second, strict=True):
-            rows.append((f"{label}, {place} [mm]", *_numbers(pinion, wheel)))
-    return rows
-
-
 def settings_table(gear: FaceMilledGear) -> dict[str, Any]:
     """Return blank, machine settings and cutter of a gear as the sections of a scene file have them."""
     blank, machine, cutter = gear.blank, gear.machine, gear.cutter
     lengths = {
         "blank": {"outer_cone_distance": blank.outer_cone_distance, "face_width": blank.face_width}
         | {name: getattr(blank, name) for name in ("face_apex", "root_apex")},
-        "machine": {name: getattr(machine, name) for name in ("radial", "sliding_base")},
+        "machine": {
+            name: getattr(machine, name)
+            for name in ("radial", "machine_centre_to_back", "sliding_base", "blank_offset")
+        },
     }
     angles = {
         "blank": {name: getattr(blank, name) for name in ("pitch_angle", "face_angle", "root_angle")},
-        "machine": {name: getattr(machine, name) for name in ("cradle_angle", "root_angle")},
+        "machine": {name: getattr(machine, name) for name in ("cradle_angle", "root_angle", "tilt", "swivel")},
     }
     table: dict[str, Any] = {
         name: {f"{key}_mm": value for key, value in lengths[name].items()}
@@ -226,7 +310,12 @@ def settings_table(gear: FaceMilledGear) -> dict[str, Any]:
         for name in lengths
     }
     table["blank"]["hand"] = blank.hand
-    table["machine"]["ratio_of_roll"] = machine.ratio_of_roll
+    if blank.calculation_cone_distance is not None:
+        table["blank"]["calculation_cone_distance_mm"] = blank.calculation_cone_distance
+    table["machine"] |= {
+        name: getattr(machine, name) for name in ("ratio_of_roll", "modified_roll_2c", "modified_roll_6d", "generation")
+    }
+    table["machine"]["helical_motion_mm_per_rad"] = machine.helical_motion
     blades = {"concave": cutter.concave, "convex": cutter.convex}
     table["cutter"] = {"number": cutter.number} | {
         flank: {
@@ -238,7 +327,3 @@ def settings_table(gear: FaceMilledGear) -> dict[str, Any]:
         if blade is not None
     }
     return table
-
-
-def _numbers(*values: float) -> tuple[str, ...]:
-    return tuple(f"{value:.4f}" for value in values)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from math import cos, degrees, isclose, radians
 from typing import ClassVar, Literal
 
@@ -195,9 +194,17 @@ class GearSection(sections.GearSection):
 
 
 def _same_spheres(name: str) -> Rule:
-    """Rule: both gears begin or end on the same spheres about the apex."""
-    problem = f"found {{0:g}}; allowed pinion.blank.{name} = {{1:g}}: both gears end on the same spheres"
-    return rule((f"wheel.blank.{name}", f"pinion.blank.{name}"), partial(isclose, rel_tol=SAME_SPHERES), problem)
+    """Rule: both gears begin or end on the same spheres about the apex, unless both say that they touch at one R_m."""
+
+    def complain(wheel: float, pinion: float, one: float | None, other: float | None) -> str | None:
+        if isclose(wheel, pinion, rel_tol=SAME_SPHERES):
+            return None
+        if one is not None and other is not None and isclose(one, other, rel_tol=SAME_SPHERES):
+            return None
+        return f"found {wheel:g}; allowed pinion.blank.{name} = {pinion:g}: both gears end on the same spheres"
+
+    point = "blank.calculation_cone_distance_mm"
+    return Rule((f"wheel.blank.{name}", f"pinion.blank.{name}", f"wheel.{point}", f"pinion.{point}"), complain)
 
 
 _SAME_POINT = rule(

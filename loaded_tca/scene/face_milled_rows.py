@@ -79,7 +79,7 @@ def _hypoid_rows(mesh: HypoidMesh, pinion: FlankAngles, wheel: FlankAngles) -> l
         ("wheel: R_e, R_m, R_i [mm]", *(f"{part:.4f}" for part in ends[1])),
         ("face widths b [mm]", *(f"{blank.face_width:.4f}" for blank in blanks)),
         ("smallest clearance at the roots [mm]", *(f"{part:.4f}" for part in mesh.tip_clearances)),
-        ("pinion less wheel: spiral less zeta_mp, pressure [deg]", *(_deg(miss) for miss in misses)),
+        ("pinion less wheel: spiral - zeta_mp, pressure", *(_deg(miss) for miss in misses)),
     ]
 
 

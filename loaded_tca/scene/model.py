@@ -44,7 +44,7 @@ from loaded_tca.scene.tolerance_class import scatter_of_class
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
 """Label and cells of a line of an overview."""
-_OF_FAMILIES = frozenset({"pair", "pair.type", "wheel", "wheel.teeth"})
+_OF_FAMILIES = frozenset({"pair", "pair.type", "pair.blank", "wheel", "wheel.teeth"})
 """Keys whose change may make a scene one of another family or variant."""
 
 
@@ -340,6 +340,11 @@ class Scene(Section, ABC):
     def pairs_in_contact(self) -> float:
         """Tooth pairs that are in contact on the mean, roughly."""
         return 3.0  # of face-milled teeth, whose contact ratio is not known before their contact
+
+    @property
+    def geometry_standard(self) -> str:
+        """What the rows of the geometry follow, as titles have it."""
+        return "ISO 21771" if self.path_points else "ISO 23509"
 
     @property
     def path_points(self) -> Mapping[str, float]:

@@ -14,9 +14,10 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replace_together, variables_of
-from loaded_tca.results.summary import shown
+from loaded_tca.results.summary import shown, shown_torque
+from loaded_tca.stages.files import parse_stage
 from loaded_tca.stages.kinematics import neutralised
-from loaded_tca.stages.sections import Stage, parse_stage
+from loaded_tca.stages.sections import Stage
 
 if TYPE_CHECKING:
     import xarray
@@ -152,6 +153,21 @@ class StageResult:
             )
         return tuple(figures)
 
+    def findings(self) -> tuple[str, ...]:
+        """Sentences on planets that carry nothing: under which torque, and whether at all positions."""
+        sentences = []
+        for shares, torque in zip(self.planet_share, self.torque.tolist(), strict=True):
+            idle = shares <= 0.0
+            for words, planets in (("all", idle.all(axis=0)), ("some", idle.any(axis=0) & ~idle.all(axis=0))):
+                numbers = ", ".join(map(str, np.flatnonzero(planets).tolist()))
+                if numbers:
+                    what = f"planet {numbers} carries" if planets.sum() == 1 else f"planets {numbers} carry"
+                    sentences.append(
+                        f"under {shown_torque(torque)} {what} nothing at {words} positions: pins and phases are "
+                        "farther apart than the teeth give way"
+                    )
+        return tuple(sentences)
+
     def to_table(self) -> dict[str, list[float]]:
         """Columns of a table with a row for each torque and position."""
         columns: dict[str, list[float]] = {}
@@ -193,7 +209,8 @@ class StageResult:
             )
             for one in self.orders()
         ]
-        return "\n".join([*lines, *(f"warning: {sentence}" for sentence in self.warnings)])
+        notes = [f"note: {sentence}" for sentence in self.findings()]
+        return "\n".join([*lines, *notes, *(f"warning: {sentence}" for sentence in self.warnings)])
 
     def save(self, directory: FilePath) -> tuple[Path, ...]:
         """Write ``stage.nc``, ``sun_mesh.nc`` and ``ring_mesh.nc`` into a directory, all or none.

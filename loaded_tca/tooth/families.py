@@ -249,6 +249,8 @@ class BevelTooth(ToothGeometry):
             (form, face),
             (gear.inner_cone_distance, gear.outer_cone_distance),
             (below, above),
+            gear.calculation_distance,
+            gear.cutter_circle,
         )
 
     def modified(self, nominal: Flank) -> Flank:

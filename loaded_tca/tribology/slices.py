@@ -8,7 +8,9 @@ depend on the grid where a contact ends at a sharp edge. Nothing here depends on
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
+from itertools import groupby
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -20,6 +22,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.pairs.kinematics import PlaneMotion, surface_motions
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap, arc_cells
+from loaded_tca.results.support_growth import standing
 from loaded_tca.separation import slice_middles
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
@@ -145,10 +148,11 @@ def _swept(result: CycleNumbers) -> Slices:
     motions = surface_motions(pair, origins, axes)
     sliding = motions[0].less(motions[1], pair.ratio)
     rough = result.on_edge.astype(bool) | result.on_relief_start.astype(bool)
-    parts = [
-        _of_map(pair, one, (*motions, sliding), number, rough=bool(rough[place]), edge=bool(result.on_edge[place]))
-        for number, (place, one) in enumerate(zip(places, maps, strict=True))
-    ]
+    parts = []
+    for number, (place, one) in enumerate(zip(places, maps, strict=True)):
+        moved = standing(result, place[0])[0].gear_pair
+        doubts = {"rough": bool(rough[place]), "edge": bool(result.on_edge[place])}
+        parts.append(_of_map(moved, one, (*motions, sliding), number, **doubts))
     names = ("x", "y", "step", "line_load", "rolling_1", "rolling_2", "sliding", "loss", "torque_1", "torque_2", "edge")
     flat = {name: np.concatenate([np.zeros(0), *(part[name] for part in parts)]) for name in names}
     counts = np.array([part["y"].size for part in parts], dtype=int)
@@ -249,12 +253,12 @@ def _curvatures(
     flat: dict[str, Array],
 ) -> Array:
     """Relative curvature across the middles of all slices [1/mm], on the flanks with their rounded edges."""
-    pair, ends = result.gear_pair, np.cumsum(counts)
+    ends = np.cumsum(counts)
     curvatures = np.zeros(flat["y"].size)
     longest = int(counts.max(initial=1))
     size = max(1, TOGETHER // longest)
-    for begin in range(0, len(maps), size):
-        some = range(begin, min(begin + size, len(maps)))
+    for some in _together(result, places, size):
+        pair = standing(result, places[some[0]][0])[0].gear_pair
         contacts = [_own_contact(result, places[number], maps[number]) for number in some]
         gap = NormalGap(pair, contacts, np.array([maps[number].axes for number in some]))
         rows = [slice(ends[number] - counts[number], ends[number]) for number in some]
@@ -273,10 +277,18 @@ def _curvatures(
     return curvatures
 
 
+def _together(result: CycleNumbers, places: Sequence[tuple[int, int, int]], most: int) -> Iterator[Sequence[int]]:
+    """Numbers of the places that are asked together: of gears that stand alike, no more than ``most`` at once."""
+    for _, alike in groupby(range(len(places)), lambda number: id(standing(result, places[number][0])[0])):
+        numbers = list(alike)
+        yield from (numbers[begin : begin + most] for begin in range(0, len(numbers), most))
+
+
 def _own_contact(result: CycleNumbers, place: tuple[int, int, int], one: PressureMap) -> ContactPoint:
     """Contact point of a map with the angles of its own teeth: those of the gears less the pitches between them."""
-    _, position, column = place
-    pair, path = result.gear_pair, result.paths[column]
+    torque, position, column = place
+    under, _ = standing(result, torque)
+    pair, path = under.gear_pair, under.paths[column]
     turned = pair.pitch * float(result.pair[column])
     first = {entry.name: getattr(path, entry.name)[position] for entry in fields(path)}
     contact = ContactPoint(**first)

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.flanks import InvoluteFlank, SphericalInvoluteFlank
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.flanks.bevel import spherical_involute, unwound_arc
+from loaded_tca.gears.cutter_circle import CutterCircle
 from tests.refusals import refused_calls
 
 PITCH, PRESSURE, DISTANCES = math.radians(50.0), math.radians(20.0), (60.0, 80.0)
@@ -172,3 +173,33 @@ test_cones_out_of_order_are_refused = refused_calls(
         r"cone_distances: 0 < toe 80.0 < heel 60.0 mm",
     ),
 )
+
+
+MEAN = 72.0
+CIRCLE = CutterCircle(MEAN, math.radians(30.0), 90.0)
+
+
+def circular(side, spiral=math.radians(30.0)):
+    """Teeth along the circle of a cutter, through 30 deg at 72 mm, off the middle of the face."""
+    return SphericalInvoluteFlank(PITCH, PRESSURE, spiral, side, CONES, DISTANCES, zero_distance=MEAN, circle=CIRCLE)
+
+
+@given(angles, distances, sides, st.sampled_from([-1.0, 1.0]))
+def test_derivatives_along_a_circle_agree_with_differences(angle, distance, side, hand):
+    one, where = circular(side, hand * math.radians(30.0)), place(angle, distance)
+    for function, allowed in ((one.theta, DIFFERENCE), (one.gradient_norm, 1e-7)):
+        jet = function(*where)
+        found = [jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z]
+        assert_allclose(found, differences(function, *where), rtol=0, atol=allowed)
+    theta, size = one.theta(*where), one.gradient_norm(*where).value
+    assert_allclose(size, np.sqrt(1.0 / where[0] ** 2 + theta.rho**2 + theta.z**2), rtol=1e-9)
+
+
+@given(distances)
+def test_spiral_angle_along_a_circle_is_that_of_the_standard(distance):
+    """Formula 193: sin(beta) = (2 R_m r sin(beta_m) - R_m^2 + R^2)/(2 R r), on the pitch cone."""
+    theta = circular(1).theta(*place(PITCH, distance))
+    along = distance * math.sin(PITCH) * (theta.rho * math.sin(PITCH) + theta.z * math.cos(PITCH))
+    sine = (2.0 * MEAN * 90.0 * 0.5 - MEAN**2 + distance**2) / (2.0 * distance * 90.0)
+    assert_allclose(math.sin(math.atan(along)), sine, rtol=1e-9)
+    assert_allclose(circular(1).theta(*place(PITCH, MEAN)).value, 0.0, atol=1e-15)

@@ -133,12 +133,22 @@ def test_more_lengthwise_crowning_shortens_the_contact():
     assert strong > 1.3 * weak  # the line of contact is inclined to the tooth: less than three times
 
 
-def test_formate_wheel_is_cut_at_rest_and_mates():
+@pytest.mark.parametrize("flank", ["concave", "convex"])
+def test_formate_wheel_is_cut_at_rest_and_mates_on_both_sides(flank):
     pinion, wheel = hypoid_gears(wheel="formate")
     assert (wheel.machine.generation, pinion.machine.generation) == ("formate", "generated")
-    pair = face_milled_pair(pinion, wheel, offset=15.0)
-    path = trace_contact(pair, np.array([-0.25, 0.0, 0.25]) * pair.pitch)
-    assert (np.abs(np.degrees(path.transmission_error) * 3600.0) < 10.0).all()
+    pair = face_milled_pair(pinion, wheel, offset=15.0, pinion_flank=flank)
+    path = trace_contact(pair, np.array([-0.5, 0.0, 0.5]) * pair.pitch)
+    error = np.degrees(path.transmission_error) * 3600.0
+    assert not path.on_edge.any()
+    assert ((error[[0, 2]] < -3.0) & (error[[0, 2]] > -15.0)).all()
+
+
+def test_pinion_of_a_formate_wheel_is_cut_by_a_tilted_cutter():
+    """It stands for the wheel, whose cutter stands 24 deg off its axis; the cradle nearly for the wheel's axis."""
+    machine = hypoid_gears(wheel="formate")[0].machine
+    assert math.degrees(machine.tilt) > 10.0
+    assert math.degrees(machine.root_angle) < 5.0
 
 
 def test_bevel_pairs_without_an_offset_are_synthesised_too():

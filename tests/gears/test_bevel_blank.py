@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError
 from loaded_tca.gears import BevelBlank, bevel_mesh
-from loaded_tca.gears.bevel_blank import crown_gear_factors
+from loaded_tca.gears.blank_factors import crown_gear_factors
 from tests.refusals import refusals, refused_calls
 
 ROUNDING = 1e-11  # of some dozen operations, one after another
@@ -230,7 +230,7 @@ test_values_out_of_range_are_refused = refusals(
     ({"thickness_modification": math.inf}, "thickness_modification: inf is not finite"),
     ({"outer_normal_backlash": -0.1}, "outer_normal_backlash: -0.1 mm is negative"),
     ({"wheel_angles": (0.9, 0.1)}, r"wheel_angles: \(0.9, 0.1\) rad are not within 0.785 rad"),
-    ({"dedendum_factor": 0.9}, "dedendum_factor: 0.9 is below addendum_factor 1.0"),
+    ({"dedendum_factor": 0.9}, "dedendum_factor: 0.9 is not above addendum_factor 1.0"),
     ({"taper": "double"}, "taper: 'double' is not one of standard, uniform, duplex, modified"),
     ({"taper": "duplex", "cutter_radius": None}, "cutter_radius: None mm; a duplex taper needs at least"),
     ({"taper": "modified", "cutter_radius": 60.0}, r"needs at least R_m sin\(beta_m\) = 65.3409 mm"),
@@ -251,7 +251,7 @@ test_blanks_that_cannot_exist_are_refused_with_the_place = refusals(
     ({"face_width": 140.0}, "face_width 140 mm reaches the apex: no face is left at the toe"),
     ({"cutter_radius": 33.0}, "does not cross the cone distance 132.3333 mm at the heel"),
     ({"wheel_angles": (0.31, 0.1)}, "pinion: root angle -0.3470 deg and face angle .* must lie between 0 and 180"),
-    ({"profile_shift": 1.2}, "pinion: no dedendum is left .* at the mid-face|wheel: no addendum is left"),
+    ({"profile_shift": 1.2}, "pinion: no dedendum is left .* at the mean point|wheel: no addendum is left"),
     ({"wheel_angles": (0.02, 0.25)}, r"pinion: no addendum is left \(-1.61.. mm\) at the toe"),
     ({"wheel_angles": (0.25, 0.02)}, r"pinion: no dedendum is left \(-1.1... mm\) at the toe"),
     ({"thickness_modification": -0.5}, r"pinion: pointed tooth, its tip is \(-.* mm\) at the heel"),

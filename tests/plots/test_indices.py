@@ -23,6 +23,7 @@ CALLED_WITH = {
 OWN = {
     "plot_over_flank": lambda: [known(CALLED_WITH["result"]()[0]), "pressure"],
     "plot_all": lambda: [CALLED_WITH["result"]()[0], "nowhere"],
+    "plot_face_load_on_supports": lambda: CALLED_WITH["result"]() * 2,
     "plot_first_order_scatter": lambda: [test_first_order.found(), test_first_order.study()],
     "plot_loaded_vh_check": lambda: [test_loaded_vh_check.study(), dict(enumerate([test_loaded_vh_check.cycle()] * 6))],
     "plot_study_scatter_matrix": lambda: [test_first_order.study(count=9)],

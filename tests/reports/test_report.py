@@ -152,7 +152,7 @@ def test_geometry_is_that_of_the_standards(page, written):
     )
     assert "Geometry (ISO 21771)" in page.words
     bevel = written(result("spiral_bevel", 1))
-    assert "Geometry (ISO 23509)" in bevel.words
+    assert "Geometry (depths by outer modules, about one apex)" in bevel.words
     assert bevel.rows("cone distances R_e, R_m, R_i [mm]")
 
 

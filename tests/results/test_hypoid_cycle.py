@@ -9,9 +9,11 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, read_scene
 from loaded_tca.flank_maps.conjugate import conjugate_contact
+from loaded_tca.pairs.gear_pair import mating_teeth
 from loaded_tca.tribology import Lubricant
 from loaded_tca.tribology.slices import slices_of
 from tests.samples.results import SCENES
+from tests.samples.root_stress import analysed
 
 BALANCED = 1e-6  # of the torque: what balances of a position leave
 SLOPES = 5e-3  # of the largest slope: analyses with differences find their boxes and grids anew, on 32 cells
@@ -107,7 +109,7 @@ def test_torques_of_friction_do_its_power():
     torques, omega = data["friction_torque"].sum("pair"), 1500.0 * 2.0 * math.pi / 60.0
     work = -1e-3 * omega * (torques.sel(gear="pinion") + result.gear_pair.ratio * torques.sel(gear="wheel"))
     assert_allclose(work.values, data["friction_power"].values, rtol=1e-9)
-    # the loss of 0.27 r_1 of sliding in P alone is a multiple of that of the spiral bevel pair 19/62: 0.12
+    # a multiple of that of the spiral bevel pair 19/62, 0.11: in P alone both flanks slide by 0.25 r_1
     assert 0.3 < float(tribology.loss_factor[0]) < 0.6
 
 
@@ -134,3 +136,24 @@ def test_gears_on_supports_give_way_as_their_forces_ask():
         axial[position] = sum(-one.slice_force.sum() * one.axes[2][2] for one in maps if one is not None)
     assert_allclose(np.abs(found.pinion_motion[0, :, 2]), 1e-6 * np.abs(axial), rtol=1e-3)
     assert (np.abs(axial) > 10e3).all()  # 12 kN at P: a hypoid pinion of 50 deg is pushed along its axis
+
+
+def test_root_stress_of_both_gears_is_the_same_a_pitch_further():
+    found = analysed(scene(2).with_changes({"analysis.root_stress": True, "analysis.compliance": "contact+tooth"}))
+    tension, compression = (found.dataset[name].values[0] for name in ("root_tension", "root_compression"))
+    assert_allclose(tension[0], tension[1], rtol=1e-4)
+    assert_allclose(compression[0], compression[1], rtol=1e-4)
+    # of the size of F_mt1/(b m_mn) = 118 MPa times factors of form and notch, on a third of the face
+    assert ((tension > 400.0) & (tension < 1000.0)).all()
+    assert (compression < -400.0).all()
+
+
+def test_teeth_are_as_thick_at_p_as_the_blank_says():
+    """s_mn1 = 4.922 mm of annex F.3, s_mn2 = 3.241 mm, less what the fit to a duplex taper changes."""
+    teeth = mating_teeth(scene().pair())
+    radii, spirals = scene().mesh().cones.radii, scene().mesh().cones.rolling_spiral_angles((13, 42))
+    found = [
+        2.0 * tooth.half_thickness_angle * radius * math.cos(spiral)
+        for tooth, radius, spiral in zip((teeth.pinion, teeth.wheel), radii, spirals, strict=True)
+    ]
+    assert_allclose(found, [4.922, 3.241], atol=5e-3)

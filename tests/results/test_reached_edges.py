@@ -8,7 +8,7 @@ import pytest
 
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning
-from loaded_tca.results.mesh_cycle import NAMES, reached_edges
+from loaded_tca.results.findings import NAMES, reached_edges
 from loaded_tca.scene import read_scene
 from tests.samples.results import FLANKS_ALONE, SCENES, changed, result, with_a_gap
 

@@ -12,7 +12,7 @@ from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.plots import plot_contact_path
-from loaded_tca.results.mesh_cycle import NAMES, reached_edges
+from loaded_tca.results.findings import NAMES, reached_edges
 from loaded_tca.scene import read_scene
 from tests.samples.results import FLANKS_ALONE, SCENES
 

@@ -8,11 +8,12 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
-from loaded_tca.gears.bevel_blank import usual_factors
+from loaded_tca.gears.blank_factors import usual_factors
 from loaded_tca.pairs import mating_teeth
 from loaded_tca.pairs.bevel import face_milled_pair
 from loaded_tca.scene import parse_scene, read_scene
 from loaded_tca.unloaded import trace_contact
+from loaded_tca.unloaded.curvature import relative_curvature
 from tests.samples.results import SCENES
 
 F2 = """
@@ -57,10 +58,11 @@ def row(scene, label):
         ("contact ratios eps_va, eps_vb by 0.85 b", (1.165, 1.227)),
         ("face angle delta_a of the cone itself [deg]", (26.24, 72.387)),
         ("root angle delta_f of the cone itself [deg]", (17.613, 63.76)),
-        ("addendum h_a, mid-face [mm]", (4.836, 1.591)),
+        ("addendum h_a, mean point [mm]", (4.836, 1.591)),
         ("addendum h_a, heel [mm]", (6.281, 2.064)),
-        ("dedendum h_f, mid-face [mm]", (2.394, 5.639)),
-        ("working, whole depth h_mw, h_m; clearance c [mm]", (6.427, 7.230, 0.803)),
+        ("dedendum h_f, mean point [mm]", (2.394, 5.639)),
+        ("mean working depth h_mw, whole depth h_m [mm]", (6.427, 7.230)),
+        ("clearance c, normal to the cones [mm]", (0.803,)),
     ],
 )
 def test_sheet_of_annex_f2_has_the_printed_numbers(label, printed):
@@ -149,7 +151,7 @@ def test_command_writes_the_face_milled_scene(run, tmp_path):
     assert read_scene(tmp_path / "cut.toml") == annex_f2().face_milled()
     code, _, errors = run("settings", SCENES / "spur.toml", "--out", tmp_path / "other.toml")
     assert code == 2
-    assert "pair.type: allowed straight_bevel or spiral_bevel, with [pair.blank]" in errors[0]
+    assert "pair.type: allowed straight_bevel, spiral_bevel or face_milled, with [pair.blank]" in errors[0]
 
 
 def test_flanks_of_a_blank_are_conjugate():
@@ -237,12 +239,15 @@ def test_equivalent_ratio_of_other_shaft_angles_is_that_of_the_pitch_cones():
         ({"pair.blank.cutter_radius_mm": None}, 'pair.blank.cutter_radius_mm: missing; taper = "duplex" follows'),
         ({"pair.blank.wheel_addendum_angle_deg": 2.0}, "both cones of the wheel, or neither"),
         ({"pinion.profile_shift": 0.2}, r"pinion.profile_shift: found 0.2; not allowed with \[pair.blank\]"),
-        ({"wheel.face_angle_deg": 71.0}, r"wheel.face_angle_deg: found 71; not allowed with \[pair.blank\]"),
+        (
+            {"wheel.face_angle_deg": 71.0},
+            r"wheel.face_angle_deg: found 71; with \[pair.blank\] allowed with wheel.face_apex",
+        ),
         ({"pinion.face_apex_mm": 1.0}, "pinion.face_apex_mm: found 1; allowed with face_angle_deg"),
         ({"pair.blank.cutter_radius_mm": 30.0}, "pair.blank: cutter_radius: 30.0 mm; a duplex taper needs at least"),
         (
             {"pair.blank.profile_shift": 0.5, "pair.blank.dedendum_factor": 0.9},
-            "pair.blank: dedendum_factor: 0.9 is below addendum_factor",
+            "pair.blank: dedendum_factor: 0.9 is not above addendum_factor",
         ),
     ],
 )
@@ -281,3 +286,216 @@ def test_cones_of_a_drawing_without_their_apexes_leave_no_clearance_and_are_warn
         for key in angles
     }
     assert_allclose(annex_f2(**(changes | apexes)).tip_clearances, blanks.clearance, rtol=2e-2)  # on the sphere
+
+
+MEASURED = {
+    "pinion.mean_addendum_mm": 4.836,
+    "pinion.mean_dedendum_mm": 2.394,
+    "pinion.mean_normal_thickness_mm": 6.465,
+    "wheel.mean_addendum_mm": 1.591,
+    "wheel.mean_dedendum_mm": 5.639,
+    "wheel.mean_normal_thickness_mm": 3.511,
+    "pair.blank.outer_normal_backlash_mm": None,
+}
+"""Means that annex F.2 prints."""
+
+
+def test_measured_means_of_annex_f2_give_the_rest_of_its_sheet():
+    """Rounded to 0.0005 mm, of which the backlash takes three."""
+    scene = annex_f2(**MEASURED)
+    assert row(scene, "backlash j_en, j_et2 at the heel [mm]")[0] == pytest.approx(0.127, abs=2e-3)
+    assert_allclose(row(scene, "addendum h_a, heel [mm]"), (6.281, 2.064), atol=1.5e-3)
+    assert_allclose(row(scene, "mean normal thickness s_mn [mm]"), (6.465, 3.511), atol=1e-4)
+    assert_allclose(row(scene, "contact ratios eps_va, eps_vb by 0.85 b"), (1.165, 1.227), atol=1e-3)
+    cells = {name: cells for name, *cells in scene.geometry_rows()}
+    assert cells["blank after ISO 23509: data type, taper"] == ["measured", "duplex"]
+    assert cells["slots along the face"] == ["constant"]
+
+
+@pytest.mark.parametrize("taper", ["standard", "uniform", "duplex", "modified"])
+def test_means_of_a_blank_give_the_same_blank(taper):
+    blanks = annex_f2(**{"pair.blank.taper": taper}).blanks()
+    changes = {"pair.blank.taper": taper, "pair.blank.outer_normal_backlash_mm": None}
+    for name in ("pinion", "wheel"):
+        gear = getattr(blanks, name)
+        changes |= {f"{name}.{key}_mm": getattr(gear, key) for key in ("mean_addendum", "mean_dedendum")}
+        changes[f"{name}.mean_normal_thickness_mm"] = gear.mean_normal_thickness
+    again = annex_f2(**changes).blanks()
+    for name in ("pinion", "wheel"):
+        for key in ("addenda", "dedenda", "normal_thicknesses", "face_apex", "root_angle", "slot_widths"):
+            assert_allclose(getattr(getattr(again, name), key), getattr(getattr(blanks, name), key), rtol=1e-9)
+
+
+def test_cones_of_a_drawing_are_those_of_the_blank():
+    """Given with their apexes they are the ones that the taper has; depths at R_m to c (1 - cos theta)."""
+    plain = annex_f2()
+    changes = {}
+    for name in ("pinion", "wheel"):
+        gear = getattr(plain.blanks(), name)
+        for cone in ("face", "root"):
+            changes[f"{name}.{cone}_angle_deg"] = math.degrees(getattr(gear, f"{cone}_angle"))
+            changes[f"{name}.{cone}_apex_mm"] = getattr(gear, f"{cone}_apex")
+    drawn = annex_f2(**changes)
+    for first, second in ((drawn.pair().pinion, plain.pair().pinion), (drawn.pair().wheel, plain.pair().wheel)):
+        for one, other in zip(first.flank.grid(5, 5), second.flank.grid(5, 5), strict=True):
+            assert_allclose(one, other, rtol=1e-12)
+    assert_allclose(row(drawn, "addendum h_a, mean point [mm]"), row(plain, "addendum h_a, mean point [mm]"), atol=6e-3)
+
+
+def test_cone_of_another_pair_leaves_no_clearance_and_is_refused():
+    """The face cone of a drawing with its apex 1.9 mm too far from the teeth: tips stand 1.9 sin(delta_a) higher."""
+    angle = math.degrees(annex_f2().blanks().pinion.face_angle)
+    with pytest.raises(GeometryError, match=r"wheel: the clearance above its root is -0\.\d+ mm at the toe"):
+        annex_f2(**{"pinion.face_angle_deg": angle, "pinion.face_apex_mm": -8.05}).pair()
+
+
+UNEQUAL = {"pinion.face_width_mm": 27.4, "wheel.face_width_mm": 25.4, "pair.blank.outer_face_share": 0.45}
+
+
+def test_unequal_faces_meet_at_one_calculation_point():
+    """R_m = R_e2 - c_be2 b2; each gear ends c_be2 b beyond it."""
+    scene = annex_f2(**UNEQUAL)
+    blanks, mesh = scene.blanks(), scene.mesh()
+    outer = 0.5 * 176.893 / math.sin(blanks.pitch_angles[1])
+    mean = outer - 0.45 * 25.4
+    assert_allclose(blanks.wheel.cone_distances, (outer - 25.4, mean, outer), rtol=1e-12)
+    assert_allclose(blanks.pinion.cone_distances, (mean - 0.55 * 27.4, mean, mean + 0.45 * 27.4), rtol=1e-12)
+    assert_allclose(mesh.pinion.mean_normal_module, blanks.mean_normal_module, rtol=1e-12)
+    assert_allclose(mesh.wheel.mean_normal_module, 3.9227 / 81.273 * mean * math.cos(math.radians(35.0)), rtol=1e-4)
+    for gear, blank in ((mesh.pinion, blanks.pinion), (mesh.wheel, blanks.wheel)):
+        assert_allclose((gear.inner_cone_distance, gear.outer_cone_distance), blank.cone_distances[::2], rtol=1e-12)
+
+
+def test_flanks_of_unequal_faces_are_conjugate_and_touch_at_the_calculation_point():
+    pair = annex_f2(**UNEQUAL).pair()
+    path = trace_contact(pair, np.linspace(-0.4, 0.4, 5) * pair.pitch)
+    assert path.in_contact.all()
+    assert_allclose(path.transmission_error, 0.0, atol=1e-12)
+    crowned = annex_f2(**UNEQUAL, **{"wheel.modifications.lead_crowning_um": 20.0}).pair()
+    middle = trace_contact(crowned, [0.0])
+    distance = np.hypot(middle.wheel_radius, middle.wheel_axial)
+    assert_allclose(distance, 0.5 * sum(crowned.wheel.flank.frame.mean_cone_distance for _ in range(2)), atol=0.5)
+    assert_allclose(pair.face_width, 25.4)
+    assert mating_teeth(pair).pinion is not None
+
+
+def test_equal_faces_about_their_middles_are_as_before():
+    """The calculation point in the middle of faces of one width changes no number."""
+    plain, told = annex_f2(), annex_f2(**{"pair.blank.outer_face_share": 0.5})
+    assert told.mesh() == plain.mesh()
+    assert told.mesh().pinion.calculation_distance is None
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"pinion.mean_addendum_mm": 4.8}, "need mean_addendum_mm and mean_dedendum_mm of both gears"),
+        (
+            MEASURED | {"pair.blank.profile_shift": 0.5},
+            "pinion.mean_addendum_mm: measured depths beside pair.blank.profile_shift, of data type I; give one",
+        ),
+        (
+            MEASURED | {"pair.blank.depth_factor": 2.0},
+            "pinion.mean_addendum_mm: measured depths beside pair.blank.depth_factor, of data type II; give one",
+        ),
+        (
+            MEASURED | {"pair.blank.mean_normal_backlash_mm": 0.1},
+            "measured thicknesses beside pair.blank.mean_normal_backlash_mm, which follows from them",
+        ),
+        (
+            MEASURED | {"wheel.mean_normal_thickness_mm": None},
+            "measured thicknesses need those of both gears",
+        ),
+        (
+            MEASURED | {"pair.blank": None},
+            r"pinion.mean_addendum_mm: found 4.836; allowed with a section \[pair.blank\]",
+        ),
+        ({"pair.blank.clearance_factor": 0.0}, "pair.blank.clearance_factor: found 0.0; allowed a number above 0"),
+    ],
+)
+def test_measured_means_that_do_not_fit_are_refused_by_their_keys(changes, told):
+    with pytest.raises(InputError, match=told):
+        annex_f2(**changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"pinion.mean_dedendum_mm": 1.5}, "pair.blank: mean_dedendum: no clearance is left, h_fm1 - h_am2 = -0.09"),
+        ({"pinion.mean_dedendum_mm": 2.6}, "pair.blank: mean_dedendum: the clearances h_fm1 - h_am2 = 1.009 mm and"),
+        (
+            {"pinion.mean_normal_thickness_mm": 7.0},
+            "pair.blank: mean_normal_thickness: 7 and 3.511 mm together are more than the mean normal pitch, 10.0949",
+        ),
+    ],
+)
+def test_measured_teeth_that_overlap_are_refused(changes, told):
+    with pytest.raises(InputError, match=told):
+        annex_f2(**(MEASURED | changes)).mesh()
+
+
+def test_undercut_is_taken_where_it_is_allowed():
+    shift = {"pair.blank.profile_shift": -0.5}
+    with pytest.raises(GeometryError, match=r"pinion: undercut with a profile shift x_hm of -0\.5"):
+        annex_f2(**shift).mesh()
+    assert annex_f2(**shift, **{"pair.blank.allow_undercut": True}).blanks().pinion.is_undercut
+
+
+def test_largest_edge_radii_are_those_of_slot_and_clearance():
+    """By construction: a circle that touches the flank at alpha_n and the bottom of the slot."""
+    gear = annex_f2().blanks().pinion
+    radius, alpha = gear.edge_radius_of_slot, math.radians(20.0)
+    # from the corner of bottom and flank to the foot of the circle: r (1 - sin alpha)/cos alpha
+    assert_allclose(2.0 * radius * (1.0 - math.sin(alpha)) / math.cos(alpha), gear.slot_widths.min(), rtol=1e-12)
+    assert_allclose(gear.edge_radius_of_clearance(0.8) * (1.0 - math.sin(alpha)), 0.8, rtol=1e-12)
+
+
+def test_radius_of_relative_curvature_of_annex_f2_is_that_of_iso_tr_10300_30():
+    """rho_rel 12.459 mm at the mean point, normal to the contact line; a trace of crowning holds the contact there."""
+    pair = annex_f2(**{"pinion.modifications.lead_crowning_um": 0.01}).pair()
+    curvature = relative_curvature(pair, trace_contact(pair, [0.0])[0])
+    assert_allclose(1.0 / curvature.across, 12.459, atol=1e-3)
+
+
+def test_flanks_along_the_circle_of_the_cutter_are_conjugate_and_have_its_spiral_angles():
+    """beta_e 36.846 and beta_i 33.946 deg of annex F.2, on the flanks; its eps_vb of the whole face 1.443."""
+    scene = annex_f2(**{"pair.blank.lengthwise_curve": "cutter_circle"})
+    pair = scene.pair()
+    path = trace_contact(pair, np.linspace(-0.4, 0.4, 5) * pair.pitch)
+    assert_allclose(path.transmission_error, 0.0, atol=1e-12)
+    for gear, delta in ((pair.pinion, 19.7468), (pair.wheel, 70.2532)):
+        sine, cosine = math.sin(math.radians(delta)), math.cos(math.radians(delta))
+        for distance, printed in ((93.9726, 36.846), (81.273, 35.0), (68.5726, 33.946)):
+            rho, z = np.array(distance * sine), np.array(distance * cosine)
+            theta = gear.nominal_flank.theta(rho, z)
+            along = float(rho * (theta.rho * sine + theta.z * cosine))
+            assert_allclose(abs(math.degrees(math.atan(along))), printed, atol=1e-3)
+    assert row(scene, "overlap ratio eps_beta")[0] == pytest.approx(1.443, abs=0.03)  # the standard's of R_m alone
+    assert mating_teeth(pair).pinion is not None
+
+
+def test_circle_of_a_large_cutter_is_no_logarithmic_spiral():
+    told = {name: cells for name, *cells in annex_f2().geometry_rows()}["flanks along the face"]
+    assert told == ["logarithmic"]
+    with pytest.raises(InputError, match=r'pair\.blank\.lengthwise_curve: found "cutter_circle"; allowed with cutter'):
+        annex_f2(
+            **{
+                "pair.blank.lengthwise_curve": "cutter_circle",
+                "pair.blank.cutter_radius_mm": None,
+                "pair.blank.taper": "standard",
+            }
+        )
+
+
+def test_straight_teeth_run_along_no_circle():
+    straight = {"pair.type": "straight_bevel", "pair.spiral_angle_deg": None, "pair.blank.taper": "standard"}
+    assert {name: cells for name, *cells in annex_f2(**straight).geometry_rows()}["flanks along the face"] == [
+        "straight"
+    ]
+    with pytest.raises(InputError, match=r"pair\.blank\.lengthwise_curve: .* a spiral_angle_deg above 0 alone"):
+        annex_f2(**straight, **{"pair.blank.lengthwise_curve": "cutter_circle"})
+
+
+def test_standard_of_the_geometry_is_told_where_it_is_that_of_the_blanks():
+    assert annex_f2().geometry_standard == "ISO 23509"
+    assert annex_f2(**{"pair.blank": None}).geometry_standard == "depths by outer modules, about one apex"

@@ -49,9 +49,10 @@ def test_scene_made_without_a_file_is_one():
 def test_reference_describes_each_section_once_for_each_family():
     titles = [line for line in describe_keys().splitlines() if line.startswith("### ")]
     assert len(set(titles)) == len(titles)
-    for name in ("pair", "pinion", "mounting"):
+    for name in ("pinion", "mounting"):
         assert sum(f"`[{name}]`" in title for title in titles) == len({*FAMILIES.values()})
-    for name in ("pinion.modifications", "material", "load", "analysis", "wheel.cutter"):
+    assert sum("`[pair]`" in title for title in titles) == len({*FAMILIES.values()}) + 1  # that by blanks, too
+    for name in ("pinion.modifications", "material", "load", "analysis", "wheel.cutter", "pair.blank", "pair.settings"):
         assert sum(f"`[{name}]`" in title for title in titles) == 1
     assert sum("`[wheel]`" in title for title in titles) == 2  # that of rings, too
     assert all(any(f"`{name}`" in title for title in titles) for name in FAMILIES)
@@ -66,3 +67,13 @@ def test_measured_gear_of_the_guide_has_the_allowance_that_it_says():
     gear = parse_scene(common + measured + rest + material).mesh().pinion
     assert round(gear.thickness_allowance, 3) == -0.130
     assert round(2.0 * gear.tip_radius, 2) == 380.75
+
+
+def test_sheet_of_the_guide_is_a_scene_whose_contact_can_be_changed():
+    page = (ROOT / "docs" / "guide" / "bevel_blanks.md").read_text(encoding="utf-8")
+    (sheet,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    assert parse_scene(sheet).cut.pinion.machine.blank_offset_mm != 0.0
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    made = {}
+    exec(code.replace("examples/", f"{(ROOT / 'examples').as_posix()}/"), made)
+    assert made["path"].transmission_error[0] < made["path"].transmission_error[1]

@@ -15,6 +15,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import AccuracyWarning, GeometryError, NotAskedError
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.output.result_files import positions_csv
+from loaded_tca.results import reached_edges
 from loaded_tca.scene import Scene
 from validation.loaded.moved_gears import settled
 
@@ -89,6 +90,7 @@ def test_rotation_about_the_axis_alone_is_wind_up() -> None:
     wind_up = 1e-9 * torque * (ratio + 1.0 / ratio)
     assert_allclose(result.pinion_motion[..., 5], -1e-9 * torque, rtol=1e-5)
     assert_allclose(held.transmission_error - result.transmission_error, wind_up, rtol=1e-4)
+    assert_allclose(result.transmission_error - result.wind_up, held.transmission_error, atol=1e-4 * wind_up.max())
     assert_allclose(result.peak_pressure, held.peak_pressure, rtol=5e-4)  # the wound-up pinion is a little on
     assert_allclose(result.secant_stiffness, held.secant_stiffness, rtol=1e-3)
 
@@ -219,3 +221,22 @@ def test_teeth_bend_beside_supports() -> None:
     result, held = analyse(on(bends, torsion, None)), analyse(bends)
     wind_up = 1e-9 * np.array(bends.torques)[:, None] * bends.pair().ratio
     assert_allclose(held.transmission_error - result.transmission_error, wind_up, rtol=2e-4)
+
+
+def test_edges_are_those_of_the_gears_where_they_stand() -> None:
+    """The pinion is pressed along its axis by more than a row of cells: contacts at an edge still name one."""
+    scene = read_scene("examples/scenes/mesh_cycle_helical.toml").with_changes(
+        {"analysis.positions": 3, "analysis.torques_Nm": [130.0], "analysis.compliance": "contact"}
+    )
+    soft = np.diag([1e-6, 1e-6, 5e-4, 1e-9, 1e-9, 1e-9])
+    result = analyse(on(scene, soft, None))
+    assert np.abs(result.pinion_motion[..., 2]).min() > 0.1  # mm
+    assert result.on_edge.any()
+    assert (reached_edges(result).any(axis=-1) == result.on_edge).all()
+    on_supports, rigid = (one.tribology().slices() for one in (result, analyse(scene)))
+    place, radius = (rigid.sort_values("pinion_radius")[name] for name in ("pinion_radius", "relative_radius"))
+    within = on_supports["pinion_radius"].between(place.min(), place.max())
+    expected = np.interp(on_supports["pinion_radius"], place, radius)
+    # the same flanks: over a tooth the radius follows the involute; slices of different positions miss each other a bit
+    assert_allclose(on_supports["relative_radius"][within], expected[within], rtol=0.02)
+    assert within.mean() > 0.8

@@ -50,16 +50,20 @@ def exact(support: Support, load: Array) -> Array:
     return support.at_middle(support.under(load).moved(load))
 
 
-def test_coupled_analysis_equals_rigid_ones_with_gears_moved_by_their_shafts(scene: Scene, result: MeshCycle) -> None:
+@pytest.mark.parametrize(("torque", "position"), [(0, 1), (1, 0), (1, 1)])
+def test_coupled_analysis_equals_rigid_ones_with_gears_moved_by_their_shafts(
+    scene: Scene, result: MeshCycle, torque: int, position: int
+) -> None:
+    """The law of the bearings is exact there, and linear near the mean load of the pitch here."""
     grid = GridChoice((CELLS, CELLS), tolerance=scene.analysis.tolerance, free_edges=scene.analysis.free_edges)
-    for t, torque in enumerate((40.0, 130.0)):
-        alone = scene.with_changes({"analysis.torques_Nm": [torque]})
-        pinion, wheel = (partial(exact, support) for support in supports_of(alone))
-        expected = settled(alone, (pinion, wheel), grid, change=1e-7)
-        assert_allclose(result.transmission_error[t, 1], expected.transmission_error, rtol=AGREES)
-        motions = np.stack([result.pinion_motion[t, 1], result.wheel_motion[t, 1]])
-        largest = np.abs(expected.motions).reshape(2, 2, 3).max(axis=-1).repeat(3, axis=-1)
-        assert (np.abs(motions - expected.motions) < MOTIONS_AGREE * largest).all()
+    alone = scene.with_changes({"analysis.torques_Nm": [1e-3 * result.torque[torque]]})
+    pinion, wheel = (partial(exact, support) for support in supports_of(alone))
+    angle = float(result.pinion_angle[position])
+    expected = settled(alone, (pinion, wheel), grid, change=1e-7, angle=angle)
+    assert_allclose(result.transmission_error[torque, position], expected.transmission_error, rtol=AGREES)
+    motions = np.stack([result.pinion_motion[torque, position], result.wheel_motion[torque, position]])
+    largest = np.abs(expected.motions).reshape(2, 2, 3).max(axis=-1).repeat(3, axis=-1)
+    assert (np.abs(motions - expected.motions) < MOTIONS_AGREE * largest).all()
 
 
 def test_teeth_along_a_shaft_on_rolling_bearings_move_about_as_a_rigid_gear(scene: Scene, result: MeshCycle) -> None:
@@ -301,6 +305,23 @@ def test_command_shows_elements_pressures_and_lives(tmp_path: Path, capsys: pyte
     rows = list(csv.DictReader((tmp_path / "out" / "bearings.csv").read_text().splitlines()))
     assert_allclose(float(rows[0]["element_force_N"]), force)
     assert_allclose(float(rows[0]["life_Mrev"]), bearing.life(line.bearing_motions[0]))
+
+
+def test_overview_has_forces_and_lives_of_bearings(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", SCENE]) == 0
+    lines = {line[:44].strip(): line[44:].split() for line in capsys.readouterr().out.splitlines()}
+    first = shaft_lines(read_scene(SCENE))[:3]
+    forces = [f"{np.linalg.norm(line.bearing_forces[0, :3]):.1f}" for line in first]
+    assert lines["pinion, bearing 0 at -130 mm: force [N]"] == forces
+    assert "wheel, bearing 1 at 60 mm: force [N]" in lines
+    assert len(lines["life [million revolutions]"]) == 3
+
+
+def test_overview_refuses_bearings_that_do_not_hold(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = read_scene(SCENE).with_changes({"pinion.shaft.bearings": [ball_table()]})
+    (tmp_path / "scene.toml").write_text(scene.to_toml())
+    assert main(["check", str(tmp_path / "scene.toml")]) == 2
+    assert "pinion.shaft: bearings: 1 bearing leaves the shaft free about" in capsys.readouterr().err
 
 
 def test_pictures_of_supports_are_among_those_of_the_result(result: MeshCycle) -> None:

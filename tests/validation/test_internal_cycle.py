@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.gears import CylindricalGear, RingGear
-from validation.loaded.internal_cycle import (
+from validation.loaded.plane_pair import (
     LINE_LOADS,
     POSITIONS,
     STEPS,

@@ -15,7 +15,8 @@ from collections.abc import Iterable
 from math import degrees, radians
 from pathlib import Path
 
-from loaded_tca.gears.bevel_blank import BevelBlank, crown_gear_factors
+from loaded_tca.gears.bevel_blank import BevelBlank
+from loaded_tca.gears.blank_factors import crown_gear_factors
 from loaded_tca.gears.blank_gear import BlankGear
 from loaded_tca.scene import read_scene
 from validation.table import Row

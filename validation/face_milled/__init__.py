@@ -4,5 +4,6 @@
 - ``swept_cutter``: flanks cut with tilt, swivel, blank offset, helical motion and modified roll;
 - ``duplex_paper``: the bidirectional start of the duplex paper; ``duplex_document`` writes the page;
 - ``hypoid_pair``: a hypoid pair beside its five contact equations, which ``hypoid_axes`` has, and ISO/TR 10300-30;
+- ``synthesis``: settings by local synthesis beside what was asked for, by the same equations;
 - ``pairs``: the pairs that both share.
 """

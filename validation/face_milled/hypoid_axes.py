@@ -54,7 +54,7 @@ class Surface:
         x, y, z = in_machine - np.array([0.0, s["blank_offset"], s["sliding_base"] + s["helical_motion"] * roll])
         sine, cosine = sin(s["root_angle"]), cos(s["root_angle"])
         out, along = x * sine - z * cosine, x * cosine + z * sine - s["machine_centre_to_back"]
-        psi = s["ratio_of_roll"] * roll
+        psi = s["ratio_of_roll"] * (roll - 0.5 * s.get("modified_roll_2c", 0.0) * roll**2)
         turned = np.array([out * np.cos(psi) + y * np.sin(psi), y * np.cos(psi) - out * np.sin(psi), along])
         return turned * np.array([1.0, -1.0, 1.0]) if self.left_hand else turned
 
@@ -144,9 +144,9 @@ class Housing:
         self.sheet, self.surfaces = sheet, (pinion, wheel)
         (first, along_pinion), (second, along_wheel) = sheet.places
         # P over the pinion's axis: as far along x as it lies from the crossing point of the wheel, and between the axes
-        beside = sqrt(first**2 - along_wheel**2)
+        beside = sqrt(max(first**2 - along_wheel**2, 0.0))  # of axes that meet but for rounding
         self.azimuth = float(np.arctan2(beside, along_wheel))
-        centre = np.array([0.0, beside + sqrt(second**2 - along_pinion**2), 0.0])
+        centre = np.array([0.0, beside + sqrt(max(second**2 - along_pinion**2, 0.0)), 0.0])
         self.offset = centre[1]
         normal = np.array([0.0, 1.0, 0.0])
         centre = centre + errors.offset * normal

@@ -12,7 +12,8 @@
 - ``face_ends``: K_Hbeta of half-spaces at sharp face ends, beside fine cells, in minutes;
 - ``local_term``: how far the local term of a tooth reaches along the face;
 - ``ring_teeth``: deflection and root stress of teeth of rings beside plane-strain finite elements of their own
-  (``plane_teeth``); ``internal_cycle``: the mesh cycle of a pinion in a ring beside the same elements of several teeth;
+  (``plane_teeth``); ``internal_cycle``: the mesh cycle of a pinion in a ring beside the same elements of several teeth
+  (``plane_pair``); a page;
 - ``root_stress``: tooth root stress beside a plane reference, convergence, time and memory of its model;
 - ``root_stress_families``: that of helical, bevel and face-milled gears beside finer meshes, in minutes;
   ``root_stress_models``: what both share;

@@ -31,9 +31,14 @@ Law = Array | Callable[[Array], Array]
 
 
 def settled(
-    scene: Scene, compliances: tuple[Law, Law], grid: GridChoice, relaxation: float = 1.0, change: float = SETTLED
+    scene: Scene,
+    compliances: tuple[Law, Law],
+    grid: GridChoice,
+    relaxation: float = 1.0,
+    change: float = SETTLED,
+    angle: float = 0.0,
 ) -> Settled:
-    """Rigid analyses at the pitch point with a wheel that is moved by what the loads move both gears.
+    """Rigid analyses at a pinion angle with a wheel that is moved by what the loads move both gears.
 
     ``compliances``: (6, 6) of the middles of the faces, in the axes of each gear's own frame, or motions (6,) by loads
     (6,). ``change``: of the motions that is none.
@@ -51,7 +56,7 @@ def settled(
         origin = pinion.T @ (origin - middles[0] - motions[0, :3]) + middles[0]
         moved = replace(pair, wheel_origin=origin, wheel_axes=pair.wheel_axes @ wheel.T @ pinion)
         teeth = None if bending is None else bending.mounted(moved)
-        carried = carried_by_all(moved, trace_teeth(moved, np.zeros(1)), torque, grid, teeth)
+        carried = carried_by_all(moved, trace_teeth(moved, np.array([angle])), torque, grid, teeth)
         loads = np.zeros((2, 6))
         at = [middles[0], moved.wheel_origin + scene.face_middles[1] * moved.wheel_axes[2]]
         for one in carried.contacts[0][0]:
