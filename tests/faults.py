@@ -109,7 +109,7 @@ FAULTS = (
     ),
     Fault(
         "local synthesis: the conjugate flank does not bend by its motion",
-        "flanks/hypoid_synthesis.py",
+        "flanks/envelope.py",
         "(bends - np.outer(bends[1], bends[1]) / bends[1, 1]) / ratio",
         "bends / ratio",
         "flanks/test_hypoid_synthesis.py::test_conjugate_flank_is_what_the_wheel_sweeps",

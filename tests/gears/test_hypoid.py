@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import GeometryError
 from loaded_tca.gears import HypoidCones, pitch_cones_by_method_1
 from loaded_tca.gears.bevel import pitch_angles
-from loaded_tca.gears.hypoid import limit_curvature, limit_pressure_angle
+from loaded_tca.gears.pitch_cones import limit_curvature, limit_pressure_angle
 from tests.refusals import refused_calls
 
 RIGHT = 0.5 * math.pi
