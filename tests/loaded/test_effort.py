@@ -1,6 +1,7 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from loaded_tca import InputError, analyse, read_scene
@@ -116,6 +117,7 @@ def test_estimate_says_what_it_is_of():
         {"pinion.tip_rounding_mm": 0.2, "analysis.edge_pressures": "all"},
         {"material.max_pressure_MPa": 1500.0},
         dict.fromkeys(("pinion.face_width_mm", "wheel.face_width_mm"), 60.0),
+        {"pinion.support.compliance": (1e-6 * np.eye(6)).tolist()},
     ],
 )
 def test_what_makes_a_state_longer_is_in_the_estimate(changes):
