@@ -62,6 +62,7 @@ SHORTER = {
     "plot_drive_stage": {
         "CHANGES": lambda changes: changes | {"analysis.positions": 3, "analysis.compliance": "contact"}
     },
+    "plot_revolution": {"CHANGES": lambda all_: all_ | {"revolution.positions_per_pitch": 4, "revolution.pitches": 24}},
     "export_to_dynamics": {"SPEEDS": lambda _: np.linspace(0.3, 0.7, 33), "PHASES": lambda _: np.linspace(20, 24, 257)},
 }
 """Values, made of the example's own, without the analyses and times that its number does not depend on."""

@@ -125,10 +125,11 @@ def test_table_and_summary_have_every_torque(result):
         _ = result.nothing
 
 
-def test_root_stress_under_the_largest_share_is_known_where_it_is_asked_for(result):
+def test_root_stress_under_the_largest_share_is_known_where_it_is_asked_for(stage, result):
     assert "sun_root_tension" not in result.dataset
     with coarsely():
-        asked = analyse_stage(changed(analysis__positions=5, analysis__torques_Nm=[100.0], analysis__root_stress=True))
+        changes = {"analysis.positions": 5, "analysis.torques_Nm": [100.0], "analysis.root_stress": True}
+        asked = analyse_stage(stage.with_changes(changes))
     for name in ("sun_root_tension", "planet_root_tension_at_sun", "planet_root_tension_at_ring", "ring_root_tension"):
         assert 10.0 < getattr(asked, name)[0] < 2000.0  # MPa
         assert f"{name}_MPa" in asked.key_figures()[0]
