@@ -303,7 +303,7 @@ def label_of(name: str) -> str:
     Parameters
     ----------
     name : str
-        With dots between its sections.
+        With dots between its sections; a number at its end is a place in a list.
 
     Returns
     -------
@@ -313,9 +313,14 @@ def label_of(name: str) -> str:
     --------
     >>> label_of("pinion.modifications.lead_crowning_um"), label_of("transmission_error_span_um")
     ('pinion lead crowning [µm]', 'peak-to-peak transmission error [µm]')
+    >>> label_of("stage.pin_tangential_um.0")
+    'stage pin tangential 0 [µm]'
     """
     *sections, key = name.split(".")
-    words = [*(section for section in sections if section not in SILENT), without_unit(key)]
+    place = []
+    if key.isdigit() and sections:
+        place, key = [key], sections.pop()
+    words = [*(section for section in sections if section not in SILENT), without_unit(key), *place]
     words = [NAMES.get(word) or word.replace("_", " ") for word in words]
     words = [PROPER.get(word, word) for word in " ".join(words).split()]
     return " ".join(words) + (f" [{unit.replace('um', 'µm')}]" if (unit := unit_of(key)) else "")
