@@ -577,6 +577,12 @@ def test_any_settings_make_a_pair_or_say_why_not(changes):
     assert "GearPair" in told or "pinion" in told or "wheel" in told
 
 
+def test_key_of_the_own_section_that_lacks_a_word_is_proposed(scene):
+    """Not the key of another section that happens to have the name."""
+    with pytest.raises(InputError, match=r'did you mean "mounting\.shaft_angle_error_deg"\?'):
+        scene.with_changes({"mounting.shaft_angle_deg": 0.02})
+
+
 def test_table_is_not_changed_by_reading_it(table):
     before = copy.deepcopy(table)
     scene_from_table(table)
