@@ -40,6 +40,8 @@ FLANKS_ALONE, FREE_EDGES, CAPPED, ROUNDED, ALL_ROUNDED = 0.5, 1.15, 1.5, 2.2, 3.
 """Factors of the time of a state: where teeth do not bend, edges are free, pressure is capped, edges are rounded."""
 USUAL_CELLS, OF_ACCURACY = 4400.0, 0.35
 """Cells that take as long as what does not depend on them, and the exponent of 1e-2 over an accuracy."""
+SUPPORT_STATES = 6
+"""States of a torque that take as long as the way to where supports let the gears stand; of linear bearings."""
 TEETH_SECONDS, TEETH_EXPONENT, TEETH_BYTES = 7.5e-3, 1.5, 400e6
 """Of the finite element models of both gears: the time for the layers of elements across both faces."""
 ROOT_SECONDS, ROOT_BYTES = 0.23, 75e6
@@ -125,7 +127,8 @@ def expected_effort(scene: Scene) -> Effort:
     states = wanted.positions * len(scene.torques)
     contacts = states * (2 if wanted.load_sharing else 1)
     pairs = scene.pairs_in_contact if wanted.load_sharing else 1.0
-    seconds = states * (STATE_SECONDS + SHARED_SECONDS * pairs**SHARED_EXPONENT) * _factor(scene)
+    asked = states + (SUPPORT_STATES * len(scene.torques) if scene.is_supported else 0)
+    seconds = asked * (STATE_SECONDS + SHARED_SECONDS * pairs**SHARED_EXPONENT) * _factor(scene)
     if wanted.cells is None:
         cells = round(min(max(CELLS_TIMES_ACCURACY / wanted.accuracy, FEWEST_CELLS), MOST_CELLS**2))
         seconds *= max(1.0, 1e-2 / wanted.accuracy) ** OF_ACCURACY

@@ -21,7 +21,7 @@ def test_fault_has_its_place_in_the_package_and_a_test(fault):
     assert text_of(PACKAGE / fault.file).count(fault.text) == 1
     assert fault.wrong != fault.text
     file, _, name = fault.test.partition("::")
-    assert re.search(rf"^def {name}\(", text_of(TESTS / file), re.MULTILINE)
+    assert re.search(rf"^(def {name}\(|{name} = )", text_of(TESTS / file), re.MULTILINE)
 
 
 def test_faults_are_told_apart():

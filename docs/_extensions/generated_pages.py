@@ -17,6 +17,7 @@ import loaded_tca
 from loaded_tca.cli import command_line
 from loaded_tca.output import describe_results
 from loaded_tca.scene import describe_keys
+from loaded_tca.stages import describe_stage_keys
 
 ABSOLUTE_VALUE = re.compile(r"\|([A-Za-z ]+)\|")
 NAMED_PAGE = re.compile(r"`{0,2}docs/([\w/]+)\.md`{0,2}")
@@ -40,6 +41,7 @@ def write_pages(reference: Path) -> None:
     """Write all generated pages below a folder; those of names that are gone are removed."""
     texts = {
         "generated/scene_keys.md": describe_keys().replace("### ", "## "),
+        "generated/stage_keys.md": describe_stage_keys().replace("### ", "## "),
         "generated/result_fields.md": describe_results().replace("### ", "## "),
         "generated/commands.md": describe_commands(),
     } | {f"api/{name}": text for name, text in api_pages().items()}

@@ -18,7 +18,8 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.bevel_blank import BacklashKind
 from loaded_tca.gears.blank_gear import BlankGear, Triple
 from loaded_tca.gears.checks import teeth_checks
-from loaded_tca.gears.hypoid import Both, HypoidCones, PitchConeParameters, limit_pressure_angle
+from loaded_tca.gears.hypoid import Both, HypoidCones
+from loaded_tca.gears.pitch_cones import PitchConeParameters, limit_pressure_angle
 
 Taper = Literal["duplex", "standard", "uniform"]
 

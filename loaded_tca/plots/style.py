@@ -317,9 +317,8 @@ def label_of(name: str) -> str:
     'stage pin tangential 0 [µm]'
     """
     *sections, key = name.split(".")
-    place = []
-    if key.isdigit() and sections:
-        place, key = [key], sections.pop()
+    place = [key] if key.isdigit() and sections else []  # in a list
+    key = sections.pop() if place else key
     words = [*(section for section in sections if section not in SILENT), without_unit(key), *place]
     words = [NAMES.get(word) or word.replace("_", " ") for word in words]
     words = [PROPER.get(word, word) for word in " ".join(words).split()]

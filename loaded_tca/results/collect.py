@@ -70,20 +70,9 @@ def mesh_cycle(
     numbers, maps = numbers_and_maps(moved or [pair] * share.shape[0], contacts, at_edges, share.shape)
     apart = np.isnan(numbers["contact_deformation"])
     numbers["normal_force"] = np.where(apart & ~np.isnan(share), 0.0, numbers["normal_force"])
-    lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
-    with np.errstate(divide="ignore", invalid="ignore"):
-        secant = np.where(carried.rotation > 0.0, carried.torque[:, None] / carried.rotation, math.nan)
     path, (torques, positions, pairs) = carried.path, (range(length) for length in share.shape)
     stacked = tuple(tuple(tuple(maps[t, n, k] for k in pairs) for n in positions) for t in torques)
     face_load_factor, transverse_load_factor = load_factors(pair, path, stacked, scene.mean_contact_length)
-    rate, supported = carried.torque_rate, dict[str, Array]()
-    if on_supports:
-        rate, secant = (
-            np.stack([one.mesh_rate for one in on_supports]),
-            secant_on_rigid_supports(carried, on_supports),
-        )
-        angle, _ = scene.transverse_angles
-        supported = support_arrays(pair, on_supports, pressure_angle=angle, stiffness_per_rate=1.0 / lengths)
     arrays = {
         **numbers,
         "torque": carried.torque,
@@ -96,13 +85,11 @@ def mesh_cycle(
         "face_load_factor": face_load_factor,
         "transverse_load_factor": transverse_load_factor,
         "transmission_error": path.transmission_error - pair.driving * carried.rotation,
-        "mesh_stiffness": rate / lengths,
-        "secant_stiffness": secant / lengths,
+        **_stiffnesses(scene, pair, carried, on_supports),
         "loaded_pairs": (numbers["normal_force"] > 0.0).sum(axis=-1),
         "load_share": share,
         "tooth_deflection": np.where(apart, math.nan, carried.tooth_deflection[..., order]),
     }
-    arrays |= supported
     if roots:
         in_contact = ~np.isnan(arrays["normal_force"]).all(axis=-1)
         arrays |= root_stress_arrays(pair, roots, arrays["pair"].tolist(), in_contact, stacked, moved)
@@ -117,6 +104,23 @@ def mesh_cycle(
         maps=stacked,
         states=(scene, tuple(one.carried.states for one in on_supports) or (carried.states,)),
     )
+
+
+def _stiffnesses(
+    scene: Scene, pair: GearPair, carried: Carried, on_supports: Sequence[CarriedOnSupports]
+) -> dict[str, Array]:
+    """Tangent and secant mesh stiffness of the teeth and, where supports give way, the arrays of these."""
+    lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
+    if not on_supports:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            secant = np.where(carried.rotation > 0.0, carried.torque[:, None] / carried.rotation, math.nan)
+        return {"mesh_stiffness": carried.torque_rate / lengths, "secant_stiffness": secant / lengths}
+    angle, _ = scene.transverse_angles
+    return {
+        "mesh_stiffness": np.stack([one.mesh_rate for one in on_supports]) / lengths,
+        "secant_stiffness": secant_on_rigid_supports(carried, on_supports) / lengths,
+        **support_arrays(pair, on_supports, pressure_angle=angle, stiffness_per_rate=1.0 / lengths),
+    }
 
 
 def numbers_and_maps(

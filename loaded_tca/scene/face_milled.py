@@ -194,10 +194,12 @@ class GearSection(sections.GearSection):
 
 
 def _same_spheres(name: str) -> Rule:
-    """Rule: both gears begin or end on the same spheres about the apex, unless both say where they touch."""
+    """Rule: both gears begin or end on the same spheres about the apex, unless both say that they touch at one R_m."""
 
-    def complain(wheel: float, pinion: float, *points: float | None) -> str | None:
-        if isclose(wheel, pinion, rel_tol=SAME_SPHERES) or None not in points:
+    def complain(wheel: float, pinion: float, one: float | None, other: float | None) -> str | None:
+        if isclose(wheel, pinion, rel_tol=SAME_SPHERES):
+            return None
+        if one is not None and other is not None and isclose(one, other, rel_tol=SAME_SPHERES):
             return None
         return f"found {wheel:g}; allowed pinion.blank.{name} = {pinion:g}: both gears end on the same spheres"
 

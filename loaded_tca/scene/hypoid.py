@@ -47,7 +47,13 @@ def _closes(offset: float, shaft_angle: float, *cones: float) -> str | None:
     try:
         closed = HypoidCones.closing(angles, distances, offset, radians(shaft_angle))
     except InputError as refused:
-        return f"found {offset:g}; " + str(refused).split("offset: ")[-1].removeprefix(f"{offset:g} mm is ")
+        told = str(refused).removeprefix(f"offset: {offset:g} mm is ")
+        if told == str(refused):
+            told = (
+                f"with pair.shaft_angle_deg = {shaft_angle:g} no pinion of pitch_angle_deg = {first:g} stands beside "
+                f"wheel.blank.pitch_angle_deg = {second:g}"
+            )
+        return f"found {offset:g}; {told}"
     needed = degrees(closed.pitch_angles[0])
     if abs(needed - first) <= ROUNDED_deg:
         return None

@@ -181,19 +181,19 @@ def describe_keys() -> str:
         for path, keys_of in tables[0].items()
         if all(path in table and (table[path] == keys_of or path in SAME_AS or not path) for table in tables)
     }
-    lines = list(_section_lines("", *shared.pop("")))
+    lines = list(section_lines("", *shared.pop("")))
     for scene, table in zip(families, tables, strict=True):
         kinds = ", ".join(f"`{name}`" for name, known in FAMILIES.items() if known is scene)
         for path, (section, about) in table.items():
             if path and path not in shared:
-                lines += _section_lines(path, section, f"{about} ({kinds})")
+                lines += section_lines(path, section, f"{about} ({kinds})")
         for own, when in VARIANTS.get(scene, {}).items():
             of_families = {section for each in tables for section, _ in each.values()}
             for path, (section, about) in _sections(own, "", {}):
                 if path and section not in of_families:
-                    lines += _section_lines(path, section, f"{about} ({when})", {})
+                    lines += section_lines(path, section, f"{about} ({when})", {})
     for path, keys_of in shared.items():
-        lines += _section_lines(path, *keys_of)
+        lines += section_lines(path, *keys_of)
     return "\n".join(lines).strip() + "\n"
 
 
@@ -213,9 +213,8 @@ def _sections(section: type[Section], path: str, same_as: Mapping[str, str] = SA
                 yield from _sections(entry.section, inner, same_as)
 
 
-def _section_lines(
-    path: str, section: type[Section], about: str, same_as: Mapping[str, str] = SAME_AS
-) -> Iterator[str]:
+def section_lines(path: str, section: type[Section], about: str, same_as: Mapping[str, str] = SAME_AS) -> Iterator[str]:
+    """Lines of the table of a section in Markdown; of one that is the same as another its name."""
     yield from ("", f"### `[{path}]`: {about}" if path else f"### {about}", "")
     if path in same_as:
         yield f"Keys as in `[{same_as[path]}]`."

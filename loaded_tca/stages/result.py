@@ -15,8 +15,9 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replace_together, variables_of
 from loaded_tca.results.summary import shown, shown_torque
+from loaded_tca.stages.files import parse_stage
 from loaded_tca.stages.kinematics import neutralised
-from loaded_tca.stages.sections import Stage, parse_stage
+from loaded_tca.stages.sections import Stage
 
 if TYPE_CHECKING:
     import xarray

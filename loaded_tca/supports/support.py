@@ -23,7 +23,7 @@ Przemieniecki 1968, Theory of Matrix Structural Analysis, chapter 6 (flexibiliti
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -33,6 +33,8 @@ from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.supports.bearing import AnyBearing
 
 AXIS = np.array([0.0, 0.0, 1.0])
+KEPT = 256
+"""Grids whose loads are kept, since a balance asks for them again and again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,6 +220,7 @@ class SupportCompliance:
     pair: GearPair
     supports: tuple[Support, Support]
     axes: Array
+    _loads: dict[int, tuple[ContactGrid, tuple[Array, Array]]] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def neighbours(self) -> int:
@@ -242,12 +245,18 @@ class SupportCompliance:
 
     def loads(self, grid: ContactGrid) -> tuple[Array, Array]:
         """Loads of pinion and wheel (ny, 6 m) each by a unit normal force on every slice of a contact [1, mm]."""
-        points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
-        (pinion, wheel), (of_pinion, of_wheel), normal = self.supports, self.axes, grid.axes[2]
-        return (
-            pinion.loads(points @ of_pinion.T, -of_pinion @ normal),
-            wheel.loads((points - self.pair.wheel_origin) @ of_wheel.T, of_wheel @ normal),
-        )
+        known = self._loads.get(id(grid))
+        if known is None:
+            points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
+            (pinion, wheel), (of_pinion, of_wheel), normal = self.supports, self.axes, grid.axes[2]
+            both = (
+                pinion.loads(points @ of_pinion.T, -of_pinion @ normal),
+                wheel.loads((points - self.pair.wheel_origin) @ of_wheel.T, of_wheel @ normal),
+            )
+            if len(self._loads) >= KEPT:
+                self._loads.clear()
+            known = self._loads[id(grid)] = grid, both
+        return known[1]
 
     def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:  # noqa: ARG002
         """Deflection of every slice under a unit force on each, or on each of ``under`` [mm/N]."""

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import GeometryError
 from loaded_tca.gears import HypoidCones, pitch_cones_by_method_1
 from loaded_tca.gears.bevel import pitch_angles
-from loaded_tca.gears.hypoid import limit_curvature, limit_pressure_angle
+from loaded_tca.gears.pitch_cones import limit_curvature, limit_pressure_angle
 from tests.refusals import refused_calls
 
 RIGHT = 0.5 * math.pi
@@ -188,6 +188,10 @@ test_cones_refuse = refused_calls(
     (
         lambda: HypoidCones.closing(deg(16.8693, 120.0), (127.826, 123.105), 38.1, RIGHT),
         "pitch_angles: with a wheel of 2.0944 rad no pinion closes on an offset of 38.1 mm",
+    ),
+    (
+        lambda: HypoidCones.closing(deg(100.0, 72.3185), (127.826, 123.105), 38.1, RIGHT),
+        "pitch_angles: no pinion of 1.74533 rad stands beside a wheel of 1.2622 rad",
     ),
     (lambda: annex_f3(offset=0.0), "offset: 0.0 mm; without an offset cones follow from the teeth"),
     (lambda: annex_f3(offset=90.0), "offset: 90 mm is too large for a wheel of 170 mm; allowed below"),

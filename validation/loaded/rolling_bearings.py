@@ -238,8 +238,8 @@ Nine positions, one torque, teeth that bend, models of teeth kept; one processor
 | --- | --- | --- |
 {times}
 
-The pair is moved and solved at four positions two or three times before the cycle itself; a balance of a shaft on its
-bearings takes a few milliseconds, a hundredth of that.
+The pair is moved and solved at a few positions before the cycle itself; a balance of a shaft on its bearings takes some
+milliseconds, a hundredth of that.
 """
 
 
