@@ -298,7 +298,8 @@ def tribology(options: argparse.Namespace) -> None:
     found = changed.tribology(options.speed)
     pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(found).items()}
     written = write_tribology(found, directory, pictures)
-    print_summary(found.summary(), written)
+    each = range(len(options.speed or [None]))
+    print_summary("\n\n".join(found.summary(speed=speed) for speed in each), written)
 
 
 OF_TRIBOLOGY = (

@@ -90,9 +90,22 @@ def describe_stages(model: Model) -> str:
             f"  {one.id}: {one.type}" + (f' "{one.name}"' if one.name else "") + (f": {teeth}" if teeth else "")
         )
     if model.load_cases:
-        cases = ", ".join(f"{one.spectrum}:{one.id}" for one in model.load_cases)
-        lines.append(f"load cases: {cases}")
+        lines.append(f"load cases: {_cases(model)}")
     return "\n".join(lines)
+
+
+def _cases(model: Model) -> str:
+    return ", ".join(f"{one.spectrum}:{one.id}" for one in model.load_cases)
+
+
+def _note_loads(reading: Reading, load_case: str | None) -> None:
+    """Note which torques and speeds hold, where the model has more than those of its components."""
+    if load_case is not None:
+        reading.note(f"torques and speeds: those of the load case {load_case}")
+    elif reading.model.load_cases:
+        reading.note(
+            f"torques and speeds: those of the components themselves, of none of the load cases {_cases(reading.model)}"
+        )
 
 
 def _teeth(gear: Component) -> str:
@@ -140,6 +153,7 @@ def import_stage(
     gearbox = Gearbox(reading)
     chosen = gearbox.stage(stage)
     reading.touch([chosen.component, *chosen.gears])
+    _note_loads(reading, load_case)
     run = operation_of(gearbox, chosen, torque_Nm)
     flanks = [flank_of(gearbox, chosen, gear, run.side) for gear in (0, 1)]
     table: dict[str, Any] = {"title": _title(chosen), "pair": pair_section(gearbox, chosen, flanks, run)}

@@ -28,6 +28,7 @@ COLOUR = DISTINCT_COLOURS[0]
 SHOWN = (
     "peak_pressure_MPa",
     "edge_pressure_MPa",
+    "peak_pressure_where_hertz_holds_MPa",
     "hertz_pressure_there_MPa",
     "transmission_error_span_um",
     "transmission_error_mean_um",

@@ -303,7 +303,7 @@ def label_of(name: str) -> str:
     Parameters
     ----------
     name : str
-        With dots between its sections.
+        With dots between its sections; a number at its end is a place in a list.
 
     Returns
     -------

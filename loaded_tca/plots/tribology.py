@@ -188,9 +188,10 @@ def plot_sliding_velocities(tribology: Tribology, speed: int | None = None) -> F
             known = np.isfinite(curve)
             axes.plot(np.degrees(places[known]), curve[known], color=colour, label=label)
         axes.set_xlabel(f"{OVER_THE_PATH} [deg]")
-    axes.set_ylabel("velocity [m/s]")
+    at = "" if result.scene.path_points else "where the pair slides most, "
+    axes.set_ylabel(f"{at}velocity [m/s]")
     style.from_zero(axes)
-    return _finished(figure, axes, tribology, "velocities across the contact", speed, load(result, torque))
+    return _finished(figure, axes, tribology, "rolling and sliding velocities", speed, load(result, torque))
 
 
 def plot_efficiency(tribology: Tribology) -> Figure:

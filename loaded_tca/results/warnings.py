@@ -119,7 +119,8 @@ def warn_of_contacts(result: CycleNumbers, reason: str, where: Mask, stacklevel:
 
 def place_of(torque: float, angle: float, number: int) -> str:
     """Torque [N mm], pinion angle [rad] and tooth pair of a contact in words."""
-    return f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
+    turned = round(math.degrees(angle), 6) + 0.0  # what is left of a sum to 0 is none
+    return f"{1e-3 * torque:g} N m, pinion angle {turned:.4g} deg, tooth pair {number:+d}"
 
 
 def at_places(reason: str, places: Sequence[str], count: int) -> str:

@@ -14,6 +14,7 @@ from loaded_tca.scene.bevel import SIZES, BevelScene, GearSection, one_size, too
 from loaded_tca.scene.bevel_blank import Blank
 from loaded_tca.scene.blank_rows import blank_rows, common_blank_rows
 from loaded_tca.scene.face_milled import FaceMilledScene
+from loaded_tca.scene.face_milled_rows import MEAN_DEPTHS
 from loaded_tca.scene.keys import Choice, Number, key
 from loaded_tca.scene.machine_settings import Method, Settings, mean_contact_rows
 from loaded_tca.scene.model import Row, variant
@@ -169,7 +170,8 @@ class BlankFaceMilledScene(BevelScene):
         blanks, mesh = self.blanks(), self.mesh()
         assert blanks is not None
         common = common_blank_rows(blanks, self.geometry.blank, self.data_type)
-        rows = [*(row for row in common if row[0] != "flanks along the face"), *self.cut.geometry_rows()]
+        once = ("flanks along the face", *MEAN_DEPTHS)  # by the settings, and on the sheet
+        rows = [row for row in (*common, *self.cut.geometry_rows()) if row[0] not in once]
         return [*rows, *blank_rows(blanks), *mean_contact_rows(mesh.gears, self.sides(self.sense)[0])]
 
     def interferences(self) -> Sequence[str]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank, tooth_angle
 from loaded_tca.gears.cylindrical_mesh import Room
-from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
+from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh, FlankName
 from loaded_tca.gears.hypoid_mesh import HypoidMesh
 from loaded_tca.gears.pitch_cones import limit_pressure_angle
 from loaded_tca.scene.model import Row
@@ -19,6 +19,8 @@ from loaded_tca.scene.spiral import Point, Side, pitch_point
 Sides = tuple[Side, Side]
 ONE_FLANK = "one flank"
 """In place of what both flanks of a tooth tell together, where the cutter has one blade."""
+MEAN_DEPTHS = ("mean addendum h_am, to the face cone [mm]", "mean dedendum h_fm, to the root cone [mm]")
+"""Labels of the depths at the mean point, normal to the pitch cone; a dimension sheet has them itself."""
 
 
 def flanks_and_points(
@@ -99,6 +101,8 @@ def _blank_rows(mesh: FaceMilledMesh, points: tuple[Point, Point]) -> list[Row]:
         ("apex of the root cone beyond [mm]", *shown(gear.blank.root_apex for gear in mesh.gears)),
         ("outer pitch diameter d_e [mm]", *both(_outer_diameter)),
         ("outer transverse module m_et [mm]", *both(lambda gear: _outer_diameter(gear) / gear.teeth)),
+        (MEAN_DEPTHS[0], *both(lambda gear: gear.blank.tip_height(gear.blank.mean_cone_distance))),
+        (MEAN_DEPTHS[1], *both(lambda gear: -gear.blank.root_height(gear.blank.mean_cone_distance))),
         ("mean point, radius rho [mm]", *(f"{rho:.4f}" for rho, _ in points)),
         ("mean point, from the apex z [mm]", *(f"{z:.4f}" for _, z in points)),
     ]
@@ -115,49 +119,49 @@ def _outer_diameter(gear: FaceMilledGear) -> float:
 
 def _flank_rows(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
     """What the settings make of the flanks in contact, at their mean points."""
-    heights = [
-        tuple(
-            flank.gear.blank.middle_cone_distance * (angle - flank.gear.blank.pitch_angle)
-            for angle in flank.mean_cone_angles
-        )
+    depths = [
+        flank.gear.blank.middle_cone_distance * (flank.gear.blank.pitch_angle - flank.mean_cone_angles[1])
         for flank in flanks
     ]
     return [
-        ("mean spiral angle beta_m [deg]", *(_deg(abs(flank.angles.spiral)) for flank in flanks)),
-        ("normal pressure angle alpha_n [deg]", *(_deg(flank.angles.pressure) for flank in flanks)),
-        ("mean addendum [mm]", *(f"{tip:.4f}" for tip, _ in heights)),
-        ("flank below the pitch cone, mid-face [mm]", *(f"{-foot:.4f}" for _, foot in heights)),
-        ("mean normal tooth thickness s_mn [mm]", *(_shown(_thickness(flank)) for flank in flanks)),
-        ("mean normal backlash [mm]", _shown(mean_backlash(flanks))),
+        ("spiral angle beta_m of this flank [deg]", *(_deg(abs(flank.angles.spiral)) for flank in flanks)),
+        ("normal pressure angle alpha_n of this flank [deg]", *(_deg(flank.angles.pressure) for flank in flanks)),
+        ("flank below the pitch cone, mid-face [mm]", *(f"{depth:.4f}" for depth in depths)),
+        ("normal tooth thickness s_mn as cut [mm]", *(_shown(_thickness(flank.gear)) for flank in flanks)),
+        ("normal pitch at R_m less both s_mn [mm]", _shown(mean_backlash(flanks))),
     ]
 
 
 def mean_backlash(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> float:
-    """Normal pitch less both tooth thicknesses on the pitch cones at mid-face [mm]; NaN: a flank is not cut."""
-    return sum(_normal_arc(flank, pi / flank.gear.teeth) - _thickness(flank) for flank in flanks)
+    """Normal pitch less both tooth thicknesses, along the pitch cones at the mean points [mm]; NaN: a flank is not cut.
+
+    The backlash j_mn of ISO 23509, normal to the flanks, is cos(alpha_n) of it.
+    """
+    return sum(_normal_arc(flank.gear, pi / flank.gear.teeth) - _thickness(flank.gear) for flank in flanks)
 
 
 def room_and_module(mesh: FaceMilledMesh, sides: Sides) -> tuple[Room, float]:
-    """Room that whole gears leave each other, and the normal module at mid-face [mm]; a tooth of one flank jams not."""
+    """Room that whole gears leave each other, and the mean normal module [mm]; a tooth of one flank jams not."""
     flanks, _ = flanks_and_points(mesh, sides)
     backlash = mean_backlash(flanks)
-    module = _normal_arc(flanks[0], 2.0 / mesh.pinion.teeth)
+    module = _normal_arc(flanks[0].gear, 2.0 / mesh.pinion.teeth)
     return Room(0.0 if isnan(backlash) else backlash, (0.0, 0.0), mesh.tip_clearances), module
 
 
-def _thickness(flank: GeneratedFlank) -> float:
-    """Thickness across the teeth on the pitch cone at mid-face [mm]; NaN: only one flank is cut."""
-    gear = flank.gear
-    if gear.cutter.concave is None or gear.cutter.convex is None:
+def _thickness(gear: FaceMilledGear) -> float:
+    """Thickness across the teeth on the pitch cone at the mean point [mm]; NaN: only one flank is cut."""
+    if None in (gear.cutter.concave, gear.cutter.convex):
         return nan
     rho, z = (np.array([part]) for part in pitch_point(gear.blank.mean_cone_distance, gear.blank.pitch_angle))
-    return _normal_arc(flank, float(tooth_angle(gear, rho, z)[0]))
+    return _normal_arc(gear, float(tooth_angle(gear, rho, z)[0]))
 
 
-def _normal_arc(flank: GeneratedFlank, angle: float) -> float:
-    """Length across the teeth of an angle at the mean point [mm]."""
-    blank = flank.gear.blank
-    return blank.mean_cone_distance * sin(blank.pitch_angle) * angle * cos(flank.angles.spiral)
+def _normal_arc(gear: FaceMilledGear, angle: float) -> float:
+    """Length across the teeth, under the mean spiral angle of the flanks cut, of an angle at the mean point [mm]."""
+    sides: tuple[FlankName, ...] = ("concave", "convex")
+    cut = [GeneratedFlank(gear, side).angles.spiral for side in sides if getattr(gear.cutter, side) is not None]
+    blank = gear.blank
+    return blank.mean_cone_distance * sin(blank.pitch_angle) * angle * cos(sum(cut) / len(cut))
 
 
 def _shown(length: float) -> str:

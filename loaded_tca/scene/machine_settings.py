@@ -183,11 +183,12 @@ def mean_contact_rows(gears: Gears, flank: FlankName) -> list[Row]:
         try:
             contact = mean_contact(*gears, each)
         except GeometryError:
-            rows.append(("none", "none", "none"))
+            rows.append(("no", "none", "none", "none"))
             continue
         fall = contact.motion_fall / UNITS["arcsec"].factor
-        rows.append((f"{fall:.3f}", f"{degrees(contact.path_angle):.3f}", f"{contact.contact_length:.3f}"))
+        rows.append(("yes", f"{fall:.3f}", f"{degrees(contact.path_angle):.3f}", f"{contact.contact_length:.3f}"))
     labels = (
+        "  they carry there, not at their edges alone",
         "  fall of the motion curve at half a pitch [arcsec]",
         "  path of contact from the tooth trace [deg]",
         "  length of the contact ellipse, 6.35 um [mm]",

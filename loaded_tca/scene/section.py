@@ -229,7 +229,9 @@ def _unknown(
     homes = {name: place + home for name, home in _homes(section).items()} if unknown else {}
     elsewhere = _homes(whole) if unknown and whole is not None else {}
     for name in unknown[:MOST_UNKNOWN_KEYS]:
-        meant = elsewhere.get(name) or homes.get(nearest(name, homes) or "")
+        near = nearest(name, homes) or ""
+        own = set(name.split("_")) <= set(near.split("_"))  # but for a word: "shaft_angle_error_deg"
+        meant = (not own and elsewhere.get(name)) or homes.get(near)
         allowed = shorten(", ".join(known), LONGEST_LIST, placeholder=" ...")
         hint = did_you_mean(meant) or f"; allowed {allowed}"
         yield f"{place}{shown_key(name)}: unknown key{hint}"

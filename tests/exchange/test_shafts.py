@@ -237,6 +237,14 @@ def test_loads_of_a_stage_of_unknown_torque_are_named() -> None:
     assert 'cylindrical_gear 23 "Pinion 2": its load in stage 11, of unknown torque' in imported.not_taken
 
 
+def test_which_of_several_loads_hold_is_told() -> None:
+    own = "torques and speeds: those of the components themselves, of none of the load cases 1:1, 1:2"
+    assert own in import_stage(example(), "11").read_as
+    chosen = import_stage(example(), "11", load_case="2").read_as
+    assert own not in chosen
+    assert "torques and speeds: those of the load case 2" in chosen
+
+
 def test_a_load_case_gives_torque_and_speed() -> None:
     scene = import_stage(example(), "11", load_case="2").scene
     assert_allclose(scene.load.pinion_torque_Nm, 60.0 * 55.0 / 21.0, rtol=1e-9)

@@ -56,6 +56,8 @@ def heights(bars):
         ("line_load_max_N_per_mm", "line load max [N/mm]"),
         ("normal_force_at_peak_N", "normal force at peak [N]"),
         (SPAN, "peak-to-peak transmission error [µm]"),
+        ("stage.pin_tangential_um.0", "stage pin tangential 0 [µm]"),
+        ("pinion.shaft.bearings.1.at_mm", "pinion shaft bearings 1 at [mm]"),
         ("face_load_factor", "face load factor K_Hβ"),
     ],
 )

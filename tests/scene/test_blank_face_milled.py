@@ -242,3 +242,36 @@ def test_scene_can_be_sent_to_another_process(example):
     again = pickle.loads(pickle.dumps(example))
     assert again == example
     assert again.cut == example.cut
+
+
+def test_what_is_cut_and_the_sheet_agree_in_one_name_each(example):
+    """s_mn as cut is that of the sheet, what it leaves of the pitch is j_mn over cos(alpha_n); depths stand once."""
+    sheet = [float(cell) for cell in row(example, "mean normal thickness s_mn [mm]")]
+    cut = [float(cell) for cell in row(example, "normal tooth thickness s_mn as cut [mm]")]
+    assert_allclose(cut, sheet, rtol=1e-3)  # the spiral angles of both flanks differ, their mean is 0.05 deg off 35 deg
+    (left,) = (float(cell) for cell in row(example, "normal pitch at R_m less both s_mn [mm]"))
+    (backlash, _) = (float(cell) for cell in row(example, "backlash j_mn, j_mt2 at R_m [mm]"))
+    assert_allclose(left * math.cos(math.radians(20.0)), backlash, atol=2e-4)
+    labels = [one[0] for one in example.geometry_rows() if one[0]]
+    assert len({*labels}) == len(labels)
+    assert not any(label.startswith("mean addendum") for label in labels)
+
+
+def test_a_flank_that_does_not_carry_at_the_mean_point_is_told(example):
+    assert row(example, "they carry there, not at their edges alone") == ["yes", "yes"]
+    changes = {
+        "pair.wheel_outer_diameter_mm": None,
+        "pair.outer_module_mm": 5.2,
+        "pair.spiral_angle_deg": 32.0,
+        "pair.blank.taper": "modified",
+        "pair.settings.motion_fall_arcsec": 15.0,
+        "pair.settings.path_angle_deg": 70.0,
+        "pair.settings.contact_length_mm": 12.0,
+        "pinion.teeth": 12,
+        "wheel.teeth": 43,
+        "pinion.face_width_mm": 34.0,
+        "wheel.face_width_mm": 34.0,
+    }
+    steep = example.with_changes(changes)
+    assert row(steep, "they carry there, not at their edges alone") == ["yes", "no"]
+    assert row(steep, "fall of the motion curve at half a pitch [arcsec]")[1] == "none"

@@ -461,7 +461,9 @@ def test_forces_are_those_of_the_textbook(scene, flank, driving):
     wanted = scene.with_changes({"pair.pinion_flank": flank, "pair.driving": driving})
     found, blank = forces(wanted), wanted.mesh().pinion.blank
     angles = {row[0].split(" [")[0]: float(row[1]) for row in wanted.geometry_rows() if "angle" in row[0]}
-    beta, alpha = np.radians([angles["mean spiral angle beta_m"], angles["normal pressure angle alpha_n"]])
+    beta, alpha = np.radians(
+        [angles["spiral angle beta_m of this flank"], angles["normal pressure angle alpha_n of this flank"]]
+    )
     tangential = 3e5 / (blank.mean_cone_distance * np.sin(blank.pitch_angle))
     spiral = np.sin(beta) * (1.0 if flank == "concave" else -1.0)
     axial = np.tan(alpha) * np.sin(blank.pitch_angle) + spiral * np.cos(blank.pitch_angle)
@@ -505,10 +507,10 @@ def test_overview_tells_cones_settings_and_blades(scene):
 def test_tooth_and_space_fill_the_pitch(scene):
     """Half a tenth of a millimetre more between the blades makes the tooth that much thinner."""
     wider = scene.with_changes({"pinion.cutter.convex.point_radius_mm": 91.80})
-    first, second = (float(told(one)["mean normal tooth thickness s_mn"][0]) for one in (scene, wider))
+    first, second = (float(told(one)["normal tooth thickness s_mn as cut"][0]) for one in (scene, wider))
     assert_allclose(first - second, 0.05, rtol=0.1)  # the slope of the root line, and the shift along the tooth
-    backlash = [float(told(one)["mean normal backlash"][0]) for one in (scene, wider)]
-    assert_allclose(backlash[1] - backlash[0], first - second, atol=2e-4)
+    backlash = [float(told(one)["normal pitch at R_m less both s_mn"][0]) for one in (scene, wider)]
+    assert_allclose(backlash[1] - backlash[0], first - second, atol=4e-4)  # beta_m turns, too
 
 
 def test_teeth_that_would_jam_are_warned_of(scene):
@@ -521,8 +523,8 @@ def test_teeth_that_would_jam_are_warned_of(scene):
 
 def test_one_blade_is_enough_for_contact_and_told_in_the_overview(scene):
     single = scene.with_changes({"pinion.cutter.convex": None, "analysis.compliance": "contact"})
-    assert told(single)["mean normal tooth thickness s_mn"][0] == "one flank"
-    assert told(single)["mean normal backlash"] == ("one flank",)
+    assert told(single)["normal tooth thickness s_mn as cut"][0] == "one flank"
+    assert told(single)["normal pitch at R_m less both s_mn"] == ("one flank",)
     assert single.interferences() == []
     assert "pinion: fit between them, largest" in describe_scene(single)  # the B-spline of the exact flank
     with pytest.raises(InputError, match=r"pinion\.cutter\.convex: missing"):
@@ -575,7 +577,24 @@ def test_any_settings_make_a_pair_or_say_why_not(changes):
     assert "GearPair" in told or "pinion" in told or "wheel" in told
 
 
+def test_key_of_the_own_section_that_lacks_a_word_is_proposed(scene):
+    """Not the key of another section that happens to have the name."""
+    with pytest.raises(InputError, match=r'did you mean "mounting\.shaft_angle_error_deg"\?'):
+        scene.with_changes({"mounting.shaft_angle_deg": 0.02})
+
+
 def test_table_is_not_changed_by_reading_it(table):
     before = copy.deepcopy(table)
     scene_from_table(table)
     assert table == before
+
+
+def test_mean_depths_of_a_hypoid_pair_are_those_of_its_mean_points():
+    """h_am = m_mn (1 + x_hm), x_hm = 0.3 of the pinion (ISO 23509), less what the cones of the pinion stand off."""
+    hypoid = read_scene(SCENES / "hypoid_13x42.toml")
+    rows, wheel = told(hypoid), hypoid.mesh().wheel.blank
+    spiral = np.radians(38.6085)  # of the wheel, as `check` and the guide have it
+    module = 2.0 * wheel.mean_cone_distance * np.sin(wheel.pitch_angle) / 42 * np.cos(spiral)
+    found = [float(cell) for cell in rows["mean addendum h_am, to the face cone"]]
+    assert_allclose(found[1], module * 0.7, rtol=1e-4)
+    assert_allclose(found[0], module * 1.3, atol=0.01)
