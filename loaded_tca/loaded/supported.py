@@ -347,7 +347,7 @@ def loads_at_first_contact(supports: SupportCompliance, at_rest: GearPair, torqu
     contact = trace_contact(at_rest, [0.0], warn=False)[0]
     if not contact.in_contact:
         return _no_loads(supports)
-    unit = supports.mounted(at_rest).loads(_OnePoint(contact))
+    unit = standing_under(supports, _no_loads(supports)).mounted(at_rest).loads(_OnePoint(contact))
     pinion, wheel = (torque / contact.pinion_lever * load[0] for load in unit)
     return pinion, wheel
 
