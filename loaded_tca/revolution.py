@@ -29,6 +29,7 @@ from loaded_tca.loaded.supported import (
     given_motions,
     loads_at,
     moved_by,
+    standing_under,
 )
 from loaded_tca.loaded.supported import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.tooth_contact import GridChoice
@@ -190,10 +191,11 @@ def _on_supports(
         def moved(gears: GearPair, near: SupportCompliance = near, held: Loads = held) -> GearPair:
             return moved_by(replace(near, pair=gears), held)
 
-        there, torque = bending.on_supports(near).mounted(moved(pair)), np.array(scene.torques[t : t + 1])
-        path = _trace(scene, moved(pair), pitches, moved)
+        standing = standing_under(near, held)
+        there, torque = bending.on_supports(standing).mounted(standing.pair), np.array(scene.torques[t : t + 1])
+        path = _trace(scene, standing.pair, pitches, moved)
         one = _OnSupports(path.pair, path, torque, grid, roots, maps, bending=there, held=held)
-        given = partial(near.mounted(path.pair).opened, motions=given_motions(near, held))
+        given = partial(standing.opened, motions=given_motions(near, held))
         report = None if progress is None else partial(_report, progress, t, len(scene.torques))
         for part in carried_over_revolution(path, one.torques, grid, there, report, given):
             one.add(part)

@@ -44,7 +44,7 @@ from loaded_tca.loaded.loaded_contact import LoadedContact, Result, Steps
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.supports import SupportCompliance, moved_pair
+from loaded_tca.supports import SupportCompliance
 from loaded_tca.unloaded import ContactPath, ContactPoint, MeshPath, trace_contact, trace_teeth
 
 POSITIONS = 2
@@ -271,9 +271,10 @@ class SupportedCycle:
     def _moved(self, torque: float, loads: Loads, angles: Array, grid: GridChoice) -> _MovedCycle:
         """States of the pair moved by loads, with supports that are linear there."""
         near = self.supports.under(loads)
-        pair, torques = moved_by(near, loads), np.array([torque])
-        bending = (self.bending if near is self.supports else self.bending.on_supports(near)).mounted(pair)
-        given = partial(near.mounted(pair).opened, motions=given_motions(near, loads))
+        there, torques = standing_under(near, loads), np.array([torque])
+        pair = there.pair
+        bending = (self.bending if there is self.supports else self.bending.on_supports(there)).mounted(pair)
+        given = partial(there.opened, motions=given_motions(near, loads))
         states: OnePairsCycle | AllPairsCycle
         with _told_of(torque):
             if self.load_sharing:
@@ -322,10 +323,15 @@ def _no_loads(supports: SupportCompliance) -> Loads:
     return pinion, wheel
 
 
+def standing_under(supports: SupportCompliance, loads: Loads) -> SupportCompliance:
+    """Supports at rest in their pair moved as rigid bodies by what loads of the stations move."""
+    motions = [support.at_middle(support.moved(load)) for support, load in zip(supports.supports, loads, strict=True)]
+    return supports.moved(motions) if any(one.any() for one in motions) else supports
+
+
 def moved_by(supports: SupportCompliance, loads: Loads) -> GearPair:
     """The pair of supports, at rest, moved as rigid bodies by what loads of the stations move."""
-    motions = [support.at_middle(support.moved(load)) for support, load in zip(supports.supports, loads, strict=True)]
-    return moved_pair(supports.pair, supports.supports, motions) if any(one.any() for one in motions) else supports.pair
+    return standing_under(supports, loads).pair
 
 
 def at_rest(supports: SupportCompliance) -> GearPair:
@@ -360,7 +366,7 @@ def loads_at_first_contact(supports: SupportCompliance, at_rest: GearPair, torqu
     contact = trace_contact(at_rest, [0.0], warn=False)[0]
     if not contact.in_contact:
         return _no_loads(supports)
-    unit = supports.mounted(at_rest).loads(_OnePoint(contact))
+    unit = standing_under(supports, _no_loads(supports)).mounted(at_rest).loads(_OnePoint(contact))
     pinion, wheel = (torque / contact.pinion_lever * load[0] for load in unit)
     return pinion, wheel
 

@@ -26,14 +26,14 @@ from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import in_gear_angles
 from loaded_tca.loaded.force_lines import LoadedSlices
 from loaded_tca.loaded.sensitivity import Tangents
-from loaded_tca.loaded.supported import Loads, moved_by
+from loaded_tca.loaded.supported import Loads, standing_under
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.gap_growth import GapGrowth, gap_growth, moved
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.quantities import GEARS
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import PairChange, number_at, pair_changes
-from loaded_tca.supports import Support, SupportCompliance, moved_pair, support_compliance, supports_of
+from loaded_tca.supports import Support, SupportCompliance, support_compliance, supports_of
 from loaded_tca.unloaded import trace_contact, trace_teeth
 
 STEP, SMALLEST = 1e-4, 1e-3
@@ -99,7 +99,8 @@ def under_one_torque(result: CycleNumbers, torque: int) -> UnderOneTorque:
     assert supports is not None
     pinion, wheel = (result.dataset[f"{gear}_support_load"].values[torque] for gear in GEARS)
     at_rest = supports.under((pinion, wheel))
-    pair = moved_by(at_rest, (pinion, wheel))
+    supports = standing_under(at_rest, (pinion, wheel))
+    pair = supports.pair
     if result.scene.analysis.load_sharing:
         path, paths = in_gear_angles(trace_teeth(pair, result.pinion_angle))
     else:
@@ -112,7 +113,7 @@ def under_one_torque(result: CycleNumbers, torque: int) -> UnderOneTorque:
         paths=tuple(paths.get(number, own) for number, own in zip(result.pair.tolist(), result.paths, strict=True)),
         maps=(result.maps[torque],),
         at_rest=at_rest,
-        supports=at_rest.mounted(pair),
+        supports=supports,
         held=(pinion, wheel),
     )
 
@@ -192,8 +193,7 @@ def _of_pair(result: UnderOneTorque, change: PairChange) -> SupportChange:
     sides = []
     for pair in (change.below, change.above):
         axes = np.stack([np.eye(3), pair.wheel_axes])
-        at_rest = replace(result.supports, pair=pair, axes=axes)
-        sides.append(at_rest.mounted(moved_by(at_rest, result.held)))
+        sides.append(standing_under(replace(result.supports, pair=pair, axes=axes), result.held))
     low, high = sides
     return SupportChange(replace(change, below=low.pair, above=high.pair), low, high)
 
@@ -370,14 +370,13 @@ def _directions(motions: Array, lever: float) -> tuple[Array, Array]:
 def _moved_further(result: UnderOneTorque, way: Array) -> SupportChange:
     """The pair whose gears stand a step to either side along a direction (12,)."""
     below, above = (_moved_with(result, result.at_rest.pair, part * STEP_OF_GEARS * way) for part in (-0.5, 0.5))
-    pairs = MovedChange("mounting.supports", below, above, STEP_OF_GEARS)
-    return SupportChange(pairs, result.supports.mounted(below), result.supports.mounted(above))
+    return SupportChange(MovedChange("mounting.supports", below.pair, above.pair, STEP_OF_GEARS), below, above)
 
 
-def _moved_with(result: UnderOneTorque, at_rest: GearPair, way: Array) -> GearPair:
-    """A pair at rest moved by the mean load, and its gears by a small motion (12,) more."""
+def _moved_with(result: UnderOneTorque, at_rest: GearPair, way: Array) -> SupportCompliance:
+    """Supports in a pair at rest moved by the mean load, and its gears by a small motion (12,) more."""
     pinion, wheel = result.bodies
-    return moved_pair(at_rest, result.supports.supports, [pinion + way[:6], wheel + way[6:]])
+    return result.at_rest.mounted(at_rest).moved([pinion + way[:6], wheel + way[6:]])
 
 
 def _whole_change(result: UnderOneTorque, key: str, at_rest: PairChange | None, way: Array) -> PairChange:
@@ -390,4 +389,4 @@ def _whole_change(result: UnderOneTorque, key: str, at_rest: PairChange | None, 
     low, high = (
         _moved_with(result, side, part * width * way) for side, part in ((at_rest.below, -0.5), (at_rest.above, 0.5))
     )
-    return MovedChange(key, low, high, width)
+    return MovedChange(key, low.pair, high.pair, width)

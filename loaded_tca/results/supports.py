@@ -41,7 +41,7 @@ def support_arrays(
     stiffness_per_rate : float [1/(mm^2 um)]
         Of the drive stiffness over the tangent of the torque over the rotation.
     """
-    motions = [_motions(one) for one in cycles]
+    motions = [_motions(pair, one) for one in cycles]
     forces = {
         f"{gear}_bearing_force": np.stack(
             [[_parts(one).supports[n].bearing_forces(load) for load in one.loads[n]] for one in cycles]
@@ -121,7 +121,7 @@ def element_forces(result: CycleNumbers, gear: str, torque: int) -> dict[int, tu
 
 def warn_of_motions(pair: GearPair, cycles: Sequence[OnSupports]) -> None:
     """Give an AccuracyWarning if gears on supports move so far that their units are in doubt."""
-    motions = np.abs(np.stack([_motions(one) for one in cycles]))
+    motions = np.abs(np.stack([_motions(pair, one) for one in cycles]))
     way, turn = (float(np.nanmax(part, initial=0.0)) for part in (motions[..., :3], motions[..., 3:]))
     if way > LARGEST_WAY * pair.module or turn > LARGEST_TURN:
         give_accuracy_warning(
@@ -176,10 +176,10 @@ def _parts(one: OnSupports) -> SupportCompliance:
     return supports
 
 
-def _motions(one: OnSupports) -> Array:
+def _motions(at_rest: GearPair, one: OnSupports) -> Array:
     """Motions (2, n, 6) of the middles of both faces [mm, rad], in the axes of the fixed frame."""
-    motions = []
-    for support, loads, axes in zip(_parts(one).supports, one.loads, _parts(one).axes, strict=True):
+    motions, frames = [], (np.eye(3), at_rest.wheel_axes)
+    for support, loads, axes in zip(_parts(one).supports, one.loads, frames, strict=True):
         own = np.stack([support.at_middle(support.moved(load)) for load in loads])
         motions.append(np.concatenate([own[:, :3] @ axes, own[:, 3:] @ axes], axis=-1))
     return np.stack(motions)

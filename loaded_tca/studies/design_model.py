@@ -30,7 +30,7 @@ from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.load_sharing import SharedLoad
 from loaded_tca.loaded.loaded_contact import found_together
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
-from loaded_tca.loaded.supported import SupportedCycle, at_rest, given_motions, moved_by, pitches_apart
+from loaded_tca.loaded.supported import SupportedCycle, at_rest, given_motions, pitches_apart, standing_under
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
@@ -299,10 +299,11 @@ class DesignModel:
         torques = self.torques.tolist()
         for torque, loads in zip(torques, cycle.settled(torques), strict=True):
             near = supports.under(loads)
-            moved = moved_by(near, loads)
-            there, given = bending.on_supports(near).mounted(moved), given_motions(near, loads)
-            opened = partial(near.mounted(moved).opened, motions=given)
-            held.append(HeldContacts(scene, trace_teeth(moved, angles), ranges, torque, self.cells, there, opened))
+            standing = standing_under(near, loads)
+            there, given = bending.on_supports(standing).mounted(standing.pair), given_motions(near, loads)
+            opened = partial(standing.opened, motions=given)
+            mesh = trace_teeth(standing.pair, angles)
+            held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, there, opened))
         return tuple(held)
 
     def _check(self) -> None:

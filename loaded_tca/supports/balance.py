@@ -27,7 +27,7 @@ LOOSE = 1e-7
 IN_BALANCE = 1e-10
 """Forces that are left over, over those on the shaft, where Newton's method ends."""
 ROUNDING = 4.0 * float(np.finfo(float).eps)
-"""Of forces in the shaft."""
+"""Of forces in the shaft and of elements of bearings."""
 MOST_STEPS, SHORTEST = 100, 2.0**-60
 """Steps of Newton's method; part of one that is none."""
 SUFFICIENT = 1e-4
@@ -129,8 +129,14 @@ class _Whole:
         return self.size(forces)
 
     def rounding(self, state: _State) -> float:
-        """Rounding of the forces in the shaft, which is stiff: ways through clearances make more than small loads."""
+        """Rounding of the forces in the shaft and in its bearings.
+
+        The shaft is stiff: ways through clearances make more of it than small loads. Elements of pressed bearings
+        carry much where the shaft carries nothing.
+        """
         inner = np.abs(self.stiffness) @ np.abs(state.motion)
+        for seat, reaction in zip(self.seats, state.reactions, strict=True):
+            inner[seat.motions] += reaction.whole
         return ROUNDING * self.size(inner)
 
     def at(self, motion: Array) -> _State:

@@ -21,11 +21,15 @@ class Reaction:
         On the bearing.
     tangent : (6, 6) array [N, N mm over mm, rad]
         Symmetric, never negative.
+    whole : (6,) array [N, N mm]
+        What the parts of the force are without their signs: those of pressed bearings are large and cancel, and so
+        much is their rounding.
     """
 
     energy: float
     force: Array
     tangent: Array
+    whole: Array
 
 
 class AnyBearing(Protocol):
@@ -67,4 +71,5 @@ class Bearing:
     def reaction(self, motion: Array) -> Reaction:
         """What it does against a motion (6,)."""
         force = self.stiffness @ motion
-        return Reaction(0.5 * float(motion @ force), np.asarray(force), self.stiffness)
+        whole = np.abs(self.stiffness) @ np.abs(motion)
+        return Reaction(0.5 * float(motion @ force), np.asarray(force), self.stiffness, whole)

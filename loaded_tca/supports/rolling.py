@@ -249,7 +249,8 @@ class BallBearing(RollingBearing):
         tangent = (normals.T * (stiffness - turning)) @ normals
         tangent += (radial.T * turning) @ radial + (axial.T * turning) @ axial
         energy = float(forces @ pressed) / (OF_BALLS + 1.0)
-        return Reaction(energy, forces @ normals, 0.5 * (tangent + tangent.T))
+        whole = (forces + stiffness * distance) @ np.abs(normals)  # a deflection is a difference of distances
+        return Reaction(energy, forces @ normals, 0.5 * (tangent + tangent.T), whole)
 
     def element_forces(self, motion: Array) -> Array:
         """Forces (n,) [N] of all balls under a motion (6,)."""
@@ -359,7 +360,7 @@ class RollerBearing(RollingBearing):
         forces = self.constant * pressed**OF_ROLLERS
         tangent = (normals.T * (OF_ROLLERS * forces / pressed)) @ normals
         energy = float(forces @ pressed) / (OF_ROLLERS + 1.0)
-        return Reaction(energy, forces @ normals, 0.5 * (tangent + tangent.T))
+        return Reaction(energy, forces @ normals, 0.5 * (tangent + tangent.T), forces @ np.abs(normals))
 
     def slice_forces(self, motion: Array) -> Array:
         """Forces (n, slices) [N] along all rollers under a motion (6,)."""

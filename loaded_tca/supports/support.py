@@ -214,7 +214,8 @@ class SupportCompliance:
     supports : (Support, Support)
         Of pinion and wheel.
     axes : (2, 3, 3) array
-        Axes of the own frames of both gears at rest, in rows, in the fixed frame.
+        Axes of the own frames of both gears at rest, in rows, in the fixed frame of the pair: where the gears have
+        moved, that turns with the pinion.
     """
 
     pair: GearPair
@@ -230,6 +231,14 @@ class SupportCompliance:
     def mounted(self, pair: GearPair) -> SupportCompliance:
         """The same supports in a pair whose wheel stands elsewhere."""
         return replace(self, pair=pair)
+
+    def moved(self, motions: Sequence[Array]) -> SupportCompliance:
+        """The same supports in the pair whose gears have moved by (6,) each, in the axes of each gear's own frame.
+
+        The fixed frame of the moved pair turns with the pinion, the axes of loads and motions do not.
+        """
+        pinion, _ = motions
+        return replace(self, pair=moved_pair(self.pair, self.supports, motions), axes=self.axes @ rotation(pinion[3:]))
 
     @property
     def is_linear(self) -> bool:
@@ -249,9 +258,11 @@ class SupportCompliance:
         if known is None:
             points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
             (pinion, wheel), (of_pinion, of_wheel), normal = self.supports, self.axes, grid.axes[2]
+            on_pinion, on_wheel = pinion.middle * AXIS, wheel.middle * AXIS  # middles of the faces, as the gears stand
+            of_middles = points - on_pinion, points - self.pair.wheel_origin - on_wheel @ self.pair.wheel_axes
             both = (
-                pinion.loads(points @ of_pinion.T, -of_pinion @ normal),
-                wheel.loads((points - self.pair.wheel_origin) @ of_wheel.T, of_wheel @ normal),
+                pinion.loads(of_middles[0] @ of_pinion.T + on_pinion, -of_pinion @ normal),
+                wheel.loads(of_middles[1] @ of_wheel.T + on_wheel, of_wheel @ normal),
             )
             if len(self._loads) >= KEPT:
                 self._loads.clear()

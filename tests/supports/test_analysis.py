@@ -103,6 +103,16 @@ def test_forces_on_both_gears_are_equal_and_opposite() -> None:
     assert_allclose(result.pinion_motion[..., :3], -result.wheel_motion[..., :3], rtol=1e-9, atol=1e-15)
 
 
+def test_straight_teeth_that_do_not_tilt_take_no_axial_force_from_a_tilted_pinion() -> None:
+    none = {"wheel.modifications.lead_crowning_um": 0.0, "pinion.modifications.lead_crowning_um": 8.0}
+    result = analyse(
+        on(scene_of("mesh_cycle_spur", **none), matrix(4e-6, 4e-9, 4e-9, 1), np.diag([0, 0, 1e-6, 0, 0, 0]))
+    )
+    force, tilt = np.nansum(result.normal_force[0, 0]), np.abs(result.pinion_motion[0, 0, 3:5]).max()
+    assert tilt > 5e-5
+    assert abs(result.wheel_motion[0, 0, 2]) < 1e-9 * 1e-6 * force * tilt
+
+
 def test_supports_next_to_rigid_change_nothing() -> None:
     scene = scene_of("helical")
     result, held = analyse(on(scene, 1e-14 * np.eye(6), None)), analyse(scene)

@@ -182,3 +182,17 @@ def test_bearing_whose_own_thrust_nothing_takes_is_refused() -> None:
     one = shaft(TAPERED, Bearing(-40.0, np.diag([2e5, 2e5, 0.0, 0.0, 0.0, 0.0])))
     with pytest.raises(InputError, match=r"finds no balance .* needs another one that takes the thrust it makes"):
         one.solved([0.0], OVERHUNG * np.array([1.0, 1.0, 0.0, 1.0, 1.0, 1.0]))
+
+
+@pytest.mark.parametrize("elements", [7, 8, 9, 11])
+@pytest.mark.parametrize("load", [0.0, 1e-4, 1e-2])
+def test_pressed_bearings_find_their_balance_under_next_to_no_load(elements: int, load: float) -> None:
+    pressed = [
+        BallBearing(at=at, elements=elements, diameter=14.1, pitch_diameter=74.1, clearance=-0.03)
+        for at in (-130.0, -40.0)
+    ]
+    one = shaft(*pressed)
+    forces = np.array([load, 0.3 * load, 0.0, 0.0, 0.0, 0.0])
+    solved = one.solved([0.0], forces)
+    on_bearings = solved.on_bearings[..., :-1] @ forces + solved.on_bearings[..., -1]
+    assert_allclose(on_bearings[:, :3].sum(axis=0), forces[:3], atol=1e-8)  # elements carry 1 kN, to 1e-11

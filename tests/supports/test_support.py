@@ -15,6 +15,7 @@ from loaded_tca.cli import DEMO_SCENE
 from loaded_tca.errors import InputError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.supports import Support, SupportCompliance, moved_pair
+from loaded_tca.supports.support import rotation
 
 ROUNDING = 1e-12
 
@@ -124,3 +125,22 @@ def test_moved_pair_keeps_distances_where_both_gears_move_as_one_body(pair: Gear
     second_order = 2.0 * float(turn @ turn) * np.linalg.norm(pair.wheel_origin)
     assert_allclose(moved.wheel_origin, pair.wheel_origin, atol=second_order)
     assert_allclose(moved.wheel_axes, pair.wheel_axes, atol=ROUNDING)
+
+
+def test_loads_of_gears_that_move_as_one_body_turn_with_them(pair: GearPair) -> None:
+    supports = Support(3.0, np.zeros((6, 6))), Support(-2.0, np.zeros((6, 6)))
+    at_rest = SupportCompliance(pair, supports, np.stack([np.eye(3), pair.wheel_axes]))
+    turn = np.array([2e-2, -1e-2, 3e-2])
+    turned, axis = rotation(turn), np.array([0.0, 0.0, 1.0])
+    middles = 3.0 * axis, pair.wheel_origin - 2.0 * pair.wheel_axes[2]
+    motions = [
+        np.concatenate([own @ (turned @ middle - middle), own @ turn])
+        for own, middle in zip(at_rest.axes, middles, strict=True)
+    ]
+    moved = at_rest.moved(motions)
+    assert_allclose(moved.pair.wheel_origin, pair.wheel_origin, atol=1e-10)
+    assert_allclose(moved.pair.wheel_axes, pair.wheel_axes, atol=ROUNDING)
+    grid = slices_at(np.array([40.0, 3.0, 1.0]), np.array([math.sin(0.35), math.cos(0.35), 0.0]))
+    for own, before, after in zip(at_rest.axes, at_rest.loads(grid), moved.loads(grid), strict=True):
+        in_own_axes = np.kron(np.eye(2), own @ turned @ own.T)
+        assert_allclose(after, before @ in_own_axes.T, atol=1e-9)

@@ -71,7 +71,7 @@ def settled(
         new = np.empty((2, 6))
         for gear, (own, compliance) in enumerate(zip(axes, compliances, strict=True)):
             turned = np.kron(np.eye(2), own)
-            own_loads = turned @ loads[gear]
+            own_loads = np.kron(np.eye(2), own @ pinion) @ loads[gear]  # the moved pair's frame turns with the pinion
             moved_by = compliance(own_loads) if callable(compliance) else compliance @ own_loads
             new[gear] = turned.T @ moved_by
         changed = float(np.abs(new - motions).max())
