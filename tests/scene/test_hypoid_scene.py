@@ -76,6 +76,8 @@ def test_axes_that_meet_have_one_calculation_point(table):
         scene_from_table(changed(table, {"pair.offset_mm": 0.0}))
     told = [problem.split(":")[0] for problem in raised.value.problems]
     assert told == [
+        "wheel.blank.outer_cone_distance_mm",
+        "wheel.blank.face_width_mm",
         "wheel.blank.calculation_cone_distance_mm",
         "pinion.blank.pitch_angle_deg",
         "wheel.blank.pitch_angle_deg",
