@@ -125,7 +125,7 @@ def _flank_rows(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
     ]
     return [
         ("spiral angle beta_m of this flank [deg]", *(_deg(abs(flank.angles.spiral)) for flank in flanks)),
-        ("normal pressure angle alpha_n of this flank [deg]", *(_deg(flank.angles.pressure) for flank in flanks)),
+        ("pressure angle alpha_n of this flank [deg]", *(_deg(flank.angles.pressure) for flank in flanks)),
         ("flank below the pitch cone, mid-face [mm]", *(f"{depth:.4f}" for depth in depths)),
         ("normal tooth thickness s_mn as cut [mm]", *(_shown(_thickness(flank.gear)) for flank in flanks)),
         ("normal pitch at R_m less both s_mn [mm]", _shown(mean_backlash(flanks))),

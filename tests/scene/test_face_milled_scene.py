@@ -462,7 +462,7 @@ def test_forces_are_those_of_the_textbook(scene, flank, driving):
     found, blank = forces(wanted), wanted.mesh().pinion.blank
     angles = {row[0].split(" [")[0]: float(row[1]) for row in wanted.geometry_rows() if "angle" in row[0]}
     beta, alpha = np.radians(
-        [angles["spiral angle beta_m of this flank"], angles["normal pressure angle alpha_n of this flank"]]
+        [angles["spiral angle beta_m of this flank"], angles["pressure angle alpha_n of this flank"]]
     )
     tangential = 3e5 / (blank.mean_cone_distance * np.sin(blank.pitch_angle))
     spiral = np.sin(beta) * (1.0 if flank == "concave" else -1.0)
