@@ -313,9 +313,11 @@ def require_bending(material: Material) -> None:
 
 
 def default_density(gear: Gear) -> MeshDensity:
-    """Density whose layers follow the face width, in heights of the tooth."""
-    rho, z = gear.nominal_flanks[0].grid(2, 2)
-    coordinate = gear.form.sections.coordinate(rho, z)
-    height = float(np.hypot(rho[1] - rho[0], z[1] - z[0]).mean())
-    layers = round(LAYERS_PER_HEIGHT * float(np.ptp(coordinate)) / height)
+    """Density whose layers follow the face width, in heights of the tooth: the mean of both flanks."""
+    layers = 0.0
+    for flank in gear.nominal_flanks:
+        rho, z = flank.grid(2, 2)
+        height = float(np.hypot(rho[1] - rho[0], z[1] - z[0]).mean())
+        layers += 0.5 * float(np.ptp(gear.form.sections.coordinate(rho, z))) / height
+    layers = round(LAYERS_PER_HEIGHT * layers)
     return MeshDensity(lengthwise=min(max(layers, FEWEST_LAYERS), MOST_LAYERS))

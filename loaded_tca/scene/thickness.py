@@ -61,8 +61,9 @@ def as_measured(gear: CylindricalGear, own: GearSection) -> CylindricalGear:
 def thickness_rows(mesh: CylindricalMesh, balls: Sequence[float | None]) -> list[Row]:
     """Tooth thickness of both gears and how it is measured; "-" where a span touches no flank."""
     gears = mesh.pinion, mesh.wheel
+    alterations = (round(gear.tip_alteration / gear.normal_module, 4) for gear in gears)
     rows = [
-        ("tip alteration coefficient k", *(f"{gear.tip_alteration / gear.normal_module + 0.0:.4f}" for gear in gears)),
+        ("tip alteration coefficient k", *(f"{one + 0.0:.4f}" for one in alterations)),  # no minus before a zero
         ("tooth thickness s_n [mm]", *(f"{gear.normal_tooth_thickness:.4f}" for gear in gears)),
         ("span W_k over k teeth [mm]", *map(_span, gears)),
     ]

@@ -51,6 +51,19 @@ ROOTS: dict[str, Part] = {
     "ring_root_tension": (("torque",), "MPa", "root tension of the ring under the largest share"),
 }
 """Those of stages that ask for root stress."""
+LABELS = {
+    "sun_torque_Nm": "sun torque [N m]",
+    "mesh_load_factor": "mesh load factor K_gamma",
+    "least_planet_share": "least share of a planet in the torque",
+    "largest_planet_share": "largest share of a planet in the torque",
+    "transmission_error_peak_to_peak_um": "transmission error, peak to peak [um]",
+    "one_path_peak_to_peak_um": "  of one path alone [um]",
+    "sun_motion_largest_um": "largest motion of the sun [um]",
+    "sun_mesh_peak_pressure_MPa": "peak pressure of the sun's mesh [MPa]",
+    "ring_mesh_peak_pressure_MPa": "peak pressure of the ring's mesh [MPa]",
+    **{f"{name}_MPa": f"{text.removesuffix(' under the largest share')} [MPa]" for name, (_, _, text) in ROOTS.items()},
+}
+"""Lines of the summary by the names of key figures."""
 COORDINATES = "torque", "sun_angle", "planet"
 
 
@@ -199,7 +212,7 @@ class StageResult:
             _line("phases of the ring's meshes", *(f"{phase:.4f}" for phase in self.ring_mesh_phase)),
             _line("orders that equal planets cancel", ", ".join(map(str, self.neutralised_orders)) or "none"),
         ]
-        lines += [_line(name, *(shown(row[name], name) for row in figures)) for name in figures[0]]
+        lines += [_line(LABELS[name], *(shown(row[name], name) for row in figures)) for name in figures[0]]
         lines.append(_line("order of the mesh", "stage [um]", "one path [um]"))
         lines += [
             _line(

@@ -232,3 +232,14 @@ def test_forces_act_on_the_flanks_however_far_from_the_contact_point(made_of):
         assert_allclose((on_pinion.rho[n], on_pinion.z[n]), (np.hypot(*point[:2]), point[2]), rtol=0, atol=MET)
         assert_allclose((on_wheel.rho[n], on_wheel.z[n]), (radius, axial), rtol=0, atol=MET)
     assert farthest > 0.05
+
+
+def test_mirrored_gears_have_the_same_layers():
+    """Flanks of hypoid gears are not of one height, and the hand exchanges them."""
+    scene = read_scene("examples/scenes/hypoid_13x42.toml")
+    mirrored = scene.with_changes({"pinion.blank.hand": "right", "wheel.blank.hand": "left"})
+    layers = [
+        [default_density(gear).lengthwise for gear in (pair.pinion, pair.wheel)]
+        for pair in (scene.pair(), mirrored.pair())
+    ]
+    assert layers[0] == layers[1]
