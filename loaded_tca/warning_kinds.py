@@ -193,6 +193,11 @@ ODD_INPUT = Kind(
     "the number is taken as it stands, in the unit of its key",
     "moduli of steel are 2.06e5 MPa, of plastics some 1e3; torques are in N m",
 )
+CONTACT_RATIO = Kind(
+    "the contact ratio is {ratio:.3g}, below 1: over a part of each pitch no flanks touch but a tip or a face end",
+    "the path of contact is shorter than a pitch: one pair leaves it before the next one comes, tips drag on",
+    "larger tip diameters, a smaller centre distance, more teeth, or a helix: `check` tells the contact ratio",
+)
 CLEARANCE = Kind(
     "the tip of the mating gear comes within {clearance:.3g} mm of the root of the {gear}, less than {least:g} modules",
     "rolling flanks do not touch there, but tips and roots of gears with tolerances may",

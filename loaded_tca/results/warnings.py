@@ -144,7 +144,12 @@ def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = Fals
     InputError, GeometryError
         If nothing can turn, or gear bodies that the scene asks for cannot be built.
     """
-    for sentence in [*scene.interferences(), *_odd_inputs(scene), *_small_clearances(scene, pair)]:
+    for sentence in [
+        *scene.interferences(),
+        *_short_path(scene),
+        *_odd_inputs(scene),
+        *_small_clearances(scene, pair),
+    ]:
         give_accuracy_warning(sentence, stacklevel=3)
     if scene.has_pitch_deviations and not whole_revolution:
         give_accuracy_warning(kinds.PITCH_DEVIATIONS.sentence(), stacklevel=3)
@@ -155,6 +160,13 @@ def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = Fals
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         if scene.analysis.root_stress and (rim := gear.rim_over_height) < THIN_RIM:
             give_accuracy_warning(kinds.THIN_RIM.sentence(gear=name, rim=rim, least=THIN_RIM), stacklevel=3)
+
+
+def _short_path(scene: Scene) -> list[str]:
+    """A sentence on cylindrical gears of which one pair leaves contact before the next one comes."""
+    if scene.path_points and scene.pairs_in_contact < 1.0:
+        return [kinds.CONTACT_RATIO.sentence(ratio=scene.pairs_in_contact)]
+    return []
 
 
 def _odd_inputs(scene: Scene) -> list[str]:

@@ -185,3 +185,13 @@ def test_pressure_that_no_steel_carries_is_warned_of_unless_it_is_capped():
     (sentence,) = found(**{"analysis.torques_Nm": (20e3,)})
     assert "above 4000 MPa" in sentence
     assert found(**{"analysis.torques_Nm": (20e3,), "material.max_pressure_MPa": 6000.0}) == []
+
+
+def test_path_shorter_than_a_pitch_is_warned_of():
+    """Gears drawn apart until the path between their tips is shorter than a base pitch."""
+    scene = spur(**{"pair.centre_distance_mm": 140.0})
+    ratio = scene.mesh().transverse_contact_ratio
+    assert 0.0 < ratio < 1.0
+    (sentence,) = [one for one in sentences(scene) if "contact ratio" in one]
+    assert f"{ratio:.3g}, below 1" in sentence
+    assert f"warning: {sentence}" in describe_scene(scene).splitlines()
