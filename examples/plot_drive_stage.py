@@ -20,7 +20,7 @@ def main() -> float:
     """Return the force on the pinion's bearings over the normal force of the teeth: one."""
     scene = read_scene(SCENE).with_changes(CHANGES)
     result = analyse(scene)
-    rigid = analyse(scene.with_changes({"pinion.shaft": None, "wheel.shaft": None}))
+    rigid = analyse(scene.on_rigid_supports())
     corrected = analyse(scene.with_changes({"pinion.modifications.helix_slope_um": -20.0}))
     print(result.summary())
     print("misalignment [um]", result.misalignment.mean(axis=1))

@@ -68,6 +68,21 @@ def test_coast_side_is_analysed_and_compared(run):
     assert load_result("both/coast/result.nc").scene.driving == "wheel"
 
 
+@pytest.mark.usefixtures("blank_pictures")
+def test_gears_on_supports_are_compared_with_held_ones(run):
+    scene = SCENES / "helical_on_supports.toml"
+    code, out, errors = run("run", scene, "--rigid", "--out", "both", *FEW)
+    assert (code, [line for line in errors if "warning" not in line]) == (0, [])
+    assert "Compared with supports" in out
+    assert load_result("both/supports/result.nc").scene.is_supported
+    assert not load_result("both/rigid/result.nc").scene.is_supported
+
+
+def test_held_gears_have_no_supports_to_leave_out(run):
+    code, _, errors = run("run", SCENES / "spur.toml", "--rigid", "--out", "both")
+    assert (code, errors) == (2, ["loaded-tca: no gear has supports; give one a section support or shaft"])
+
+
 def test_coast_of_a_measured_flank_is_refused(run):
     code, _, errors = run("run", SCENES / "measured_flank.toml", "--coast", "--out", "both")
     assert code == 2

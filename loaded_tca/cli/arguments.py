@@ -179,8 +179,11 @@ def _add_analyses(command: Command) -> None:
     run = command("run", run_by.run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
     _add_scene(run)
     run.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
+    beside = run.add_mutually_exclusive_group()
     text = "analyse the coast side too, and compare: directories drive and coast in DIR, comparison.* beside them"
-    run.add_argument("--coast", action="store_true", help=text)
+    beside.add_argument("--coast", action="store_true", help=text)
+    text = "of gears on supports: analyse them held, too, and compare: directories supports and rigid in DIR"
+    beside.add_argument("--rigid", action="store_true", help=text)
     text = "analyse a whole revolution, each tooth at its own place"
     revolution = command("revolution", run_by.revolution, text, REVOLUTION)
     _add_scene(revolution)

@@ -223,19 +223,22 @@ def demo(options: argparse.Namespace) -> None:
         again = f"'loaded-tca run {scene} --out {directory}'"
         raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
     replace_together(directory, {scene.name: content})
-    run(argparse.Namespace(scene=scene, set=[], out=directory, coast=False))
+    run(argparse.Namespace(scene=scene, set=[], out=directory, coast=False, rigid=False))
     print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
     print(f"  loaded-tca run {scene} --out my-pair")
 
 
 def run(options: argparse.Namespace) -> None:
-    """Read, analyse, write everything, and show the summary; the coast side and its comparison too where asked."""
+    """Read, analyse, write everything, and show the summary; a comparison with another side or supports where asked."""
     scene, directory = scene_of(options), options.out
     check_place(directory)
-    if not options.coast:
+    if not (options.coast or options.rigid):
         _run_scene(scene, directory)
         return
-    scenes = {"drive": scene, "coast": scene.coast_side()}
+    if options.coast:
+        scenes = {"drive": scene, "coast": scene.coast_side()}
+    else:
+        scenes = {"supports": scene, "rigid": scene.on_rigid_supports()}
     for name, side in scenes.items():
         _run_scene(side, directory / name)
     _compare(scenes, [directory / name for name in scenes], directory)

@@ -202,6 +202,27 @@ class Scene(Section, ABC):
             changes["pair.pinion_flank"] = None
         return self.with_changes(changes)
 
+    def on_rigid_supports(self) -> Scene:
+        """Return the scene with both gears held: without their supports and shafts.
+
+        Raises
+        ------
+        InputError
+            If no gear has any.
+
+        Examples
+        --------
+        >>> from loaded_tca import parse_scene
+        >>> from loaded_tca.cli import DEMO_SCENE
+        >>> stiff = {"pinion.support.stiffness": [[1e6 * (i == j) for j in range(6)] for i in range(6)]}
+        >>> parse_scene(DEMO_SCENE.read_text()).with_changes(stiff).on_rigid_supports().is_supported
+        False
+        """
+        require((self.is_supported, "no gear has supports; give one a section support or shaft"))
+        gears = {"pinion": self.pinion, "wheel": self.wheel}
+        given = [(name, key) for name, gear in gears.items() for key in ("support", "shaft") if getattr(gear, key)]
+        return self.with_changes({f"{name}.{key}": None for name, key in given})
+
     @abstractmethod
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two flanks in space by their equations, modifications included."""
