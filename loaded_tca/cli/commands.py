@@ -58,12 +58,7 @@ def result_of(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None,
 
     path = result_file(options.result)
     result = MeshCycle.load(path)
-    torque = options.torque
-    if torque is not None:
-        known = [f"{1e-3 * float(one):.6g}" for one in result.torque]
-        if f"{torque:.6g}" not in known:
-            raise InputError(f"--torque {torque:g}: the result has {', '.join(known)} N m")
-        torque = known.index(f"{torque:.6g}")
+    torque = index_of_torque(options.torque, result)
     given = getattr(options, "position", None)
     position = index_of_position(given, result)
     chosen = {"torque_{:g}_Nm": options.torque, "position_{}": given}
@@ -125,6 +120,15 @@ def subject_of_report(path: Path) -> MeshCycle | StageResult | xarray.Dataset | 
 
         return StageResult.load(path.parent)
     return load_design(path) if kind == "design" else MeshCycle.load(path)
+
+
+def index_of_torque(given: float | None, result: MeshCycle) -> int | None:
+    """Index of a torque [N m] of a result, as the command line gives it; None: not given."""
+    if given is None:
+        return None
+    known = [f"{1e-3 * float(one):.6g}" for one in result.torque]
+    require((f"{given:.6g}" in known, f"--torque {given:g}: the result has {', '.join(known)} N m"))
+    return known.index(f"{given:.6g}")
 
 
 def index_of_position(position: int | None, result: MeshCycle) -> int | None:

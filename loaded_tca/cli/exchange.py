@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-from loaded_tca.cli.commands import check_files, result_file
+from loaded_tca.cli.commands import check_files, index_of_torque, result_file
 from loaded_tca.cli.terminal import print_files
-from loaded_tca.errors import InputError, require
+from loaded_tca.errors import require
 
 
 def import_model(options: argparse.Namespace) -> None:
@@ -36,10 +36,5 @@ def export_model(options: argparse.Namespace) -> None:
 
     check_files([options.out], options.model)
     result = MeshCycle.load(result_file(options.result))
-    torque = options.torque
-    if torque is not None:
-        known = [f"{1e-3 * float(one):.6g}" for one in result.torque]
-        if f"{torque:.6g}" not in known:
-            raise InputError(f"--torque {torque:g}: the result has {', '.join(known)} N m")
-        torque = known.index(f"{torque:.6g}")
+    torque = index_of_torque(options.torque, result)
     print_files([write_rexs(result, options.model, options.stage, options.out, torque)])
