@@ -26,10 +26,9 @@ from loaded_tca.loaded.supported import (
     Loads,
     SupportedCycle,
     at_rest,
-    given_motions,
     loads_at,
+    moved_bending,
     moved_by,
-    standing_under,
 )
 from loaded_tca.loaded.supported import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.tooth_contact import GridChoice
@@ -191,11 +190,11 @@ def _on_supports(
         def moved(gears: GearPair, near: SupportCompliance = near, held: Loads = held) -> GearPair:
             return moved_by(replace(near, pair=gears), held)
 
-        standing = standing_under(near, held)
-        there, torque = bending.on_supports(standing).mounted(standing.pair), np.array(scene.torques[t : t + 1])
-        path = _trace(scene, standing.pair, pitches, moved)
+        there, given = moved_bending(bending, near, held)
+        assert there.supports is not None
+        path = _trace(scene, there.supports.pair, pitches, moved)
+        torque = np.array(scene.torques[t : t + 1])
         one = _OnSupports(path.pair, path, torque, grid, roots, maps, bending=there, held=held)
-        given = partial(standing.opened, motions=given_motions(near, held))
         report = None if progress is None else partial(_report, progress, t, len(scene.torques))
         for part in carried_over_revolution(path, one.torques, grid, there, report, given):
             one.add(part)

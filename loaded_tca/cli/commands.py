@@ -218,7 +218,7 @@ def demo(options: argparse.Namespace) -> None:
     """Write the scene file of the demo and run it."""
     from loaded_tca.input_files import read_bytes
     from loaded_tca.results.files import replace_together
-    from loaded_tca.scene.parse import LARGEST_FILE
+    from loaded_tca.scene.parse import LARGEST_FILE, read_scene
 
     directory = options.out
     check_place(directory)
@@ -227,7 +227,7 @@ def demo(options: argparse.Namespace) -> None:
         again = f"'loaded-tca run {scene} --out {directory}'"
         raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
     replace_together(directory, {scene.name: content})
-    run(argparse.Namespace(scene=scene, set=[], out=directory, coast=False, rigid=False))
+    _run_scene(read_scene(scene), directory)
     print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
     print(f"  loaded-tca run {scene} --out my-pair")
 

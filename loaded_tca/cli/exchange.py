@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from loaded_tca.cli.commands import check_files, index_of_torque, result_file
-from loaded_tca.cli.terminal import print_files
+from loaded_tca.cli.terminal import print_files, print_summary
 from loaded_tca.errors import require
 
 
@@ -25,8 +25,7 @@ def import_model(options: argparse.Namespace) -> None:
         return
     check_files([options.out], options.model)
     replace_file(options.out, imported.to_toml().encode())
-    print(imported.summary(), end="\n\n")
-    print_files([options.out])
+    print_summary(imported.summary(), [options.out])
 
 
 def export_model(options: argparse.Namespace) -> None:

@@ -42,7 +42,7 @@ from loaded_tca.loaded.cycle import (
 )
 from loaded_tca.loaded.loaded_contact import LoadedContact, Result, Steps
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
-from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.supports import SupportCompliance
 from loaded_tca.unloaded import ContactPath, ContactPoint, MeshPath, trace_contact, trace_teeth
@@ -270,11 +270,9 @@ class SupportedCycle:
 
     def _moved(self, torque: float, loads: Loads, angles: Array, grid: GridChoice) -> _MovedCycle:
         """States of the pair moved by loads, with supports that are linear there."""
-        near = self.supports.under(loads)
-        there, torques = standing_under(near, loads), np.array([torque])
-        pair = there.pair
-        bending = (self.bending if there is self.supports else self.bending.on_supports(there)).mounted(pair)
-        given = partial(there.opened, motions=given_motions(near, loads))
+        bending, given = moved_bending(self.bending, self.supports.under(loads), loads)
+        assert bending.supports is not None
+        pair, torques = bending.supports.pair, np.array([torque])
         states: OnePairsCycle | AllPairsCycle
         with _told_of(torque):
             if self.load_sharing:
@@ -325,8 +323,18 @@ def _no_loads(supports: SupportCompliance) -> Loads:
 
 def standing_under(supports: SupportCompliance, loads: Loads) -> SupportCompliance:
     """Supports at rest in their pair moved as rigid bodies by what loads of the stations move."""
-    motions = [support.at_middle(support.moved(load)) for support, load in zip(supports.supports, loads, strict=True)]
+    motions = supports.bodies(loads)
     return supports.moved(motions) if any(one.any() for one in motions) else supports
+
+
+def moved_bending(bending: SumOfParts, near: SupportCompliance, loads: Loads) -> tuple[SumOfParts, Coupling]:
+    """Bending of the pair moved by loads of its supports, which are linear ``near`` these, and what opens its gaps.
+
+    Beside the motions by the forces: those of other loads on the shafts, less those that moved the pair.
+    """
+    there = standing_under(near, loads)
+    given = partial(there.opened, motions=given_motions(near, loads))
+    return bending.on_supports(there).mounted(there.pair), given
 
 
 def moved_by(supports: SupportCompliance, loads: Loads) -> GearPair:
@@ -397,8 +405,8 @@ class _OnePoint:
 def given_motions(supports: SupportCompliance, loads: Loads) -> list[Array]:
     """Motions (6 m,) of the stations beside those by the forces, in the pair moved by loads: d = a . this."""
     motions = []
-    for support, load in zip(supports.supports, loads, strict=True):
-        body = support.with_middle(support.at_middle(support.moved(load)))
+    for support, motion in zip(supports.supports, supports.bodies(loads), strict=True):
+        body = support.with_middle(motion)
         motions.append(-body if support.motion is None else support.motion - body)
     return motions
 

@@ -168,11 +168,17 @@ def plot_face_load(result: MeshCycle) -> Figure:
     InputError
         If the result has one position, which has no mean over a pitch.
     """
-    require((len(result.path) > 1, "face load: a mean over a pitch; found 1 position, allowed 2 or more"))
+    require(a_pitch_of(result))
     figure, axes = style.one_panel()
     draw_face_load(axes, result, torque_styles(result))
     about = f"load over the face width, {loads(result)}", "mean over a pitch", range_of_positions(result)
     return style.finished(figure, axes, result, *about, columns=2)
+
+
+def a_pitch_of(*results: MeshCycle) -> tuple[bool, str]:
+    """The check that results have the positions that a mean over a pitch takes."""
+    long_enough = min(len(result.path) for result in results) > 1
+    return long_enough, "face load: a mean over a pitch; found 1 position, allowed 2 or more"
 
 
 def draw_face_load(axes: Axes, result: MeshCycle, styles: Iterable[tuple[int, str, str, str]]) -> None:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.errors import InputError, require
-from loaded_tca.plots.sharing import draw_face_load
+from loaded_tca.plots.sharing import a_pitch_of, draw_face_load
 from loaded_tca.plots.style import (
     ACCENT,
     DISTINCT_COLOURS,
@@ -96,10 +96,7 @@ def plot_face_load_on_supports(result: MeshCycle, rigid: MeshCycle, torque: int 
     same = np.array_equal(result.torque, rigid.torque)
     require(
         (same, "rigid: other torques than those of the result on supports; allowed the same ones"),
-        (
-            min(len(result.path), len(rigid.path)) > 1,
-            "face load: a mean over a pitch; found 1 position, allowed 2 or more",
-        ),
+        a_pitch_of(result, rigid),
     )
     figure, axes = one_panel()
     for one, label, colour in ((result, "with supports", DISTINCT_COLOURS[0]), (rigid, "rigid", ACCENT)):

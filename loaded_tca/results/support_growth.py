@@ -69,32 +69,32 @@ class UnderOneTorque(CycleNumbers):
     @property
     def bodies(self) -> tuple[Array, Array]:
         """Motions (6,) of pinion and wheel that the pair is moved by."""
-        pinion, wheel = (
-            support.at_middle(support.moved(load))
-            for support, load in zip(self.supports.supports, self.held, strict=True)
-        )
-        return pinion, wheel
+        return self.supports.bodies(self.held)
 
 
-_STANDING: WeakKeyDictionary[CycleNumbers, dict[int, UnderOneTorque]] = WeakKeyDictionary()
-"""Results on supports, in the gears as they stand, by the index of the torque."""
+_KEPT: WeakKeyDictionary[CycleNumbers, dict[int, UnderOneTorque]] = WeakKeyDictionary()
+"""Results under one torque by its index, by the results on supports that they are of."""
 
 
 def standing(result: CycleNumbers, torque: int) -> tuple[CycleNumbers, int]:
     """A result whose gears stand as they do under a torque, by its index, and the index that it has there.
 
-    The result itself where no support gives way, else that of :func:`under_one_torque`, which is kept.
+    The result itself where no support gives way or it is one under one torque, else that of :func:`under_one_torque`.
     """
-    if not result.scene.is_supported:
+    if isinstance(result, UnderOneTorque) or not result.scene.is_supported:
         return result, torque
-    kept = _STANDING.setdefault(result, {})
-    if torque not in kept:
-        kept[torque] = under_one_torque(result, torque)
-    return kept[torque], 0
+    return under_one_torque(result, torque), 0
 
 
 def under_one_torque(result: CycleNumbers, torque: int) -> UnderOneTorque:
-    """The numbers of a result on supports under one torque, by its index."""
+    """The numbers of a result on supports under one torque, by its index; its contacts are traced once, and kept."""
+    kept = _KEPT.setdefault(result, {})
+    if torque not in kept:
+        kept[torque] = _under_one_torque(result, torque)
+    return kept[torque]
+
+
+def _under_one_torque(result: CycleNumbers, torque: int) -> UnderOneTorque:
     supports = support_compliance(result.scene, result.gear_pair)
     assert supports is not None
     pinion, wheel = (result.dataset[f"{gear}_support_load"].values[torque] for gear in GEARS)

@@ -136,11 +136,7 @@ class Geometry(Pair):
             'found "{0}", but flanks of straight teeth are neither; give sense instead',
         ),
         spiral.FLANK_OR_SENSE,
-        rule(
-            ("normal_pressure_angle_deg", "pressure_angle_deg"),
-            lambda *both: None in both,
-            "found {0:g} beside pressure_angle_deg = {1:g}; give one of the two",
-        ),
+        spiral.ONE_PRESSURE_ANGLE,
         Rule(("normal_pressure_angle_deg", "spiral_angle_deg"), too_steep),
         rule(
             ("blank.lengthwise_curve", "spiral_angle_deg"),

@@ -59,11 +59,7 @@ class Geometry(bevel.Geometry):
             "flanks.hypoid_synthesis make them",
         ),
         spiral.FLANK_OR_SENSE,
-        rule(
-            ("normal_pressure_angle_deg", "pressure_angle_deg"),
-            lambda *both: None in both,
-            "found {0:g} beside pressure_angle_deg = {1:g}; give one of the two",
-        ),
+        spiral.ONE_PRESSURE_ANGLE,
         Rule(("normal_pressure_angle_deg", "spiral_angle_deg"), too_steep),
         rule(
             ("blank.cutter_radius_mm",),

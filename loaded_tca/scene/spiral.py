@@ -29,6 +29,12 @@ FLANK_OR_SENSE = rule(
     ("pinion_flank", "sense"), lambda *both: None in both, 'found "{0}" beside sense = "{1}"; give one of the two'
 )
 """Of [pair]."""
+ONE_PRESSURE_ANGLE = rule(
+    ("normal_pressure_angle_deg", "pressure_angle_deg"),
+    lambda *both: None in both,
+    "found {0:g} beside pressure_angle_deg = {1:g}; give one of the two",
+)
+"""Of [pair]."""
 AXES_THAT_MEET = rule(
     ("mounting.shaft_angle_error_deg", "pair.shaft_angle_deg"),
     lambda error, shaft_angle: 0.0 < shaft_angle + error < 180.0,

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,7 @@ from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.load_sharing import SharedLoad
 from loaded_tca.loaded.loaded_contact import found_together
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
-from loaded_tca.loaded.supported import SupportedCycle, at_rest, given_motions, pitches_apart, standing_under
+from loaded_tca.loaded.supported import SupportedCycle, at_rest, moved_bending, pitches_apart
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
@@ -298,12 +298,10 @@ class DesignModel:
         cycle, held = SupportedCycle(pair, bending, angles, grid, load_sharing=True), []
         torques = self.torques.tolist()
         for torque, loads in zip(torques, cycle.settled(torques), strict=True):
-            near = supports.under(loads)
-            standing = standing_under(near, loads)
-            there, given = bending.on_supports(standing).mounted(standing.pair), given_motions(near, loads)
-            opened = partial(standing.opened, motions=given)
-            mesh = trace_teeth(standing.pair, angles)
-            held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, there, opened))
+            there, given = moved_bending(bending, supports.under(loads), loads)
+            assert there.supports is not None
+            mesh = trace_teeth(there.supports.pair, angles)
+            held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, there, given))
         return tuple(held)
 
     def _check(self) -> None:

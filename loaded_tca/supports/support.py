@@ -240,6 +240,13 @@ class SupportCompliance:
         pinion, _ = motions
         return replace(self, pair=moved_pair(self.pair, self.supports, motions), axes=self.axes @ rotation(pinion[3:]))
 
+    def bodies(self, loads: Sequence[Array]) -> tuple[Array, Array]:
+        """Motions (6,) of the middles of both faces under loads (6 m,) of the stations of pinion and wheel."""
+        pinion, wheel = (
+            support.at_middle(support.moved(load)) for support, load in zip(self.supports, loads, strict=True)
+        )
+        return pinion, wheel
+
     @property
     def is_linear(self) -> bool:
         """Whether the motions grow with the loads, whatever these are."""

@@ -151,8 +151,8 @@ def _swept(result: CycleNumbers) -> Slices:
     parts = []
     for number, (place, one) in enumerate(zip(places, maps, strict=True)):
         moved = standing(result, place[0])[0].gear_pair
-        doubts = {"rough": bool(rough[place]), "edge": bool(result.on_edge[place])}
-        parts.append(_of_map(moved, one, (*motions, sliding), number, **doubts))
+        at_edge = bool(result.on_edge[place])
+        parts.append(_of_map(moved, one, (*motions, sliding), number, rough=bool(rough[place]), edge=at_edge))
     names = ("x", "y", "step", "line_load", "rolling_1", "rolling_2", "sliding", "loss", "torque_1", "torque_2", "edge")
     flat = {name: np.concatenate([np.zeros(0), *(part[name] for part in parts)]) for name in names}
     counts = np.array([part["y"].size for part in parts], dtype=int)
