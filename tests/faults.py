@@ -109,7 +109,7 @@ FAULTS = (
     ),
     Fault(
         "local synthesis: the conjugate flank does not bend by its motion",
-        "flanks/envelope.py",
+        "flanks/face_milled.py",
         "(bends - np.outer(bends[1], bends[1]) / bends[1, 1]) / ratio",
         "bends / ratio",
         "flanks/test_hypoid_synthesis.py::test_conjugate_flank_is_what_the_wheel_sweeps",
@@ -144,14 +144,14 @@ FAULTS = (
     ),
     Fault(
         "rings: modifications have the lower and the upper end of the face exchanged",
-        "flanks/ring.py",
+        "flanks/cylindrical.py",
         "return Jet(-z, z=-1.0)",
         "return Jet(z, z=1.0)",
         "flanks/test_ring_flank.py::test_ends_of_the_face_are_those_of_the_pinion",
     ),
     Fault(
         "rings: a positive error of the centre distance brings teeth together",
-        "pairs/internal.py",
+        "pairs/cylindrical.py",
         "[mounting.centre_distance_error - mesh.working_centre_distance, 0.0, mounting.axial_offset]",
         "[-mounting.centre_distance_error - mesh.working_centre_distance, 0.0, mounting.axial_offset]",
         "pairs/test_internal_pair.py::test_positive_centre_distance_error_moves_teeth_apart",

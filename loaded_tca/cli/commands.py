@@ -577,8 +577,7 @@ def report(options: argparse.Namespace) -> None:
 
 def check(options: argparse.Namespace) -> None:
     """Show the geometry of a scene or of a stage."""
-    from loaded_tca.output.overview import describe_scene
-    from loaded_tca.output.stage_overview import describe_stage
+    from loaded_tca.output.overview import describe_scene, describe_stage
     from loaded_tca.stages.files import is_stage_file
 
     print(describe_stage(stage_of(options)) if is_stage_file(options.scene) else describe_scene(scene_of(options)))

@@ -17,8 +17,7 @@ from scipy.optimize.elementwise import find_root
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.layout import MeshDensity, RingLayout, SectorLayout
 from loaded_tca.errors import InputError
-from loaded_tca.tooth.fillet import lengths_along, polar
-from loaded_tca.tooth.sections import Sections, in_space
+from loaded_tca.tooth.fillet import Sections, in_space, lengths_along, polar
 from loaded_tca.tooth.surface import ToothSurface
 
 FILLET_SHARE = 0.5

@@ -15,8 +15,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
-from loaded_tca.exchange.model import Component, Reading
-from loaded_tca.exchange.units import ANGLE, LENGTH, NUMBER, POWER, SPEED, TORQUE
+from loaded_tca.exchange.model import ANGLE, LENGTH, NUMBER, POWER, SPEED, TORQUE, Component, Reading
 
 GEARS = "cylindrical_gear", "ring_gear"
 PARALLEL = 1e-6

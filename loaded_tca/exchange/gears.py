@@ -12,8 +12,7 @@ from typing import Any
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.exchange.gearbox import Gearbox, Stage
-from loaded_tca.exchange.model import Component, Reading
-from loaded_tca.exchange.units import (
+from loaded_tca.exchange.model import (
     ANGLE,
     CONDUCTIVITY,
     DENSITY,
@@ -22,6 +21,8 @@ from loaded_tca.exchange.units import (
     PRESSURE,
     SMALL_LENGTH,
     TORQUE,
+    Component,
+    Reading,
 )
 
 NAMES = "pinion", "wheel"

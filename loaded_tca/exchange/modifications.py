@@ -12,8 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from loaded_tca.exchange.gears import DIGITS
-from loaded_tca.exchange.model import Component, Reading
-from loaded_tca.exchange.units import LENGTH
+from loaded_tca.exchange.model import LENGTH, Component, Reading
 
 MICROMETRES = 1e3
 """Per millimetre."""

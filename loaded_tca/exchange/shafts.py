@@ -17,8 +17,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.exchange.bearings import BEARINGS, bearing_rows
 from loaded_tca.exchange.gearbox import Gearbox, Stage
 from loaded_tca.exchange.gears import NAMES
-from loaded_tca.exchange.model import Component, Reading
-from loaded_tca.exchange.units import ANGLE, FORCE, LENGTH, TORQUE
+from loaded_tca.exchange.model import ANGLE, FORCE, LENGTH, TORQUE, Component, Reading
 
 STEEPEST = math.radians(89.0)
 """Helix angle above which gears are none."""

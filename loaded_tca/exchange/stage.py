@@ -20,10 +20,9 @@ from loaded_tca.exchange.gears import (
     operation_of,
     pair_section,
 )
-from loaded_tca.exchange.model import Component, Model, Reading
+from loaded_tca.exchange.model import LENGTH, Component, Model, Reading
 from loaded_tca.exchange.modifications import Teeth, modification_keys
 from loaded_tca.exchange.shafts import diameter_at, rest_of, shaft_section
-from loaded_tca.exchange.units import LENGTH
 from loaded_tca.scene import Scene, scene_from_table
 from loaded_tca.scene.keys import literal
 from loaded_tca.supports import shafts_of

@@ -7,9 +7,8 @@ from loaded_tca.gears.blank_gear import BlankGear
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import CylindricalMesh
 from loaded_tca.gears.face_milled import Blade, Cutter, FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
-from loaded_tca.gears.hypoid import HypoidCones
+from loaded_tca.gears.hypoid import HypoidCones, HypoidMesh
 from loaded_tca.gears.hypoid_blank import HypoidBlank
-from loaded_tca.gears.hypoid_mesh import HypoidMesh
 from loaded_tca.gears.internal_mesh import InternalMesh
 from loaded_tca.gears.pitch_cones import PitchConeParameters, pitch_cones_by_method_1
 from loaded_tca.gears.ring import PinionCutter, RingGear

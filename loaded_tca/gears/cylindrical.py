@@ -16,8 +16,7 @@ from scipy.optimize import brentq
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears import tooth_measures
 from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks
-from loaded_tca.gears.involute import inverse_involute, involute
-from loaded_tca.gears.involute_gear import InvoluteGear
+from loaded_tca.gears.involute import InvoluteGear, inverse_involute, involute
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear
-from loaded_tca.gears.involute import inverse_involute, involute
-from loaded_tca.gears.involute_mesh import InvoluteMesh
+from loaded_tca.gears.involute import InvoluteMesh, inverse_involute, involute
 
 # In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
 _NEGLIGIBLE_UNDERCUT = 1e-4

@@ -17,8 +17,7 @@ import numpy as np
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, ActiveProfile, PathOfContact, Room, interferences
-from loaded_tca.gears.involute import inverse_involute, involute
-from loaded_tca.gears.involute_mesh import InvoluteMesh
+from loaded_tca.gears.involute import InvoluteMesh, inverse_involute, involute
 from loaded_tca.gears.ring import RingGear
 
 _EQUAL = 1e-12

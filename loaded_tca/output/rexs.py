@@ -20,9 +20,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.exchange.files import LARGEST_FILE, parse_rexs, with_attributes
 from loaded_tca.exchange.gearbox import Gearbox, Stage
-from loaded_tca.exchange.model import Attribute, Model, Reading
+from loaded_tca.exchange.model import LENGTH, Attribute, Model, Reading
 from loaded_tca.exchange.shafts import ShaftFrame
-from loaded_tca.exchange.units import LENGTH
 from loaded_tca.input_files import read_bytes
 from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
 from loaded_tca.results.files import replace_file

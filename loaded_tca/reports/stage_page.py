@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from loaded_tca.output.stage_overview import HELD, geometry_of_meshes, stage_sections
+from loaded_tca.output.overview import HELD, geometry_of_meshes, stage_sections
 from loaded_tca.plots import STAGE_CAPTIONS, STAGE_PICTURES
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of

@@ -11,7 +11,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
-from loaded_tca.gears.involute_mesh import InvoluteMesh
+from loaded_tca.gears.involute import InvoluteMesh
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3

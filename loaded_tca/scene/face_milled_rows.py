@@ -11,7 +11,7 @@ import numpy as np
 from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank, tooth_angle
 from loaded_tca.gears.cylindrical_mesh import Room
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh, FlankName
-from loaded_tca.gears.hypoid_mesh import HypoidMesh
+from loaded_tca.gears.hypoid import HypoidMesh
 from loaded_tca.gears.pitch_cones import limit_pressure_angle
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.spiral import Point, Side, pitch_point

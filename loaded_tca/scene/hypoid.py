@@ -14,8 +14,7 @@ from math import degrees, radians
 
 from loaded_tca.errors import InputError
 from loaded_tca.gears.face_milled import FaceMilledGear
-from loaded_tca.gears.hypoid import HypoidCones
-from loaded_tca.gears.hypoid_mesh import HypoidMesh
+from loaded_tca.gears.hypoid import HypoidCones, HypoidMesh
 from loaded_tca.scene.section import Rule
 
 ROUNDED_deg = 0.01

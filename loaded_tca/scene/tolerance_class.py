@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from loaded_tca.errors import named
-from loaded_tca.gears.involute_mesh import InvoluteMesh
+from loaded_tca.gears.involute import InvoluteMesh
 from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.section import values_of
 

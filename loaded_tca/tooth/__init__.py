@@ -10,9 +10,8 @@ from loaded_tca.tooth.families import (
     ToothForm,
     ToothGeometry,
 )
-from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, RackFillet
+from loaded_tca.tooth.fillet import ApexSpheres, ArcFillet, Fillet, FilletCurve, RackFillet, Sections, TransversePlanes
 from loaded_tca.tooth.ring import InvertedPlanes, RingFillet, RingTooth
-from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
 from loaded_tca.tooth.surface import PATCHES, ToothSurface, TriangleMesh
 
 __all__ = [

@@ -13,8 +13,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank, sharp
 from loaded_tca.tooth.families import ToothForm
-from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, Profile, profile_of
-from loaded_tca.tooth.sections import in_space
+from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, Profile, in_space, profile_of
 from loaded_tca.tooth.surface import ToothSurface
 
 OVERLAP = 1e-3

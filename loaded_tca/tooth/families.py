@@ -25,10 +25,9 @@ from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears import BevelGear, CylindricalGear, FaceMilledGear
 from loaded_tca.gears.cylindrical_mesh import ActiveProfile
 from loaded_tca.gears.face_milled import BLADE_SIGNS
-from loaded_tca.gears.involute_gear import InvoluteGear
-from loaded_tca.tooth.fillet import ArcFillet, Fillet, RackFillet
+from loaded_tca.gears.involute import InvoluteGear
+from loaded_tca.tooth.fillet import ApexSpheres, ArcFillet, Fillet, RackFillet, Sections, TransversePlanes
 from loaded_tca.tooth.held import Bore, Held
-from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
 
 
 @dataclass(frozen=True)
