@@ -256,7 +256,7 @@ FAULTS = (
     ),
     Fault(
         "bending: results of a file know one part of the model alone",
-        "results/loaded_grids.py",
+        "results/derivatives.py",
         "bending = model_of(result.scene, pair, apart)",
         "bending = model_of(result.scene, pair, apart).parts[0]",
         "compliance/test_model.py::test_model_twice_as_soft_has_one_answer_in_memory_and_from_a_file",
@@ -623,7 +623,7 @@ FAULTS = (
             ),
             (
                 "grids go half with the contact point between two face ends",
-                "separation/moving_edges.py",
+                "separation/pair_change.py",
                 "OPEN = 1e-5",
                 "OPEN = 1e-2",
                 "test_contacts_between_two_face_ends_stay_where_they_are_though_their_point_moves_far",
@@ -651,7 +651,7 @@ FAULTS = (
             ),
             (
                 "ends at one place are no kink",
-                "separation/moving_edges.py",
+                "separation/pair_change.py",
                 "(most - least)[:, kept]",
                 "(most - most)[:, kept]",
                 "test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error",

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import asin, atan, copysign, cos, degrees, inf, isclose, pi, radians, sin, sqrt, tan
+from math import asin, atan, cos, degrees, inf, isclose, pi, radians, sin, tan
 from typing import Any, Literal, get_args
 
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.bevel import pitch_angles
-from loaded_tca.gears.blank_gear import SECTIONS, BlankGear, Triple, virtual_curvature
+from loaded_tca.gears.blank_gear import SECTIONS, BlankGear, Triple, virtual_contact_ratios, virtual_curvature
 from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, half_turn_checks, input_checks, teeth_checks
 
 Taper = Literal["standard", "uniform", "duplex", "modified"]
@@ -29,9 +29,7 @@ _ROUNDED = 1e-3
 # Part of the face width that the overlap of ISO 10300-1 counts.
 _EFFECTIVE_WIDTH = 0.85
 
-
 BacklashKind = Literal["outer_normal", "outer_transverse", "mean_normal", "mean_transverse"]
-
 
 Cones = tuple[tuple[float, float] | None, tuple[float, float] | None]
 """Face and root cone of a gear: angle [rad] and how far the apex lies beyond the crossing point [mm]."""
@@ -177,15 +175,10 @@ class BevelBlank:
 
     def _check_inputs(self) -> None:
         """Refuse values out of their own ranges, then depths and tapers that do not go together."""
-        positive = (
-            "outer_module",
-            "face_width",
-            "cutter_radius",
-            "addendum_factor",
-            "dedendum_factor",
-            "pinion_face_width",
-        )
+        lengths = "outer_module", "face_width", "cutter_radius", "pinion_face_width"
+        positive = *lengths, "addendum_factor", "dedendum_factor"
         backlash, spiral = self.outer_normal_backlash, self.spiral_angle
+        cone_angles = [cone[0] for both in self.cones for cone in both if cone is not None]
         shallow = self.wheel_angles is None or all(abs(angle) < _MAX_DEPTH_ANGLE for angle in self.wheel_angles)
         require(
             *teeth_checks(*self.teeth),
@@ -197,11 +190,7 @@ class BevelBlank:
                 f"spiral_angle: {spiral:.6g} rad is not from 0 to below 1.047 rad (60 deg)",
             ),
             (0.0 < self.outer_share < 1.0, f"outer_share: {self.outer_share} is not between 0 and 1"),
-            *(
-                half_turn
-                for cone in (one for both in self.cones for one in both if one is not None)
-                for half_turn in half_turn_checks(cones=cone[0])
-            ),
+            *(check for angle in cone_angles for check in half_turn_checks(cones=angle)),
             (shallow, f"wheel_angles: {self.wheel_angles} rad are not within 0.785 rad (45 deg)"),
         )
         smallest = self.mean_cone_distance * sin(spiral)
@@ -222,9 +211,7 @@ class BevelBlank:
 
     def _check_face(self) -> None:
         """Refuse faces without toe, or beyond the reach of the cutter."""
-        for width, distances in zip(
-            (self.face_widths[1], self.face_widths[0]), self._both_distances[::-1], strict=True
-        ):
+        for width, distances in zip(self.face_widths[::-1], self._both_distances[::-1], strict=True):
             if not distances[0] > 0.0:
                 raise GeometryError(
                     f"face_width {width:.6g} mm reaches the apex: no face is left at the toe; it must be below"
@@ -368,18 +355,10 @@ class BevelBlank:
 
         The overlap is that of 0.85 of the face width.
         """
-        spiral, module = self.spiral_angle, self.mean_normal_module
-        pressure = atan(tan(self.pressure_angle) / cos(spiral))
-        length = 0.0
-        for member, pitch in enumerate(self.pitch_angles):
-            diameter = self.teeth[member] * self.mean_transverse_module / cos(pitch)
-            tip = diameter + 2.0 * self._mean_addenda[member]
-            base = diameter * cos(pressure)
-            length += 0.5 * (copysign(sqrt(max(tip**2 - base**2, 0.0)), diameter) - diameter * sin(pressure))
-        return (
-            length * cos(spiral) / (pi * module * cos(pressure)),
-            _EFFECTIVE_WIDTH * self.face_width * sin(spiral) / (pi * module),
-        )
+        d1, d2 = (count * self.mean_transverse_module / cos(self.pitch_angles[k]) for k, count in enumerate(self.teeth))
+        module, width = self.mean_normal_module, _EFFECTIVE_WIDTH * self.face_width
+        angles = self.pressure_angle, self.spiral_angle
+        return virtual_contact_ratios((d1, d2), self._mean_addenda, angles, module, width)
 
     @property
     def has_constant_slots(self) -> bool:

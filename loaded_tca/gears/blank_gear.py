@@ -7,8 +7,9 @@ leave.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import acos, cos, inf, pi, sin, tan
+from math import acos, atan, copysign, cos, inf, pi, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
@@ -286,3 +287,28 @@ def _thickness_at(height: float, thickness: float, curvature: float, pressure_an
         return thickness - 2.0 * height * tan(pressure_angle)
     end = acos(cos(pressure_angle) / growth) if growth > cos(pressure_angle) else 0.0
     return growth * (thickness + 2.0 * (involute(pressure_angle) - involute(end)) / curvature)
+
+
+def virtual_contact_ratios(
+    diameters: Sequence[float], addenda: Sequence[float], angles: tuple[float, float], module: float, width: float
+) -> tuple[float, float]:
+    """Profile and overlap contact ratio of the virtual cylindrical gears of a pair (ISO 10300-1:2014, annex A).
+
+    Parameters
+    ----------
+    diameters, addenda : two floats [mm]
+        Of the virtual gears in the transverse section; the diameter of an internal one is negative.
+    angles : (float, float) [rad]
+        Normal pressure angle, spiral angle.
+    module : float [mm]
+        Normal.
+    width : float [mm]
+        Effective face width.
+    """
+    normal, spiral = angles
+    pressure = atan(tan(normal) / cos(spiral))
+    length = 0.0
+    for diameter, addendum in zip(diameters, addenda, strict=True):
+        tip, base = diameter + 2.0 * addendum, diameter * cos(pressure)
+        length += 0.5 * (copysign(sqrt(max(tip**2 - base**2, 0.0)), diameter) - diameter * sin(pressure))
+    return length * cos(spiral) / (pi * module * cos(pressure)), width * sin(spiral) / (pi * module)

@@ -15,7 +15,7 @@ from loaded_tca.analysis import expected_effort, rounded
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
-from loaded_tca.output.shafts import rolling_figures
+from loaded_tca.output.other_results import rolling_figures
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figures import RIM_LABEL
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside

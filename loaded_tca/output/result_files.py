@@ -13,8 +13,6 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.results.files import Buffer, FilePath, Part, replace_together
-from loaded_tca.results.findings import NAMES as EDGES
-from loaded_tca.results.findings import reached_edges
 from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.quantities import (
@@ -32,6 +30,7 @@ from loaded_tca.results.quantities import (
     SUPPORT_QUANTITIES,
 )
 from loaded_tca.results.summary import without_rounding
+from loaded_tca.results.warnings import EDGES, reached_edges
 from loaded_tca.units import factor_of
 
 RESULT, SUMMARY, POSITIONS, CONTACTS = "result.nc", "summary.json", "positions.csv", "contacts.csv"

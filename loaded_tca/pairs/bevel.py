@@ -36,7 +36,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import unmodified
 from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank
 from loaded_tca.flanks.modification import FlankModifications
-from loaded_tca.gears.bevel import BevelMesh
+from loaded_tca.gears.bevel_mesh import BevelMesh
 from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 from loaded_tca.gears.hypoid import HypoidCones, OffsetFrame
 from loaded_tca.material import Material

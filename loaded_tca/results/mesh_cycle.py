@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from loaded_tca.errors import InputError, require
+from loaded_tca.results.derivatives import sensitivities
 from loaded_tca.results.dynamics import dynamics_of
 from loaded_tca.results.figures import key_figures
 from loaded_tca.results.files import Buffer, FilePath, arrays_of, netcdf_of, read_dataset, replace_file, variables_of
-from loaded_tca.results.findings import findings_of
 from loaded_tca.results.numbers import CycleNumbers, dataset_of
 from loaded_tca.results.pressure_map import arrays_of_maps, maps_from
 from loaded_tca.results.quantities import (
@@ -37,8 +37,9 @@ from loaded_tca.results.quantities import (
     not_asked,
 )
 from loaded_tca.results.root_stress import RootStressMap, root_stress_maps
-from loaded_tca.results.sensitivities import Sensitivities, sensitivities
+from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import signed, summary_text
+from loaded_tca.results.warnings import findings_of
 from loaded_tca.scene import parse_scene
 from loaded_tca.unloaded import ContactPath
 

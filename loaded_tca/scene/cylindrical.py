@@ -19,22 +19,12 @@ from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, Whole, above_zero, key
-from loaded_tca.scene.model import Row, family
+from loaded_tca.scene.model import Row
+from loaded_tca.scene.parse import family
 from loaded_tca.scene.section import Rule, Section, subsection
-from loaded_tca.scene.sections import (
-    DRIVING,
-    SENSE,
-    ContactStandard,
-    DIAMETER_mm,
-    ERROR_deg,
-    ERROR_mm,
-    Pair,
-    SLOPE_um,
-    below,
-    contact_standard,
-)
+from loaded_tca.scene.sections import DRIVING, SENSE, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
+from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
 from loaded_tca.scene.thickness import as_measured, needs, one_thickness, one_tip, thickness_rows
-from loaded_tca.scene.tolerance_class import slope_tolerances
 
 
 @dataclass(frozen=True, kw_only=True)

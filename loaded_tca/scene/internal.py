@@ -17,9 +17,11 @@ from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
 from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
 from loaded_tca.scene.keys import Choice, Number, Whole, key
-from loaded_tca.scene.model import Hand, Row, Scene, variant
+from loaded_tca.scene.model import Hand, Row, Scene
+from loaded_tca.scene.parse import variant
 from loaded_tca.scene.section import Rule, Section, rule, subsection
-from loaded_tca.scene.sections import ContactStandard, DIAMETER_mm, below
+from loaded_tca.scene.sections import DIAMETER_mm, below
+from loaded_tca.scene.standards import ContactStandard
 from loaded_tca.scene.thickness import as_measured
 
 

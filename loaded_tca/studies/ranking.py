@@ -22,8 +22,8 @@ from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
 from loaded_tca.scene.keys import did_you_mean, nearest
+from loaded_tca.studies.other_figures import tribology_figures
 from loaded_tca.studies.stage import TORQUES, nominal_of, subject_of, torque_name
-from loaded_tca.studies.tribology import tribology_figures
 from loaded_tca.units import without_unit
 
 if TYPE_CHECKING:
