@@ -39,8 +39,8 @@ from loaded_tca.compliance.influence import FlankLine, lagrange_coefficients, sh
 from loaded_tca.compliance.layout import LARGEST_GRADING, MeshDensity
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
-from loaded_tca.tooth.build import Resolution, build_tooth
 from loaded_tca.tooth.families import ToothGeometry
+from loaded_tca.tooth.surface import Resolution, build_tooth
 
 DENSITY = MeshDensity(through=8, flank=6, fillet=4, land=5, rim=6, neighbours=2, grading=2.5, skin=0.04 / math.pi)
 """Elements of a section: layers through the tooth of 1 : 2.5 : 6 : 16 from both flanks, the rim's uppermost layer of

@@ -31,8 +31,7 @@ from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.material import contact_modulus
 from loaded_tca.pairs.gear import Gear
-from loaded_tca.tooth.build import Resolution, build_tooth
-from loaded_tca.tooth.surface import ToothSurface, TriangleMesh, grid_triangles
+from loaded_tca.tooth.surface import Resolution, ToothSurface, TriangleMesh, build_tooth, grid_triangles
 
 Driving = Literal["pinion", "wheel"]
 Sense = Literal["positive", "negative"]

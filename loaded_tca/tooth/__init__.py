@@ -1,6 +1,5 @@
 """Complete teeth: flanks, fillets, tip and root lands as one surface, for every kind of gear."""
 
-from loaded_tca.tooth.build import Resolution, build_tooth
 from loaded_tca.tooth.families import (
     BevelTooth,
     CylindricalTooth,
@@ -12,7 +11,7 @@ from loaded_tca.tooth.families import (
 )
 from loaded_tca.tooth.fillet import ApexSpheres, ArcFillet, Fillet, FilletCurve, RackFillet, Sections, TransversePlanes
 from loaded_tca.tooth.ring import InvertedPlanes, RingFillet, RingTooth
-from loaded_tca.tooth.surface import PATCHES, ToothSurface, TriangleMesh
+from loaded_tca.tooth.surface import PATCHES, Resolution, ToothSurface, TriangleMesh, build_tooth
 
 __all__ = [
     "PATCHES",
