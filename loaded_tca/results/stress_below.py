@@ -132,6 +132,13 @@ class StressBelow:
         return along if one.pressure[:, along].any() else None
 
     @property
+    def _is_of_an_edge(self) -> bool:
+        """Whether the numbers are those of a spike at an edge, since the contact point lies within it, too."""
+        one = self.pressure_map
+        spike = self.result.on_edge[self._at] and one.pressure[one.edge_cell] == one.pressure.max()
+        return bool(spike) and self.beside_spike is None
+
+    @property
     def highest_pressure(self) -> tuple[int, int]:
         """Indices of the cell with the highest pressure, of the slice beside a spike where there is one."""
         pressure, beside = self.pressure_map.pressure, self.beside_spike
@@ -167,7 +174,7 @@ class StressBelow:
     def hertz_shear(self) -> HertzShear | None:
         """Greatest shear after Hertz, with its depth and the pressure and half width of the same contact.
 
-        Of the contact ellipse, from 0.31 p_0 at 0.48 a below a circle to 0.300 p_0 at 0.786 b below a slender one;
+        Of the contact ellipse, 0.310 p_0 below a circle, 0.325 p_0 below one of 2.5:1, 0.300 p_0 below a slender one;
         below a line contact, of a long line. None where Hertz does not hold.
         """
         result, at = self.result, self._at
@@ -188,6 +195,7 @@ class StressBelow:
         """Load and position of the map, and the flank, in words."""
         result, peak = self.result, float(self.pressure_map.pressure[self.highest_pressure])
         across = "" if self.beside_spike is None else " across the contact point"
+        across += " at the edge, mesh-dependent," if self._is_of_an_edge else ""
         angle = round(math.degrees(result.pinion_angle[self.position]), 3) + 0.0
         return (
             f"pinion torque {shown_torque(result.torque[self.torque])}, position {self.position + 1} of "
@@ -218,6 +226,12 @@ class StressBelow:
                 note += (
                     "; the numbers above are those across the contact point, not those of the edge: there the cells "
                     f"have up to {peak:.4g} MPa and {shear:.4g} MPa of shear"
+                )
+            elif self._is_of_an_edge:
+                without = float(self.result.peak_pressure[self._at])
+                note += (
+                    "; the numbers above are those of the edge, since the contact point lies within it or carries "
+                    f"nothing: they are not to be rated. Without the edge the contact has {without:.4g} MPa"
                 )
             lines.append(note)
         return "\n".join(lines)
