@@ -12,6 +12,7 @@ from functools import cached_property
 from math import asin, atan, copysign, cos, degrees, inf, isclose, pi, radians, sin, sqrt, tan
 from typing import Any, Literal, get_args
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.gears.blank_gear import (
@@ -247,7 +248,7 @@ class BevelBlank(BlankPair):
 
     def _check_cones(self) -> None:
         """Refuse root and face cones that reach or cross the axis."""
-        for member, name in enumerate(("pinion", "wheel")):
+        for member, name in enumerate(GEARS):
             root = self.pitch_angles[member] - self.dedendum_angles[member]
             face = self.pitch_angles[member] + self.dedendum_angles[1 - member]
             if not (root > 0.0 and face < pi):
@@ -411,7 +412,7 @@ class BevelBlank(BlankPair):
         narrower = middle * cos(self.spiral_angle) / (outer * cos(self.spiral_angle_at(outer)))
         backlash = self.outer_normal_backlash * narrower
         gear = BlankGear(
-            name=("pinion", "wheel")[member],
+            name=GEARS[member],
             teeth=self.teeth[member],
             pitch_angle=self.pitch_angles[member],
             pressure_angle=self.pressure_angle,

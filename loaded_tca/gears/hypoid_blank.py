@@ -13,7 +13,7 @@ from functools import cached_property
 from math import asin, atan, cos, degrees, inf, pi, sin, sqrt, tan
 from typing import Literal, get_args
 
-from loaded_tca.arrays import real
+from loaded_tca.arrays import GEARS, real
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.bevel_blank import BacklashKind
 from loaded_tca.gears.blank_gear import (
@@ -314,7 +314,7 @@ class HypoidBlank(BlankPair):
                 f"deg and face angle {degrees(face):.4f} deg are not in order; reduce taper or offset"
             )
         return BlankGear(
-            name=("pinion", "wheel")[member],
+            name=GEARS[member],
             teeth=self.teeth[member],
             pitch_angle=pitch,
             pressure_angle=pressure,

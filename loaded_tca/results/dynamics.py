@@ -10,6 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Part, variables_of
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.unloaded.teeth import harmonic_coefficients
@@ -80,15 +81,22 @@ def dynamics_of(result: CycleNumbers) -> xarray.Dataset:
     return xarray.Dataset(variables, coordinates, _attributes_of(result))
 
 
+def teeth_and_radii(pair: GearPair) -> dict[str, float]:
+    """Numbers of teeth and base radii [m], by the names of ``PARTS``."""
+    return {
+        "pinion_teeth": pair.teeth[0],
+        "wheel_teeth": pair.teeth[1],
+        "pinion_base_radius_m": 1e-3 * pair.base_radii[0],
+        "wheel_base_radius_m": 1e-3 * pair.base_radii[1],
+    }
+
+
 def _constants_of(result: CycleNumbers) -> dict[str, Any]:
     """Numbers of the gears, by the names of ``PARTS``; lengths in m."""
     pair, (pressure_angle, base_helix) = result.gear_pair, result.scene.transverse_angles
     return {
-        "pinion_teeth": pair.teeth[0],
-        "wheel_teeth": pair.teeth[1],
+        **teeth_and_radii(pair),
         "mesh_frequency_Hz_per_pinion_rev_per_s": pair.teeth[0],
-        "pinion_base_radius_m": 1e-3 * pair.base_radii[0],
-        "wheel_base_radius_m": 1e-3 * pair.base_radii[1],
         "face_width_m": 1e-3 * result.face_width,
         "working_pressure_angle_rad": pressure_angle,
         "pinion_base_helix_angle_rad": base_helix,

@@ -198,7 +198,7 @@ def labelled(name: str, label: str) -> str:
 
 def length(sensitivities: Sensitivities) -> float:
     """Of a transmission error at the base circle of the wheel [um/rad]."""
-    return 1e3 * sensitivities.result.wheel_base_radius
+    return sensitivities.result.um_per_rad
 
 
 def slope_of_mean_error(sensitivities: Sensitivities) -> Array:

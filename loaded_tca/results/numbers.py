@@ -31,6 +31,7 @@ from loaded_tca.results.quantities import (
     not_asked,
 )
 from loaded_tca.scene import Scene
+from loaded_tca.units import MICROMETRES
 from loaded_tca.unloaded import ContactPath
 from loaded_tca.unloaded.teeth import harmonic_coefficients
 
@@ -114,6 +115,11 @@ class CycleNumbers:
     def gear_pair(self) -> GearPair:
         """The gears of the scene in space."""
         return self.scene.pair()
+
+    @property
+    def um_per_rad(self) -> float:
+        """What a transmission error of one rad is at the base circle of the wheel [um]."""
+        return MICROMETRES * self.wheel_base_radius
 
     @property
     def has_root_stress(self) -> bool:

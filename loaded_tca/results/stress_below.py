@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from loaded_tca.arrays import Array, index_checks
+from loaded_tca.arrays import GEARS, Array, GearName, index_checks
 from loaded_tca.contact import SubsurfaceStress, subsurface_stress
 from loaded_tca.contact.subsurface import graded_depths
 from loaded_tca.errors import InputError, require
@@ -17,8 +17,6 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.summary import shown_torque
 
-GearName = Literal["pinion", "wheel"]
-GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
 Quantity = Literal["max_shear", "von_mises"]
 NAMES: dict[Quantity, str] = {
     "max_shear": "greatest shear stress",
