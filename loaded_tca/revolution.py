@@ -15,8 +15,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.analysis import Effort, expected_effort, grid_of, roots_of
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, model_of
-from loaded_tca.compliance.body import body_torsion
-from loaded_tca.compliance.model import SumOfParts
+from loaded_tca.compliance.model import SumOfParts, torsion_of_bodies
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
@@ -136,7 +135,7 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
                 for part in carried_over_revolution(path, alone.torques, grid, bending, progress):
                     alone.add(part)
                 numbers, arrays = [alone], alone.whole()
-            torsion = 0.0 if wanted.compliance == "contact" else sum(body_torsion(pair))
+            torsion = torsion_of_bodies(scene, pair)
             for one in numbers:
                 for sentence in one.sentences(torsion):
                     give_accuracy_warning(sentence)

@@ -47,8 +47,8 @@ FAULTS = (
     Fault(
         "local synthesis: the other flank of the tooth is left out",
         "pairs/synthesis.py",
-        "            rows.append((there.slopes - own.slopes) * size)",
-        "            rows.append((there.slopes - own.slopes) * size * (flank == self.drive))",
+        "            rows.append((there.slopes - wanted.slopes) * size)",
+        "            rows.append((there.slopes - wanted.slopes) * size * (flank == self.drive))",
         "pairs/test_synthesis.py::test_other_flank_touches_at_its_mean_point_too",
     ),
     Fault(

@@ -139,7 +139,7 @@ def _curves_of(result: CycleNumbers) -> dict[str, Any]:
 def _attributes_of(result: CycleNumbers) -> dict[str, str]:
     """What stands beside the numbers: where they are from, and what their signs mean."""
     driving = "pinion" if result.gear_pair.driving > 0 else "wheel"
-    held = "" if result.scene.analysis.compliance == "contact" else ", from bores that are held rigid"
+    held = ", from bores that are held rigid" if result.scene.analysis.teeth_bend else ""
     return {
         "title": result.scene.title,
         "version": result.version,

@@ -144,14 +144,14 @@ class CycleNumbers:
         float [N/(mm um)]
             NaN where teeth do not bend.
         """
-        if self.scene.analysis.compliance == "contact" or not stiffness > 0.0:
+        if not self.scene.analysis.teeth_bend or not stiffness > 0.0:
             return math.nan
         return 1.0 / (1.0 / stiffness - 1e3 * self.face_width * sum(body_torsion(self.gear_pair)))
 
     @property
     def bending(self) -> str:
         """Whether teeth bend, in words."""
-        return "teeth do not bend" if self.scene.analysis.compliance == "contact" else "teeth bend"
+        return "teeth bend" if self.scene.analysis.teeth_bend else "teeth do not bend"
 
     @property
     def peak_column(self) -> NDArray[np.int_]:

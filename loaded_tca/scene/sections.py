@@ -324,9 +324,14 @@ class Analysis(Section):
     )
 
     @property
+    def teeth_bend(self) -> bool:
+        """Whether teeth and gear bodies give way, by finite elements, and not the flanks alone."""
+        return self.compliance != "contact"
+
+    @property
     def without_bodies(self) -> str:
         """Settings with which no gear body is meshed; empty where none is."""
-        ways = [] if self.compliance == "contact" else ['analysis.compliance = "contact"']
+        ways = ['analysis.compliance = "contact"'] if self.teeth_bend else []
         return " and ".join([*ways, *(["analysis.root_stress = false"] if self.root_stress else [])])
 
 
