@@ -427,10 +427,10 @@ def sensitivities(options: argparse.Namespace) -> None:
     from loaded_tca.output.tables import sensitivities_text, write_sensitivities
     from loaded_tca.plots import png_of
     from loaded_tca.plots.sensitivities import sensitivity_pictures
-    from loaded_tca.plots.style import highest_torque
+    from loaded_tca.results.numbers import index_or_largest
 
     result, directory, torque, _ = result_of(options)
-    torque = highest_torque(result) if torque is None else torque
+    torque = index_or_largest(result.torque, torque)
     tolerances = tolerances_of(options, result.scene)
     with bar_of(f"derivatives to {len(tolerances)} keys", len(DERIVATIVES), BAR) as show:
         slopes = result.sensitivities(list(tolerances))

@@ -28,6 +28,7 @@ from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
 from loaded_tca.results.files import replace_file
 from loaded_tca.results.load_factors import STRIPS, face_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.units import MICROMETRES
 
 SAME_PLACE_mm = 1e-3
@@ -99,7 +100,7 @@ def rexs_results(result: MeshCycle, model: Model, stage: str, torque: int | None
     gearbox = Gearbox(Reading(model))
     of_stage = gearbox.stage(stage)
     _require_same(result, of_stage)
-    index = int(np.argmax(result.torque)) if torque is None else torque
+    index = index_or_largest(result.torque, torque)
     results: Results = {stage: _of_stage(result, model.version, index)}
     for n, gear in enumerate(GEARS):
         shaft = of_stage.shafts[n]

@@ -56,6 +56,11 @@ def dataset_of(arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
     return xarray.Dataset(variables, coordinates, about)
 
 
+def index_or_largest(torques: Array, torque: int | None = None) -> int:
+    """Index of a torque among all, by default of the largest."""
+    return int(np.argmax(torques)) if torque is None else torque
+
+
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class CycleNumbers:
     """Numbers of the loaded contact over the positions of a pitch, under each torque, and what is looked up in them.

@@ -29,6 +29,7 @@ from loaded_tca.results.files import (
     replace_file,
     variables_of,
 )
+from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.quantities import (
     BEARING_QUANTITIES,
@@ -183,7 +184,7 @@ class Revolution:
             Up to half as many orders as positions. Where a gear deviates, of which the revolution is no whole turn,
             amplitudes leak into neighbouring orders.
         """
-        torque = int(self.torque.argmax()) if torque is None else torque
+        torque = index_or_largest(self.torque, torque)
         curve = self.error_um(None if rigid else torque)
         cycles = np.arange(1, (len(curve) - 1) // 2 + 1)
         amplitude = 2.0 / len(curve) * np.abs(np.fft.rfft(curve))[cycles]
