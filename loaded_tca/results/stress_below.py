@@ -8,17 +8,16 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from loaded_tca.arrays import Array, index_checks
+from loaded_tca.arrays import GEARS, Array, GearName, index_checks
 from loaded_tca.contact import SubsurfaceStress, subsurface_stress
 from loaded_tca.contact.subsurface import graded_depths
 from loaded_tca.errors import InputError, require
 from loaded_tca.reference.hertz import LineContact, PointContact
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.summary import shown_torque
 
-GearName = Literal["pinion", "wheel"]
-GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
 Quantity = Literal["max_shear", "von_mises"]
 NAMES: dict[Quantity, str] = {
     "max_shear": "greatest shear stress",
@@ -343,7 +342,7 @@ def _place(result: MeshCycle, torque: int | None, position: int | None, pair: in
         *index_checks(torque=(torque, len(result.torque)), position=(position, len(result.path))),
         (pair is None or pair in pairs, f"pair: {pair!r} carries no load anywhere; {known}"),
     )
-    torque = int(np.argmax(result.torque)) if torque is None else torque
+    torque = index_or_largest(result.torque, torque)
     if pair is None:
         place = result.peak_contact(torque) if position is None else (position, result.peak_column[torque, position])
         if place is None:
