@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from loaded_tca.cli.inputs import (
+    STUDY_FILE,
+    changes_of,
     check_files,
     check_place,
     ends_that_differ,
@@ -114,35 +116,35 @@ def tribology(options: argparse.Namespace) -> None:
     from loaded_tca.output.other_results import write_tribology
     from loaded_tca.plots import png_of, tribology_figures
     from loaded_tca.results.mesh_cycle import MeshCycle
-    from loaded_tca.scene.parse import literal_value
 
     path = result_file(options.result)
     result = MeshCycle.load(path)
     directory = options.out or path.parent
     check_place(directory)
-    changes = {key: literal_value(value) for key, value in options.set}
+    changes = changes_of(options)
     require(*((_is_of_tribology(key), f"--set {key}: {OF_TRIBOLOGY}") for key in changes))
     if options.speed is not None:
         changes.setdefault("operation.pinion_speed_rpm", options.speed[0])
     changed = replace(result, scene=result.scene.with_changes(changes)) if changes else result
-    found = changed.tribology(options.speed)
-    pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(found).items()}
-    written = write_tribology(found, directory, pictures)
+    evaluated = changed.tribology(options.speed)
+    pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(evaluated).items()}
+    written = write_tribology(evaluated, directory, pictures)
     each = range(len(options.speed or [None]))
-    print_summary("\n\n".join(found.summary(speed=speed) for speed in each), written)
+    print_summary("\n\n".join(evaluated.summary(speed=speed) for speed in each), written)
 
 
+ROUGHNESS, THERMAL = "roughness_Ra_um", ("conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK")
+"""Keys of gears and of materials that concern tribology alone."""
 OF_TRIBOLOGY = (
-    "an analysis depends on it; allowed keys of [operation] and [lubricant], roughness_Ra_um of the gears, and "
-    "conductivity_W_mK, density_kg_m3 and heat_capacity_J_kgK of materials"
+    f"an analysis depends on it; allowed keys of [operation] and [lubricant], {ROUGHNESS} of the gears, and "
+    f"{', '.join(THERMAL[:-1])} and {THERMAL[-1]} of materials"
 )
 
 
 def _is_of_tribology(key: str) -> bool:
     """Whether a key of a scene concerns tribology alone, so that a result stays valid."""
     section, _, name = key.rpartition(".")
-    alone = {"roughness_Ra_um", "conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK"}
-    return section in ("operation", "lubricant") or name in alone
+    return section in ("operation", "lubricant") or name in (ROUGHNESS, *THERMAL)
 
 
 def stage(options: argparse.Namespace) -> None:
@@ -243,10 +245,10 @@ def sensitivities(options: argparse.Namespace) -> None:
     from loaded_tca.output.tables import sensitivities_text, write_sensitivities
     from loaded_tca.plots import png_of
     from loaded_tca.plots.sensitivities import sensitivity_pictures
-    from loaded_tca.plots.style import highest_torque
+    from loaded_tca.results.numbers import index_or_largest
 
     result, directory, torque, _ = result_of(options)
-    torque = highest_torque(result) if torque is None else torque
+    torque = index_or_largest(result.torque, torque)
     tolerances = tolerances_of(options, result.scene)
     with bar_of(f"derivatives to {len(tolerances)} keys", len(DERIVATIVES), BAR) as show:
         slopes = result.sensitivities(list(tolerances))
@@ -369,11 +371,11 @@ def study(options: argparse.Namespace) -> None:
     check_place(directory)
     say_cost(study, options.workers or 1)
     with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
-        rows = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
+        rows = run_study(study, executor, directory / STUDY_FILE, show, keep_maps=options.keep_maps)
     rank_by = options.rank_by if options.rank_by in rows else None  # another one is told once all is written
     pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(rows, rank_by=rank_by).items()}
     written = write_study(rows, directory, pictures, rank_by)
-    print_summary(study_summary(rows), [directory / "study.nc", *written])
+    print_summary(study_summary(rows), [directory / STUDY_FILE, *written])
     failed = (rows["status"] != "ok").values
     require(
         (rank_by == options.rank_by, f"--rank-by {options.rank_by}: not in study.csv; ranked by the default figure"),

@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from loaded_tca.errors import InputError, named, reason_of, require
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from loaded_tca.stages import Stage, StageResult
     from loaded_tca.studies import DesignResult
 
-STAGE = "stage.nc"
-"""File of a stage in its directory."""
+STUDY_FILE, DESIGN_FILE = "study.nc", "design.nc"
+"""Files of a study and of a design in their directories."""
 REACHED_WITHIN = 10.0
 """Seconds for a scheduler to answer."""
 
@@ -30,21 +30,24 @@ REACHED_WITHIN = 10.0
 def scene_of(options: argparse.Namespace) -> Scene:
     """The scene that the command line names, with its changes."""
     from loaded_tca.scene import read_scene
-    from loaded_tca.scene.parse import literal_value
 
-    scene = read_scene(options.scene)
-    changes = {key: literal_value(value) for key, value in options.set}
+    scene, changes = read_scene(options.scene), changes_of(options)
     return scene.with_changes(changes) if changes else scene
 
 
 def stage_of(options: argparse.Namespace) -> Stage:
     """The stage that the command line names, with its changes."""
-    from loaded_tca.scene.parse import literal_value
     from loaded_tca.stages import read_stage
 
-    stage = read_stage(options.scene)
-    changes = {key: literal_value(value) for key, value in options.set}
+    stage, changes = read_stage(options.scene), changes_of(options)
     return stage.with_changes(changes) if changes else stage
+
+
+def changes_of(options: argparse.Namespace) -> dict[str, Any]:
+    """Keys that the command line changes, with their values."""
+    from loaded_tca.scene.parse import literal_value
+
+    return {key: literal_value(value) for key, value in options.set}
 
 
 def result_of(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, int | None]:
@@ -87,15 +90,19 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
 def result_file(path: Path) -> Path:
     """The file of a result that is named by itself or by its directory; that of a stage is refused by its reader."""
     from loaded_tca.output.result_files import RESULT
+    from loaded_tca.stages.result import STAGE_FILE
 
     if not os.path.isdir(path):
         return path
-    return path / (STAGE if (path / STAGE).is_file() and not (path / RESULT).exists() else RESULT)
+    return path / (STAGE_FILE if (path / STAGE_FILE).is_file() and not (path / RESULT).exists() else RESULT)
 
 
 def file_of_report(path: Path) -> Path:
     """The file of a result, a stage, a study or a design that is named by itself or by its directory."""
-    result, *others = (path / name for name in ("result.nc", STAGE, "study.nc", "design.nc"))
+    from loaded_tca.output.result_files import RESULT
+    from loaded_tca.stages.result import STAGE_FILE
+
+    result, *others = (path / name for name in (RESULT, STAGE_FILE, STUDY_FILE, DESIGN_FILE))
     if not os.path.isdir(path):
         return path
     return next((one for one in (result, *others) if one.is_file()), result)
@@ -103,18 +110,18 @@ def file_of_report(path: Path) -> Path:
 
 def subject_of_report(path: Path) -> MeshCycle | StageResult | xarray.Dataset | DesignResult:
     """The result, stage, study or design in a file."""
-    from loaded_tca.results.files import read_dataset
+    from loaded_tca.results.files import DESIGN, STAGE, STUDY, read_dataset
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.studies import load_design, load_study
 
     kind = read_dataset(path).attrs.get("kind")
-    if kind == "study":
+    if kind == STUDY:
         return load_study(path)
-    if kind == "stage":
+    if kind == STAGE:
         from loaded_tca.stages import StageResult
 
         return StageResult.load(path.parent)
-    return load_design(path) if kind == "design" else MeshCycle.load(path)
+    return load_design(path) if kind == DESIGN else MeshCycle.load(path)
 
 
 def index_of_torque(given: float | None, result: MeshCycle) -> int | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,15 +9,16 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.loaded.shaft_lines import ShaftLine
-from loaded_tca.output.result_files import csv_table, known
+from loaded_tca.output.result_files import csv_table, json_text, known
 from loaded_tca.results.files import Buffer, FilePath, replace_together
-from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.revolution import Revolution
 from loaded_tca.stages import StageResult
 from loaded_tca.supports import RollingBearing
 from loaded_tca.tribology import Tribology
 from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, PLACES, QUANTITIES, TORQUE
+from loaded_tca.units import as_ending
 
 REVOLUTION_FILES = "revolution.nc", "revolution.json", "revolution.csv", "teeth.csv", "orders.csv"
 """Names of the files."""
@@ -62,7 +62,7 @@ def revolution_json(revolution: Revolution) -> str:
         for torque, figures in zip(revolution.torque, revolution.key_figures(), strict=True)
     ]
     content = {"title": revolution.scene.title, "torques": rows, "warnings": list(revolution.warnings)}
-    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text(content)
 
 
 def teeth_csv(revolution: Revolution) -> str:
@@ -94,19 +94,6 @@ def orders_csv(revolution: Revolution) -> str:
 
 DATA, TABLE, SLICES = TRIBOLOGY_FILES = "tribology.nc", "tribology.csv", "tribology_slices.csv"
 """Names of the files."""
-ENDINGS = {
-    "°C": "C",
-    "K": "K",
-    "W": "W",
-    "um": "um",
-    "mm": "mm",
-    "m/s": "m_per_s",
-    "MPa": "MPa",
-    "MPa m/s": "MPa_m_per_s",
-    "N/mm": "N_per_mm",
-    "1": "",
-}
-"""Unit -> what the names of columns end with."""
 
 
 def write_tribology(tribology: Tribology, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
@@ -164,7 +151,7 @@ def slices_csv(tribology: Tribology) -> str:
 
 def _column(name: str, unit: str) -> str:
     """Head of a column: its name with its unit."""
-    return f"{name}_{ENDINGS[unit]}" if ENDINGS[unit] else name
+    return f"{name}_{ending}" if (ending := as_ending(unit)) else name
 
 
 def write_stage(result: StageResult, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
@@ -214,7 +201,7 @@ def stage_json(result: StageResult) -> str:
         "findings": list(result.findings()),
         "warnings": list(result.warnings),
     }
-    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text(content)
 
 
 FORCES = "force_x_N", "force_y_N", "force_z_N", "moment_x_Nm", "moment_y_Nm", "moment_z_Nm"

@@ -12,6 +12,7 @@ from itertools import chain
 import numpy as np
 
 from loaded_tca.analysis import expected_effort, rounded
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
@@ -19,7 +20,6 @@ from loaded_tca.output.other_results import rolling_figures
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figures import RIM_LABEL
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
-from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.root_stress import rim_factor
 from loaded_tca.results.summary import shown
 from loaded_tca.results.warnings import questions, warn_of_gears
@@ -94,7 +94,7 @@ def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
 
 def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """The load, what the analysis is asked to do, and the bores or journals that it holds where teeth bend."""
-    torques, wanted, count = _shown_torques(scene), scene.analysis, len(scene.torques)
+    torques, wanted, count = torques_with_columns(scene.torques), scene.analysis, len(scene.torques)
     label = "pinion torque [N m]" if len(torques) == count else f"{count} pinion torques from, to [N m]"
     yield label, *(f"{1e-3 * torque:g}" for torque in torques)
     yield from scene.force_rows(torques)
@@ -118,7 +118,7 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
     """Forces on the bearings of shafts, and what rolling bearings make of them, without contact."""
     if not any(scene.have_shafts):
         return
-    torques = _shown_torques(scene)
+    torques = torques_with_columns(scene.torques)
     by_gear: dict[str, list[ShaftLine]] = {gear: [] for gear in GEARS}
     for line in shaft_lines(scene):
         if line.torque in torques:
@@ -133,15 +133,14 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
                 yield "  life [million revolutions]", *(f"{one['life_Mrev']:.4g}" for one in inside)
 
 
-def _shown_torques(scene: Scene) -> tuple[float, ...]:
+def torques_with_columns(torques: tuple[float, ...]) -> tuple[float, ...]:
     """Torques that have a column each: all, or the least and the largest of many."""
-    torques = scene.torques
     return torques if len(torques) <= MOST_TORQUES else (min(torques), max(torques))
 
 
 def _standard_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """What ISO 6336 gives for a cylindrical pair from its geometry and load, to be read beside computed numbers."""
-    torques = _shown_torques(scene)
+    torques = torques_with_columns(scene.torques)
     figures = [iso_figures(scene, torque) for torque in torques]
     for label, names in (*STRESS_ROWS, STIFFNESS_ROW):
         by_torque = figures if names == (STRESS,) else figures[:1]
@@ -150,7 +149,7 @@ def _standard_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
             yield label.strip(), *(shown(value, name) for value, name in values)
     if not scene.analysis.root_stress:
         return
-    for name, nominal in zip(("pinion", "wheel"), scene.nominal_root_stress, strict=True):
+    for name, nominal in zip(GEARS, scene.nominal_root_stress, strict=True):
         if math.isfinite(nominal):
             yield f"nominal root stress, ISO, {name} [MPa]", *(f"{nominal * torque:.4g}" for torque in torques)
     if math.isfinite(scene.tooth_height_over_width):
@@ -228,14 +227,14 @@ def stage_sections(stage: Stage) -> dict[str, list[Row]]:
 
 def geometry_of_meshes(stage: Stage) -> list[tuple[str, list[Row], list[str]]]:
     """Name of each mesh, the rows of its geometry, and its warnings that concern whole gears."""
-    found = []
+    geometry = []
     for scene, gears in ((stage.sun_scene, SUN_MESH), (stage.ring_scene, RING_MESH)):
         with in_words_of(gears), noted_accuracy_warnings(given=False) as sentences:
             warn_of_gears(scene, scene.pair())
             rows = scene_sections(scene)["geometry"]
-        name = " and ".join(f"{own} ({gear})" for gear, own in gears.items())
-        found.append((name, rows, list(dict.fromkeys(sentences))))
-    return found
+        name = " and ".join(f"{member} ({gear})" for gear, member in gears.items())
+        geometry.append((name, rows, list(dict.fromkeys(sentences))))
+    return geometry
 
 
 def _stage_rows(stage: Stage) -> list[Row]:
@@ -272,8 +271,7 @@ def _torque_rows(stage: Stage) -> list[Row]:
 
     With the signs of the loads that the stage puts on its surroundings left out.
     """
-    torques, (z_s, _, z_r) = stage.sun_torques, stage.teeth
-    shown = torques if len(torques) <= MOST_TORQUES else (min(torques), max(torques))
+    shown, (z_s, _, z_r) = torques_with_columns(stage.sun_torques), stage.teeth
     base = stage.meshes[0].pinion.base_radius
     return [
         ("sun torque [N m]", *(f"{1e-3 * torque:g}" for torque in shown)),

@@ -21,7 +21,7 @@ from loaded_tca.plots.style import label_of
 from loaded_tca.reports import page
 from loaded_tca.reports.page import Table, pictures_of
 from loaded_tca.reports.result_page import explained, result_content, scene_content, stage_content, stage_geometry
-from loaded_tca.results.files import FilePath, make_directory, replace_file
+from loaded_tca.results.files import STUDY, FilePath, make_directory, replace_file
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import shown, shown_torque
 from loaded_tca.results.warnings import without_place
@@ -92,7 +92,7 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
     'report.html'
     """
     page.require_jinja2()
-    is_study = getattr(subject, "attrs", {}).get("kind") == "study"
+    is_study = getattr(subject, "attrs", {}).get("kind") == STUDY
     require((rank_by is None or is_study, f"rank_by: {rank_by!r:.60}; a {type(subject).__name__} has no ranking"))
     with one_thread():  # sums of several threads differ in their last digits each time
         if isinstance(subject, MeshCycle):

@@ -23,6 +23,7 @@ from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
 from loaded_tca.results.figure import NO_ESTIMATE, Figures, in_percent, labelled
 from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.summary import known_rows, limits_of, shown
 from loaded_tca.scene import Scene
 from loaded_tca.stages import Stage, StageResult
@@ -65,15 +66,15 @@ def _lubrication(result: MeshCycle) -> dict[str, Any] | None:
     if result.scene.operation is None and result.scene.lubricant is None:
         return None
     with noted_accuracy_warnings(given=False) as sentences:
-        found = result.tribology()
-    _, about, *lines = found.summary().split("\n")
-    rows, lacking = found.rows(), [line for line in lines if line.startswith("not known")]
+        tribology = result.tribology()
+    _, about, *lines = tribology.summary().split("\n")
+    rows, lacking = tribology.rows(), [line for line in lines if line.startswith("not known")]
     captions = {name: picture.caption for name, picture in TRIBOLOGY_PICTURES.items()}
     return {
         "about": about,
         "table": Table(tuple(rows[1:]), rows[0]),
         "notes": [*lacking, *dict.fromkeys(sentences)],
-        "pictures": pictures_of(tribology_figures(found), captions, result.scene.title),
+        "pictures": pictures_of(tribology_figures(tribology), captions, result.scene.title),
     }
 
 
@@ -245,7 +246,7 @@ def _stage_figures(result: StageResult, part: slice) -> Table:
 
 def _shares(result: StageResult) -> Table:
     """Least, mean and largest share of each planet, under the largest torque."""
-    shares = 100.0 * result.planet_share[int(result.torque.argmax())]
+    shares = 100.0 * result.planet_share[index_or_largest(result.torque)]
     rows = (
         (f"planet {planet}", *(f"{value:.2f}" for value in (own.min(), own.mean(), own.max())))
         for planet, own in enumerate(shares.T)
@@ -263,7 +264,7 @@ def _orders(result: StageResult) -> Table:
             "cancelled" if one.torsion_cancels else "kept",
             "cancelled" if one.translation_cancels else "kept",
         )
-        for one in result.orders(int(result.torque.argmax()))
+        for one in result.orders(index_or_largest(result.torque))
     )
     head = (
         "transmission error at the sun's base circle [µm]",

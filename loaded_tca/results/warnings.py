@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import GEARS, Array, Mask
 from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
 from loaded_tca.errors import give_accuracy_warning
@@ -26,7 +26,6 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import arc_cells
-from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.support_growth import standing
 from loaded_tca.scene import Scene
 from loaded_tca.scene.section import values_of
@@ -266,7 +265,7 @@ def reasons_of(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[
     return reasons
 
 
-EDGES = tuple(f"{gear} {edge}" for gear in ("pinion", "wheel") for edge in EDGE_NAMES)
+EDGES = tuple(f"{gear} {edge}" for gear in GEARS for edge in EDGE_NAMES)
 """Edges in the order of ``ContactPath.edges``."""
 
 

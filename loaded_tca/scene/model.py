@@ -10,6 +10,7 @@ from functools import partial
 from itertools import product
 from typing import Any, ClassVar, Literal
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
@@ -108,7 +109,7 @@ class Scene(WithStandards, ABC):
                 lambda support, shaft: support is None or shaft is None,
                 f"found beside [{gear}.shaft]; give one of the two",
             )
-            for gear in ("pinion", "wheel")
+            for gear in GEARS
         ),
         *(
             rule(
@@ -116,7 +117,7 @@ class Scene(WithStandards, ABC):
                 lambda bore, shaft, compliance: bore != 0.0 or shaft is None or compliance == "contact",
                 f"found {{0:g}}, a solid gear, whose torsion [{gear}.shaft] has, too; allowed the diameter of its seat",
             )
-            for gear in ("pinion", "wheel")
+            for gear in GEARS
         ),
         *(
             rule(
@@ -295,9 +296,7 @@ class Scene(WithStandards, ABC):
         """
         pinion, wheel = (
             build_tooth_deviations(gear.pitch, teeth, name, pair.module, partial(self.pitch_tolerances, number))
-            for number, (name, gear, teeth) in enumerate(
-                zip(("pinion", "wheel"), (self.pinion, self.wheel), pair.teeth, strict=True)
-            )
+            for number, (name, gear, teeth) in enumerate(zip(GEARS, (self.pinion, self.wheel), pair.teeth, strict=True))
         )
         return pinion, wheel
 
@@ -360,7 +359,7 @@ class Scene(WithStandards, ABC):
     @property
     def flank_names(self) -> tuple[str, str]:
         """Names of the two flanks in contact in pictures."""
-        return "pinion", "wheel"
+        return GEARS
 
     @property
     def materials(self) -> tuple[ElasticMaterial, ElasticMaterial]:

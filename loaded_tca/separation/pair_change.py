@@ -27,7 +27,7 @@ from numbers import Real
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
 from loaded_tca.flanks.base import EDGE_NAMES, Jet
 from loaded_tca.flanks.removal import removal_change
@@ -174,7 +174,7 @@ def value_at(scene: Scene, key: str) -> float:
     *sections, name = key.split(".")
     _value_of(scene, key)
     moves = sections == ["mounting"]
-    shapes = len(sections) > 1 and sections[0] in ("pinion", "wheel") and sections[1] in SECTIONS
+    shapes = len(sections) > 1 and sections[0] in GEARS and sections[1] in SECTIONS
     if not (moves or shapes) or name.rpartition("_")[2] not in STEPS:
         places = ", ".join(f"[pinion.{section}]" for section in SECTIONS)
         raise InputError(
@@ -283,7 +283,7 @@ class Places:
             if change.of_mounting:
                 moved[key] -= moved_below(pair, change, points)
         growths = _along(points, distance(pair, points), moved)
-        name = ("pinion", "wheel")[gear]
+        name = GEARS[gear]
         for key, change in enumerate(changes):
             if change.key.startswith(name) and not change.holds_edges:
                 low, high = (distance(side, points).value for side in (change.below, change.above))
