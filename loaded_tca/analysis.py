@@ -253,13 +253,19 @@ def _on_supports(
     unmoved: MeshPath | ContactPath
     if wanted.load_sharing:
         unmoved = trace_teeth(at_rest(supports), angles)
-        bending = model_of(scene, pair, pitches_apart(supports, max(scene.torques), unmoved))
+        apart = pitches_apart(supports, scene.torques, unmoved)
     else:
-        unmoved = trace_contact(at_rest(supports), angles)
-        bending = model_of(scene, pair, 1)
-    assert bending is not None
-    supported = SupportedCycle(pair, bending, angles, grid, load_sharing=wanted.load_sharing)
-    cycles = supported.under(scene.torques, progress)
+        unmoved, apart = trace_contact(at_rest(supports), angles), 1
+
+    def under(apart: int) -> list[CarriedOnSupports]:
+        bending = model_of(scene, pair, apart)
+        assert bending is not None
+        supported = SupportedCycle(pair, bending, angles, grid, load_sharing=wanted.load_sharing)
+        return supported.under(scene.torques, progress)
+
+    cycles = under(apart)
+    if (loaded := max(one.pitches_apart for one in cycles)) > max(apart, 1):  # as no estimate of the motions says
+        cycles = under(loaded)
     at_edges: dict[tuple[int, int, int], PeakAtEdge] = {}
     for t, one in enumerate(cycles):
         peaks = pressures_at_rounded_edges(

@@ -179,7 +179,7 @@ def _on_supports(
     assert supports is not None
     roots, numbers = roots_of(scene, pair), list[_OnSupports]()
     mesh = trace_teeth(at_rest(supports), pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1))
-    apart = max(pitches_of_cycle(supports, max(scene.torques), mesh), pitches_apart(_trace(scene, pair, pitches)))
+    apart = max(pitches_of_cycle(supports, scene.torques, mesh), pitches_apart(_trace(scene, pair, pitches)))
     bending = model_of(scene, pair, apart)
     assert bending is not None
     cycle = SupportedCycle(pair, bending, mesh.pinion_angle, grid, load_sharing=True)

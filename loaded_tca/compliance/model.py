@@ -76,8 +76,8 @@ class SumOfParts(BendingModel):
 
     @property
     def neighbours(self) -> int:
-        """How many pitches two loaded tooth pairs may be apart: what the part of the fewest allows."""
-        return min(part.neighbours for part in self.parts)
+        """How many pitches two loaded tooth pairs may be apart and deflect each other: what any part allows."""
+        return max(part.neighbours for part in self.parts)
 
     def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:
         """Deflection of every slice under a unit force on each, or on each of ``under`` [mm/N]."""
@@ -85,11 +85,15 @@ class SumOfParts(BendingModel):
 
     def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact under a unit force on each slice of another [mm/N]."""
-        return _sum([part.between(at, under) for part in self.parts])
+        return _sum([part.between(at, under) for part in self._parts_between(at[0], under[0])])
 
     def deflection(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid], forces: Array) -> Array:
         """Deflection (m,) [mm] of the slices of one contact under forces (n,) [N] on those of another."""
-        return _sum([part.deflection(at, under, forces) for part in self.parts])
+        return _sum([part.deflection(at, under, forces) for part in self._parts_between(at[0], under[0])])
+
+    def _parts_between(self, one: int, other: int) -> list[BendingPart]:
+        """Parts in which a force on one tooth pair moves the other: teeth so far apart may be in no model of teeth."""
+        return [part for part in self.parts if abs(one - other) <= part.neighbours]
 
     @property
     def supports(self) -> SupportCompliance | None:

@@ -283,7 +283,7 @@ class DesignModel:
         supports = support_compliance(scene, pair)
         assert supports is not None
         unmoved = trace_teeth(at_rest(supports), angles)
-        bending = model_of(scene, pair, pitches_apart(supports, float(self.torques.max()), unmoved))
+        bending = model_of(scene, pair, pitches_apart(supports, self.torques.tolist(), unmoved))
         assert bending is not None
         grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=scene.analysis.free_edges)
         cycle, held = SupportedCycle(pair, bending, angles, grid, load_sharing=True), []
