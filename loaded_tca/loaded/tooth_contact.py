@@ -116,12 +116,13 @@ def contact_under_load(
     separation = yield from _box_for_cap(pair, contact, load, (yield Gap(contact, cells, load=load)))
     if grid.cells is None and separation.cover.min() < 1.0:
         cells = FIRST_CELLS_AT_ENDS
-        separation = yield Gap(contact, cells, box=separation.box)
+        separation = yield Gap(contact, cells, box=separation.box, polynomials=separation.polynomials)
     for _ in range(MOST_BOXES):
         loaded = yield from _InBox(pair, contact, load, grid, separation, bending, number, coupling).steps()
         if not loaded.solution.reaches_border:
             break
-        separation = yield Gap(contact, cells, box=loaded.separation.box.grown(loaded.filled_ends, GROWTH))
+        box = loaded.separation.box.grown(loaded.filled_ends, GROWTH)
+        separation = yield Gap(contact, cells, box=box, polynomials=separation.polynomials)
     return loaded
 
 
@@ -131,7 +132,8 @@ def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation:
     while load > CAP_USE * separation.material_area * cap:
         along = separation.box.half_lengths[1] < pair.face_width
         box = separation.box.grown(((True, True), (along, along)), GROWTH)
-        wider = yield Gap(contact, (separation.gap.shape[0], separation.gap.shape[1]), box=box)
+        cells = separation.gap.shape[0], separation.gap.shape[1]
+        wider = yield Gap(contact, cells, box=box, polynomials=separation.polynomials)
         if wider.material_area <= separation.material_area:
             most = CAP_USE * separation.material_area * cap
             raise InputError(
@@ -211,7 +213,7 @@ class _InBox:
         """Solve on a grid of the box."""
         separation = self.first
         if separation.gap.shape != cells:
-            separation = yield Gap(self.contact, cells, box=self.first.box)
+            separation = yield Gap(self.contact, cells, box=self.first.box, polynomials=self.first.polynomials)
         if start is not None and not self.grid.lines_held:
             separation = separation.loaded_by(start, self.pair.module)
         self.separation = separation

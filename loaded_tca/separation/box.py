@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol, Self
+from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from loaded_tca.errors import GeometryError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact, point_contact
 from loaded_tca.separation.normal_gap import NormalGap
+from loaded_tca.separation.polynomials import OUTSIDE, GapPolynomials
 from loaded_tca.unloaded import ContactPoint, RelativeCurvature
 from loaded_tca.unloaded.curvature import relative_curvatures
 from loaded_tca.unloaded.search import find_roots
@@ -108,14 +109,21 @@ class Box:
         return replace(self, half_lengths=(half_lengths[0], half_lengths[1]), middle=(middle[0], middle[1]))
 
 
+class Estimate(NamedTuple):
+    """Box of a contact, and the polynomials of its gap; None where none hold."""
+
+    box: Box
+    polynomials: GapPolynomials | None
+
+
 def estimate_boxes(
     pair: GearPair,
     contacts: Sequence[ContactPoint],
     loads: Sequence[float],
     guesses: Sequence[tuple[float, float] | None],
     cells: Sequence[tuple[int, int]],
-) -> list[Box | GeometryError]:
-    """Boxes that hold n contacts, each under its load > 0 [N].
+) -> list[Estimate | GeometryError]:
+    """Boxes that hold n contacts, each under its load > 0 [N], and polynomials of the gaps around.
 
     Their axes are the principal directions of the relative curvature, turned where the contact under load lies
     askew on them, as where the contact point stands on the start of a relief: a contact is cut into strips across, and
@@ -137,12 +145,15 @@ def estimate_boxes(
         if not rows.size:
             break
         probes.fit(rows)
+    probes.fit_polynomials()
     half_lengths, middles = probes.boxes(on_edge, np.array(cells))
     missing = "no flank around the contact point at pinion angle {:.6g} rad"
     return [
-        GeometryError(missing.format(contact.pinion_angle)) if math.isnan(across) else Box((across, along), own, (x, y))
-        for contact, (across, along), own, (x, y) in zip(
-            contacts, half_lengths.tolist(), probes.axes, middles.tolist(), strict=True
+        GeometryError(missing.format(contact.pinion_angle))
+        if math.isnan(across)
+        else Estimate(Box((across, along), probes.axes[row], (x, y)), probes.polynomials_of(row))
+        for row, (contact, (across, along), (x, y)) in enumerate(
+            zip(contacts, half_lengths.tolist(), middles.tolist(), strict=True)
         )
     ]
 
@@ -162,6 +173,7 @@ class _Probes:
         count = len(contacts)
         self.gap = NormalGap(pair, contacts, axes)
         self.x, self.y, self.room = np.empty((count, PROBE[0])), np.empty((count, PROBE[1])), np.empty((count, *PROBE))
+        self.surfaces: Array | None = None  # gap and distances to the edges (surfaces, n, *PROBE), once sampled
         self.needed, self.end, self.slope = np.empty((count, 2)), np.empty(count), np.empty(count)
 
     def fit(self, rows: Indices) -> None:
@@ -173,7 +185,12 @@ class _Probes:
                 half[:, None] * np.linspace(-1.0, 1.0, n) for half, n in zip(have.T, PROBE, strict=True)
             )
             x, y = self.x[rows], self.y[rows]
-            fall, room = self.gap.of(rows).at(x[:, :, None], y[:, None])
+            surfaces = self.gap.of(rows).surfaces(x[:, :, None], y[:, None])
+            if self.surfaces is None:  # of all of them, at first
+                self.surfaces = surfaces
+            else:
+                self.surfaces[:, rows] = surfaces
+            fall, room = surfaces[0], surfaces[1:].min(axis=0)
             self.room[rows] = room
             bare = room.max(axis=(1, 2)) < 0.0
             there = (room >= 0.0) | bare[:, None, None]  # what is found of the bare ones is not used
@@ -202,6 +219,18 @@ class _Probes:
         if turned.size:
             self.gap = NormalGap(self.pair, self.contacts, self.axes)
         return askew
+
+    def fit_polynomials(self) -> None:
+        """Fit polynomials to what was sampled; none on arcs of rounded edges, where a flank bends at once."""
+        assert self.surfaces is not None
+        self.polynomials, self.smooth = GapPolynomials.fitted(
+            self.surfaces, np.stack([self.x[:, -1], self.y[:, -1]], axis=1)
+        )
+        self.smooth &= self.pair.sharp is self.pair
+
+    def polynomials_of(self, row: int) -> GapPolynomials | None:
+        """Polynomials of one contact, if they hold."""
+        return self.polynomials.of(np.array([row])) if self.smooth[row] else None
 
     def boxes(self, on_edge: Mask, cells: Array) -> tuple[Array, Array]:
         """Half lengths and middles of boxes, (n, 2) across and along [mm]; NaN where there is no material."""
@@ -239,18 +268,31 @@ class _Probes:
         if not rows.size:
             return ends
         lines = np.linspace(-1.0, 1.0, PROBE[1 - axis])
-        # arcs of rounded edges, on which normals take more steps to the flank, end at the same edges
-        gap = NormalGap(self.pair.sharp, self.contacts, self.axes).of(rows)
 
         def room_at(of: Indices, places: Array) -> Array:
             """Largest distance to the edges (of, places) at places along the axis."""
-            on, aside = places[:, :, None], beside[of, None, None] * lines
-            return np.asarray(gap.of(of).at(*((aside, on) if axis else (on, aside)))[1].max(axis=2))
+            aside = beside[of, None] * lines
+            room = self._room(rows[of], *((aside, places) if axis else (places, aside)))
+            return np.asarray(room.max(axis=2 - axis))
 
         places = reach[:, None] * np.linspace(-1.0, 1.0, PROBE[axis])
         best = room_at(np.arange(rows.size), places)
         ends[near] = _ends_of_material(best, places, reach, accuracy, lambda of, at: room_at(of, at[:, None])[:, 0])
         return ends
+
+    def _room(self, rows: Indices, x: Array, y: Array) -> Array:
+        """Distance to the nearest edge (rows, nx, ny) where x (rows, nx) and y (rows, ny) cross."""
+        farthest = np.abs(x).max(axis=1) / self.x[rows, -1], np.abs(y).max(axis=1) / self.y[rows, -1]
+        smooth = self.smooth[rows] & (np.maximum(*farthest) <= OUTSIDE)
+        room = np.empty((rows.size, x.shape[1], y.shape[1]))
+        if smooth.any():
+            room[smooth] = self.polynomials.of(rows[smooth]).surfaces(x[smooth], y[smooth])[1:].min(axis=0)
+        if not smooth.all():
+            bent = ~smooth
+            # arcs of rounded edges, on which normals take more steps to the flank, end at the same edges
+            gap = NormalGap(self.pair.sharp, self.contacts, self.axes).of(rows[bent])
+            room[bent] = gap.at(x[bent, :, None], y[bent, None])[1]
+        return room
 
 
 def _cells_to_ends(ends: Array, cut: Mask, number: int) -> tuple[float, float]:
