@@ -45,7 +45,7 @@ class Gap(NamedTuple):
     """A separation to sample, in the box that a load needs or in a given one; see :func:`sample_separation`.
 
     ``gears`` are those of a tooth pair that has flanks of its own; None: the common ones. ``polynomials`` are those of
-    another grid of the contact.
+    another grid of the contact; ``cells_at_ends`` are used instead of ``cells`` in estimated boxes in which flanks end.
     """
 
     contact: ContactPoint
@@ -54,6 +54,7 @@ class Gap(NamedTuple):
     box: Box | None = None
     gears: GearPair | None = None
     polynomials: GapPolynomials | None = None
+    cells_at_ends: tuple[int, int] | None = None
 
 
 class Task(NamedTuple):
@@ -153,8 +154,10 @@ def _of_flanks(pair: GearPair, asked: dict[int, Any]) -> dict[int, Separation | 
     gears = requests[0].gears or pair
     if isinstance(requests[0], Ends):
         return dict(zip(asked, edge_compliances(gears, [one.separation for one in requests]), strict=True))
-    contacts, cells, loads, boxes, _, polynomials = zip(*requests, strict=True)
-    gaps = sample_separations(gears, contacts, cells=cells, loads=loads, boxes=boxes, polynomials=polynomials)
+    contacts, cells, loads, boxes, _, polynomials, at_ends = zip(*requests, strict=True)
+    gaps = sample_separations(
+        gears, contacts, cells=cells, loads=loads, boxes=boxes, polynomials=polynomials, cells_at_ends=at_ends
+    )
     return dict(zip(asked, gaps, strict=True))
 
 

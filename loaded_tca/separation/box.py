@@ -15,6 +15,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact, point_contact
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.polynomials import OUTSIDE, GapPolynomials
+from loaded_tca.separation.strips import strip_extents
 from loaded_tca.unloaded import ContactPoint, RelativeCurvature
 from loaded_tca.unloaded.curvature import relative_curvatures
 from loaded_tca.unloaded.search import find_roots
@@ -33,8 +34,6 @@ PROBE = (17, 33)
 ROOM = 1.5
 """Wanted half lengths of a coarse grid over those of the contact."""
 MOST_PROBES = 16
-LEAST_GROWTH, MOST_GROWTH = 2.0, 100.0
-"""Of a probe that a contact fills."""
 END_ALONG, END_ACROSS = 1e-6, 1e-3
 """Accuracy of the end of the material, over the half length of the box."""
 STRAIGHT_CHORD = 50.0
@@ -110,10 +109,11 @@ class Box:
 
 
 class Estimate(NamedTuple):
-    """Box of a contact, and the polynomials of its gap; None where none hold."""
+    """Box of a contact, the polynomials of its gap, None where none hold, and whether the material ends in the box."""
 
     box: Box
     polynomials: GapPolynomials | None
+    cut: bool = False
 
 
 def estimate_boxes(
@@ -146,12 +146,12 @@ def estimate_boxes(
             break
         probes.fit(rows)
     probes.fit_polynomials()
-    half_lengths, middles = probes.boxes(on_edge, np.array(cells))
+    half_lengths, middles, cut = probes.boxes(on_edge, np.array(cells))
     missing = "no flank around the contact point at pinion angle {:.6g} rad"
     return [
         GeometryError(missing.format(contact.pinion_angle))
         if math.isnan(across)
-        else Estimate(Box((across, along), probes.axes[row], (x, y)), probes.polynomials_of(row))
+        else Estimate(Box((across, along), probes.axes[row], (x, y)), probes.polynomials_of(row), bool(cut[row]))
         for row, (contact, (across, along), (x, y)) in enumerate(
             zip(contacts, half_lengths.tolist(), middles.tolist(), strict=True)
         )
@@ -194,7 +194,7 @@ class _Probes:
             self.room[rows] = room
             bare = room.max(axis=(1, 2)) < 0.0
             there = (room >= 0.0) | bare[:, None, None]  # what is found of the bare ones is not used
-            need, self.end[rows], growth, self.slope[rows] = _strip_extents(
+            need, self.end[rows], growth, self.slope[rows] = strip_extents(
                 np.where(there, fall, np.inf), x, y, self.forces[rows], self.pair.contact_modulus
             )
             self.needed[rows] = need
@@ -232,12 +232,15 @@ class _Probes:
         """Polynomials of one contact, if they hold."""
         return self.polynomials.of(np.array([row])) if self.smooth[row] else None
 
-    def boxes(self, on_edge: Mask, cells: Array) -> tuple[Array, Array]:
-        """Half lengths and middles of boxes, (n, 2) across and along [mm]; NaN where there is no material."""
+    def boxes(self, on_edge: Mask, cells: Array) -> tuple[Array, Array, Mask]:
+        """Half lengths and middles of boxes, (n, 2) across and along [mm]; NaN where there is no material.
+
+        The third (n,) tells in which of them the material ends.
+        """
         count, held = len(self.needed), np.flatnonzero(self.room.max(axis=(1, 2)) >= 0.0)
-        half_lengths, middles = np.full((count, 2), np.nan), np.full((count, 2), np.nan)
+        half_lengths, middles, cut = np.full((count, 2), np.nan), np.full((count, 2), np.nan), np.zeros(count, bool)
         if not held.size:
-            return half_lengths, middles
+            return half_lengths, middles, cut
         needed, cells, edged = self.needed[held], cells[held], on_edge[held]
         along, widest = MARGIN * needed[:, 1], np.where(edged, EDGE_MARGIN, SPIKE_MARGIN) * needed[:, 0]
         ends = self._ends(held, along, widest, END_ALONG, 1)
@@ -249,11 +252,13 @@ class _Probes:
         lengths = np.stack([needed[:, 0], np.minimum(self.end[held], needed[:, 1])], axis=1)
         reached = (lengths[..., None] > CERTAINLY_INSIDE * ends).any(axis=2, keepdims=True)
         ends = np.where(reached, ends, ends.max(axis=2, keepdims=True))
-        for row, ends_of, reach_of, counts in zip(held.tolist(), ends, reach, cells.tolist(), strict=True):
+        within = ends < reach[..., None]
+        cut[held] = within.any(axis=(1, 2))
+        for row, ends_of, within_of, counts in zip(held.tolist(), ends, within, cells.tolist(), strict=True):
             for axis, number in enumerate(counts):
-                spacing, below = _cells_to_ends(ends_of[axis], ends_of[axis] < reach_of[axis], number)
+                spacing, below = _cells_to_ends(ends_of[axis], within_of[axis], number)
                 half_lengths[row, axis], middles[row, axis] = 0.5 * number * spacing, (0.5 * number - below) * spacing
-        return half_lengths, middles
+        return half_lengths, middles, cut
 
     def _ends(self, rows: Indices, reach: Array, beside: Array, accuracy: float, axis: int) -> Array:
         """Distances (rows, 2) to the ends of the material either way along an axis, at most ``reach`` (rows,).
@@ -333,72 +338,6 @@ def _resized(needed: Array, window: Array, growth: Array) -> Array:
     """Windows that contacts of the needed half lengths fill to two thirds, or ``growth`` times as large."""
     fitting = np.minimum(np.maximum(ROOM * needed, 0.1 * window), 4.0 * window)
     return np.where(needed < 0.85 * window, fitting, growth * window)
-
-
-def _strip_extents(gap: Array, x: Array, y: Array, loads: Array, modulus: float) -> tuple[Array, Array, Array, Array]:
-    """Half lengths across and along (n, 2) [mm] of contacts that the strip model gives on coarse gaps (n, nx, ny).
-
-    They are rounded up to half a cell. The second (n,) is where the contact ends if its penetration falls as a
-    parabola. The third (n,) is how much larger a window should be that the contact fills: the cube root of the
-    penetration over the gap in it, as of point contacts, between two bounds. The fourth (n,) is the slope dx/dy of a
-    line through the centres of the strips, weighted with their loads.
-    """
-    floor = gap.min(axis=1)
-    depth = gap - np.where(np.isfinite(floor), floor, 0.0)[:, None]
-    ordered = np.sort(floor, axis=1)
-    sums = np.cumsum(ordered, axis=1)
-    across, reach, dx, dy = np.abs(x), np.abs(y), x[:, 1] - x[:, 0], y[:, 1] - y[:, 0]
-    width, length = x[:, -1], y[:, -1]
-    for _ in range(4):
-        slenderness = np.log(4.0 * np.maximum(length / width, 1.0)) - 1.0
-        stiffness = 0.5 * math.pi * modulus / np.maximum(slenderness, 0.25 * math.pi)
-        penetration = _water_level(ordered, sums, loads / (stiffness * dy)) - floor
-        closed = penetration > 0.0
-        lifted = np.where(closed, (2.0 * stiffness / (math.pi * modulus))[:, None] * penetration, -1.0)
-        loaded = (depth <= lifted[:, None]).max(axis=2)
-        width = _farthest(across, loaded) + 0.5 * dx
-        length = _farthest(reach, closed) + 0.5 * dy
-    deepest = penetration.max(axis=1)
-    rise = np.where(np.isfinite(gap), gap, -np.inf).max(axis=(1, 2)) - ordered[:, 0]
-    growth = np.cbrt(np.divide(deepest, rise, out=np.zeros(rise.shape), where=rise > 0.0))
-    ends = _ends_of_parabolas(reach, penetration, closed)
-    slope = _slope_of_centres(np.sqrt(np.maximum(lifted[:, None] - depth, 0.0)), x, y, np.maximum(penetration, 0.0))
-    return np.stack([width, length], axis=1), ends, np.clip(growth, LEAST_GROWTH, MOST_GROWTH), slope
-
-
-def _slope_of_centres(pressure: Array, x: Array, y: Array, load: Array) -> Array:
-    """Slopes dx/dy (n,) of lines through the centres of the pressure (n, nx, ny) of strips under loads (n, ny)."""
-    total = pressure.sum(axis=1)
-    load = np.where(total > 0.0, load, 0.0)
-    centre = np.divide((pressure * x[:, :, None]).sum(axis=1), total, out=np.zeros(total.shape), where=total > 0.0)
-    share = load / load.sum(axis=1, keepdims=True)
-    offset = y - (share * y).sum(axis=1, keepdims=True)
-    scatter = (share * offset**2).sum(axis=1)
-    return np.divide((share * offset * centre).sum(axis=1), scatter, out=np.zeros(len(x)), where=scatter > 0.0)
-
-
-def _farthest(distance: Array, there: Mask) -> Array:
-    """Largest distance in every row, of those that are there."""
-    return np.where(there, distance, 0.0).max(axis=1)
-
-
-def _ends_of_parabolas(distance: Array, penetration: Array, closed: Mask) -> Array:
-    """Distances (n,) at which penetrations end that fall as parabolas about y = 0; infinite if one does not fall."""
-    places, rows = np.arange(distance.shape[1]), np.arange(len(distance))
-    last = np.where(closed, distance, -1.0).argmax(axis=1)
-    others = np.where(closed & (places != last[:, None]), np.abs(places - last[:, None]), places.size)
-    beside = others.argmin(axis=1)
-    fall = np.where(closed.sum(axis=1) > 1, penetration[rows, beside] - penetration[rows, last], 0.0)
-    outer, inner = distance[rows, last] ** 2, distance[rows, beside] ** 2
-    rest = np.divide(penetration[rows, last] * (outer - inner), fall, out=np.full(fall.shape, np.inf), where=fall > 0.0)
-    return np.sqrt(outer + rest)
-
-
-def _water_level(ordered: Array, sums: Array, total: Array) -> Array:
-    """The deltas (n, 1) at which (delta - floor)_+ adds up to ``total``, of floors in order and their running sums."""
-    levels = (total[:, None] + sums) / np.arange(1, ordered.shape[1] + 1)
-    above = np.append(ordered[:, 1:], np.full((len(ordered), 1), np.inf), axis=1)
-    return np.take_along_axis(levels, (levels <= above).argmax(axis=1)[:, None], axis=1)
 
 
 def _ends_of_material(

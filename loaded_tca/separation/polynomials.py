@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebvander
+from numpy.polynomial.chebyshev import cheb2poly, chebvander
 
 from loaded_tca.arrays import Array, Indices, Mask
 
@@ -21,6 +21,8 @@ DEGREES = (8, 14)
 """Of the polynomials, across and along: contacts are far longer than wide."""
 MISFIT = 1e-10
 """Largest that polynomials may leave over on their grid [mm]: on cells of a micrometre 1e-5 of a pressure of 1 GPa."""
+ROUNDING = 1e-12
+"""The same over the largest value: sums of powers lose digits, of distances in windows of a metre as many."""
 OUTSIDE = 1.25
 """How far, over the grid they are fitted to, distances to edges are told: their error grows a hundredfold till there,
 to a hundredth of a micrometre."""
@@ -35,7 +37,7 @@ class GapPolynomials:
     reach : (n, 2) array [mm]
         Half lengths across and along of the rectangles about the contact points that they are fitted in.
     coefficients : (surfaces, n, across, along) array [mm]
-        Of products of Chebyshev polynomials of the places over ``reach``: of the gap, and of the distance to each edge.
+        Of products of powers of the places over ``reach``: of the gap, and of the distance to each edge.
 
     Examples
     --------
@@ -61,8 +63,9 @@ class GapPolynomials:
         met = np.asarray(np.isfinite(surfaces).all(axis=(0, 2, 3)))
         surfaces = np.where(met[:, None, None], surfaces, 0.0)
         coefficients = fit_across @ surfaces @ fit_along.T
-        left = np.abs(across @ coefficients @ along.T - surfaces).max(axis=(0, 2, 3))
-        return cls(reach, coefficients), met & (left <= MISFIT)
+        left = np.abs(across @ coefficients @ along.T - surfaces).max(axis=(2, 3))
+        allowed = MISFIT + ROUNDING * np.abs(surfaces).max(axis=(2, 3))
+        return cls(reach, coefficients), met & (left <= allowed).all(axis=0)
 
     @classmethod
     def together(cls, each: Sequence[GapPolynomials]) -> GapPolynomials:
@@ -84,7 +87,7 @@ class GapPolynomials:
     def surfaces(self, x: Array, y: Array) -> Array:
         """Gap and distances to the edges [mm] (surfaces, n, nx, ny) where x (n, nx) and y (n, ny) [mm] cross."""
         across, along = (
-            chebvander(places / reach[:, None], degree)
+            _powers(places / reach[:, None], degree)
             for places, reach, degree in zip((x, y), self.reach.T, DEGREES, strict=True)
         )
         return np.asarray(across @ self.coefficients @ along.mT)
@@ -92,6 +95,19 @@ class GapPolynomials:
 
 @cache
 def _least_squares(count: int, degree: int) -> tuple[Array, Array]:
-    """Chebyshev polynomials at even places from -1 to 1 (count, degree + 1), and what makes coefficients of values."""
-    values = chebvander(np.linspace(-1.0, 1.0, count), degree)
-    return values, np.linalg.pinv(values)
+    """Powers of even places from -1 to 1 (count, degree + 1), and what makes their coefficients of values there.
+
+    By Chebyshev polynomials, which lose no digits.
+    """
+    places = np.linspace(-1.0, 1.0, count)
+    in_powers = np.zeros((degree + 1, degree + 1))
+    for k, chebyshev in enumerate(np.eye(degree + 1)):
+        in_powers[: k + 1, k] = cheb2poly(chebyshev[: k + 1])
+    return _powers(places, degree), in_powers @ np.linalg.pinv(chebvander(places, degree))
+
+
+def _powers(places: Array, degree: int) -> Array:
+    """Powers (..., degree + 1) of places (...) from 0 on."""
+    powers = np.ones((*places.shape, degree + 1))
+    powers[..., 1:] = places[..., None]
+    return np.asarray(np.multiply.accumulate(powers, axis=-1))

@@ -23,7 +23,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
 
 import numpy as np
 
@@ -261,6 +260,7 @@ def sample_separations(
     boxes: Sequence[Box | tuple[float, float] | None],
     guesses: Sequence[tuple[float, float] | None] | None = None,
     polynomials: Sequence[GapPolynomials | None] | None = None,
+    cells_at_ends: Sequence[tuple[int, int] | None] | None = None,
     accuracy: float = 1e-3,
 ) -> list[Separation | InputError | GeometryError]:
     """Gaps of n contacts: of each what :func:`sample_separation` returns or raises, whatever stands beside it.
@@ -273,6 +273,8 @@ def sample_separations(
         For each contact, as of :func:`sample_separation`; a :class:`Box` may lie anywhere in the tangent plane.
     polynomials : sequence of n, optional
         Those of another grid of each contact, of the same pair and axes, or None; used as far as they reach.
+    cells_at_ends : sequence of n, optional
+        Cells instead of ``cells`` in estimated boxes in which the material ends along an axis, or None.
     accuracy : float
         Of all contacts whose cells are None.
     """
@@ -294,10 +296,12 @@ def sample_separations(
     kept = [None] * len(contacts) if polynomials is None else polynomials
     placed: dict[int, Estimate] = {}
     for index, place in zip(shapes, _placed(pair, contacts, shapes, loads, boxes, guesses, kept), strict=True):
-        if isinstance(place, Estimate):
-            placed[index] = place
-        else:
+        if not isinstance(place, Estimate):
             separations[index] = place
+            continue
+        placed[index] = place
+        if place.cut and cells_at_ends is not None:
+            shapes[index] = cells_at_ends[index] or shapes[index]
     for shape in dict.fromkeys(shapes.values()):
         sized = [(index, place) for index, place in placed.items() if shapes[index] == shape]
         size = max(1, TOGETHER // math.prod(shape))
@@ -341,9 +345,10 @@ def _sampled(
         middle[:, None] + (np.arange(n) - 0.5 * (n - 1)) * step[:, None]
         for n, step, middle in zip(shape, spacings.T, np.array([box.middle for box in boxes]).T, strict=True)
     )
-    heights, *distances = _surfaces(pair, contacts, axes, [place.polynomials for place in places], x, y)
+    surfaces = _surfaces(pair, contacts, axes, [place.polynomials for place in places], x, y)
+    heights, distances = surfaces[0], surfaces[1:]
     covers = _covers(distances, spacings)
-    whole, cut = (np.where(there, heights, np.inf) for there in (reduce(np.minimum, distances) >= 0.0, covers > 0.0))
+    whole, cut = (np.where(there, heights, np.inf) for there in (distances.min(axis=0) >= 0.0, covers > 0.0))
     for k, (contact, curvature, (dx, dy)) in enumerate(zip(contacts, curvatures, spacings.tolist(), strict=True)):
         grid, origin = (whole[k].copy(), x[k], y[k], (dx, dy)), contact.point.copy()
         along_axes, line = curvature.along_axes(axes[k]), np.zeros(y.shape[1])
@@ -377,26 +382,26 @@ def _surfaces(
     return np.concatenate(parts, axis=1)[:, np.argsort(np.concatenate([smooth, bent]))]
 
 
-def _covers(distances: list[Array], spacings: Array) -> Array:
-    """Part of every cell that has material (n, nx, ny), of the distances of the middles of the cells to each edge.
+def _covers(distances: Array, spacings: Array) -> Array:
+    """Part of every cell that has material (n, nx, ny), of the distances (edges, n, nx, ny) of their middles to edges.
 
     From one cell to the next the distance grows by a and b: with a straight edge along an axis of the grid the part is
     1/2 + distance/(|a| + |b|), from 0 to 1; with an oblique one nearly so.
     """
-    covers = np.ones(distances[0].shape)
-    for distance in distances:
-        near = np.flatnonzero(distance.min(axis=(1, 2)) < spacings.sum(axis=1))
-        if not near.size:
-            continue
-        ends, growth = distance[near], np.zeros((near.size, *covers.shape[1:]))
-        met = np.where(np.isfinite(ends), ends, np.nan)
-        for lines, sums in ((met, growth), (met.swapaxes(1, 2), growth.swapaxes(1, 2))):
-            if lines.shape[1] > 1:
-                steps = np.abs(lines[:, 1:] - lines[:, :-1])
-                sums[:, :-1] += steps
-                sums[:, -1] += steps[:, -1]
-        parts = np.divide(ends, growth, out=np.copysign(1.0, ends), where=growth > 0.0)
-        covers[near] = np.minimum(covers[near], 0.5 + parts)
+    covers, near = np.ones(distances.shape[1:]), distances.min(axis=(2, 3)) < spacings.sum(axis=1)
+    if not near.any():
+        return covers
+    ends, growth = distances[near], np.zeros((np.count_nonzero(near), *covers.shape[1:]))
+    met = np.where(np.isfinite(ends), ends, np.nan)
+    for lines, sums in ((met, growth), (met.swapaxes(1, 2), growth.swapaxes(1, 2))):
+        if lines.shape[1] > 1:
+            steps = np.abs(lines[:, 1:] - lines[:, :-1])
+            sums[:, :-1] += steps
+            sums[:, -1] += steps[:, -1]
+    parts = np.divide(ends, growth, out=np.copysign(1.0, ends), where=growth > 0.0)
+    parts += 0.5
+    for part, contact in zip(parts, np.nonzero(near)[1], strict=True):
+        np.minimum(covers[contact], part, out=covers[contact])
     return np.where(covers < SLIVER, 0.0, np.where(covers > 1.0 - SLIVER, 1.0, covers))
 
 
