@@ -221,12 +221,11 @@ class _Probes:
         return askew
 
     def fit_polynomials(self) -> None:
-        """Fit polynomials to what was sampled; none on arcs of rounded edges, where a flank bends at once."""
+        """Fit polynomials to what was sampled."""
         assert self.surfaces is not None
         self.polynomials, self.smooth = GapPolynomials.fitted(
             self.surfaces, np.stack([self.x[:, -1], self.y[:, -1]], axis=1)
         )
-        self.smooth &= self.pair.sharp is self.pair
 
     def polynomials_of(self, row: int) -> GapPolynomials | None:
         """Polynomials of one contact, if they hold."""

@@ -3,7 +3,8 @@
 A contact is small against its flanks, and within a flank of one piece the gap along the normal, and the distances to
 the edges, are as good as polynomials there. They are fitted, by least squares, to the coarse grid on which the contact
 is estimated, whose points are three times as many as coefficients, so that what is left over tells whether they hold:
-where a relief begins, where a flank is a spline, or where the normals meet no flank, they do not.
+where a relief or the arc of a rounded edge begins, where a flank is a spline, or where the normals meet no flank, they
+do not.
 """
 
 from __future__ import annotations

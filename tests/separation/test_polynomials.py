@@ -69,7 +69,7 @@ def with_key(key, value):
     "pair",
     [
         lambda: scene_of("mesh_cycle_spur").pair(),
-        lambda: with_key("pinion.tip_rounding_mm", 0.3),
+        lambda: with_key("pinion.side_rounding_mm", 0.3),
         lambda: scene_of("measured_flank").pair(),
     ],
     ids=["relief", "rounded edge", "spline"],
