@@ -47,8 +47,8 @@ FAULTS = (
     Fault(
         "local synthesis: the other flank of the tooth is left out",
         "pairs/synthesis.py",
-        "            rows.append((there.slopes - own.slopes) * size)",
-        "            rows.append((there.slopes - own.slopes) * size * (flank == self.drive))",
+        "            rows.append((there.slopes - wanted.slopes) * size)",
+        "            rows.append((there.slopes - wanted.slopes) * size * (flank == self.drive))",
         "pairs/test_synthesis.py::test_other_flank_touches_at_its_mean_point_too",
     ),
     Fault(
@@ -734,9 +734,9 @@ FAULTS = (
                 '("root_compression_angle_deg", 2.0)',
             ),
             (
-                "output/result_files.py",
-                "path.transmission_error * result.wheel_base_radius * 1e3",
-                "path.transmission_error * result.wheel_base_radius",
+                "results/numbers.py",
+                "return MICROMETRES * self.wheel_base_radius",
+                "return self.wheel_base_radius",
             ),
             ("units.py", '"um": Unit("um", "mm", 1e-3)', '"um": Unit("um", "mm", 1e-6)'),
             ("units.py", '"Nm": Unit("N m", "N mm", 1e3)', '"Nm": Unit("N m", "N mm", 1.0)'),

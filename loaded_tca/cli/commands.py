@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_summary, progress_bar, say_cost
 from loaded_tca.errors import InputError, named, reason_of, require
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from loaded_tca.stages import Stage, StageResult
     from loaded_tca.studies import DesignResult
 
-STAGE = "stage.nc"
-"""File of a stage in its directory."""
+STUDY_FILE, DESIGN_FILE = "study.nc", "design.nc"
+"""Files of a study and of a design in their directories."""
 REACHED_WITHIN = 10.0
 """Seconds for a scheduler to answer."""
 
@@ -35,21 +35,24 @@ REACHED_WITHIN = 10.0
 def scene_of(options: argparse.Namespace) -> Scene:
     """The scene that the command line names, with its changes."""
     from loaded_tca.scene import read_scene
-    from loaded_tca.scene.parse import literal_value
 
-    scene = read_scene(options.scene)
-    changes = {key: literal_value(value) for key, value in options.set}
+    scene, changes = read_scene(options.scene), _changes_of(options)
     return scene.with_changes(changes) if changes else scene
 
 
 def stage_of(options: argparse.Namespace) -> Stage:
     """The stage that the command line names, with its changes."""
-    from loaded_tca.scene.parse import literal_value
     from loaded_tca.stages import read_stage
 
-    stage = read_stage(options.scene)
-    changes = {key: literal_value(value) for key, value in options.set}
+    stage, changes = read_stage(options.scene), _changes_of(options)
     return stage.with_changes(changes) if changes else stage
+
+
+def _changes_of(options: argparse.Namespace) -> dict[str, Any]:
+    """Keys that the command line changes, with their values."""
+    from loaded_tca.scene.parse import literal_value
+
+    return {key: literal_value(value) for key, value in options.set}
 
 
 def result_of(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, int | None]:
@@ -92,15 +95,19 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
 def result_file(path: Path) -> Path:
     """The file of a result that is named by itself or by its directory; that of a stage is refused by its reader."""
     from loaded_tca.output.result_files import RESULT
+    from loaded_tca.stages.result import STAGE_FILE
 
     if not os.path.isdir(path):
         return path
-    return path / (STAGE if (path / STAGE).is_file() and not (path / RESULT).exists() else RESULT)
+    return path / (STAGE_FILE if (path / STAGE_FILE).is_file() and not (path / RESULT).exists() else RESULT)
 
 
 def file_of_report(path: Path) -> Path:
     """The file of a result, a stage, a study or a design that is named by itself or by its directory."""
-    result, *others = (path / name for name in ("result.nc", STAGE, "study.nc", "design.nc"))
+    from loaded_tca.output.result_files import RESULT
+    from loaded_tca.stages.result import STAGE_FILE
+
+    result, *others = (path / name for name in (RESULT, STAGE_FILE, STUDY_FILE, DESIGN_FILE))
     if not os.path.isdir(path):
         return path
     return next((one for one in (result, *others) if one.is_file()), result)
@@ -108,18 +115,18 @@ def file_of_report(path: Path) -> Path:
 
 def subject_of_report(path: Path) -> MeshCycle | StageResult | xarray.Dataset | DesignResult:
     """The result, stage, study or design in a file."""
-    from loaded_tca.results.files import read_dataset
+    from loaded_tca.results.files import DESIGN, STAGE, STUDY, read_dataset
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.studies import load_design, load_study
 
     kind = read_dataset(path).attrs.get("kind")
-    if kind == "study":
+    if kind == STUDY:
         return load_study(path)
-    if kind == "stage":
+    if kind == STAGE:
         from loaded_tca.stages import StageResult
 
         return StageResult.load(path.parent)
-    return load_design(path) if kind == "design" else MeshCycle.load(path)
+    return load_design(path) if kind == DESIGN else MeshCycle.load(path)
 
 
 def index_of_torque(given: float | None, result: MeshCycle) -> int | None:
@@ -291,35 +298,35 @@ def tribology(options: argparse.Namespace) -> None:
     from loaded_tca.output.tribology_files import write_tribology
     from loaded_tca.plots import png_of, tribology_figures
     from loaded_tca.results.mesh_cycle import MeshCycle
-    from loaded_tca.scene.parse import literal_value
 
     path = result_file(options.result)
     result = MeshCycle.load(path)
     directory = options.out or path.parent
     check_place(directory)
-    changes = {key: literal_value(value) for key, value in options.set}
+    changes = _changes_of(options)
     require(*((_is_of_tribology(key), f"--set {key}: {OF_TRIBOLOGY}") for key in changes))
     if options.speed is not None:
         changes.setdefault("operation.pinion_speed_rpm", options.speed[0])
     changed = replace(result, scene=result.scene.with_changes(changes)) if changes else result
-    found = changed.tribology(options.speed)
-    pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(found).items()}
-    written = write_tribology(found, directory, pictures)
+    evaluated = changed.tribology(options.speed)
+    pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(evaluated).items()}
+    written = write_tribology(evaluated, directory, pictures)
     each = range(len(options.speed or [None]))
-    print_summary("\n\n".join(found.summary(speed=speed) for speed in each), written)
+    print_summary("\n\n".join(evaluated.summary(speed=speed) for speed in each), written)
 
 
+ROUGHNESS, THERMAL = "roughness_Ra_um", ("conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK")
+"""Keys of gears and of materials that concern tribology alone."""
 OF_TRIBOLOGY = (
-    "an analysis depends on it; allowed keys of [operation] and [lubricant], roughness_Ra_um of the gears, and "
-    "conductivity_W_mK, density_kg_m3 and heat_capacity_J_kgK of materials"
+    f"an analysis depends on it; allowed keys of [operation] and [lubricant], {ROUGHNESS} of the gears, and "
+    f"{', '.join(THERMAL[:-1])} and {THERMAL[-1]} of materials"
 )
 
 
 def _is_of_tribology(key: str) -> bool:
     """Whether a key of a scene concerns tribology alone, so that a result stays valid."""
     section, _, name = key.rpartition(".")
-    alone = {"roughness_Ra_um", "conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK"}
-    return section in ("operation", "lubricant") or name in alone
+    return section in ("operation", "lubricant") or name in (ROUGHNESS, *THERMAL)
 
 
 def stage(options: argparse.Namespace) -> None:
@@ -420,10 +427,10 @@ def sensitivities(options: argparse.Namespace) -> None:
     from loaded_tca.output.tables import sensitivities_text, write_sensitivities
     from loaded_tca.plots import png_of
     from loaded_tca.plots.sensitivities import sensitivity_pictures
-    from loaded_tca.plots.style import highest_torque
+    from loaded_tca.results.numbers import index_or_largest
 
     result, directory, torque, _ = result_of(options)
-    torque = highest_torque(result) if torque is None else torque
+    torque = index_or_largest(result.torque, torque)
     tolerances = tolerances_of(options, result.scene)
     with bar_of(f"derivatives to {len(tolerances)} keys", len(DERIVATIVES), BAR) as show:
         slopes = result.sensitivities(list(tolerances))
@@ -546,11 +553,11 @@ def study(options: argparse.Namespace) -> None:
     check_place(directory)
     say_cost(study, options.workers or 1)
     with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
-        rows = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
+        rows = run_study(study, executor, directory / STUDY_FILE, show, keep_maps=options.keep_maps)
     rank_by = options.rank_by if options.rank_by in rows else None  # another one is told once all is written
     pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(rows, rank_by=rank_by).items()}
     written = write_study(rows, directory, pictures, rank_by)
-    print_summary(study_summary(rows), [directory / "study.nc", *written])
+    print_summary(study_summary(rows), [directory / STUDY_FILE, *written])
     failed = (rows["status"] != "ok").values
     require(
         (rank_by == options.rank_by, f"--rank-by {options.rank_by}: not in study.csv; ranked by the default figure"),

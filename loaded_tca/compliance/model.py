@@ -14,6 +14,7 @@ from typing import Protocol, Self
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.body import body_torsion
 from loaded_tca.compliance.compliance import tooth_compliance, way_out_told
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.scene import Scene
@@ -119,10 +120,15 @@ def _sum(deflections: list[Array]) -> Array:
 
 def teeth_and_bodies(scene: Scene, pair: GearPair, neighbours: int) -> BendingPart | None:
     """Teeth, foundations and gear bodies by finite elements; None where the scene lets the flanks alone give way."""
-    if scene.analysis.compliance == "contact":
+    if not scene.analysis.teeth_bend:
         return None
     with way_out_told():
         return tooth_compliance(pair, neighbours=neighbours)
+
+
+def torsion_of_bodies(scene: Scene, pair: GearPair) -> float:
+    """Twist of both gear bodies in :func:`teeth_and_bodies` [mm/N]: see ``body_torsion``; none where they are rigid."""
+    return sum(body_torsion(pair)) if scene.analysis.teeth_bend else 0.0
 
 
 def shafts_and_bearings(scene: Scene, pair: GearPair, _: int) -> BendingPart | None:

@@ -22,38 +22,40 @@ DIGITS = 9
 
 
 def bearing_rows(
-    reading: Reading, one: Component, thrust: float, sign: float, turn: Array
+    reading: Reading, bearing: Component, thrust: float, sign: float, turn: Array
 ) -> list[tuple[float, dict[str, Any]]] | None:
     """Rows of a bearing by their places beside it along u and their keys; None where nothing says how it gives way.
 
     The inner geometry counts where the file has no stiffness, or a rigid one, which stands for none.
     """
-    matrix = _operating_point(reading, one, turn)
+    matrix = _operating_point(reading, bearing, turn)
     if matrix is not None:
         return [(0.0, {"stiffness": [[round(value, DIGITS) + 0.0 for value in row] for row in matrix.tolist()]})]
-    radial = one.number("radial_stiffness", STIFFNESS, 0.0) or 0.0
-    if one.type in ROLLING and not NO_STIFFNESS < radial < RIGID_N_per_mm:
-        rows = rolling_rows(reading, one, sign)
+    radial = bearing.number("radial_stiffness", STIFFNESS, 0.0) or 0.0
+    if bearing.type in ROLLING and not NO_STIFFNESS < radial < RIGID_N_per_mm:
+        rows = rolling_rows(reading, bearing, sign)
         if rows is not None:
-            reading.take(one, "radial_stiffness", "axial_stiffness", "bending_stiffness")
-            reading.note(f"{one}: it gives way by its inner geometry")
+            reading.take(bearing, "radial_stiffness", "axial_stiffness", "bending_stiffness")
+            reading.note(f"{bearing}: it gives way by its inner geometry")
             return rows
-    stiffness = _linear(reading, one, thrust)
+    stiffness = _linear(reading, bearing, thrust)
     return None if stiffness is None else [(0.0, stiffness)]
 
 
-def _linear(reading: Reading, one: Component, thrust: float) -> dict[str, Any] | None:
+def _linear(reading: Reading, bearing: Component, thrust: float) -> dict[str, Any] | None:
     """Keys of the linear stiffness of a bearing; None where it has none."""
-    radial = reading.number(one, "radial_stiffness", STIFFNESS, 0.0) or 0.0
-    axial = reading.number(one, "axial_stiffness", STIFFNESS, 0.0) or 0.0
-    tilting = reading.number(one, "bending_stiffness", TILTING, 0.0) or 0.0
-    radial = 0.0 if reading.take(one, "radial_force_absorption").flag("radial_force_absorption") is False else radial
+    radial = reading.number(bearing, "radial_stiffness", STIFFNESS, 0.0) or 0.0
+    axial = reading.number(bearing, "axial_stiffness", STIFFNESS, 0.0) or 0.0
+    tilting = reading.number(bearing, "bending_stiffness", TILTING, 0.0) or 0.0
+    radial = (
+        0.0 if reading.take(bearing, "radial_force_absorption").flag("radial_force_absorption") is False else radial
+    )
     if max(radial, axial, tilting) <= NO_STIFFNESS:
         return None
-    axial = _axial(reading, one, radial, axial, thrust)
+    axial = _axial(reading, bearing, radial, axial, thrust)
     if max(radial, axial) > RIGID_N_per_mm or tilting > RIGID_Nmm_per_rad:
         reading.note(
-            f"{one}: rigid directions have {1e-3 * RIGID_N_per_mm:g} N/um, {1e-6 * RIGID_Nmm_per_rad:g} N m/mrad"
+            f"{bearing}: rigid directions have {1e-3 * RIGID_N_per_mm:g} N/um, {1e-6 * RIGID_Nmm_per_rad:g} N m/mrad"
         )
     keys = {"radial_stiffness_N_per_um": 1e-3 * min(radial, RIGID_N_per_mm)}
     if axial > 0.0:
@@ -63,22 +65,22 @@ def _linear(reading: Reading, one: Component, thrust: float) -> dict[str, Any] |
     return keys
 
 
-def _axial(reading: Reading, one: Component, radial: float, axial: float, thrust: float) -> float:
+def _axial(reading: Reading, bearing: Component, radial: float, axial: float, thrust: float) -> float:
     """Axial stiffness: none where the bearing takes no thrust of this direction [N/mm]."""
-    absorption = reading.take(one, "axial_force_absorption").text("axial_force_absorption")
+    absorption = reading.take(bearing, "axial_force_absorption").text("axial_force_absorption")
     if absorption == "no_direction":
         return 0.0
     if absorption in ("positive", "negative") and thrust:
         if (thrust > 0.0) != (absorption == "positive"):
-            reading.note(f"{one}: it takes no axial force in the scene: that on its shaft points the other way")
+            reading.note(f"{bearing}: it takes no axial force in the scene: that on its shaft points the other way")
             return 0.0
-        reading.note(f"{one}: it takes axial forces of both directions in the scene, {absorption} ones in the file")
-    if not axial and absorption and one.type in ROLLING and radial > RIGID_N_per_mm:
+        reading.note(f"{bearing}: it takes axial forces of both directions in the scene, {absorption} ones in the file")
+    if not axial and absorption and bearing.type in ROLLING and radial > RIGID_N_per_mm:
         return math.inf  # rigid, of a file that gives no stiffness where a direction is held
     return axial
 
 
-def _operating_point(reading: Reading, one: Component, turn: Array) -> Array | None:
+def _operating_point(reading: Reading, bearing: Component, turn: Array) -> Array | None:
     """Stiffness (5, 5) at the operating point in the gear's own frame [N, mm, rad]; None where it is not whole."""
     forces = [("f_u", "dF_u"), ("f_v", "dF_v"), ("f_w", "dF_w"), ("m_v", "dM_v"), ("m_w", "dM_w")]
     motions = [("d_u", "d_u"), ("d_v", "d_v"), ("d_w", "d_w"), ("rot_v", "d_v_rot"), ("rot_w", "d_w_rot")]
@@ -92,8 +94,8 @@ def _operating_point(reading: Reading, one: Component, turn: Array) -> Array | N
                 f"operating_point_stiffness_{force}_{motion}",
                 f"operating_point_stiffness_{old_force}_{old_motion}",
             )
-            name = next((each for each in names if each in one.attributes), None)
-            value = None if name is None else reading.number(one, name, units)
+            name = next((each for each in names if each in bearing.attributes), None)
+            value = None if name is None else reading.number(bearing, name, units)
             if value is None:
                 return None
             matrix[rows[n], rows[m]] = value
@@ -102,5 +104,5 @@ def _operating_point(reading: Reading, one: Component, turn: Array) -> Array | N
     turn_both = np.zeros((6, 6))
     turn_both[:3, :3] = turn_both[3:, 3:] = turn
     turned = turn_both @ (0.5 * (matrix + matrix.T)) @ turn_both.T
-    reading.note(f"{one}: its stiffness is that of the operating point in the file")
+    reading.note(f"{bearing}: its stiffness is that of the operating point in the file")
     return np.asarray(turned[:5, :5])

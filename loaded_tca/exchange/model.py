@@ -102,10 +102,10 @@ class Component:
         attribute = self.attributes.get(name)
         if attribute is None:
             return None
-        known = {"true": True, "1": True, "false": False, "0": False}
+        words = {"true": True, "1": True, "false": False, "0": False}
         value = str(attribute.value).strip().lower()
-        require((value in known, f"{self}: {name}: found {attribute.value!r:.40}; allowed true or false"))
-        return known[value]
+        require((value in words, f"{self}: {name}: found {attribute.value!r:.40}; allowed true or false"))
+        return words[value]
 
     def _factor(self, name: str, unit: str, units: Mapping[str, float]) -> float:
         try:
@@ -207,8 +207,8 @@ class Model:
             If there is none, with those that there are.
         """
         cases = [one for one in self.load_cases if wanted in (one.id, f"{one.spectrum}:{one.id}")]
-        known = ", ".join(f"{one.spectrum}:{one.id}" for one in self.load_cases) or "none, the model has no load cases"
-        require((len(cases) == 1, f"load case {wanted}: {'several' if cases else 'not found'}; allowed {known}"))
+        names = ", ".join(f"{one.spectrum}:{one.id}" for one in self.load_cases) or "none, the model has no load cases"
+        require((len(cases) == 1, f"load case {wanted}: {'several' if cases else 'not found'}; allowed {names}"))
         components = dict(self.components)
         for one, attributes in cases[0].components.items():
             if one in components:

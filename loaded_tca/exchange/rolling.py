@@ -62,8 +62,8 @@ def rolling_rows(reading: Reading, bearing: Component, sign: float) -> list[tupl
     if len(rows) > 1 and not distance:
         return None
     places = [distance * (n - 0.5 * (len(rows) - 1)) for n in range(len(rows))]
-    found = [(place, own) for place, own in zip(places, keys, strict=True) if own is not None]
-    return found if len(found) == len(rows) else None
+    placed = [(place, row) for place, row in zip(places, keys, strict=True) if row is not None]
+    return placed if len(placed) == len(rows) else None
 
 
 def _row_keys(reading: Reading, bearing: Component, row: Component, kind: str, sign: float) -> dict[str, Any] | None:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from math import cos, pi, sin
+from functools import cached_property
+from math import atan, cos, pi, sin, sqrt
 from typing import TYPE_CHECKING
+
+from loaded_tca.errors import GeometryError
+from loaded_tca.gears.involute import inverse_involute
 
 if TYPE_CHECKING:
     from loaded_tca.gears.cylindrical import CylindricalGear
@@ -20,6 +24,7 @@ class InvoluteMesh:
     """
 
     pinion: CylindricalGear
+    centre_distance: float | None
 
     if TYPE_CHECKING:  # a field or a property of each mesh
 
@@ -32,12 +37,12 @@ class InvoluteMesh:
             """Points on the line of action."""
 
         @property
-        def working_centre_distance(self) -> float:
-            """abs(a) [mm]."""
+        def base_distance(self) -> float:
+            """Centre distance at which the base circles touch: abs(r_b2 + r_b1) with the signs of ISO 21771 [mm]."""
 
         @property
-        def working_pressure_angle(self) -> float:
-            """alpha_wt [rad]."""
+        def _involute_without_backlash(self) -> float:
+            """inv(alpha_wt) at which the profile shifts leave no backlash [rad]."""
 
         @property
         def pinion_working_radius(self) -> float:
@@ -49,6 +54,32 @@ class InvoluteMesh:
 
         def backlash_at(self, centre_distance: float) -> float:
             """Backlash at another centre distance [mm]."""
+
+    @cached_property
+    def working_centre_distance(self) -> float:
+        """abs(a) as given, or the one at which teeth without thickness allowance have no backlash [mm]."""
+        if self.centre_distance is not None:
+            return self.centre_distance
+        return self.base_distance / cos(inverse_involute(self._involute_without_backlash))
+
+    @property
+    def working_pressure_angle(self) -> float:
+        """Transverse working pressure angle alpha_wt, cos(alpha_wt) = abs((r_b1 + r_b2)/a) [rad]."""
+        return working_pressure_angle(self.working_centre_distance, self.base_distance)
+
+    @property
+    def line_of_action(self) -> float:
+        """T1T2 = abs(a) sin(alpha_wt) [mm]."""
+        return line_of_action(self.working_centre_distance, self.base_distance)
+
+    def check_common_flank(self) -> None:
+        """Refuse flanks that do not meet on the line of action."""
+        if self.path_of_contact.AE <= 0.0:
+            raise GeometryError(
+                f"{self.pinion.name} and {self.wheel.name}: no common flank at centre distance"
+                f" {self.working_centre_distance:.6g} mm: on the line of action the usable flanks end"
+                f" {-self.path_of_contact.AE:.4f} mm apart"
+            )
 
     @property
     def common_face_width(self) -> float:
@@ -87,3 +118,19 @@ class InvoluteMesh:
     def normal_force(self, pinion_torque: float) -> float:
         """F_bn = F_bt/cos(beta_b), the force normal to the flanks [N]; torque in N mm."""
         return self.base_tangential_force(pinion_torque) / cos(self.pinion.base_helix_angle)
+
+
+def line_of_action(centre_distance: float, base_distance: float) -> float:
+    """T1T2 = a sin(alpha_wt) [mm], without the loss of digits of the sine near alpha_wt = 0.
+
+    Parameters
+    ----------
+    centre_distance, base_distance : float [mm]
+        abs(a), and that at which the base circles touch, not above it.
+    """
+    return sqrt((centre_distance - base_distance) * (centre_distance + base_distance))
+
+
+def working_pressure_angle(centre_distance: float, base_distance: float) -> float:
+    """Transverse working pressure angle alpha_wt [rad]; arguments as of :func:`line_of_action`."""
+    return atan(line_of_action(centre_distance, base_distance) / base_distance)

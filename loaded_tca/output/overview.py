@@ -9,6 +9,7 @@ from itertools import chain
 import numpy as np
 
 from loaded_tca.analysis import expected_effort, rounded
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
@@ -16,7 +17,6 @@ from loaded_tca.output.shafts import rolling_figures
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figures import RIM_LABEL
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
-from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.root_stress import rim_factor
 from loaded_tca.results.summary import shown
 from loaded_tca.results.warnings import questions, warn_of_gears
@@ -86,7 +86,7 @@ def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
 
 def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """The load, what the analysis is asked to do, and the bores or journals that it holds where teeth bend."""
-    torques, wanted, count = _shown_torques(scene), scene.analysis, len(scene.torques)
+    torques, wanted, count = torques_with_columns(scene.torques), scene.analysis, len(scene.torques)
     label = "pinion torque [N m]" if len(torques) == count else f"{count} pinion torques from, to [N m]"
     yield label, *(f"{1e-3 * torque:g}" for torque in torques)
     yield from scene.force_rows(torques)
@@ -110,7 +110,7 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
     """Forces on the bearings of shafts, and what rolling bearings make of them, without contact."""
     if not any(scene.have_shafts):
         return
-    torques = _shown_torques(scene)
+    torques = torques_with_columns(scene.torques)
     by_gear: dict[str, list[ShaftLine]] = {gear: [] for gear in GEARS}
     for line in shaft_lines(scene):
         if line.torque in torques:
@@ -125,15 +125,14 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
                 yield "  life [million revolutions]", *(f"{one['life_Mrev']:.4g}" for one in inside)
 
 
-def _shown_torques(scene: Scene) -> tuple[float, ...]:
+def torques_with_columns(torques: tuple[float, ...]) -> tuple[float, ...]:
     """Torques that have a column each: all, or the least and the largest of many."""
-    torques = scene.torques
     return torques if len(torques) <= MOST_TORQUES else (min(torques), max(torques))
 
 
 def _standard_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """What ISO 6336 gives for a cylindrical pair from its geometry and load, to be read beside computed numbers."""
-    torques = _shown_torques(scene)
+    torques = torques_with_columns(scene.torques)
     figures = [iso_figures(scene, torque) for torque in torques]
     for label, names in (*STRESS_ROWS, STIFFNESS_ROW):
         by_torque = figures if names == (STRESS,) else figures[:1]
@@ -142,7 +141,7 @@ def _standard_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
             yield label.strip(), *(shown(value, name) for value, name in values)
     if not scene.analysis.root_stress:
         return
-    for name, nominal in zip(("pinion", "wheel"), scene.nominal_root_stress, strict=True):
+    for name, nominal in zip(GEARS, scene.nominal_root_stress, strict=True):
         if math.isfinite(nominal):
             yield f"nominal root stress, ISO, {name} [MPa]", *(f"{nominal * torque:.4g}" for torque in torques)
     if math.isfinite(scene.tooth_height_over_width):

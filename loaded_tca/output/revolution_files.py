@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from loaded_tca.output.result_files import csv_table, known
+from loaded_tca.arrays import GEARS
+from loaded_tca.output.result_files import csv_table, json_text, known
 from loaded_tca.results.files import Buffer, FilePath, replace_together
-from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.revolution import Revolution
 
 FILES = "revolution.nc", "revolution.json", "revolution.csv", "teeth.csv", "orders.csv"
@@ -55,7 +54,7 @@ def revolution_json(revolution: Revolution) -> str:
         for torque, figures in zip(revolution.torque, revolution.key_figures(), strict=True)
     ]
     content = {"title": revolution.scene.title, "torques": rows, "warnings": list(revolution.warnings)}
-    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text(content)
 
 
 def teeth_csv(revolution: Revolution) -> str:

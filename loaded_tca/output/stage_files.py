@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 
-from loaded_tca.output.result_files import csv_table, known
+from loaded_tca.output.result_files import csv_table, json_text, known
 from loaded_tca.results.files import Buffer, FilePath, replace_together
 from loaded_tca.stages import StageResult
 
@@ -58,4 +57,4 @@ def stage_json(result: StageResult) -> str:
         "findings": list(result.findings()),
         "warnings": list(result.warnings),
     }
-    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text(content)

@@ -7,7 +7,7 @@ from itertools import chain
 
 from loaded_tca.analysis import rounded
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.output.overview import LABEL, MOST_TORQUES, scene_sections
+from loaded_tca.output.overview import LABEL, scene_sections, torques_with_columns
 from loaded_tca.results.warnings import warn_of_gears
 from loaded_tca.scene.model import Row
 from loaded_tca.stages import Stage
@@ -50,14 +50,14 @@ def stage_sections(stage: Stage) -> dict[str, list[Row]]:
 
 def geometry_of_meshes(stage: Stage) -> list[tuple[str, list[Row], list[str]]]:
     """Name of each mesh, the rows of its geometry, and its warnings that concern whole gears."""
-    found = []
+    geometry = []
     for scene, gears in ((stage.sun_scene, SUN_MESH), (stage.ring_scene, RING_MESH)):
         with in_words_of(gears), noted_accuracy_warnings(given=False) as sentences:
             warn_of_gears(scene, scene.pair())
             rows = scene_sections(scene)["geometry"]
-        name = " and ".join(f"{own} ({gear})" for gear, own in gears.items())
-        found.append((name, rows, list(dict.fromkeys(sentences))))
-    return found
+        name = " and ".join(f"{member} ({gear})" for gear, member in gears.items())
+        geometry.append((name, rows, list(dict.fromkeys(sentences))))
+    return geometry
 
 
 def _stage_rows(stage: Stage) -> list[Row]:
@@ -94,8 +94,7 @@ def _torque_rows(stage: Stage) -> list[Row]:
 
     With the signs of the loads that the stage puts on its surroundings left out.
     """
-    torques, (z_s, _, z_r) = stage.sun_torques, stage.teeth
-    shown = torques if len(torques) <= MOST_TORQUES else (min(torques), max(torques))
+    shown, (z_s, _, z_r) = torques_with_columns(stage.sun_torques), stage.teeth
     base = stage.meshes[0].pinion.base_radius
     return [
         ("sun torque [N m]", *(f"{1e-3 * torque:g}" for torque in shown)),

@@ -9,22 +9,10 @@ from loaded_tca.output.result_files import csv_table
 from loaded_tca.results.files import Buffer, FilePath, replace_together
 from loaded_tca.tribology import Tribology
 from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, PLACES, QUANTITIES, TORQUE
+from loaded_tca.units import as_ending
 
 DATA, TABLE, SLICES = FILES = "tribology.nc", "tribology.csv", "tribology_slices.csv"
 """Names of the files."""
-ENDINGS = {
-    "°C": "C",
-    "K": "K",
-    "W": "W",
-    "um": "um",
-    "mm": "mm",
-    "m/s": "m_per_s",
-    "MPa": "MPa",
-    "MPa m/s": "MPa_m_per_s",
-    "N/mm": "N_per_mm",
-    "1": "",
-}
-"""Unit -> what the names of columns end with."""
 
 
 def write_tribology(tribology: Tribology, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
@@ -82,4 +70,4 @@ def slices_csv(tribology: Tribology) -> str:
 
 def _column(name: str, unit: str) -> str:
     """Head of a column: its name with its unit."""
-    return f"{name}_{ENDINGS[unit]}" if ENDINGS[unit] else name
+    return f"{name}_{ending}" if (ending := as_ending(unit)) else name

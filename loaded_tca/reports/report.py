@@ -12,7 +12,7 @@ from loaded_tca.reports import page
 from loaded_tca.reports.result_page import result_content
 from loaded_tca.reports.stage_page import stage_content
 from loaded_tca.reports.study_page import design_content, study_content
-from loaded_tca.results.files import FilePath, make_directory, replace_file
+from loaded_tca.results.files import STUDY, FilePath, make_directory, replace_file
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.stages import StageResult
 from loaded_tca.studies.design import DesignResult
@@ -62,7 +62,7 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
     'report.html'
     """
     page.require_jinja2()
-    is_study = getattr(subject, "attrs", {}).get("kind") == "study"
+    is_study = getattr(subject, "attrs", {}).get("kind") == STUDY
     require((rank_by is None or is_study, f"rank_by: {rank_by!r:.60}; a {type(subject).__name__} has no ranking"))
     with one_thread():  # sums of several threads differ in their last digits each time
         if isinstance(subject, MeshCycle):

@@ -56,15 +56,15 @@ def _lubrication(result: MeshCycle) -> dict[str, Any] | None:
     if result.scene.operation is None and result.scene.lubricant is None:
         return None
     with noted_accuracy_warnings(given=False) as sentences:
-        found = result.tribology()
-    _, about, *lines = found.summary().split("\n")
-    rows, lacking = found.rows(), [line for line in lines if line.startswith("not known")]
+        tribology = result.tribology()
+    _, about, *lines = tribology.summary().split("\n")
+    rows, lacking = tribology.rows(), [line for line in lines if line.startswith("not known")]
     captions = {name: picture.caption for name, picture in TRIBOLOGY_PICTURES.items()}
     return {
         "about": about,
         "table": Table(tuple(rows[1:]), rows[0]),
         "notes": [*lacking, *dict.fromkeys(sentences)],
-        "pictures": pictures_of(tribology_figures(found), captions, result.scene.title),
+        "pictures": pictures_of(tribology_figures(tribology), captions, result.scene.title),
     }
 
 

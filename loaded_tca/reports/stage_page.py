@@ -9,6 +9,7 @@ from loaded_tca.plots import STAGE_CAPTIONS, STAGE_PICTURES
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
 from loaded_tca.reports.result_page import MOST_TORQUES, explained
+from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.summary import shown
 from loaded_tca.stages import Stage, StageResult
 from loaded_tca.stages.result import FILES
@@ -64,7 +65,7 @@ def _key_figures(result: StageResult, part: slice) -> Table:
 
 def _shares(result: StageResult) -> Table:
     """Least, mean and largest share of each planet, under the largest torque."""
-    shares = 100.0 * result.planet_share[int(result.torque.argmax())]
+    shares = 100.0 * result.planet_share[index_or_largest(result.torque)]
     rows = (
         (f"planet {planet}", *(f"{value:.2f}" for value in (own.min(), own.mean(), own.max())))
         for planet, own in enumerate(shares.T)
@@ -82,7 +83,7 @@ def _orders(result: StageResult) -> Table:
             "cancelled" if one.torsion_cancels else "kept",
             "cancelled" if one.translation_cancels else "kept",
         )
-        for one in result.orders(int(result.torque.argmax()))
+        for one in result.orders(index_or_largest(result.torque))
     )
     head = (
         "transmission error at the sun's base circle [µm]",

@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import arc_cells
 from loaded_tca.results.support_growth import standing
 from loaded_tca.unloaded.scan import edge_distances
 
-NAMES = tuple(f"{gear} {edge}" for gear in ("pinion", "wheel") for edge in EDGE_NAMES)
+NAMES = tuple(f"{gear} {edge}" for gear in GEARS for edge in EDGE_NAMES)
 """Edges in the order of ``ContactPath.edges``."""
 
 

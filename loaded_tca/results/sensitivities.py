@@ -38,15 +38,14 @@ from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
 from loaded_tca.results.warnings import warn_of_contacts
 from loaded_tca.separation.pair_change import PairChange, pair_changes
 from loaded_tca.threads import one_blas_thread
+from loaded_tca.units import UNITS
 from loaded_tca.unloaded.teeth import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
 
 TORQUE = "load.pinion_torque_Nm"
-MICROMETRES = 1e3
-"""Of a millimetre."""
-NEWTON_MILLIMETRES = 1e3
+NEWTON_MILLIMETRES = UNITS["Nm"].factor
 """Of a newton metre."""
 LINEAR = 1e-6
 """Tolerance of the linear systems, which are known to the grid's percent."""
@@ -135,8 +134,7 @@ class Sensitivities:
         change = self.tangents.rotation_change(self.growth.gaps, self.torques)
         slopes[*self.places] = -self.result.gear_pair.driving * change.T
         if self.growth.kinks.any():
-            length = MICROMETRES * self.result.gear_pair.base_radii[1]
-            warn_of_edges(self.keys, slopes, self.transmission_error_kinks, length, stacklevel=3)
+            warn_of_edges(self.keys, slopes, self.transmission_error_kinks, self.result.um_per_rad, stacklevel=3)
         return slopes
 
     @cached_property

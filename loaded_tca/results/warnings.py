@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import GEARS, Array, Mask
 from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
 from loaded_tca.errors import give_accuracy_warning
@@ -19,7 +19,6 @@ from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.quantities import GEARS
 from loaded_tca.scene import Scene
 from loaded_tca.scene.section import values_of
 from loaded_tca.unloaded.tooth_cycle import REACH

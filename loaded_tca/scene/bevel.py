@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import atan, cos, degrees, radians, sin, tan
 from typing import ClassVar, Literal
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import require
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
 from loaded_tca.gears.bevel_blank import BevelBlank
@@ -329,7 +330,7 @@ class BevelScene(SpiralScene, BlankScene):
             "driving": self.geometry.driving,
             "sense": self.sense,
         }
-        for name, own, gear in zip(("pinion", "wheel"), (self.pinion, self.wheel), gears, strict=True):
+        for name, own, gear in zip(GEARS, (self.pinion, self.wheel), gears, strict=True):
             kept = {key: value for key, value in as_table(own).items() if key not in OF_EQUATIONS}
             table[name] = kept | settings_table(gear)
         return scene_from_table(table)
@@ -356,7 +357,7 @@ class BevelScene(SpiralScene, BlankScene):
             return BevelGear(**values, pitch_angle=pitch_angle, name=name)
 
         pitches = pitch_angles((self.pinion.teeth, self.wheel.teeth), radians(self.geometry.shaft_angle_deg))
-        return BevelMesh(*map(gear, (self.pinion, self.wheel), pitches, self.hand_signs, ("pinion", "wheel")))
+        return BevelMesh(*map(gear, (self.pinion, self.wheel), pitches, self.hand_signs, GEARS))
 
     @property
     def tip_clearances(self) -> tuple[float, ...]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from math import degrees
 from typing import Any
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.gears.face_milled import FaceMilledGear
 from loaded_tca.gears.hypoid import HypoidCones
 from loaded_tca.scene.face_milled import Blade, Blank, Machine
@@ -31,15 +32,15 @@ def hypoid_table(gears: tuple[FaceMilledGear, FaceMilledGear], cones: HypoidCone
     >>> from math import radians
     >>> from loaded_tca.flanks import synthesised_gears
     >>> from loaded_tca.gears import HypoidBlank, pitch_cones_by_method_1
-    >>> found = pitch_cones_by_method_1((13, 42), 15.0, 170.0, 30.0, radians(50), 63.5)
-    >>> blank = HypoidBlank((13, 42), found, 30.0, 63.5, profile_shift=0.3)
+    >>> pitch_cones = pitch_cones_by_method_1((13, 42), 15.0, 170.0, 30.0, radians(50), 63.5)
+    >>> blank = HypoidBlank((13, 42), pitch_cones, 30.0, 63.5, profile_shift=0.3)
     >>> table = hypoid_table(synthesised_gears(blank), blank.cones)
     >>> round(table["pair"]["offset_mm"], 9), round(table["wheel"]["blank"]["face_apex_mm"], 4)
     (15.0, 1.8052)
     """
     pair = {"type": "face_milled", "shaft_angle_deg": degrees(cones.shaft_angle), "offset_mm": cones.offset}
     sections = (_gear_table(gear, beyond) for gear, beyond in zip(gears, cones.apexes, strict=True))
-    return {"pair": pair} | dict(zip(("pinion", "wheel"), sections, strict=True))
+    return {"pair": pair} | dict(zip(GEARS, sections, strict=True))
 
 
 def _gear_table(gear: FaceMilledGear, beyond: float) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from functools import partial
 from itertools import product
 from typing import Any, ClassVar, Literal, TypeVar
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
@@ -112,7 +113,7 @@ class Scene(Section, ABC):
                 lambda support, shaft: support is None or shaft is None,
                 f"found beside [{gear}.shaft]; give one of the two",
             )
-            for gear in ("pinion", "wheel")
+            for gear in GEARS
         ),
         *(
             rule(
@@ -120,7 +121,7 @@ class Scene(Section, ABC):
                 lambda bore, shaft, compliance: bore != 0.0 or shaft is None or compliance == "contact",
                 f"found {{0:g}}, a solid gear, whose torsion [{gear}.shaft] has, too; allowed the diameter of its seat",
             )
-            for gear in ("pinion", "wheel")
+            for gear in GEARS
         ),
         *(
             rule(
@@ -299,9 +300,7 @@ class Scene(Section, ABC):
         """
         pinion, wheel = (
             build_tooth_deviations(gear.pitch, teeth, name, pair.module, partial(self.pitch_tolerances, number))
-            for number, (name, gear, teeth) in enumerate(
-                zip(("pinion", "wheel"), (self.pinion, self.wheel), pair.teeth, strict=True)
-            )
+            for number, (name, gear, teeth) in enumerate(zip(GEARS, (self.pinion, self.wheel), pair.teeth, strict=True))
         )
         return pinion, wheel
 
@@ -480,7 +479,7 @@ class Scene(Section, ABC):
     @property
     def flank_names(self) -> tuple[str, str]:
         """Names of the two flanks in contact in pictures."""
-        return "pinion", "wheel"
+        return GEARS
 
     @property
     def materials(self) -> tuple[ElasticMaterial, ElasticMaterial]:

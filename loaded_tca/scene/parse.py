@@ -79,11 +79,16 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
     ...
     """
     table = toml_table(text, source)
-    if isinstance(table.get("stage"), dict) and "sun" in table:
+    if is_table_of_stage(table):
         raise InputError(f"{source}: not the scene of a pair but a planetary stage; run it with 'loaded-tca stage'")
     if "pair" not in table and isinstance(table.get("scene"), str):
         raise InputError(f"{source}: not a scene but a study of {table['scene']}; run it with 'loaded-tca study'")
     return scene_from_table(with_files_from(None if folder is None else Path(folder), table))
+
+
+def is_table_of_stage(table: Mapping[str, Any]) -> bool:
+    """Whether the table of a file is that of a planetary stage."""
+    return isinstance(table.get("stage"), dict) and "sun" in table
 
 
 def literal_value(text: str) -> Any:

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from loaded_tca.arrays import Indices
+from loaded_tca.arrays import GEARS, Indices
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.modification import NO_POLYNOMIAL
 from loaded_tca.flanks.rounding import LEAST_RADIUS
@@ -39,7 +39,7 @@ ERROR_deg = Number(-10.0, 10.0)
 ERROR_mm = Number(-1000.0, 1000.0)
 TORQUE_Nm = Number(0.0, 1e9)
 ROUNDING_mm = ZeroOr(Number(LEAST_RADIUS, 1000.0))
-DRIVING = Choice(("pinion", "wheel"))
+DRIVING = Choice(GEARS)
 SENSE = Choice(("positive", "negative"))
 
 
@@ -324,9 +324,14 @@ class Analysis(Section):
     )
 
     @property
+    def teeth_bend(self) -> bool:
+        """Whether teeth and gear bodies give way, by finite elements, and not the flanks alone."""
+        return self.compliance != "contact"
+
+    @property
     def without_bodies(self) -> str:
         """Settings with which no gear body is meshed; empty where none is."""
-        ways = [] if self.compliance == "contact" else ['analysis.compliance = "contact"']
+        ways = ['analysis.compliance = "contact"'] if self.teeth_bend else []
         return " and ".join([*ways, *(["analysis.root_stress = false"] if self.root_stress else [])])
 
 

@@ -59,8 +59,8 @@ def fault_of_matrix(rows: tuple[tuple[float, ...], ...], *, definite: bool) -> s
 
 def _one_matrix(compliance: tuple[tuple[float, ...], ...] | None, stiffness: object) -> str | None:
     if (compliance is None) == (stiffness is None):
-        found = "missing" if compliance is None else "found beside stiffness"
-        return f"{found}; give one of compliance and stiffness"
+        fault = "missing" if compliance is None else "found beside stiffness"
+        return f"{fault}; give one of compliance and stiffness"
     return None
 
 

@@ -27,14 +27,14 @@ def slope_tolerances(mesh: InvoluteMesh, tolerance_class: int) -> dict[str, floa
     InputError
         Outside the classes and ranges of ISO 1328-1, with the gear.
     """
-    found: dict[str, float] = {}
+    bounds: dict[str, float] = {}
     for name, gear in (("pinion", mesh.pinion), ("wheel", mesh.wheel)):
         with named(name):
             tolerances = flank_tolerances(
                 abs(gear.teeth), gear.normal_module, gear.face_width, tolerance_class, gear.helix_angle
             )
-        found |= {f"{name}.modifications.{key}": getattr(tolerances, bound) for key, bound in SLOPES.items()}
-    return found
+        bounds |= {f"{name}.modifications.{key}": getattr(tolerances, bound) for key, bound in SLOPES.items()}
+    return bounds
 
 
 def scatter_of_class(scene: Scene, tolerance_class: int, *, deviations: bool = False) -> dict[str, Any]:

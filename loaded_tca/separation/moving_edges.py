@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.flanks.base import EDGE_NAMES, Jet
 from loaded_tca.flanks.modification import removal_change
 from loaded_tca.flanks.spline import SplineFlank
@@ -133,7 +133,7 @@ class Places:
             if change.of_mounting:
                 moved[key] -= moved_below(pair, change, points)
         growths = _along(points, distance(pair, points), moved)
-        name = ("pinion", "wheel")[gear]
+        name = GEARS[gear]
         for key, change in enumerate(changes):
             if change.key.startswith(name) and not change.holds_edges:
                 low, high = (distance(side, points).value for side in (change.below, change.above))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
@@ -150,7 +150,7 @@ def value_at(scene: Scene, key: str) -> float:
     *sections, name = key.split(".")
     _value_of(scene, key)
     moves = sections == ["mounting"]
-    shapes = len(sections) > 1 and sections[0] in ("pinion", "wheel") and sections[1] in SECTIONS
+    shapes = len(sections) > 1 and sections[0] in GEARS and sections[1] in SECTIONS
     if not (moves or shapes) or name.rpartition("_")[2] not in STEPS:
         places = ", ".join(f"[pinion.{section}]" for section in SECTIONS)
         raise InputError(

@@ -34,8 +34,8 @@ def revolution_figures(scene: Scene) -> dict[str, Array]:
     The scatter over three gears of a class::
 
         seeds = {"wheel.pitch.seed": [0, 1, 2], "wheel.pitch.tolerance_class": [5, 7]}
-        found = run_study(Study(scene, seeds), figures=revolution_figures)
-        found["total_single_flank_deviation_um"]
+        rows = run_study(Study(scene, seeds), figures=revolution_figures)
+        rows["total_single_flank_deviation_um"]
     """
     revolution = analyse_revolution(scene)
     rows = revolution.key_figures()

@@ -106,7 +106,7 @@ def conditions_of(
         "application_factor": (application_factor, operation.application_factor if operation else 1.0, (1, 100), ""),
         "dynamic_factor": (dynamic_factor, operation.dynamic_factor if operation else 1.0, (1, 100), ""),
     }
-    values = {name: own if argument is None else argument for name, (argument, own, _, _) in given.items()}
+    values = {name: of_scene if argument is None else argument for name, (argument, of_scene, _, _) in given.items()}
     problems = [
         f"{name}: {values[name]!r:.60}{f' {unit}' if unit else ''}; allowed a number from {low:g} to {high:g}"
         for name, (_, _, (low, high), unit) in given.items()

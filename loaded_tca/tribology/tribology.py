@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices, place_checks
+from loaded_tca.arrays import GEARS, Array, GearName, Indices, place_checks
 from loaded_tca.errors import NotAskedError, require
 from loaded_tca.reference.iso6336_20 import scuffing_safety, scuffing_temperature
 from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replace_file
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-GearName = Literal["pinion", "wheel"]
 CELLS = (24, 32)
 """Of the grid of a flank along the profile and lengthwise."""
 LEAST = {"film_thickness", "isothermal_film_thickness", "film_ratio"}
@@ -176,12 +175,12 @@ class Tribology:
             rows = numbers.friction[None] * parts.torques[:, None]
             return np.stack([self._per_pair(np.add.reduceat(row, parts.starts, axis=-1)) for row in rows], axis=-1)
         if name in ("sum_velocity", "rolling_velocity", "specific_sliding"):
-            found: dict[str, Callable[[], Array]] = {
+            of_pairs: dict[str, Callable[[], Array]] = {
                 "sum_velocity": lambda: numbers.sum_velocity[:, self._sliding_most],
                 "rolling_velocity": lambda: numbers.rolling[:, :, self._sliding_most],
                 "specific_sliding": lambda: parts.specific_sliding[:, None, self._sliding_most],
             }
-            values = found[name]()
+            values = of_pairs[name]()
             if values.ndim == 2:
                 return self._per_pair(values)
             both = np.stack([self._per_pair(rows) for rows in values], axis=-1)
@@ -284,9 +283,9 @@ class Tribology:
             for end, (unit, text) in PLACES.items() if name in EXTREMES else ():
                 place = {"units": unit, "long_name": f"{text} of the {quantity.text}"}
                 variables[f"{name}_{end}"] = (before + quantity.dims, self._place(name, end), place)
-        own = self.result.dataset
-        coordinates: dict[str, Any] = {name: own[name] for name in ("torque", "pinion_angle", "pair")}
-        coordinates["gear"] = ("gear", ["pinion", "wheel"])
+        of_contact = self.result.dataset
+        coordinates: dict[str, Any] = {name: of_contact[name] for name in ("torque", "pinion_angle", "pair")}
+        coordinates["gear"] = ("gear", [*GEARS])
         if self.conditions.several:
             speed = {"units": "1/min", "long_name": "speed of the pinion"}
             coordinates["speed"] = ("speed", self.conditions.speeds, speed)
@@ -315,8 +314,8 @@ class Tribology:
 
         self.check(torque, speed)
         some = self.sweep.of_torque(torque)
-        known = {name: self._column(name, speed)[some] for name in COLUMNS if not self._lacking(COLUMNS[name][2])}
-        return pandas.DataFrame(known)
+        columns = {name: self._column(name, speed)[some] for name in COLUMNS if not self._lacking(COLUMNS[name][2])}
+        return pandas.DataFrame(columns)
 
     def check(self, torque: int, speed: int) -> None:
         """Refuse indices of a torque and a speed that there are not."""
@@ -327,7 +326,7 @@ class Tribology:
         """A column of the table of slices, of all torques."""
         parts = self.sweep
         gear = 0 if name.startswith("pinion") else 1
-        own: dict[str, Callable[[], Array]] = {
+        of_slices: dict[str, Callable[[], Array]] = {
             "pair": lambda: self.result.pair[parts.column],
             "pinion_radius": lambda: parts.radius,
             "pinion_axial": lambda: parts.axial,
@@ -338,8 +337,8 @@ class Tribology:
             "pinion_rolling_velocity": lambda: self._numbers.rolling[gear][speed],
             "wheel_rolling_velocity": lambda: self._numbers.rolling[gear][speed],
         }
-        if name in own:
-            return np.asarray(own[name]())
+        if name in of_slices:
+            return np.asarray(of_slices[name]())
         return np.asarray(getattr(parts, name) if hasattr(parts, name) else getattr(self._numbers, name)[speed])
 
     def over_flank(
@@ -379,7 +378,7 @@ class Tribology:
         whole = whole and all(isinstance(one, int | np.integer) and one >= 1 for one in cells)
         require(
             (isinstance(name, str) and name in COLUMNS, f"name: {name!r:.60}; allowed {', '.join(COLUMNS)}"),
-            (gear in ("pinion", "wheel"), f"gear: {gear!r:.60}; allowed 'pinion' or 'wheel'"),
+            (gear in GEARS, f"gear: {gear!r:.60}; allowed 'pinion' or 'wheel'"),
             (whole, f"cells: {cells!r:.60}; allowed two whole numbers from 1 on"),
         )
         self._require(name, COLUMNS[name][2] | (OF_PITCH if name == "friction_power" else set()))
