@@ -67,7 +67,7 @@ LINE_ERROR = 1e-3
 force: 2 um on module 2, less than 1 nm of transmission error. Forces that swing keep their places."""
 SAME_BOX = (0.75, 1.25)
 """Loads over the one a box was made for, between which the contact still fills it well, if it does not reach it."""
-SLENDER, LINE_EXPONENT = 4.0, 0.9
+SLENDER, LINE_EXPONENT = 4.0, 0.7
 """First guess of the deformation of a contact along the face: so many times F/(E* b), and its growth with the force."""
 
 
@@ -334,7 +334,14 @@ class _Balance:
                 contact, number = tooth_pair.contact, tooth_pair.pair
                 with named(f"tooth pair {number:+d}"):
                     steps = contact_under_load(
-                        tooth_pair.gears or self.pair, contact, force, self.grid, self.bending, number, coupling
+                        tooth_pair.gears or self.pair,
+                        contact,
+                        force,
+                        self.grid,
+                        self.bending,
+                        number,
+                        coupling,
+                        goes_on=not self.lines_held,
                     )
                     loaded = yield from with_gears(tooth_pair.gears, steps)
         except ConvergenceError as error:

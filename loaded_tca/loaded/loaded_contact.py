@@ -36,8 +36,8 @@ from loaded_tca.separation.polynomials import GapPolynomials
 from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import ContactPoint
 
-UNDER_WAY = 64
-"""Generators under way at the same time; stacks of contacts gain little beyond 32."""
+UNDER_WAY = 128
+"""Generators under way at the same time: a cycle of 33 positions under three torques, whose stacks are full then."""
 Result = TypeVar("Result")
 
 

@@ -80,6 +80,8 @@ def contact_under_load(
     bending: BendingModel | None = None,
     number: int = 0,
     coupling: Coupling | None = None,
+    *,
+    goes_on: bool = False,
 ) -> Steps[LoadedContact]:
     """Contact of one tooth pair at one position under a normal force, step by step.
 
@@ -98,6 +100,9 @@ def contact_under_load(
         Of the tooth pair, as the bending model counts.
     coupling : callable, optional
         Displacement of the slices of a grid by what other tooth pairs carry at the same time; default: none.
+    goes_on : bool
+        Whether the contact is solved once more under another load, :meth:`LoadedContact.bent_by`: teeth then bend at
+        the centres of the pressure of the grid before where an accuracy is asked for.
 
     Returns
     -------
@@ -122,7 +127,8 @@ def contact_under_load(
     if separation.gap.shape != cells:
         separation = yield Gap(contact, cells, box=separation.box, polynomials=separation.polynomials)
     for _ in range(MOST_BOXES):
-        loaded = yield from _InBox(pair, contact, load, grid, separation, bending, number, coupling).steps()
+        contact_in_box = _InBox(pair, contact, load, grid, separation, bending, number, coupling)
+        loaded = yield from contact_in_box.steps(goes_on=goes_on)
         if not loaded.solution.reaches_border:
             break
         box = loaded.separation.box.grown(loaded.filled_ends, GROWTH)
@@ -174,7 +180,7 @@ class _InBox:
         self.ends: Array | None = None
         self.line_loads: list[SliceLoads] = []
 
-    def steps(self) -> Steps[LoadedContact]:
+    def steps(self, *, goes_on: bool) -> Steps[LoadedContact]:
         loaded = yield from self._refined()
         if self.grid.lines_held or self.load == 0.0:
             return loaded
@@ -182,6 +188,8 @@ class _InBox:
             return replace(loaded, separation=loaded.separation.loaded_by(loaded.solution.pressure, self.pair.module))
         if loaded.solution.reaches_border:
             return loaded
+        if goes_on and self.grid.cells is None:
+            return replace(loaded, judged=(float(loaded.solution.pressure.max()), self.load))
         bent = loaded.bent_by(self.bending, self.number, self.pair.module)
         coupling = None if self.coupling is None else self.coupling(bent.separation)
         bent = yield from bent.under(self.load, coupling)
