@@ -397,9 +397,7 @@ class LoadedContact:
     def bent_by(self, bending: BendingModel, number: int, module: float) -> LoadedContact:
         """Return the contact as it is, to be solved next with teeth that bend at the centres of its pressure."""
         separation = self.separation.loaded_by(self.solution.pressure, module)
-        bent = bending.within(number, separation)
-        problem = replace(self.solution.problem, slice_compliance=bent if self.ends is None else bent + self.ends)
-        return replace(self, separation=separation, bending=bent, solution=replace(self.solution, problem=problem))
+        return replace(self, separation=separation, bending=bending.within(number, separation))
 
     def line_error(self, module: float) -> float:
         """How far the forces that bend the teeth are from the centres of the pressure, the mean over the force [mm]."""
@@ -415,7 +413,9 @@ class LoadedContact:
         The estimated error is that of the grid: its share of the peak and of the approach is kept.
         """
         gap, before = self.separation.cut_gap, self.solution
-        problem = replace(before.problem, load=load, gap=gap if coupling is None else gap + coupling)
+        bent, gap = self.bending, gap if coupling is None else gap + coupling
+        slices = self.ends if bent is None else bent if self.ends is None else bent + self.ends
+        problem = replace(before.problem, load=load, gap=gap, slice_compliance=slices)
         start = under_other_load(before.pressure, load / before.load)
         solution = replace((yield Task(problem, self.tolerance, start)), coarser=before.coarser)
         return replace(self, solution=solution, coupling_deflection=coupling)
