@@ -50,6 +50,8 @@ EXPECTED = {
     "plot_bidirectional_start": (1.0, 1e-7),  # five equations and ease-off find the same contact
 }
 
+ON_A_GRID = {"analysis.compliance": "contact", "analysis.cells": [12, 16], "analysis.accuracy": None}
+A_WHOLE_TURN = {"revolution.positions_per_pitch": 4, "revolution.pitches": 24}
 SHORTER = {
     "plot_tip_relief_and_rounding": {"RELIEFS": lambda _: [0.0, 12.0], "SCENE": lambda scene: few(scene, 3)},
     "plot_rolling_bearings": {
@@ -59,10 +61,8 @@ SHORTER = {
             "analysis.torques_Nm": [40.0, 130.0],
         }
     },
-    "plot_drive_stage": {
-        "CHANGES": lambda changes: changes | {"analysis.positions": 3, "analysis.compliance": "contact"}
-    },
-    "plot_revolution": {"CHANGES": lambda all_: all_ | {"revolution.positions_per_pitch": 4, "revolution.pitches": 24}},
+    "plot_drive_stage": {"CHANGES": lambda all_: {**all_, **ON_A_GRID, "analysis.positions": 3}},
+    "plot_revolution": {"CHANGES": lambda all_: {**all_, **ON_A_GRID, **A_WHOLE_TURN, "analysis.torques_Nm": [120.0]}},
     "export_to_dynamics": {"SPEEDS": lambda _: np.linspace(0.3, 0.7, 33), "PHASES": lambda _: np.linspace(20, 24, 257)},
 }
 """Values, made of the example's own, without the analyses and times that its number does not depend on."""

@@ -77,7 +77,7 @@ def estimated_box(axes: Axes) -> Bbox:
             _add_room(room, axis, sides)
     if title := axes.get_title():
         room["top"] += LINE * _lines(title) + 3.0
-    pixels = axes.get_figure(root=True).dpi / POINTS_PER_INCH
+    pixels = axes.get_figure(root=True).dpi / POINTS_PER_INCH  # type: ignore[union-attr]
     left, right, bottom, top = (pixels * room[side] for side in BESIDE)
     box = axes.bbox
     return Bbox.from_extents(box.x0 - left, box.y0 - bottom, box.x1 + right, box.y1 + top)

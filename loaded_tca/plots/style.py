@@ -56,7 +56,7 @@ PAD_OF_LEGEND = 0.06
 TITLE, NOTE = "title", "note"
 """Group ids by which the title and the lines below a picture are found in a figure."""
 DOTS_PER_INCH = 120
-FAST_TEXT = {"text.hinting": "no_hinting"}
+FAST_TEXT: Any = {"text.hinting": "no_hinting"}
 """Letters as they are, not moved onto pixels: a tenth of the time of a picture, and even spaces."""
 
 
