@@ -14,7 +14,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, default_density, model_of, require_teeth, root_stress_model, way_out_told
-from loaded_tca.compliance.body import body_torsion
+from loaded_tca.compliance.model import torsion_of_bodies
 from loaded_tca.contact.adaptive import MOST_CELLS
 from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, noted_accuracy_warnings, require
@@ -137,9 +137,9 @@ def expected_effort(scene: Scene) -> Effort:
         seconds *= 0.7 + cells / USUAL_CELLS
     seconds += START_SECONDS
     memory = PROGRAMME_BYTES + cells * (BYTES_PER_CELL + contacts * KEPT_BYTES_PER_CELL)
-    if wanted.root_stress or wanted.compliance != "contact":
+    if wanted.root_stress or wanted.teeth_bend:
         layers = _layers(scene)
-        if wanted.compliance != "contact":
+        if wanted.teeth_bend:
             seconds, memory = seconds + TEETH_SECONDS * sum(layers) ** TEETH_EXPONENT, memory + TEETH_BYTES
         if wanted.root_stress:
             seconds, memory = seconds + ROOT_SECONDS * sum(layers), memory + ROOT_BYTES * max(layers)  # one by one
@@ -160,7 +160,7 @@ def _layers(scene: Scene) -> list[int]:
 def _factor(scene: Scene) -> float:
     """Time of a state over that of sharp edges that are not free, of elastic flanks and of teeth that bend."""
     wanted, factor = scene.analysis, 1.0
-    if wanted.compliance == "contact":
+    if not wanted.teeth_bend:
         factor *= FLANKS_ALONE
     if wanted.free_edges:
         factor *= FREE_EDGES
@@ -227,7 +227,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
             at_edges = pressures_at_rounded_edges(
                 pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
             )
-        torsion = 0.0 if wanted.compliance == "contact" else sum(body_torsion(pair))
+        torsion = torsion_of_bodies(scene, pair)
         turned = np.concatenate([one.carried.rotation for one in cycles]) if cycles else carried.rotation
         warn_of_accuracy(
             pair,
@@ -253,13 +253,19 @@ def _on_supports(
     unmoved: MeshPath | ContactPath
     if wanted.load_sharing:
         unmoved = trace_teeth(at_rest(supports), angles)
-        bending = model_of(scene, pair, pitches_apart(supports, max(scene.torques), unmoved))
+        apart = pitches_apart(supports, scene.torques, unmoved)
     else:
-        unmoved = trace_contact(at_rest(supports), angles)
-        bending = model_of(scene, pair, 1)
-    assert bending is not None
-    supported = SupportedCycle(pair, bending, angles, grid, load_sharing=wanted.load_sharing)
-    cycles = supported.under(scene.torques, progress)
+        unmoved, apart = trace_contact(at_rest(supports), angles), 1
+
+    def under(apart: int) -> list[CarriedOnSupports]:
+        bending = model_of(scene, pair, apart)
+        assert bending is not None
+        supported = SupportedCycle(pair, bending, angles, grid, load_sharing=wanted.load_sharing)
+        return supported.under(scene.torques, progress)
+
+    cycles = under(apart)
+    if (loaded := max(one.pitches_apart for one in cycles)) > max(apart, 1):  # as no estimate of the motions says
+        cycles = under(loaded)
     at_edges: dict[tuple[int, int, int], PeakAtEdge] = {}
     for t, one in enumerate(cycles):
         peaks = pressures_at_rounded_edges(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from numbers import Real
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,9 @@ from loaded_tca.errors import InputError
 Array = NDArray[Any]
 Indices = NDArray[np.int_]
 Mask = NDArray[np.bool_]
+GearName = Literal["pinion", "wheel"]
+GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
+"""The gears of a pair in the order in which arrays and pairs of values have them."""
 
 
 def numbers(name: str, values: ArrayLike) -> Array:

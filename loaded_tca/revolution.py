@@ -15,8 +15,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.analysis import Effort, expected_effort, grid_of, roots_of
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, model_of
-from loaded_tca.compliance.body import body_torsion
-from loaded_tca.compliance.model import SumOfParts
+from loaded_tca.compliance.model import SumOfParts, torsion_of_bodies
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
@@ -136,7 +135,7 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
                 for part in carried_over_revolution(path, alone.torques, grid, bending, progress):
                     alone.add(part)
                 numbers, arrays = [alone], alone.whole()
-            torsion = 0.0 if wanted.compliance == "contact" else sum(body_torsion(pair))
+            torsion = torsion_of_bodies(scene, pair)
             for one in numbers:
                 for sentence in one.sentences(torsion):
                     give_accuracy_warning(sentence)
@@ -180,7 +179,7 @@ def _on_supports(
     assert supports is not None
     roots, numbers = roots_of(scene, pair), list[_OnSupports]()
     mesh = trace_teeth(at_rest(supports), pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1))
-    apart = max(pitches_of_cycle(supports, max(scene.torques), mesh), pitches_apart(_trace(scene, pair, pitches)))
+    apart = max(pitches_of_cycle(supports, scene.torques, mesh), pitches_apart(_trace(scene, pair, pitches)))
     bending = model_of(scene, pair, apart)
     assert bending is not None
     cycle = SupportedCycle(pair, bending, mesh.pinion_angle, grid, load_sharing=True)
@@ -236,8 +235,7 @@ def _joined(scene: Scene, path: RevolutionPath, numbers: Sequence[_OnSupports]) 
             arrays[name][:, np.searchsorted(pairs, own.pairs)] = getattr(own, name)
     angle, _ = scene.transverse_angles
     pair = path.pair
-    per_rate = 1.0 / (1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width)
-    supported = support_arrays(pair, numbers, pressure_angle=angle, stiffness_per_rate=per_rate)
+    supported = support_arrays(pair, numbers, pressure_angle=angle)
     return arrays | supported | {"pair": pairs, "rigid_transmission_error": path.transmission_error}
 
 
@@ -326,12 +324,12 @@ class _Numbers:
         known = np.ones((len(self.torques), rows.stop - rows.start), dtype=bool)
         numbers, zero = self.path.pairs.tolist(), self.path.pairs.tolist().index(0)
         for gear, model in enumerate(self.roots):
-            found = root_stress_of_gear(self.pair, gear, model, numbers, known, maps)
+            stresses = root_stress_of_gear(self.pair, gear, model, numbers, known, maps)
             for name in ("root_tension", "root_compression"):
-                self.arrays[name][:, rows, gear] = found[name]
+                self.arrays[name][:, rows, gear] = stresses[name]
             tooth = (self.path.pinion_tooth, self.path.wheel_tooth)[gear][rows, zero]
             steps = -self.pair.sense if gear == 0 else self.pair.sense
-            counted = tooth + steps * found["root_tension_place"][..., 0]
+            counted = tooth + steps * stresses["root_tension_place"][..., 0]
             self.arrays["root_tension_tooth"][:, rows, gear] = counted % self.pair.teeth[gear]
 
     def sentences(self, body_torsion: float) -> Iterator[str]:
@@ -346,7 +344,6 @@ class _Numbers:
         """Arrays of ``REVOLUTION_QUANTITIES``, and of ``ROOTS`` if asked for."""
         pair, path, arrays = self.pair, self.path, dict(self.arrays)
         rotation, stiffness = arrays.pop("rotation"), arrays.pop("stiffness")
-        lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
         return arrays | {
             "torque": self.torques,
             "pinion_angle": path.pinion_angle,
@@ -357,7 +354,7 @@ class _Numbers:
             "wheel_tooth": path.wheel_tooth,
             "rigid_transmission_error": path.transmission_error,
             "transmission_error": path.transmission_error - pair.driving * rotation,
-            "mesh_stiffness": stiffness / lengths,
+            "mesh_stiffness": stiffness / pair.rate_of_stiffness,
             "loaded_pairs": (arrays["normal_force"] > 0.0).sum(axis=-1),
         }
 

@@ -6,6 +6,7 @@ Results and numerics are in mm, N, MPa and rad; a name that ends with a unit, as
 from __future__ import annotations
 
 import math
+import re
 from typing import NamedTuple
 
 
@@ -51,6 +52,8 @@ UNITS = {
     "J_kgK": Unit("J/(kg K)", "J/(kg K)", 1.0),
 }
 """Ending of a name -> unit; of several that fit, the first."""
+MICROMETRES = 1.0 / UNITS["um"].factor
+"""Per millimetre."""
 
 
 def ending_of(name: str) -> str:
@@ -72,6 +75,17 @@ def unit_of(name: str) -> str:
     ('N/(mm um)', '')
     """
     return UNITS[ending].text if (ending := ending_of(name)) else ""
+
+
+def as_ending(unit: str) -> str:
+    """How a unit is written at the end of a name; nothing for pure numbers.
+
+    Examples
+    --------
+    >>> as_ending("N/(mm um)"), as_ending("MPa m/s"), as_ending("°C"), as_ending("1")
+    ('N_per_mm_um', 'MPa_m_per_s', 'C', '')
+    """
+    return "" if unit == "1" else re.sub("[°()]", "", unit.replace("/", "_per_").replace(" ", "_"))
 
 
 def factor_of(name: str) -> float:

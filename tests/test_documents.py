@@ -1,8 +1,11 @@
 """Links, pictures, files and commands that documents and docstrings name are there."""
 
+import ast
+import doctest
 import importlib.util
 import re
 import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -43,6 +46,15 @@ def test_links_and_pictures_of_a_page_exist(page):
         target = (page.parent / file).resolve() if file else page
         assert target.exists(), link
         assert not anchor or anchor in anchors(target), link
+
+
+@pytest.mark.parametrize(("language", "parsed"), [("toml", tomllib.loads), ("python", ast.parse)])
+def test_blocks_to_copy_can_be_parsed(language, parsed):
+    fence = re.compile(rf"^```{language}\n(.*?)^```", re.MULTILINE | re.DOTALL)
+    blocks = [block for page in PAGES for block in fence.findall(page.read_text(encoding="utf-8"))]
+    assert len(blocks) > 10
+    for block in blocks:
+        parsed(doctest.script_from_examples(block) if block.startswith(">>> ") else block)
 
 
 FOLDERS = sorted({path.relative_to(ROOT).parts[0] for path in SOURCES})

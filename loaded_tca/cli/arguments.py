@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import NoReturn
 
 from loaded_tca.cli import commands as run_by
-from loaded_tca.cli import exchange
 from loaded_tca.cli.terminal import flush
 from loaded_tca.errors import InputError
 
@@ -290,16 +289,14 @@ def _add_tables_and_maps(command: Command) -> None:
 def _add_exchange(command: Command) -> None:
     """Add the commands that read and write models of other programs."""
     text = "write a stage of a gearbox model (REXS) as a scene; without --stage, show its stages"
-    reader = command("import", exchange.import_model, text, IMPORT)
+    reader = command("import", run_by.import_model, text, IMPORT)
     reader.add_argument("model", metavar="MODEL", type=_path, help="REXS file")
     reader.add_argument("--stage", metavar="ID", help="id of the stage")
     reader.add_argument("--out", metavar="FILE", type=_path, help="scene file to write; default: it is shown")
     reader.add_argument("--load-case", metavar="ID", help="load case whose torques and speeds hold; default: none")
     text = "on the pinion, instead of what the loads on the shafts give"
     reader.add_argument("--torque", metavar="NM", type=_torque, help=text)
-    writer = command(
-        "export", exchange.export_model, "write a gearbox model (REXS) with the numbers of a result", EXPORT
-    )
+    writer = command("export", run_by.export_model, "write a gearbox model (REXS) with the numbers of a result", EXPORT)
     writer.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
     writer.add_argument("--model", metavar="MODEL", required=True, type=_path, help="REXS file that the scene is from")
     writer.add_argument("--stage", metavar="ID", required=True, help="id of the stage")

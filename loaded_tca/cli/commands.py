@@ -1,210 +1,35 @@
-"""The commands: each reads, has it computed, writes its files and says what it has written.
-
-What the command line names: scenes with their changes, results, tolerances, directories, engines of studies.
-"""
+"""The commands: each reads, has it computed, writes its files and says what it has written."""
 
 from __future__ import annotations
 
 import argparse
-import os
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from loaded_tca.cli.inputs import (
+    STUDY_FILE,
+    changes_of,
+    check_files,
+    check_place,
+    ends_that_differ,
+    executor_of,
+    file_of_report,
+    index_of_position,
+    index_of_torque,
+    result_file,
+    result_of,
+    scene_of,
+    stage_of,
+    subject_of_report,
+    tolerances_of,
+)
 from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_summary, progress_bar, say_cost
-from loaded_tca.errors import InputError, named, reason_of, require
+from loaded_tca.errors import InputError, require
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
-    import xarray
-
-    from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
-    from loaded_tca.stages import Stage, StageResult
-    from loaded_tca.studies import DesignResult
-
-STAGE = "stage.nc"
-"""File of a stage in its directory."""
-REACHED_WITHIN = 10.0
-"""Seconds for a scheduler to answer."""
-
-
-def scene_of(options: argparse.Namespace) -> Scene:
-    """The scene that the command line names, with its changes."""
-    from loaded_tca.scene import read_scene
-    from loaded_tca.scene.parse import literal_value
-
-    scene = read_scene(options.scene)
-    changes = {key: literal_value(value) for key, value in options.set}
-    return scene.with_changes(changes) if changes else scene
-
-
-def stage_of(options: argparse.Namespace) -> Stage:
-    """The stage that the command line names, with its changes."""
-    from loaded_tca.scene.parse import literal_value
-    from loaded_tca.stages import read_stage
-
-    stage = read_stage(options.scene)
-    changes = {key: literal_value(value) for key, value in options.set}
-    return stage.with_changes(changes) if changes else stage
-
-
-def result_of(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, int | None]:
-    """What the command line names: the result, the directory to write to, and indices of the torque and position."""
-    from loaded_tca.results.mesh_cycle import MeshCycle
-
-    path = result_file(options.result)
-    result = MeshCycle.load(path)
-    torque = index_of_torque(options.torque, result)
-    given = getattr(options, "position", None)
-    position = index_of_position(given, result)
-    chosen = {"torque_{:g}_Nm": options.torque, "position_{}": given}
-    chosen |= {"pair_{}": getattr(options, "pair", None), "below_{}": getattr(options, "gear", None)}
-    names = [name.format(value) for name, value in chosen.items() if value not in (None, "pinion")]
-    directory = options.out or path.parent / "_".join(names)  # files of a part do not replace those of the whole
-    check_place(directory)
-    return result, directory, torque, position
-
-
-def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]:
-    """Keys of a scene that the command line names, or the usual ones, with their standard deviations."""
-    from loaded_tca.results.tolerances import default_tolerances
-    from loaded_tca.scene.section import key_at
-
-    given: list[tuple[str, float | None]] = options.keys or []
-    problems: list[str] = []
-    for key in dict.fromkeys(key for key, _ in given):
-        try:
-            key_at(type(scene), key)
-        except InputError as error:
-            problems += error.problems
-        if [one for one, _ in given].count(key) > 1:
-            problems.append(f"{key}: given twice")
-    if problems:
-        raise InputError(f"--keys {problem}" for problem in problems)
-    usual = default_tolerances(scene, [key for key, _ in given] or None)
-    return usual | {key: tolerance for key, tolerance in given if tolerance is not None}
-
-
-def result_file(path: Path) -> Path:
-    """The file of a result that is named by itself or by its directory; that of a stage is refused by its reader."""
-    from loaded_tca.output.result_files import RESULT
-
-    if not os.path.isdir(path):
-        return path
-    return path / (STAGE if (path / STAGE).is_file() and not (path / RESULT).exists() else RESULT)
-
-
-def file_of_report(path: Path) -> Path:
-    """The file of a result, a stage, a study or a design that is named by itself or by its directory."""
-    result, *others = (path / name for name in ("result.nc", STAGE, "study.nc", "design.nc"))
-    if not os.path.isdir(path):
-        return path
-    return next((one for one in (result, *others) if one.is_file()), result)
-
-
-def subject_of_report(path: Path) -> MeshCycle | StageResult | xarray.Dataset | DesignResult:
-    """The result, stage, study or design in a file."""
-    from loaded_tca.results.files import read_dataset
-    from loaded_tca.results.mesh_cycle import MeshCycle
-    from loaded_tca.studies import load_design, load_study
-
-    kind = read_dataset(path).attrs.get("kind")
-    if kind == "study":
-        return load_study(path)
-    if kind == "stage":
-        from loaded_tca.stages import StageResult
-
-        return StageResult.load(path.parent)
-    return load_design(path) if kind == "design" else MeshCycle.load(path)
-
-
-def index_of_torque(given: float | None, result: MeshCycle) -> int | None:
-    """Index of a torque [N m] of a result, as the command line gives it; None: not given."""
-    if given is None:
-        return None
-    known = [f"{1e-3 * float(one):.6g}" for one in result.torque]
-    require((f"{given:.6g}" in known, f"--torque {given:g}: the result has {', '.join(known)} N m"))
-    return known.index(f"{given:.6g}")
-
-
-def index_of_position(position: int | None, result: MeshCycle) -> int | None:
-    """Index from 0 of a position of a result that is in contact, given from 1."""
-    if position is None:
-        return None
-    if not 1 <= position <= len(result.path):
-        raise InputError(f"--position {position}: the result has the positions 1 to {len(result.path)}")
-    if not result.path.in_contact[position - 1]:
-        raise InputError(f"--position {position}: no tooth pair is in contact there")
-    return position - 1
-
-
-def ends_that_differ(paths: Sequence[Path]) -> list[str]:
-    """Shortest ends of the paths of results, without the usual name of their files, that tell them apart."""
-    from loaded_tca.output.result_files import RESULT
-
-    whole = [Path(os.path.abspath(path)) for path in paths]
-    for one in whole:
-        if whole.count(one) > 1:
-            raise InputError(f"{one}: given twice; a comparison takes different results")
-    parts = [(one.parent if one.name == RESULT else one.with_suffix("")).parts for one in whole]
-    longest = max(map(len, parts))
-    ends = (["/".join(part[-length:]) for part in parts] for length in range(1, longest + 1))
-    return next((names for names in ends if len(set(names)) == len(names)), [str(one) for one in whole])
-
-
-def check_place(directory: Path) -> None:
-    """Refuse a directory that cannot be written before the analysis rather than after it; makes nothing."""
-    whole = directory.absolute()
-    existing = next(place for place in (whole, *whole.parents) if os.path.lexists(place))
-    if not os.path.isdir(existing):
-        what = "a link that leads nowhere" if existing.is_symlink() else "a file"
-        raise InputError(f"--out {directory}: {existing} is {what}; give a directory")
-    if not os.access(existing, os.W_OK):
-        raise InputError(f"--out {directory}: {existing} cannot be written to; give another directory")
-    for place in (whole, *(existing / name for name in whole.relative_to(existing).parts)):
-        try:
-            with suppress(FileNotFoundError):
-                place.lstat()
-        except OSError as error:  # a name that is too long
-            raise InputError(f"--out {directory}: cannot be made a directory: {reason_of(error)}") from error
-
-
-def check_files(outs: Sequence[Path], read: Path) -> None:
-    """Refuse files that cannot be written, or that would replace the one that is read, before any work."""
-    from loaded_tca.results.files import require_replaceable
-
-    for out in outs:
-        check_place(out.parent)
-        with named("--out"):
-            require_replaceable(out, [read])
-
-
-@contextmanager
-def executor_of(options: argparse.Namespace, variants: int) -> Iterator[Executor | None]:
-    """Who analyses: processes of this machine, those of a cluster, or nobody else."""
-    from loaded_tca.studies import process_pool
-
-    if options.workers is not None:
-        with process_pool(min(options.workers, variants)) as pool:
-            yield pool
-    elif options.scheduler is not None:
-        try:
-            from distributed import Client
-        except ModuleNotFoundError:
-            raise InputError("--scheduler: needs the package distributed; 'pip install distributed' gets it") from None
-        try:
-            client = Client(options.scheduler, timeout=REACHED_WITHIN)
-        except (OSError, ValueError) as error:
-            raise InputError(f"--scheduler {options.scheduler}: not reached: {reason_of(error)}") from None
-        with client:
-            yield client.get_executor(pure=False)
-    else:
-        yield None
-
 
 # The modules that compute and draw take most of a second to import: each command imports what it needs.
 
@@ -270,7 +95,7 @@ def _run_scene(scene: Scene, directory: Path) -> None:
 
 def revolution(options: argparse.Namespace) -> None:
     """Analyse a whole revolution, write everything into a directory, and show the summary."""
-    from loaded_tca.output.revolution_files import write_revolution
+    from loaded_tca.output.other_results import write_revolution
     from loaded_tca.plots import REVOLUTION_PICTURES, png_of
     from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
 
@@ -288,43 +113,43 @@ def tribology(options: argparse.Namespace) -> None:
     """Write loss, temperatures and films of a result at speeds, with tables and pictures, and show the summary."""
     from dataclasses import replace
 
-    from loaded_tca.output.tribology_files import write_tribology
+    from loaded_tca.output.other_results import write_tribology
     from loaded_tca.plots import png_of, tribology_figures
     from loaded_tca.results.mesh_cycle import MeshCycle
-    from loaded_tca.scene.parse import literal_value
 
     path = result_file(options.result)
     result = MeshCycle.load(path)
     directory = options.out or path.parent
     check_place(directory)
-    changes = {key: literal_value(value) for key, value in options.set}
+    changes = changes_of(options)
     require(*((_is_of_tribology(key), f"--set {key}: {OF_TRIBOLOGY}") for key in changes))
     if options.speed is not None:
         changes.setdefault("operation.pinion_speed_rpm", options.speed[0])
     changed = replace(result, scene=result.scene.with_changes(changes)) if changes else result
-    found = changed.tribology(options.speed)
-    pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(found).items()}
-    written = write_tribology(found, directory, pictures)
+    evaluated = changed.tribology(options.speed)
+    pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(evaluated).items()}
+    written = write_tribology(evaluated, directory, pictures)
     each = range(len(options.speed or [None]))
-    print_summary("\n\n".join(found.summary(speed=speed) for speed in each), written)
+    print_summary("\n\n".join(evaluated.summary(speed=speed) for speed in each), written)
 
 
+ROUGHNESS, THERMAL = "roughness_Ra_um", ("conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK")
+"""Keys of gears and of materials that concern tribology alone."""
 OF_TRIBOLOGY = (
-    "an analysis depends on it; allowed keys of [operation] and [lubricant], roughness_Ra_um of the gears, and "
-    "conductivity_W_mK, density_kg_m3 and heat_capacity_J_kgK of materials"
+    f"an analysis depends on it; allowed keys of [operation] and [lubricant], {ROUGHNESS} of the gears, and "
+    f"{', '.join(THERMAL[:-1])} and {THERMAL[-1]} of materials"
 )
 
 
 def _is_of_tribology(key: str) -> bool:
     """Whether a key of a scene concerns tribology alone, so that a result stays valid."""
     section, _, name = key.rpartition(".")
-    alone = {"roughness_Ra_um", "conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK"}
-    return section in ("operation", "lubricant") or name in alone
+    return section in ("operation", "lubricant") or name in (ROUGHNESS, *THERMAL)
 
 
 def stage(options: argparse.Namespace) -> None:
     """Analyse a planetary stage, write everything into a directory, and show the summary."""
-    from loaded_tca.output.stage_files import write_stage
+    from loaded_tca.output.other_results import write_stage
     from loaded_tca.plots import STAGE_PICTURES, png_of
     from loaded_tca.stages import analyse_stage
     from loaded_tca.stages.analyse import expected_stage_effort, states_of
@@ -420,10 +245,10 @@ def sensitivities(options: argparse.Namespace) -> None:
     from loaded_tca.output.tables import sensitivities_text, write_sensitivities
     from loaded_tca.plots import png_of
     from loaded_tca.plots.sensitivities import sensitivity_pictures
-    from loaded_tca.plots.style import highest_torque
+    from loaded_tca.results.numbers import index_or_largest
 
     result, directory, torque, _ = result_of(options)
-    torque = highest_torque(result) if torque is None else torque
+    torque = index_or_largest(result.torque, torque)
     tolerances = tolerances_of(options, result.scene)
     with bar_of(f"derivatives to {len(tolerances)} keys", len(DERIVATIVES), BAR) as show:
         slopes = result.sensitivities(list(tolerances))
@@ -486,7 +311,7 @@ def settings(options: argparse.Namespace) -> None:
 def shaft(options: argparse.Namespace) -> None:
     """Show the forces on the bearings of a scene's shafts, and write how they bend, without contact."""
     from loaded_tca.loaded.shaft_lines import shaft_lines
-    from loaded_tca.output.shafts import bearings_csv, bearings_text, shaft_csv
+    from loaded_tca.output.other_results import bearings_csv, bearings_text, shaft_csv
     from loaded_tca.plots import plot_shafts, png_of
     from loaded_tca.results.files import replace_together
 
@@ -546,11 +371,11 @@ def study(options: argparse.Namespace) -> None:
     check_place(directory)
     say_cost(study, options.workers or 1)
     with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
-        rows = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
+        rows = run_study(study, executor, directory / STUDY_FILE, show, keep_maps=options.keep_maps)
     rank_by = options.rank_by if options.rank_by in rows else None  # another one is told once all is written
     pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(rows, rank_by=rank_by).items()}
     written = write_study(rows, directory, pictures, rank_by)
-    print_summary(study_summary(rows), [directory / "study.nc", *written])
+    print_summary(study_summary(rows), [directory / STUDY_FILE, *written])
     failed = (rows["status"] != "ok").values
     require(
         (rank_by == options.rank_by, f"--rank-by {options.rank_by}: not in study.csv; ranked by the default figure"),
@@ -577,8 +402,37 @@ def report(options: argparse.Namespace) -> None:
 
 def check(options: argparse.Namespace) -> None:
     """Show the geometry of a scene or of a stage."""
-    from loaded_tca.output.overview import describe_scene
-    from loaded_tca.output.stage_overview import describe_stage
+    from loaded_tca.output.overview import describe_scene, describe_stage
     from loaded_tca.stages.files import is_stage_file
 
     print(describe_stage(stage_of(options)) if is_stage_file(options.scene) else describe_scene(scene_of(options)))
+
+
+def import_model(options: argparse.Namespace) -> None:
+    """Write a stage of a REXS model as a scene, or show the stages that it has."""
+    from loaded_tca.exchange import describe_stages, import_stage, read_rexs
+    from loaded_tca.results.files import replace_file
+
+    model = read_rexs(options.model)
+    if options.stage is None:
+        require((options.out is None, f"--out {options.out}: needs --stage"))
+        print(describe_stages(model))
+        return
+    imported = import_stage(model, options.stage, load_case=options.load_case, torque_Nm=options.torque)
+    if options.out is None:
+        print(imported.to_toml(), end="")
+        return
+    check_files([options.out], options.model)
+    replace_file(options.out, imported.to_toml().encode())
+    print_summary(imported.summary(), [options.out])
+
+
+def export_model(options: argparse.Namespace) -> None:
+    """Write a REXS model with the numbers of a result."""
+    from loaded_tca.output.rexs import write_rexs
+    from loaded_tca.results.mesh_cycle import MeshCycle
+
+    check_files([options.out], options.model)
+    result = MeshCycle.load(result_file(options.result))
+    torque = index_of_torque(options.torque, result)
+    print_files([write_rexs(result, options.model, options.stage, options.out, torque)])

@@ -52,8 +52,8 @@ def say(line: str) -> None:
 
 def print_summary(text: str, paths: Sequence[Path]) -> None:
     """Show a summary, and say which files were written; warnings that are told at the end are left out of it."""
-    told = {f"warning: {message}" for message in _messages()}
-    print("\n".join(line for line in text.splitlines() if line not in told), end="\n\n")
+    warned = {f"warning: {message}" for message in _messages()}
+    print("\n".join(line for line in text.splitlines() if line not in warned), end="\n\n")
     print_files(paths)
 
 

@@ -30,7 +30,7 @@ from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.weber_banaschek import ring_torsion
-from loaded_tca.tooth.build import Resolution, build_tooth
+from loaded_tca.tooth.surface import Resolution, build_tooth
 
 FIRST_CHORD = 0.25
 """First guess of the distance from a flank to the middle of the tooth, over the height of the flank."""

@@ -23,8 +23,8 @@ from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
-from loaded_tca.tooth.build import Resolution, build_tooth
 from loaded_tca.tooth.families import ToothGeometry
+from loaded_tca.tooth.surface import Resolution, build_tooth
 
 LAYERS_PER_HEIGHT = 2.5
 """Layers of elements across a face as wide as the teeth are high; between the two numbers below."""

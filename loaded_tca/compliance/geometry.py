@@ -14,11 +14,10 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.optimize.elementwise import find_root
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.layout import MeshDensity, RingLayout, SectorLayout
 from loaded_tca.errors import InputError
-from loaded_tca.tooth.fillet import lengths_along, polar
-from loaded_tca.tooth.sections import Sections, in_space
+from loaded_tca.tooth.fillet import Sections, in_space, lengths_along, polar
 from loaded_tca.tooth.surface import ToothSurface
 
 FILLET_SHARE = 0.5
@@ -288,3 +287,16 @@ def _interpolated(wanted: Array, places: Array, values: Array) -> Array:
     """Values (n, k) at places (n, k), between those of increasing places (m, k)."""
     columns = [np.interp(wanted[:, k], places[:, k], values[:, k]) for k in range(places.shape[1])]
     return np.stack(columns, axis=-1)
+
+
+def tangent_angles(nodes: BodyNodes, side: int, lowest: Indices, ends: Indices, part: Array, planes: Indices) -> Array:
+    """Angles (n, m) between the middle of tooth 0 and its profile, at parts (n,) of edges of elements on one side."""
+    density, first = nodes.layout.density, nodes.layout.sector(0).first
+    row = nodes.layout.base_row + 2 * density.fillet + density.flank  # half way up the flank
+    middle = nodes.angle[first + 2 * density.land + density.through, row, planes]
+    node = lowest[:, None] + ends[:, :1] * 2 + np.arange(3)[:, None] * (ends[:, 1:] - ends[:, :1])  # (n, 3, 2)
+    columns, rows = node[..., 0] % nodes.layout.shape[0], node[..., 1]
+    place = polar(nodes.radius[columns, rows][..., planes], nodes.angle[columns, rows][..., planes] - middle)
+    slopes = np.stack([4.0 * part - 3.0, 4.0 - 8.0 * part, 4.0 * part - 1.0])  # of the quadratic shape functions
+    along = np.einsum("in,nimx->nmx", slopes, place)
+    return np.arctan2(side * along[..., 1], -along[..., 0])

@@ -14,6 +14,7 @@ from typing import Protocol, Self
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.body import body_torsion
 from loaded_tca.compliance.compliance import tooth_compliance, way_out_told
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.scene import Scene
@@ -75,8 +76,8 @@ class SumOfParts(BendingModel):
 
     @property
     def neighbours(self) -> int:
-        """How many pitches two loaded tooth pairs may be apart: what the part of the fewest allows."""
-        return min(part.neighbours for part in self.parts)
+        """How many pitches two loaded tooth pairs may be apart and deflect each other: what any part allows."""
+        return max(part.neighbours for part in self.parts)
 
     def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:
         """Deflection of every slice under a unit force on each, or on each of ``under`` [mm/N]."""
@@ -84,11 +85,15 @@ class SumOfParts(BendingModel):
 
     def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact under a unit force on each slice of another [mm/N]."""
-        return _sum([part.between(at, under) for part in self.parts])
+        return _sum([part.between(at, under) for part in self._parts_between(at[0], under[0])])
 
     def deflection(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid], forces: Array) -> Array:
         """Deflection (m,) [mm] of the slices of one contact under forces (n,) [N] on those of another."""
-        return _sum([part.deflection(at, under, forces) for part in self.parts])
+        return _sum([part.deflection(at, under, forces) for part in self._parts_between(at[0], under[0])])
+
+    def _parts_between(self, one: int, other: int) -> list[BendingPart]:
+        """Parts in which a force on one tooth pair moves the other: teeth so far apart may be in no model of teeth."""
+        return [part for part in self.parts if abs(one - other) <= part.neighbours]
 
     @property
     def supports(self) -> SupportCompliance | None:
@@ -119,10 +124,15 @@ def _sum(deflections: list[Array]) -> Array:
 
 def teeth_and_bodies(scene: Scene, pair: GearPair, neighbours: int) -> BendingPart | None:
     """Teeth, foundations and gear bodies by finite elements; None where the scene lets the flanks alone give way."""
-    if scene.analysis.compliance == "contact":
+    if not scene.analysis.teeth_bend:
         return None
     with way_out_told():
         return tooth_compliance(pair, neighbours=neighbours)
+
+
+def torsion_of_bodies(scene: Scene, pair: GearPair) -> float:
+    """Twist of both gear bodies in :func:`teeth_and_bodies` [mm/N]: see ``body_torsion``; none where they are rigid."""
+    return sum(body_torsion(pair)) if scene.analysis.teeth_bend else 0.0
 
 
 def shafts_and_bearings(scene: Scene, pair: GearPair, _: int) -> BendingPart | None:

@@ -34,14 +34,13 @@ from loaded_tca.compliance.body import FlankPlaces, ToothFrame, gear_body, gear_
 from loaded_tca.compliance.compliance import default_density, require_bending
 from loaded_tca.compliance.finite_elements import Discretisation
 from loaded_tca.compliance.flexibility import LEAST_LENGTHS, LENGTHS_PER_LAYER, MOST_IN_MEMORY, kept, key_of
-from loaded_tca.compliance.geometry import BodyNodes
+from loaded_tca.compliance.geometry import BodyNodes, tangent_angles
 from loaded_tca.compliance.influence import FlankLine, lagrange_coefficients, shares_of_grid
 from loaded_tca.compliance.layout import LARGEST_GRADING, MeshDensity
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
-from loaded_tca.tooth.build import Resolution, build_tooth
 from loaded_tca.tooth.families import ToothGeometry
-from loaded_tca.tooth.fillet import polar
+from loaded_tca.tooth.surface import Resolution, build_tooth
 
 DENSITY = MeshDensity(through=8, flank=6, fillet=4, land=5, rim=6, neighbours=2, grading=2.5, skin=0.04 / math.pi)
 """Elements of a section: layers through the tooth of 1 : 2.5 : 6 : 16 from both flanks, the rim's uppermost layer of
@@ -446,16 +445,3 @@ def first_told(arc: Array, angle: Array, fillet: int) -> float:
         return start
     last = min(int(low[-1]), len(arc) - 2)
     return max(start, float(np.interp(LEAST_ANGLE, angle[last : last + 2], arc[last : last + 2])))
-
-
-def tangent_angles(nodes: BodyNodes, side: int, lowest: Indices, ends: Indices, part: Array, planes: Indices) -> Array:
-    """Angles (n, m) between the middle of tooth 0 and its profile, at parts (n,) of edges of elements on one side."""
-    density, first = nodes.layout.density, nodes.layout.sector(0).first
-    row = nodes.layout.base_row + 2 * density.fillet + density.flank  # half way up the flank
-    middle = nodes.angle[first + 2 * density.land + density.through, row, planes]
-    node = lowest[:, None] + ends[:, :1] * 2 + np.arange(3)[:, None] * (ends[:, 1:] - ends[:, :1])  # (n, 3, 2)
-    columns, rows = node[..., 0] % nodes.layout.shape[0], node[..., 1]
-    place = polar(nodes.radius[columns, rows][..., planes], nodes.angle[columns, rows][..., planes] - middle)
-    slopes = np.stack([4.0 * part - 3.0, 4.0 - 8.0 * part, 4.0 * part - 1.0])  # of the quadratic shape functions
-    along = np.einsum("in,nimx->nmx", slopes, place)
-    return np.arctan2(side * along[..., 1], -along[..., 0])

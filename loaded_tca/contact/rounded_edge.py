@@ -235,65 +235,126 @@ def edge_pressures(
     >>> def gap(x, y):
     ...     return x[:, None] ** 2 / 20.0 + np.maximum(y - 2.0, 0.0) ** 2 / 0.4
     >>> edge = RoundedEdge((0.0, 2.0), (0.0, 1.0), 0.2)
-    >>> found = edge_pressures(gap, ((-0.15, 0.15), (-2.2, 2.2)), [edge], 500.0, 113187.0)[0]
-    >>> bool(abs(found.place[1] - 2.0) < found.pressed_width), found.error < 0.01
+    >>> peak = edge_pressures(gap, ((-0.15, 0.15), (-2.2, 2.2)), [edge], 500.0, 113187.0)[0]
+    >>> bool(abs(peak.place[1] - 2.0) < peak.pressed_width), peak.error < 0.01
     (True, True)
     """
     low, high = _checked(gap, box, edges, load, contact_modulus, cells, cells_on_arc)
+    columns_are_slices = slice_compliance is not None and slice_axis == 1
+    contact = _Contact(
+        gap=gap,
+        low=low,
+        high=high,
+        demand=(contact_modulus, load, max_pressure),
+        cells=cells,
+        cells_on_arc=cells_on_arc,
+        slice_compliance=slice_compliance,
+        slice_axis=slice_axis,
+        wedges=_Wedges.of([] if columns_are_slices else edges, float(low[1])),
+        tolerance=tolerance,
+    )
     arcs = [_Arc.first(edge, low, high, load, contact_modulus) for edge in edges]
-    along_columns = slice_compliance is not None and slice_axis == 1
-    wedges = [
-        (edge.place[1], end)
-        for edge in edges
-        if not along_columns and (end := edge.free_edge(float(low[1]))) is not None
-    ]
-    free = [end for _, end in wedges]
-    first = max((place for place, end in wedges if end.material == "above"), default=-math.inf)
-    last = min((place for place, end in wedges if end.material == "below"), default=math.inf)
-
-    def solved(on_arc: float, before: GradedSolution | None) -> GradedSolution:
-        zones = [arc.zone(on_arc) for arc in arcs if abs(arc.normal[1]) > ALIGNED]
-        fewest = [max(4, round(count * on_arc / cells_on_arc)) for count in cells]
-        borders = column_borders(low[1], high[1], zones, float(high[1] - low[1]) / fewest[1])
-        rows = max(arc.rows(on_arc) for arc in arcs) * float(high[0] - low[0])
-        rows = max(fewest[0], min(math.ceil(rows), MOST_ROWS))
-        dx, y = float(high[0] - low[0]) / rows, 0.5 * (borders[1:] + borders[:-1])
-        x = low[0] + dx * (np.arange(rows) + 0.5)
-        slices, place = None, (y, np.diff(borders)) if slice_axis == 1 else (x, np.full(rows, dx))
-        if slice_compliance is not None:
-            slices = slice_compliance(*place)
-        heights, demand = numbers("gap", gap(x, y)), (contact_modulus, load, max_pressure)
-        problem = GradedProblem(heights, dx, borders, *demand, slices, slice_axis, free)
-        expected = guess(problem) if before is None else _carried(before, low[0], x, y)
-        if free:
-            problem = replace(problem, reference=min(max(_load_centre(problem, expected), first), last))
-        start = None if before is None else expected
-        return solve_graded(problem, tolerance=tolerance, initial_pressure=start)
-
-    solution, peaks, coarse = None, list[EdgePressure](), list[EdgePressure]()
-    for on_arc in (step * cells_on_arc for step in STEPS):
-        coarse = peaks
-        for _ in range(MOST_ROUNDS):
-            solution = solved(on_arc, solution)
-            peaks = [arc.found(solution, float(low[0])) for arc in arcs]
-            arcs = [arc.after(one) for arc, one in zip(arcs, peaks, strict=True)]
-            if all(arc.fine_enough(one, on_arc) for arc, one in zip(arcs, peaks, strict=True)):
-                break
-        if at_least > 0.0 and not any(one.pressure >= SURELY_LESS * at_least for one in peaks):
+    peaks = list[EdgePressure]()
+    for step in STEPS:
+        coarser = peaks
+        peaks, arcs = _peaks_with(step * cells_on_arc, contact, arcs, coarser)
+        if at_least > 0.0 and not any(peak.pressure >= SURELY_LESS * at_least for peak in peaks):
             break
-        if coarse:
-            peaks = [one.compared_with(other) for one, other in zip(peaks, coarse, strict=True)]
-            rows, columns = peaks[0].solution.problem.cells
-            error = max(peaks, key=lambda one: np.nan_to_num(one.pressure)).error
-            most = MOST_PAIRS if error <= LARGE_ERROR else MOST_PAIRS_IF_LARGE
-            if not accuracy < error < math.inf or rows * columns**2 > most:
+        if coarser:
+            peaks = [peak.compared_with(before) for peak, before in zip(peaks, coarser, strict=True)]
+            if not _finer_cells_are_worth(accuracy, peaks):
                 break
     return peaks
 
 
+def _peaks_with(
+    on_arc: float, contact: _Contact, arcs: list[_Arc], peaks: list[EdgePressure]
+) -> tuple[list[EdgePressure], list[_Arc]]:
+    """Peaks with so many cells on the pressed widths, and the edges as these leave them; begun from the peaks before.
+
+    How wide an edge is pressed is what the solution before says: cells are made anew until they are fine enough.
+    """
+    for _ in range(MOST_ROUNDS):
+        solution = contact.solved(arcs, on_arc, peaks[0].solution if peaks else None)
+        peaks = [arc.peak(solution, float(contact.low[0])) for arc in arcs]
+        arcs = [arc.after(peak) for arc, peak in zip(arcs, peaks, strict=True)]
+        if all(arc.fine_enough(peak, on_arc) for arc, peak in zip(arcs, peaks, strict=True)):
+            break
+    return peaks, arcs
+
+
+def _finer_cells_are_worth(accuracy: float, peaks: Sequence[EdgePressure]) -> bool:
+    """Whether the error of the largest peak is above the accuracy, and the time of finer cells is no more than that."""
+    rows, columns = peaks[0].solution.problem.cells
+    error = max(peaks, key=lambda peak: np.nan_to_num(peak.pressure)).error
+    most = MOST_PAIRS if error <= LARGE_ERROR else MOST_PAIRS_IF_LARGE
+    return accuracy < error < math.inf and rows * columns**2 <= most
+
+
+@dataclass(frozen=True, eq=False)
+class _Contact:
+    """What ``edge_pressures`` is to solve, on cells of any size; ``demand``: E*, load, cap on the pressure."""
+
+    gap: Gap
+    low: Array
+    high: Array
+    demand: tuple[float, float, float | None]
+    cells: tuple[int, int]
+    cells_on_arc: float
+    slice_compliance: SliceCompliance | None
+    slice_axis: int
+    wedges: _Wedges
+    tolerance: float
+
+    def solved(self, arcs: Sequence[_Arc], on_arc: float, before: GradedSolution | None) -> GradedSolution:
+        """Pressure with so many cells on the pressed width of each edge, begun from a solution on other cells."""
+        rows, borders = self._cells_for(arcs, on_arc)
+        dx, y = float(self.high[0] - self.low[0]) / rows, 0.5 * (borders[1:] + borders[:-1])
+        x = self.low[0] + dx * (np.arange(rows) + 0.5)
+        slices, place = None, (y, np.diff(borders)) if self.slice_axis == 1 else (x, np.full(rows, dx))
+        if self.slice_compliance is not None:
+            slices = self.slice_compliance(*place)
+        heights, free = numbers("gap", self.gap(x, y)), self.wedges.free
+        problem = GradedProblem(heights, dx, borders, *self.demand, slices, self.slice_axis, free)
+        expected = guess(problem) if before is None else _carried(before, self.low[0], x, y)
+        if free:
+            problem = replace(problem, reference=self.wedges.reference(_load_centre(problem, expected)))
+        start = None if before is None else expected
+        return solve_graded(problem, tolerance=self.tolerance, initial_pressure=start)
+
+    def _cells_for(self, arcs: Sequence[_Arc], on_arc: float) -> tuple[int, Array]:
+        """Number of rows, and borders of the columns."""
+        fewest = [max(4, round(count * on_arc / self.cells_on_arc)) for count in self.cells]
+        zones = [arc.zone(on_arc) for arc in arcs if abs(arc.normal[1]) > ALIGNED]
+        widest = float(self.high[1] - self.low[1]) / fewest[1]
+        rows = max(arc.rows(on_arc) for arc in arcs) * float(self.high[0] - self.low[0])
+        return max(fewest[0], min(math.ceil(rows), MOST_ROWS)), column_borders(self.low[1], self.high[1], zones, widest)
+
+
+@dataclass(frozen=True, eq=False)
+class _Wedges:
+    """Free edges at the apexes of wedges, and where their roundings begin: the first and the last place of a load."""
+
+    free: list[FreeEdge]
+    first: float
+    last: float
+
+    @classmethod
+    def of(cls, edges: Sequence[RoundedEdge], low: float) -> _Wedges:
+        """Those of edges along the columns, which begin at ``low``."""
+        wedges = [(edge.place[1], end) for edge in edges if (end := edge.free_edge(low)) is not None]
+        first = max((place for place, end in wedges if end.material == "above"), default=-math.inf)
+        last = min((place for place, end in wedges if end.material == "below"), default=math.inf)
+        return cls([end for _, end in wedges], first, last)
+
+    def reference(self, load_centre: float) -> float:
+        """The place nearest to the centre of the load that lies before the roundings."""
+        return min(max(load_centre, self.first), self.last)
+
+
 @dataclass(frozen=True, eq=False)
 class _Arc:
-    """What is known of a rounded edge: where it is, how far it is pressed, and where columns have to be fine.
+    """A rounded edge as solutions leave it: where it is, how far it is pressed, and where columns have to be fine.
 
     ``length`` is that of its pressed part; infinite where the contact lies along the edge, whatever the rows.
     """
@@ -346,7 +407,7 @@ class _Arc:
         oblique = self.half_length * abs(float(self.normal[0])) / along
         return FineZone(self.middle, finest, EVEN * self.width / along + min(oblique, 0.5 * MOST_FINE * finest))
 
-    def found(self, solution: GradedSolution, low: float) -> EdgePressure:
+    def peak(self, solution: GradedSolution, low: float) -> EdgePressure:
         """The peak at this edge."""
         problem, pressure = solution.problem, solution.pressure
         x, y = low + problem.spacing * (np.arange(len(pressure)) + 0.5), problem.middles
@@ -376,7 +437,7 @@ class _Arc:
         return EdgePressure(peak, (x_top, y_top), error, ends_sharp, width, on_arc, int(rows), solution)
 
     def after(self, peak: EdgePressure) -> _Arc:
-        """What is known once a solution is."""
+        """The edge as a solution leaves it."""
         if math.isnan(peak.pressure):
             return self
         problem = peak.solution.problem

@@ -216,7 +216,7 @@ class ContactSolution(Solution):
     coarser: CoarserGrid | None = None
 
     def plot(self, hertz: Any = None) -> Any:
-        """Draw the pressure, beside Hertz (a PointContact) if given; see :func:`loaded_tca.plots.plot_solution`."""
+        """Draw the pressure, beside a PointContact or LineContact if given: :func:`loaded_tca.plots.plot_solution`."""
         draw: Callable[..., Any] = import_module("loaded_tca.plots").plot_solution  # numerics know no plotting
         return draw(self, hertz)
 
@@ -291,6 +291,11 @@ class ContactSolution(Solution):
         sentences = []
         if self.reaches_border:
             sentences.append("contact reaches the box: the pressure at its border is that of a body ending there")
+        if self.reaches_material_edge and self.problem.max_pressure is None:
+            sentences.append(
+                "contact reaches an end of the material, where the pressure has no limit: that of the cells beside it "
+                "grows with their number"
+            )
         if 0 < min(self.cells_across) < FEWEST_CELLS:
             across = min(self.cells_across)
             sentences.append(f"contact is {across} cells across: fewer than {FEWEST_CELLS} leave errors above 1 %")

@@ -125,11 +125,11 @@ def _json_attribute(name: str, attribute: Attribute) -> dict[str, Any]:
 
 
 def _add_attribute(component: ElementTree.Element, name: str, attribute: Attribute, space: str) -> None:
-    one = ElementTree.SubElement(component, f"{space}attribute", {"id": name, "unit": attribute.unit})
+    element = ElementTree.SubElement(component, f"{space}attribute", {"id": name, "unit": attribute.unit})
     if not isinstance(attribute.value, tuple):
-        one.text = str(attribute.value)
+        element.text = str(attribute.value)
         return
-    array = ElementTree.SubElement(one, f"{space}array")
+    array = ElementTree.SubElement(element, f"{space}array")
     for value in attribute.value:
         ElementTree.SubElement(array, f"{space}c").text = str(value)
 

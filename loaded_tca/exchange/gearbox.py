@@ -15,8 +15,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
-from loaded_tca.exchange.model import Component, Reading
-from loaded_tca.exchange.units import ANGLE, LENGTH, NUMBER, POWER, SPEED, TORQUE
+from loaded_tca.exchange.model import ANGLE, LENGTH, NUMBER, POWER, SPEED, TORQUE, Component, Reading
 
 GEARS = "cylindrical_gear", "ring_gear"
 PARALLEL = 1e-6
@@ -105,19 +104,19 @@ class Gearbox:
         InputError
             If its axes are not at right angles, or its frame is given in itself.
         """
-        chain, one = [component], component
-        while (reference := one.number("reference_component_for_position")) is not None:
+        chain = [component]
+        while (reference := chain[-1].number("reference_component_for_position")) is not None:
             following = self.model.components.get(str(round(reference)))
-            if following is None or following.id == one.id or following.type == "gear_unit":
+            if following is None or following.id == chain[-1].id or following.type == "gear_unit":
                 break
             require((following not in chain, f"{component}: reference_component_for_position: given in itself"))
-            chain.append(one := following)
+            chain.append(following)
         whole = Pose(np.zeros(3), np.eye(3))
-        for one in reversed(chain):
-            own = self._own_pose(one)
-            if own is None:
+        for frame in reversed(chain):
+            pose = self._own_pose(frame)
+            if pose is None:
                 return None
-            whole = Pose(whole.origin + own.origin @ whole.axes, own.axes @ whole.axes)
+            whole = Pose(whole.origin + pose.origin @ whole.axes, pose.axes @ whole.axes)
         return whole
 
     def _own_pose(self, component: Component) -> Pose | None:
@@ -150,9 +149,9 @@ class Gearbox:
         By the frames of both where the file has them; else by u_coordinate_on_shaft, which is the lower end of the face
         in version 1.0, and its middle since.
         """
-        own, of_shaft = self.pose(gear), self.pose(shaft)
-        if own is not None and of_shaft is not None:
-            return float((own.origin - of_shaft.origin) @ of_shaft.axes[0])
+        of_gear, of_shaft = self.pose(gear), self.pose(shaft)
+        if of_gear is not None and of_shaft is not None:
+            return float((of_gear.origin - of_shaft.origin) @ of_shaft.axes[0])
         middle = 0.5 * gear.required("face_width", LENGTH) if self.model.version == "1.0" else 0.0
         return gear.required("u_coordinate_on_shaft", LENGTH) + middle
 
@@ -189,17 +188,17 @@ class Gearbox:
         InputError
             If there is none, with those that there are; if it has no two gears.
         """
-        known = ", ".join(self.stages) or "none"
+        ids = ", ".join(self.stages) or "none"
         component = self.model.components.get(wanted)
         if component is None or not component.type.endswith("stage"):
-            raise InputError(f"stage {wanted}: not found; allowed {known}")
+            raise InputError(f"stage {wanted}: not found; allowed {ids}")
         if wanted in self._faults:
             raise self._faults[wanted]
         if wanted not in self.stages:
             reason = (
                 "its relation has no gear_1 and gear_2" if component.type == "cylindrical_stage" else component.type
             )
-            raise InputError(f"stage {wanted}: {reason}; scenes are made of cylindrical stages of two gears: {known}")
+            raise InputError(f"stage {wanted}: {reason}; scenes are made of cylindrical stages of two gears: {ids}")
         return self.stages[wanted]
 
     def _stage(self, component: Component, gears: tuple[Component, Component]) -> Stage:
@@ -242,9 +241,9 @@ class Gearbox:
         turned: bool,
     ) -> tuple[Array, bool]:
         """Middles (2, 3) of both faces, and whether the file has them."""
-        found = [self._middle(gear, shaft) for gear, shaft in zip(gears, shafts, strict=True)]
-        if found[0] is not None and found[1] is not None:
-            return np.stack([found[0], found[1]]), True
+        pinion, wheel = (self._middle(gear, shaft) for gear, shaft in zip(gears, shafts, strict=True))
+        if pinion is not None and wheel is not None:
+            return np.stack([pinion, wheel]), True
         angle = math.radians(component.number("rotating_angle_around_neg_u_axis", ANGLE) or 0.0)
         pose = None if shafts[0] is None else self.pose(shafts[0])
         _, v, w = np.eye(3) if pose is None else pose.axes
@@ -267,11 +266,11 @@ class Gearbox:
     def _planetary(self) -> list[list[Stage]]:
         """Stages of each planetary stage that share a central gear: they carry the same."""
         groups = []
-        for own in self._of_planetary_stages():
+        for meshes in self._of_planetary_stages():
             by_gear: dict[str, list[Stage]] = {}
-            for one in own:
-                for gear in one.gears:
-                    by_gear.setdefault(gear.id, []).append(one)
+            for mesh in meshes:
+                for gear in mesh.gears:
+                    by_gear.setdefault(gear.id, []).append(mesh)
             groups += [same for same in by_gear.values() if len(same) > 1 and len({one.internal for one in same}) == 1]
         return groups
 
@@ -363,9 +362,11 @@ class Gearbox:
             for part in self.model.related("side", role, shaft.id, "assembly")
         ]
         above = self.model.related("assembly", "part", shaft.id, "assembly")
-        known = {gear.id for stage in self.stages.values() for gear in stage.gears}
+        of_stages = {gear.id for stage in self.stages.values() for gear in stage.gears}
         parts = self.model.related("assembly", "assembly", shaft.id, "part")
-        strange = [one for one in parts if one.type.endswith(("_gear", "worm", "worm_wheel")) and one.id not in known]
+        strange = [
+            one for one in parts if one.type.endswith(("_gear", "worm", "worm_wheel")) and one.id not in of_stages
+        ]
         return bool(strange) or any(one.type in COUPLINGS for one in [*sides, *above])
 
     @cached_property
@@ -376,7 +377,7 @@ class Gearbox:
             for one in self.model.of_type("shaft")
             if (speed := one.number("rotational_speed", SPEED)) is not None
         }
-        moving = {one.id for own in self._of_planetary_stages() for one in own}
+        moving = {mesh.id for meshes in self._of_planetary_stages() for mesh in meshes}
         fixed = [one for one in self.stages.values() if one.id not in moving and None not in one.shafts]
         for _ in fixed:
             for stage in fixed:

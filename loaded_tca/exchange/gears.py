@@ -10,10 +10,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError, require
 from loaded_tca.exchange.gearbox import Gearbox, Stage
-from loaded_tca.exchange.model import Component, Reading
-from loaded_tca.exchange.units import (
+from loaded_tca.exchange.model import (
     ANGLE,
     CONDUCTIVITY,
     DENSITY,
@@ -22,9 +22,10 @@ from loaded_tca.exchange.units import (
     PRESSURE,
     SMALL_LENGTH,
     TORQUE,
+    Component,
+    Reading,
 )
 
-NAMES = "pinion", "wheel"
 STEEL = {"youngs_modulus_MPa": 206000.0, "poisson_ratio": 0.3}
 ALIKE = 1e-6
 """Relative difference of two numbers that are the same."""
@@ -85,8 +86,8 @@ def datum_sign(reading: Reading, gear: Component) -> int:
 def axis_sign(gearbox: Gearbox, stage: Stage, gear: int) -> int:
     """Return the sense of the u axis of a gear along z of the pinion's frame."""
     component = stage.gears[gear]
-    own = component if gearbox.pose(component) is not None else stage.shafts[gear]
-    return 1 if float(gearbox.along(own) @ stage.axes[2]) >= 0.0 else -1
+    placed = component if gearbox.pose(component) is not None else stage.shafts[gear]
+    return 1 if float(gearbox.along(placed) @ stage.axes[2]) >= 0.0 else -1
 
 
 def operation_of(gearbox: Gearbox, stage: Stage, torque: float | None) -> Operation:
@@ -108,8 +109,8 @@ def operation_of(gearbox: Gearbox, stage: Stage, torque: float | None) -> Operat
     reading.touch(one for one in data if one is not None)
     by_balance = gearbox.tooth_torques.get(stage.id)
     of_file = _stated_torque(reading, stage, data)
-    found = next((abs(one) for one in (torque, of_file, by_balance) if one), None)
-    if found is None:
+    magnitude = next((abs(one) for one in (torque, of_file, by_balance) if one), None)
+    if magnitude is None:
         raise InputError(
             f"stage {stage.id}: torque: it does not follow from the loads on the shafts, and the stage has none; give "
             "--torque, that on the pinion in N m"
@@ -124,7 +125,7 @@ def operation_of(gearbox: Gearbox, stage: Stage, torque: float | None) -> Operat
         turning = side if driving == "pinion" else -side
         reading.note(f"stage {stage.id}: no speed of its pinion; the {driving} is taken as the driving gear")
     return Operation(
-        round(found, TORQUE_DIGITS),
+        round(magnitude, TORQUE_DIGITS),
         side,
         driving,
         "positive" if turning > 0 else "negative",
@@ -143,7 +144,7 @@ def _stated_torque(reading: Reading, stage: Stage, data: list[Component | None])
 def _said_to_drive(reading: Reading, data: list[Component | None]) -> str | None:
     """Which gear drives by the file; None where it names none, or both."""
     flags = [bool(one and reading.take(one, "is_driving_gear").flag("is_driving_gear")) for one in data]
-    return NAMES[flags.index(True)] if flags.count(True) == 1 else None
+    return GEARS[flags.index(True)] if flags.count(True) == 1 else None
 
 
 def _side(gearbox: Gearbox, stage: Stage, data: list[Component | None], torque: float | None) -> int:
@@ -174,8 +175,7 @@ def flank_of(gearbox: Gearbox, stage: Stage, gear: int, side: int) -> Component 
         wanted = stated
     both = {one: reading.model.related("flank", "gear", component.id, one) for one in FLANKS}
     other = both["left" if wanted == "right" else "right"]
-    found = both[wanted] or other
-    chosen = found[0] if found else None
+    chosen = next(iter(both[wanted] or other), None)
     if chosen is not None:
         reading.touch([chosen])
     for one in other:
@@ -272,21 +272,21 @@ def _rack(reading: Reading, stage: Stage, flanks: list[Component | None], module
     racks: list[tuple[Component, dict[str, float]]] = []
     for gear, flank in zip(stage.gears, flanks, strict=True):
         for tool in tools_of(reading, gear, flank)[:1]:
-            own = {}
+            rack = {}
             dedendum = _per_module(
                 reading, tool, module, "addendum_coefficient_reference_profile", "addendum_reference_profile"
             )
             radius = _per_module(reading, tool, module, "tip_radius_factor", "tip_radius")
             if dedendum is not None:
-                own["dedendum_coefficient"] = dedendum
+                rack["dedendum_coefficient"] = dedendum
             if radius is not None and tool.type == "rack_shaped_tool":
-                own["root_radius_coefficient"] = radius
-            racks.append((gear, own))
+                rack["root_radius_coefficient"] = radius
+            racks.append((gear, rack))
     if not racks:
         return {}
     first = racks[0][1]
-    for gear, own in racks[1:]:
-        if any(abs(own[name] - first[name]) > ALIKE for name in own.keys() & first.keys()):
+    for gear, rack in racks[1:]:
+        if any(abs(rack[name] - first[name]) > ALIKE for name in rack.keys() & first.keys()):
             tool = tools_of(reading, gear, flanks[stage.gears.index(gear)])[0]
             reading.leave(
                 tool, f"its profile differs from that of {racks[0][0]}; a scene has one basic rack, the latter"
@@ -387,20 +387,20 @@ def _cutter(reading: Reading, gear: Component, flank: Component | None) -> dict[
 def material_section(reading: Reading, component: Component) -> dict[str, float] | None:
     """Return the material of a component; None where the file has none with both elastic constants."""
     materials = [
-        one
-        for one in reading.model.related("reference", "origin", component.id, "referenced")
-        if one.type == "material"
+        material
+        for material in reading.model.related("reference", "origin", component.id, "referenced")
+        if material.type == "material"
     ]
     if not materials:
         return None
-    one = materials[0]
-    modulus = reading.number(one, "elastic_modulus", PRESSURE)
-    ratio = reading.number(one, "poisson_ratio")
+    material = materials[0]
+    modulus = reading.number(material, "elastic_modulus", PRESSURE)
+    ratio = reading.number(material, "poisson_ratio")
     if modulus is None or ratio is None:
-        reading.leave(one, "it has not both elastic_modulus and poisson_ratio")
+        reading.leave(material, "it has not both elastic_modulus and poisson_ratio")
         return None
     section = {"youngs_modulus_MPa": modulus, "poisson_ratio": ratio}
     for key, (name, units) in MATERIAL_KEYS.items():
-        if value := reading.number(one, name, units):
+        if value := reading.number(material, name, units):
             section[key] = value
     return section

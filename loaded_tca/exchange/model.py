@@ -1,4 +1,4 @@
-"""A REXS model as its files have it: components with attributes, relations between them, load cases.
+"""A REXS model as its files have it: components with attributes in their units, relations between them, load cases.
 
 The same for all formats and versions; what its names mean, says :mod:`loaded_tca.exchange.stage`.
 """
@@ -6,12 +6,49 @@ The same for all formats and versions; what its names mean, says :mod:`loaded_tc
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from loaded_tca.errors import InputError, require
-from loaded_tca.exchange.units import NUMBER, plain
+
+LENGTH = {"mm": 1.0, "m": 1e3, "cm": 10.0, "mum": 1e-3}
+ANGLE = {"deg": 1.0, "°": 1.0, "rad": math.degrees(1.0)}
+FORCE = {"N": 1.0, "kN": 1e3, "MN": 1e6}
+TORQUE = {"Nm": 1.0, "Nmm": 1e-3, "kNm": 1e3}
+TILTING = {"Nmm/rad": 1.0, "Nm/rad": 1e3, "kNm/rad": 1e6}
+STIFFNESS = {"N/mm": 1.0, "N/m": 1e-3, "N/mum": 1e3, "kN/mm": 1e3}
+COUPLING = {"N/rad": 1.0, "N": 1.0, "kN/rad": 1e3, "Nmm/mm": 1.0, "Nm/m": 1.0}
+PRESSURE = {"N/mm^2": 1.0, "MPa": 1.0, "GPa": 1e3, "Pa": 1e-6}
+SMALL_LENGTH = {"mum": 1.0, "mm": 1e3, "m": 1e6}
+SPEED = {"1/min": 1.0, "rpm": 1.0, "1/s": 60.0, "rad/s": 30.0 / math.pi}
+POWER = {"kW": 1.0, "W": 1e-3, "MW": 1e3}
+DENSITY = {"kg/dm^3": 1e3, "g/cm^3": 1e3, "kg/m^3": 1.0}
+CONDUCTIVITY = {"W/(mK)": 1.0}
+HEAT = {"J/(kgK)": 1.0}
+NUMBER = {"none": 1.0, "": 1.0, "-": 1.0}
+"""Names of units without blanks -> one of each in mm, deg, N, N m, N mm/rad, N/mm, N/rad, MPa, um, 1/min, kW, kg/m^3,
+W/(m K), J/(kg K)."""
+
+_AS_WRITTEN = {"µ": "mu", "μ": "mu", "um": "mum", "²": "^2", "³": "^3", "·": "", "*": "", "degree": "deg"}
+
+
+def plain(unit: str) -> str:
+    """Name of a unit without blanks and signs that files write in several ways.
+
+    Examples
+    --------
+    >>> plain("N mm / rad"), plain("µm"), plain("N/mm²")
+    ('Nmm/rad', 'mum', 'N/mm^2')
+    """
+    name = re.sub(r"\s", "", unit)
+    if name in _AS_WRITTEN:
+        return _AS_WRITTEN[name]
+    for sign in ("µ", "μ", "²", "³", "·", "*"):
+        name = name.replace(sign, _AS_WRITTEN[sign])
+    return name
+
 
 VERSIONS = "1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7"
 """Versions that are read; 2.0 has other names."""
@@ -102,10 +139,10 @@ class Component:
         attribute = self.attributes.get(name)
         if attribute is None:
             return None
-        known = {"true": True, "1": True, "false": False, "0": False}
+        words = {"true": True, "1": True, "false": False, "0": False}
         value = str(attribute.value).strip().lower()
-        require((value in known, f"{self}: {name}: found {attribute.value!r:.40}; allowed true or false"))
-        return known[value]
+        require((value in words, f"{self}: {name}: found {attribute.value!r:.40}; allowed true or false"))
+        return words[value]
 
     def _factor(self, name: str, unit: str, units: Mapping[str, float]) -> float:
         try:
@@ -207,8 +244,8 @@ class Model:
             If there is none, with those that there are.
         """
         cases = [one for one in self.load_cases if wanted in (one.id, f"{one.spectrum}:{one.id}")]
-        known = ", ".join(f"{one.spectrum}:{one.id}" for one in self.load_cases) or "none, the model has no load cases"
-        require((len(cases) == 1, f"load case {wanted}: {'several' if cases else 'not found'}; allowed {known}"))
+        names = ", ".join(f"{one.spectrum}:{one.id}" for one in self.load_cases) or "none, the model has no load cases"
+        require((len(cases) == 1, f"load case {wanted}: {'several' if cases else 'not found'}; allowed {names}"))
         components = dict(self.components)
         for one, attributes in cases[0].components.items():
             if one in components:

@@ -12,11 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from loaded_tca.exchange.gears import DIGITS
-from loaded_tca.exchange.model import Component, Reading
-from loaded_tca.exchange.units import LENGTH
+from loaded_tca.exchange.model import LENGTH, Component, Reading
+from loaded_tca.units import MICROMETRES
 
-MICROMETRES = 1e3
-"""Per millimetre."""
 CLOSE_um = 1e-3
 """Difference of amounts that are the same."""
 LEAST = 1e-3
@@ -70,25 +68,25 @@ def modification_keys(reading: Reading, flank: Component, teeth: Teeth) -> Keys:
     teeth : Teeth
     """
     keys: Keys = {}
-    for one in reading.model.related("reference", "origin", flank.id, "referenced"):
-        if one.type == "material":
+    for modification in reading.model.related("reference", "origin", flank.id, "referenced"):
+        if modification.type == "material":
             continue
-        reading.take(one, "is_additive_modification")
-        if one.type not in KINDS:
-            reading.leave_whole(one, "no modification that a scene has")
+        reading.take(modification, "is_additive_modification")
+        if modification.type not in KINDS:
+            reading.leave_whole(modification, "no modification that a scene has")
             continue
         try:
-            if one.flag("is_additive_modification") is False:
+            if modification.flag("is_additive_modification") is False:
                 raise _Left("it does not add to the others")
-            if teeth.ring and one.type in ("profile_crowning", "profile_slope", "tip_relief", "root_relief"):
+            if teeth.ring and modification.type in ("profile_crowning", "profile_slope", "tip_relief", "root_relief"):
                 raise _Left("modifications of the profile of ring gears are not read")
-            more = KINDS[one.type](reading, one, teeth)
+            more = KINDS[modification.type](reading, modification, teeth)
         except _Left as reason:
-            reading.leave_whole(one, str(reason))
+            reading.leave_whole(modification, str(reason))
             continue
         taken = [name for name in more if name in keys and not (name.endswith("slope_um"))]
         if taken:
-            reading.leave_whole(one, f"{taken[0]} is taken by another modification")
+            reading.leave_whole(modification, f"{taken[0]} is taken by another modification")
             continue
         for name, value in more.items():
             if name.endswith("slope_um"):  # slopes of several modifications add
@@ -98,9 +96,9 @@ def modification_keys(reading: Reading, flank: Component, teeth: Teeth) -> Keys:
     return keys
 
 
-def _amount(reading: Reading, one: Component, name: str) -> float:
+def _amount(reading: Reading, modification: Component, name: str) -> float:
     """Amount [um], 0 where it is not given."""
-    return MICROMETRES * (reading.number(one, name, LENGTH) or 0.0)
+    return MICROMETRES * (reading.number(modification, name, LENGTH) or 0.0)
 
 
 def _um(value: float) -> float:
@@ -114,15 +112,17 @@ def _removed(value: float) -> float:
     return _um(value)
 
 
-def _helix_crowning(reading: Reading, one: Component, teeth: Teeth) -> Keys:
-    amounts = [_amount(reading, one, f"helix_crowning_amount_{face}") for face in ("datum_face", "non_datum_face")]
+def _helix_crowning(reading: Reading, modification: Component, teeth: Teeth) -> Keys:
+    amounts = [
+        _amount(reading, modification, f"helix_crowning_amount_{face}") for face in ("datum_face", "non_datum_face")
+    ]
     half = 0.5 * teeth.face_width
     at = [
-        abs(reading.number(one, f"coordinate_where_helix_crowning_is_specified_{face}", LENGTH, half) or half)
+        abs(reading.number(modification, f"coordinate_where_helix_crowning_is_specified_{face}", LENGTH, half) or half)
         for face in ("datum_face", "non_datum_face")
     ]
-    highest = reading.number(one, "helix_highest_point", LENGTH, 0.0) or 0.0
-    shape = reading.take(one, "shape_of_helix_crowning").text("shape_of_helix_crowning")
+    highest = reading.number(modification, "helix_highest_point", LENGTH, 0.0) or 0.0
+    shape = reading.take(modification, "shape_of_helix_crowning").text("shape_of_helix_crowning")
     if abs(highest) > 1e-3 * teeth.face_width:
         raise _Left(f"helix_highest_point: found {highest:g} mm; allowed 0, the middle of the face")
     if min(at) < LEAST * half:
@@ -136,25 +136,25 @@ def _helix_crowning(reading: Reading, one: Component, teeth: Teeth) -> Keys:
     return keys
 
 
-def _helix_slope(reading: Reading, one: Component, teeth: Teeth) -> Keys:
-    amount = _amount(reading, one, "helix_slope")
-    ends = [reading.number(one, f"helix_evaluation_{end}", LENGTH) for end in ("start", "end")]
-    reading.take(one, "helix_evaluation_reference")
+def _helix_slope(reading: Reading, modification: Component, teeth: Teeth) -> Keys:
+    amount = _amount(reading, modification, "helix_slope")
+    ends = [reading.number(modification, f"helix_evaluation_{end}", LENGTH) for end in ("start", "end")]
+    reading.take(modification, "helix_evaluation_reference")
     if ends[0] is not None and ends[1] is not None:
         if abs(ends[1] - ends[0]) < LEAST * teeth.face_width:
             raise _Left("helix_evaluation_start: found at helix_evaluation_end")
         amount *= teeth.face_width / abs(ends[1] - ends[0])
-    reading.note(f"{one}: a positive helix_slope removes material towards the face opposite to the datum face")
+    reading.note(f"{modification}: a positive helix_slope removes material towards the face opposite to the datum face")
     return {"helix_slope_um": _um(-teeth.datum * amount)}
 
 
 def _end_relief(face: str) -> Callable[[Reading, Component, Teeth], Keys]:
-    def keys(reading: Reading, one: Component, teeth: Teeth) -> Keys:
-        amount = _amount(reading, one, f"end_relief_depth_{face}")
-        length = reading.number(one, f"end_relief_length_{face}", LENGTH)
+    def keys(reading: Reading, modification: Component, teeth: Teeth) -> Keys:
+        amount = _amount(reading, modification, f"end_relief_depth_{face}")
+        length = reading.number(modification, f"end_relief_length_{face}", LENGTH)
         if length is None or length <= 0.0:
             raise _Left(f"end_relief_length_{face}: missing or 0; an end relief needs a length")
-        if _power(reading, one) != 2:
+        if _power(reading, modification) != 2:
             raise _Left('shape_of_relief: found "linear"; end reliefs of scenes are parabolic')
         at_datum = face == "datum_face"
         end = "lower" if (teeth.datum < 0) == at_datum else "upper"
@@ -163,9 +163,9 @@ def _end_relief(face: str) -> Callable[[Reading, Component, Teeth], Keys]:
     return keys
 
 
-def _power(reading: Reading, one: Component) -> int:
+def _power(reading: Reading, modification: Component) -> int:
     """Power of the shape of a relief, linear where the file does not say."""
-    shape = reading.take(one, "shape_of_relief").text("shape_of_relief") or "linear"
+    shape = reading.take(modification, "shape_of_relief").text("shape_of_relief") or "linear"
     if shape not in POWERS:
         raise _Left(f'shape_of_relief: found "{shape}"; allowed linear, parabolic or circular')
     return POWERS[shape]
@@ -174,17 +174,17 @@ def _power(reading: Reading, one: Component) -> int:
 def _relief(end: str) -> Callable[[Reading, Component, Teeth], Keys]:
     """Tip or root relief: from its start to the tip, or down to the start of the active profile."""
 
-    def keys(reading: Reading, one: Component, teeth: Teeth) -> Keys:
+    def keys(reading: Reading, modification: Component, teeth: Teeth) -> Keys:
         last = teeth.tip_roll if end == "tip" else teeth.start_roll
-        amount = _amount(reading, one, f"{end}_relief_depth")
-        diameter = reading.number(one, f"{end}_relief_datum_diameter", LENGTH)
-        length = reading.number(one, f"{end}_relief_datum_length", LENGTH)
+        amount = _amount(reading, modification, f"{end}_relief_depth")
+        diameter = reading.number(modification, f"{end}_relief_datum_diameter", LENGTH)
+        length = reading.number(modification, f"{end}_relief_datum_length", LENGTH)
         if diameter is None and length is None:
             raise _Left(f"{end}_relief_datum_diameter: missing, and {end}_relief_datum_length, too; give one")
         inwards = -1.0 if end == "tip" else 1.0
         start = last + inwards * abs(length or 0.0) if diameter is None else teeth.roll(diameter)
-        where = reading.number(one, f"{end}_relief_evaluation_reference", LENGTH)
-        power = _power(reading, one)
+        where = reading.number(modification, f"{end}_relief_evaluation_reference", LENGTH)
+        power = _power(reading, modification)
         if (last - start) * inwards >= 0.0:
             raise _Left(f"it starts beyond the {'tip' if end == 'tip' else 'start of the active profile'}")
         if where is not None and (teeth.roll(where) - start) * inwards < -LEAST * abs(last - start):
@@ -198,20 +198,22 @@ def _relief(end: str) -> Callable[[Reading, Component, Teeth], Keys]:
     return keys
 
 
-def _ends_of_profile(reading: Reading, one: Component, teeth: Teeth, tip: str, root: str) -> tuple[float, float]:
+def _ends_of_profile(
+    reading: Reading, modification: Component, teeth: Teeth, tip: str, root: str
+) -> tuple[float, float]:
     """Roll lengths of the two places where a modification of the profile has its amounts."""
     places = []
     for name, default in ((tip, teeth.tip_roll), (root, teeth.start_roll)):
-        diameter = reading.number(one, name, LENGTH)
+        diameter = reading.number(modification, name, LENGTH)
         places.append(default if diameter is None else teeth.roll(diameter))
     return places[0], places[1]
 
 
-def _profile_crowning(reading: Reading, one: Component, teeth: Teeth) -> Keys:
-    amounts = [_amount(reading, one, f"profile_crowning_at_{end}") for end in ("tip", "root")]
+def _profile_crowning(reading: Reading, modification: Component, teeth: Teeth) -> Keys:
+    amounts = [_amount(reading, modification, f"profile_crowning_at_{end}") for end in ("tip", "root")]
     where = [f"diameter_where_profile_crowning_{end}_is_specified" for end in ("tip", "root")]
-    tip, root = _ends_of_profile(reading, one, teeth, *where)
-    reading.take(one, "shape_of_profile_crowning")
+    tip, root = _ends_of_profile(reading, modification, teeth, *where)
+    reading.take(modification, "shape_of_profile_crowning")
     if abs(amounts[0] - amounts[1]) > CLOSE_um:
         raise _Left(f"found {amounts[0]:g} um at the tip and {amounts[1]:g} um at the root; allowed equal amounts")
     half, own = 0.5 * (tip - root), 0.5 * (teeth.tip_roll - teeth.start_roll)
@@ -225,12 +227,12 @@ def _profile_crowning(reading: Reading, one: Component, teeth: Teeth) -> Keys:
     return keys
 
 
-def _profile_slope(reading: Reading, one: Component, teeth: Teeth) -> Keys:
-    amount = _amount(reading, one, "profile_slope")
-    tip, root = _ends_of_profile(reading, one, teeth, "profile_evaluation_end", "profile_evaluation_start")
+def _profile_slope(reading: Reading, modification: Component, teeth: Teeth) -> Keys:
+    amount = _amount(reading, modification, "profile_slope")
+    tip, root = _ends_of_profile(reading, modification, teeth, "profile_evaluation_end", "profile_evaluation_start")
     if tip - root < LEAST * (teeth.tip_roll - teeth.start_roll):
         raise _Left("profile_evaluation_start: found at profile_evaluation_end, or beyond")
-    reading.note(f"{one}: a positive profile_slope removes material towards the tip")
+    reading.note(f"{modification}: a positive profile_slope removes material towards the tip")
     return {"profile_slope_um": _um(amount * (teeth.tip_roll - teeth.start_roll) / (tip - root))}
 
 

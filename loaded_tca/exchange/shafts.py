@@ -12,13 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError
 from loaded_tca.exchange.bearings import BEARINGS, bearing_rows
 from loaded_tca.exchange.gearbox import Gearbox, Stage
-from loaded_tca.exchange.gears import NAMES
-from loaded_tca.exchange.model import Component, Reading
-from loaded_tca.exchange.units import ANGLE, FORCE, LENGTH, TORQUE
+from loaded_tca.exchange.model import ANGLE, FORCE, LENGTH, TORQUE, Component, Reading
 
 STEEPEST = math.radians(89.0)
 """Helix angle above which gears are none."""
@@ -46,19 +44,19 @@ def shaft_section(gearbox: Gearbox, stage: Stage, gear: int) -> dict[str, Any] |
     """
     reading, shaft = gearbox.reading, stage.shafts[gear]
     if shaft is None:
-        reading.leave(stage.gears[gear], f"it is on no shaft; {NAMES[gear]} without a support")
+        reading.leave(stage.gears[gear], f"it is on no shaft; {GEARS[gear]} without a support")
         return None
-    own = ShaftFrame(gearbox, stage, gear, shaft)
+    frame = ShaftFrame(gearbox, stage, gear, shaft)
     reading.take(shaft, "rotational_speed", "defines_speed")
     try:
         if stage.internal and gear == 1:
             raise NotTaken("the shaft of a ring gear; its outside is held rigid in the scene")
-        sections, start = own.sections()
-        bearings = own.bearings()
+        sections, start = frame.sections()
+        bearings = frame.bearings()
     except NotTaken as reason:
-        reading.leave(shaft, f"{reason}; {NAMES[gear]} without a support")
+        reading.leave(shaft, f"{reason}; {GEARS[gear]} without a support")
         return None
-    torque_at, loads = own.loads()
+    torque_at, loads = frame.loads()
     section: dict[str, Any] = {"start_mm": start, "torque_at_mm": torque_at, "sections": sections}
     section["bearings"] = bearings
     if loads:
@@ -71,9 +69,9 @@ def diameter_at(gearbox: Gearbox, stage: Stage, gear: int) -> float | None:
     shaft = stage.shafts[gear]
     if shaft is None:
         return None
-    own = ShaftFrame(gearbox, stage, gear, shaft)
+    frame = ShaftFrame(gearbox, stage, gear, shaft)
     try:
-        parts = own.parts()
+        parts = frame.parts()
     except NotTaken:
         return None
     middle = gearbox.place_on_shaft(stage.gears[gear], shaft)
@@ -169,8 +167,9 @@ class ShaftFrame:
         for n in range(steps):
             part = (n + 0.5) / steps
             diameters = [first + (last - first) * part for first, last in (outer, inner)]
-            one = {"length_mm": round((high - low) / steps, DIGITS), "outer_diameter_mm": round(diameters[0], DIGITS)}
-            cylinders.append(one | ({"inner_diameter_mm": round(diameters[1], DIGITS)} if diameters[1] else {}))
+            bore = {"inner_diameter_mm": round(diameters[1], DIGITS)} if diameters[1] else {}
+            length, outside = round((high - low) / steps, DIGITS), round(diameters[0], DIGITS)
+            cylinders.append({"length_mm": length, "outer_diameter_mm": outside, **bore})
         return cylinders
 
     # bearings
@@ -178,17 +177,17 @@ class ShaftFrame:
     def held_by(self) -> list[tuple[float, Component, str]]:
         """Bearings on the shaft in the order of the scene: axial coordinate, component, side of the shaft in it."""
         model = self.reading.model
-        found = []
+        bearings = []
         for side in ("inner", "outer"):
-            for one in model.related("side", f"{side}_part", self.shaft.id, "assembly"):
-                self.reading.touch([one])
-                if one.type in BEARINGS:
-                    self.reading.take(one, "u_coordinate_on_shaft_inner_side", "u_coordinate_on_shaft_outer_side")
-                    place = one.required(f"u_coordinate_on_shaft_{side}_side", LENGTH)
-                    found.append((self.at(place), one, side))
+            for bearing in model.related("side", f"{side}_part", self.shaft.id, "assembly"):
+                self.reading.touch([bearing])
+                if bearing.type in BEARINGS:
+                    self.reading.take(bearing, "u_coordinate_on_shaft_inner_side", "u_coordinate_on_shaft_outer_side")
+                    place = bearing.required(f"u_coordinate_on_shaft_{side}_side", LENGTH)
+                    bearings.append((self.at(place), bearing, side))
                 else:
-                    self.reading.leave(one, "no bearing; what it holds is not in the scene")
-        return sorted(found, key=lambda one: one[0])
+                    self.reading.leave(bearing, "no bearing; what it holds is not in the scene")
+        return sorted(bearings, key=lambda bearing: bearing[0])
 
     def bearings(self) -> list[dict[str, Any]]:
         """Bearings of the scene; all must have a stiffness."""
@@ -227,42 +226,42 @@ class ShaftFrame:
 
     def loads(self) -> tuple[float, list[dict[str, Any]]]:
         """Where the torque enters or leaves [mm], and all other loads."""
-        found: list[tuple[float, Array, Array, float]] = []
+        on_shaft: list[tuple[float, Array, Array, float]] = []
         for one in self.gearbox.parts_of(self.shaft, "external_load"):
             self.reading.touch([one])
-            found.append(self._external(one))
+            on_shaft.append(self._external(one))
         for stage in self.gearbox.stages.values():
             for n, (gear, shaft) in enumerate(zip(stage.gears, stage.shafts, strict=True)):
                 if stage.id != self.stage.id and shaft is not None and shaft.id == self.shaft.id:
                     load = self._tooth_force(stage, n)
                     if load is not None:
-                        found.append(load)
+                        on_shaft.append(load)
                         self.reading.note(f"{gear}: its tooth force in stage {stage.id} is a load on {self.shaft}")
-        carrying = [one for one in found if one[3]]
+        carrying = [load for load in on_shaft if load[3]]
         if carrying:
-            place = max(carrying, key=lambda one: abs(one[3]))[0]
-        elif len(found) == 1:
-            place = found[0][0]
+            place = max(carrying, key=lambda load: abs(load[3]))[0]
+        elif len(on_shaft) == 1:
+            place = on_shaft[0][0]
         else:
             place = 0.0
             self.reading.note(f"{self.shaft}: no place where its torque enters or leaves; it is the middle of the face")
         loads = []
-        for at, force, moment, torque in found:
+        for at, force, moment, torque in on_shaft:
             whole = moment if at == place else moment + self.turn @ np.array([torque, 0.0, 0.0])
             if np.any(np.abs(force) > 1e-9) or np.any(np.abs(whole) > 1e-9):
                 loads.append({"at_mm": at, "force_N": _rounded(force), "moment_Nm": _rounded(whole)})
         return place, loads
 
-    def _external(self, one: Component) -> tuple[float, Array, Array, float]:
+    def _external(self, load: Component) -> tuple[float, Array, Array, float]:
         """Place, force [N], moment across the axis [N m] and torque about u [N m] of a load."""
         names = [f"force_{axis}_direction" for axis in "uvw"]
-        force = np.array([self.reading.number(one, name, FORCE, 0.0) for name in names])
-        about = [self.reading.number(one, f"torque_around_{axis}_axis", TORQUE, 0.0) or 0.0 for axis in "vw"]
+        force = np.array([self.reading.number(load, name, FORCE, 0.0) for name in names])
+        about = [self.reading.number(load, f"torque_around_{axis}_axis", TORQUE, 0.0) or 0.0 for axis in "vw"]
         self.reading.take(
-            one, "u_coordinate_on_shaft", "torque_around_u_axis", "power", "transmits_torque", "defines_torque"
+            load, "u_coordinate_on_shaft", "torque_around_u_axis", "power", "transmits_torque", "defines_torque"
         )
-        at = self.at(one.required("u_coordinate_on_shaft", LENGTH))
-        return at, self.turn @ force, self.turn @ np.array([0.0, *about]), self.gearbox.load_torques.get(one.id, 0.0)
+        at = self.at(load.required("u_coordinate_on_shaft", LENGTH))
+        return at, self.turn @ force, self.turn @ np.array([0.0, *about]), self.gearbox.load_torques.get(load.id, 0.0)
 
     def _thrust(self) -> float:
         """Axial force of all gears on the shaft, along u [N]; 0 where a torque is not known."""
@@ -312,14 +311,14 @@ class ShaftFrame:
 
     def _middle_of_contact(self, stage: Stage, gear: int) -> float:
         """Middle of the common face of a stage along the shaft [mm]."""
-        own = self.gearbox.place_on_shaft(stage.gears[gear], self.shaft)
+        place = self.gearbox.place_on_shaft(stage.gears[gear], self.shaft)
         if not stage.placed:
-            return own
+            return place
         halves = [0.5 * one.required("face_width", LENGTH) for one in stage.gears]
         low, high = max(-halves[0], stage.axial_offset - halves[1]), min(halves[0], stage.axial_offset + halves[1])
         beside = 0.5 * (low + high) - (0.0 if gear == 0 else stage.axial_offset)
         sign = float(np.sign(self.gearbox.along(self.shaft) @ stage.axes[2]))
-        return own + sign * beside
+        return place + sign * beside
 
 
 def _working_angles(gearbox: Gearbox, stage: Stage) -> tuple[float, float, tuple[float, float]] | None:

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError, named
 from loaded_tca.exchange.gearbox import Gearbox, Stage
 from loaded_tca.exchange.gears import (
-    NAMES,
     STEEL,
     axis_sign,
     datum_sign,
@@ -20,10 +20,9 @@ from loaded_tca.exchange.gears import (
     operation_of,
     pair_section,
 )
-from loaded_tca.exchange.model import Component, Model, Reading
+from loaded_tca.exchange.model import LENGTH, Component, Model, Reading
 from loaded_tca.exchange.modifications import Teeth, modification_keys
 from loaded_tca.exchange.shafts import diameter_at, rest_of, shaft_section
-from loaded_tca.exchange.units import LENGTH
 from loaded_tca.scene import Scene, scene_from_table
 from loaded_tca.scene.keys import literal
 from loaded_tca.supports import shafts_of
@@ -157,7 +156,7 @@ def import_stage(
     run = operation_of(gearbox, chosen, torque_Nm)
     flanks = [flank_of(gearbox, chosen, gear, run.side) for gear in (0, 1)]
     table: dict[str, Any] = {"title": _title(chosen), "pair": pair_section(gearbox, chosen, flanks, run)}
-    for n, name in enumerate(NAMES):
+    for n, name in enumerate(GEARS):
         table[name] = gear_section(gearbox, chosen, n, flanks[n], table["pair"])
     table |= _materials(reading, chosen, table)
     table["load"] = {"pinion_torque_Nm": run.torque}
@@ -171,7 +170,7 @@ def import_stage(
         _add_bores(gearbox, chosen, table, mesh)
         _add_modifications(gearbox, chosen, flanks, table, mesh)
         scene = scene_from_table(table)
-        for n, name in enumerate(NAMES):
+        for n, name in enumerate(GEARS):
             scene = _with_shaft(gearbox, chosen, n, table, scene, name)
     return ImportedStage(
         scene,
@@ -192,15 +191,15 @@ def _one_line(text: str) -> str:
 
 def _materials(reading: Reading, stage: Stage, table: dict[str, Any]) -> dict[str, Any]:
     """Section [material], or those of the gears, which join the table."""
-    found = [material_section(reading, gear) for gear in stage.gears]
-    for gear, own in zip(stage.gears, found, strict=True):
-        if own is None:
+    sections = [material_section(reading, gear) for gear in stage.gears]
+    for gear, section in zip(stage.gears, sections, strict=True):
+        if section is None:
             reading.note(f"{gear}: no material with elastic constants; it is steel, E 206000 MPa, nu 0.3")
-    materials = [STEEL if own is None else own for own in found]
+    materials = [STEEL if section is None else section for section in sections]
     if materials[0] == materials[1]:
         return {"material": materials[0]}
-    for name, own in zip(NAMES, materials, strict=True):
-        table[name]["material"] = own
+    for name, section in zip(GEARS, materials, strict=True):
+        table[name]["material"] = section
     return {}
 
 
@@ -213,7 +212,7 @@ def _axial_offset(reading: Reading, stage: Stage) -> float:
 
 def _add_bores(gearbox: Gearbox, stage: Stage, table: dict[str, Any], mesh: Any) -> None:
     """Add what holds the bodies of the gears: the shaft at the middle of the face where it lies below the root."""
-    for n, (name, gear) in enumerate(zip(NAMES, (mesh.pinion, getattr(mesh, "wheel", None)), strict=True)):
+    for n, (name, gear) in enumerate(zip(GEARS, (mesh.pinion, getattr(mesh, "wheel", None)), strict=True)):
         diameter = diameter_at(gearbox, stage, n)
         if diameter is None or "bore_diameter_mm" in table[name]:
             continue
@@ -228,7 +227,7 @@ def _add_bores(gearbox: Gearbox, stage: Stage, table: dict[str, Any], mesh: Any)
 def _add_modifications(
     gearbox: Gearbox, stage: Stage, flanks: list[Component | None], table: dict[str, Any], mesh: Any
 ) -> None:
-    for n, (name, flank) in enumerate(zip(NAMES, flanks, strict=True)):
+    for n, (name, flank) in enumerate(zip(GEARS, flanks, strict=True)):
         if flank is None:
             continue
         gear = (mesh.pinion, mesh.wheel)[n]
@@ -252,10 +251,10 @@ def _with_shaft(gearbox: Gearbox, stage: Stage, gear: int, table: dict[str, Any]
     shaft = stage.shafts[gear]
     if section is None or shaft is None:
         return scene
-    material, own = material_section(gearbox.reading, shaft), scene.materials[gear]
+    material, of_gear = material_section(gearbox.reading, shaft), scene.materials[gear]
     if material and (material["youngs_modulus_MPa"], material["poisson_ratio"]) != (
-        own.youngs_modulus_MPa,
-        own.poisson_ratio,
+        of_gear.youngs_modulus_MPa,
+        of_gear.poisson_ratio,
     ):
         gearbox.reading.leave(shaft, f"its material, E {material['youngs_modulus_MPa']:g} MPa: it has that of the gear")
     trial = {**table, name: {**table[name], "shaft": section}}

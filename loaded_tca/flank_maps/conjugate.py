@@ -20,12 +20,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import map_coordinates
 
-from loaded_tca.arrays import Array, Indices, Mask
+from loaded_tca.arrays import GEARS, Array, Indices, Mask
+from loaded_tca.arrays import GearName as GearName
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
@@ -60,7 +61,6 @@ NOWHERE = -1.0
 """Room [modules] where there is no contact at all: beyond any edge."""
 WHEEL_EDGES = slice(4, 8)
 """Columns of the edges of the wheel's flank."""
-GearName = Literal["pinion", "wheel"]
 Edge = Callable[[Array, Indices], Array]
 """Room [modules] at shares along a line, of the lines named by the second argument."""
 
@@ -97,7 +97,7 @@ class ConjugateContact:
 
 def problems_of_map(gear: Any, grid: Any, fewest: int) -> list[str]:
     """What is wrong with the gear and the grid that a map of a flank is asked for."""
-    problems = [] if gear in ("pinion", "wheel") else [f"gear: {gear!r} is not 'pinion' or 'wheel'"]
+    problems = [] if gear in GEARS else [f"gear: {gear!r} is not 'pinion' or 'wheel'"]
     counts = list(grid) if isinstance(grid, Sequence | np.ndarray) else []
     if len(counts) != 2 or not all(isinstance(n, int | np.integer) and n >= fewest for n in counts):
         problems.append(f"grid: {grid!r} are not two whole numbers >= {fewest}")

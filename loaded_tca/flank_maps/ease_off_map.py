@@ -28,11 +28,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import Array, GearName, Mask
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.conjugate import (
     ROUNDING,
-    GearName,
     conjugate_contact,
     exchanged,
     mated_grid,
@@ -261,10 +260,10 @@ def ease_off_map(pair: GearPair, gear: GearName = "pinion", grid: tuple[int, int
     >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)))
     >>> pair = cylindrical_pair(mesh, modifications=(FlankModifications(lead_crowning=0.01), FlankModifications()))
-    >>> found = ease_off_map(pair)
-    >>> (1e3 * found.corners).round(6).tolist()
+    >>> ease_off = ease_off_map(pair)
+    >>> (1e3 * ease_off.corners).round(6).tolist()
     [[10.0, 10.0], [10.0, 10.0]]
-    >>> found.second_order
+    >>> ease_off.second_order
     SecondOrder(spiral angle 0 arcmin, pressure angle 0 arcmin, crownings 10 um and 0 um, twist 0 um)
     """
     problems = problems_of_map(gear, grid, FEWEST)

@@ -22,9 +22,9 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices, Mask
+from loaded_tca.arrays import Array, GearName, Indices, Mask
 from loaded_tca.errors import InputError
-from loaded_tca.flank_maps.conjugate import GearName, exchanged, problems_of_map
+from loaded_tca.flank_maps.conjugate import exchanged, problems_of_map
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.curvature import relative_curvature
 from loaded_tca.unloaded.ease_off import EaseOff

@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.ndimage import zoom
 
-from loaded_tca.arrays import Array, finite_row
+from loaded_tca.arrays import Array, GearName, finite_row
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flank_maps.pattern import COMPOUND, ContactPattern, contact_pattern
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.pairs.gear_pair import GearPair

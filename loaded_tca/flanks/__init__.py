@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from loaded_tca.flanks.cylindrical import InvoluteFlank
     from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank
     from loaded_tca.flanks.hypoid_synthesis import Mismatch, synthesised_gears
-    from loaded_tca.flanks.modification import FlankModifications, ModifiedFlank
+    from loaded_tca.flanks.modification import FlankModifications
+    from loaded_tca.flanks.removal import ModifiedFlank
     from loaded_tca.flanks.rounding import EdgeRounding, RoundedFlank
     from loaded_tca.flanks.spline import SplineFlank, fitted, measured
     from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography, read_topography

@@ -48,7 +48,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import ConeFrame, Flank, Jet, cone_angle, cone_distance, of_cone_angle
 from loaded_tca.flanks.tensor_spline import polynomial
-from loaded_tca.gears.cutter_circle import CutterCircle
+from loaded_tca.gears.bevel import CutterCircle
 
 NODES = 11
 """Cone distances at which a curve over R is known; they resolve it to the last digits."""

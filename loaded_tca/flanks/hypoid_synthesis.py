@@ -5,7 +5,7 @@ and the place of the cutter are such that both flanks have their pressure angles
 of the drive side its spiral angle at the calculation point P.
 
 The pinion is generated, both flanks with the same machine settings. What a flank should be is the conjugate of the
-wheel's (:mod:`loaded_tca.flanks.envelope`) less a mismatch.
+wheel's (:mod:`loaded_tca.flanks.face_milled`) less a mismatch.
 
 A mismatch removes :math:`c_p (2 y/h)^2 + c_l (2 l/b)^2 + c_t (2 y/h)(2 l/b)` from it, y up the profile and l lengthwise
 from P, over working depth h and face width b.
@@ -36,8 +36,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.flanks.base import Jet
 from loaded_tca.flanks.cradle import CradleGeneration, GeneratedPoints
-from loaded_tca.flanks.envelope import conjugate_flank
-from loaded_tca.flanks.face_milled import GeneratedFlank
+from loaded_tca.flanks.face_milled import GeneratedFlank, conjugate_flank
 from loaded_tca.gears.face_milled import (
     BLADE_SIGNS,
     Blade,

@@ -180,8 +180,8 @@ def fit(
     --------
     >>> u, v = np.meshgrid(np.linspace(0.0, 1.0, 7), np.linspace(0.0, 2.0, 9), indexing="ij")
     >>> spline = fit(u, v, u**2 * v, (3, 3))
-    >>> found = spline(np.array(0.3), np.array(1.7))
-    >>> [round(float(part), 9) for part in (found.value, found.u_u, found.u_v)]
+    >>> jet = spline(np.array(0.3), np.array(1.7))
+    >>> [round(float(part), 9) for part in (jet.value, jet.u_u, jet.u_v)]
     [0.153, 3.4, 0.6]
     """
     counts = u.shape if coefficients is None else coefficients

@@ -1,19 +1,18 @@
 """Macro geometry of gears, and the cutters and machine settings that cut them."""
 
 from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
-from loaded_tca.gears.bevel import BevelGear, BevelMesh, bevel_mesh
+from loaded_tca.gears.bevel import BevelGear
 from loaded_tca.gears.bevel_blank import BevelBlank
+from loaded_tca.gears.bevel_mesh import BevelMesh, bevel_mesh
 from loaded_tca.gears.blank_gear import BlankGear
-from loaded_tca.gears.cylindrical import CylindricalGear
+from loaded_tca.gears.cylindrical import CylindricalGear, transverse_profile
 from loaded_tca.gears.cylindrical_mesh import CylindricalMesh
 from loaded_tca.gears.face_milled import Blade, Cutter, FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
-from loaded_tca.gears.hypoid import HypoidCones
+from loaded_tca.gears.hypoid import HypoidCones, HypoidMesh
 from loaded_tca.gears.hypoid_blank import HypoidBlank
-from loaded_tca.gears.hypoid_mesh import HypoidMesh
 from loaded_tca.gears.internal_mesh import InternalMesh
 from loaded_tca.gears.pitch_cones import PitchConeParameters, pitch_cones_by_method_1
 from loaded_tca.gears.ring import PinionCutter, RingGear
-from loaded_tca.gears.transverse_profile import transverse_profile
 
 __all__ = [
     "BevelBlank",

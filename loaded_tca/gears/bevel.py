@@ -1,15 +1,30 @@
-"""Straight and spiral bevel gears with spherical involute profiles: cones, cone distances, active profiles.
+r"""Straight and spiral bevel gears with spherical involute profiles: cones, cone distances, active profiles.
 
 Lengths are in mm, angles in rad. Base and pitch cones share the apex; face and root cones may have their own. Profiles
 are described on the unit sphere about the apex, where a tooth is unwound from its base cone: the unwound arc w takes
 the place of the roll length.
+
+The lengthwise curve on the plane of the crown gear may be the circle of a face-milling cutter. With the circle of
+radius :math:`r_{c0}` at the spiral angle :math:`\beta_m` of the cone distance R_m,
+
+.. math:: \sin\beta = \frac{K + R^2}{2 R r_{c0}}, \quad K = 2 R_m r_{c0} \sin\beta_m - R_m^2, \qquad
+          \frac{d\varphi}{dR} = \frac{\tan\beta}{R}, \quad
+          \varphi = -\arccos\frac{R^2 + S^2 - r_{c0}^2}{2 R S}, \quad S^2 = r_{c0}^2 - K
+
+phi the angle of the curve about the apex; a gear turns by phi/sin(delta).
+
+References
+----------
+ISO 23509:2016, formula 193 (spiral angle).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from math import acos, asin, atan, atan2, cos, degrees, isclose, log, pi, radians, sin, sqrt, tan
+from math import acos, asin, atan, atan2, cos, degrees, inf, pi, radians, sin, sqrt, tan
+from typing import Any
+
+import numpy as np
 
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears.checks import (
@@ -17,17 +32,87 @@ from loaded_tca.gears.checks import (
     face_check,
     half_turn_checks,
     input_checks,
-    pair_checks,
     spiral_check,
     teeth_checks,
 )
-from loaded_tca.gears.cutter_circle import CutterCircle
-from loaded_tca.gears.cylindrical_mesh import Room
 
-_EQUAL = 1e-9
 _DEDENDUM = 1.25
 # In outer modules: the straight blade of a generating tool reaches this deep (ISO 23509:2016, clause 8).
 _TOOL_DEPTH = 1.1
+_LARGEST_SINE = 0.999
+"""Of spiral angles beyond the face, where searches step over the reach of the cutter."""
+
+
+@dataclass(frozen=True)
+class CutterCircle:
+    """Circle of a cutter on the plane of the crown gear.
+
+    Parameters
+    ----------
+    mean_distance : float [mm]
+        R_m.
+    spiral_angle : float [rad]
+        beta_m, positive.
+    radius : float [mm]
+        r_c0.
+
+    Raises
+    ------
+    InputError
+        If the radius is not positive and finite.
+
+    Examples
+    --------
+    Annex F.2 of ISO 23509, at the heel:
+
+    >>> from math import asin, degrees, radians
+    >>> circle = CutterCircle(81.273, radians(35.0), 114.3)
+    >>> round(degrees(asin(circle.sine(93.973)[0])), 3)
+    36.846
+    """
+
+    mean_distance: float
+    spiral_angle: float
+    radius: float
+
+    def __post_init__(self) -> None:
+        require((0.0 < self.radius < inf, f"cutter_radius: {self.radius} mm is not positive and finite"))
+
+    @property
+    def _constant(self) -> float:
+        return self.mean_distance * (2.0 * self.radius * sin(self.spiral_angle) - self.mean_distance)
+
+    def check(self, owner: str, distances: tuple[float, float]) -> None:
+        """Refuse a circle that does not cross the cone distances of toe and heel [mm]."""
+        for distance in distances:
+            if not abs(self._constant + distance**2) < _LARGEST_SINE * 2.0 * distance * self.radius:
+                raise GeometryError(
+                    f"{owner}: cutter_radius {self.radius:g} mm: its circle does not cross the cone distance"
+                    f" {distance:.4f} mm; use a larger cutter or a smaller face width"
+                )
+
+    def sine(self, distance: Any) -> tuple[Any, Any, Any]:
+        """sin(beta) at cone distances [mm], with its first and second derivatives."""
+        constant, radius = self._constant, self.radius
+        value = np.clip((constant + distance**2) / (2.0 * distance * radius), -_LARGEST_SINE, _LARGEST_SINE)
+        slope = (1.0 - constant / distance**2) / (2.0 * radius)
+        return value, slope, constant / (distance**3 * radius)
+
+    def tangent(self, distance: Any) -> tuple[Any, Any, Any]:
+        """tan(beta), with its first and second derivatives."""
+        sine, slope, bend = self.sine(distance)
+        cosine = np.sqrt(1.0 - sine**2)
+        return sine / cosine, slope / cosine**3, bend / cosine**3 + 3.0 * sine * slope**2 / cosine**5
+
+    def turn(self, distance: Any) -> Any:
+        """phi of the curve, zero at R_m [rad]."""
+        return self._angle(self.mean_distance) - self._angle(distance)
+
+    def _angle(self, distance: Any) -> Any:
+        machine = sqrt(self.radius**2 - self._constant)
+        cosine = (distance**2 - self._constant) / (2.0 * distance * machine)
+        # (R^2 + S^2 - r^2)/(2 R S) with S^2 = r^2 - K
+        return np.arccos(np.clip(cosine, -1.0, 1.0))
 
 
 def pitch_angles(teeth: tuple[int, int], shaft_angle: float) -> tuple[float, float]:
@@ -132,8 +217,8 @@ class BevelGear:
         )
         root, pitch, face = self.root_cone_angle, self.pitch_angle, self.tip_angle
         require(
-            (root < pitch, f"root cone, {_degrees(root)}, is not below the pitch cone, {_degrees(pitch)}"),
-            (face > pitch, f"face cone, {_degrees(face)}, is not above the pitch cone, {_degrees(pitch)}"),
+            (root < pitch, f"root cone, {in_degrees(root)}, is not below the pitch cone, {in_degrees(pitch)}"),
+            (face > pitch, f"face cone, {in_degrees(face)}, is not above the pitch cone, {in_degrees(pitch)}"),
             owner=self.name,
         )
         self._check_tooth()
@@ -149,7 +234,7 @@ class BevelGear:
             self.cutter_circle.check(self.name, (self.inner_cone_distance, self.outer_cone_distance))
         if self.root_cone_angle <= 0.0:
             raise GeometryError(
-                f"{self.name}: the root cone, {_degrees(self.root_cone_angle)}, reaches the axis; raise profile_shift"
+                f"{self.name}: the root cone, {in_degrees(self.root_cone_angle)}, reaches the axis; raise profile_shift"
                 " or teeth"
             )
         largest = 2.0 * self.inner_cone_distance * sin(self.root_cone_angle_at(self.inner_cone_distance))
@@ -168,10 +253,10 @@ class BevelGear:
             owner=self.name,
         )
         highest = max(self.tip_angle_at(distance) for distance in ends)
-        face = f"{self.name}: the face cone, {_degrees(highest)},"
+        face = f"{self.name}: the face cone, {in_degrees(highest)},"
         if highest >= pi - self.base_angle:
             raise GeometryError(
-                f"{face} lies beyond the end of the spherical involute, {_degrees(pi - self.base_angle)}; reduce "
+                f"{face} lies beyond the end of the spherical involute, {in_degrees(pi - self.base_angle)}; reduce "
                 "face_angle or profile_shift"
             )
         if self.half_thickness_angle_at(highest) <= 0.0:
@@ -332,174 +417,6 @@ def _seen_from_apex(angle: float, apex: float, cone_distance: float) -> float:
     return angle + asin(apex * sin(angle) / cone_distance) if apex else angle
 
 
-def _degrees(angle: float) -> str:
+def in_degrees(angle: float) -> str:
+    """An angle [rad] as messages have it."""
     return f"{degrees(angle):.4f} deg"
-
-
-@dataclass(frozen=True)
-class BevelMesh:
-    """Two bevel gears whose pitch cones roll on each other; the shaft angle is the sum of their pitch angles.
-
-    Parameters
-    ----------
-    pinion, wheel : BevelGear
-        Of one outer module, face width and pressure angle, with opposite hands; of one mean cone distance and module
-        there where both have their calculation points.
-
-    Raises
-    ------
-    InputError
-        If the gears do not fit each other.
-
-    Examples
-    --------
-    >>> mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0)
-    >>> round(mesh.pinion.outer_cone_distance, 4), round(mesh.transverse_contact_ratio, 3)
-    (89.4427, 1.714)
-    """
-
-    pinion: BevelGear
-    wheel: BevelGear
-
-    def __post_init__(self) -> None:
-        first, second, shaft_angle = self.pinion, self.wheel, _degrees(self.shaft_angle)
-        own_points = None not in (first.calculation_distance, second.calculation_distance)
-        of_both = () if own_points else ("outer_module", "face_width")
-        rolls = isclose(first.mean_cone_distance, second.mean_cone_distance, rel_tol=_EQUAL)
-        modules = [gear.mean_normal_module for gear in (first, second)]
-        rolls = rolls and isclose(*modules, rel_tol=_EQUAL)
-        pitches = f"{_degrees(first.pitch_angle)} and {_degrees(second.pitch_angle)}"
-        require(
-            *pair_checks(first, second, of_both, "spiral_angle"),
-            (rolls, f"pitch_angle: {pitches} do not roll on each other with {first.teeth}/{second.teeth} teeth"),
-            (
-                first.cutter_radius == second.cutter_radius,
-                f"cutter_radius: {first.cutter_radius} and {second.cutter_radius} mm must be equal",
-            ),
-            (self.shaft_angle < pi, f"pitch_angle: the shaft angle, {shaft_angle}, is not below 180 deg"),
-        )
-
-    @property
-    def shaft_angle(self) -> float:
-        """Sigma = delta_1 + delta_2 [rad]."""
-        return self.pinion.pitch_angle + self.wheel.pitch_angle
-
-    @cached_property
-    def active_cones(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """(start, tip) cone angles of the active profile of pinion and wheel at nominal mounting [rad].
-
-        It starts where the tip of the mating gear ends on the flank, or at the form cone if that lies higher.
-        """
-        pinion, wheel = self.pinion, self.wheel
-        starts = [max(arcs) for arcs in self._tip_and_form_arcs]
-        return (
-            (pinion.cone_angle_at_arc(starts[0]), pinion.tip_angle),
-            (wheel.cone_angle_at_arc(starts[1]), wheel.tip_angle),
-        )
-
-    @property
-    def _line_of_action(self) -> float:
-        """Arc of the great circle of contact between the two base cones that it touches [rad]."""
-        return sum(gear.unwound_arc(gear.pitch_angle) for gear in (self.pinion, self.wheel))
-
-    @property
-    def _tip_and_form_arcs(self) -> list[tuple[float, float]]:
-        """Unwound arcs on pinion and wheel where the mating gear's tip ends, and at their own form cones [rad].
-
-        The first one is negative beyond the base cone.
-        """
-        both_ways = (self.pinion, self.wheel), (self.wheel, self.pinion)
-        return [
-            (self._line_of_action - mating.unwound_arc(mating.tip_angle), gear.unwound_arc(gear.form_angle))
-            for gear, mating in both_ways
-        ]
-
-    @property
-    def fillet_interference(self) -> tuple[bool, bool]:
-        """Whether the mating gear's tip reaches below the form cone of pinion and wheel, into what is no involute."""
-        pinion, wheel = (tip < form for tip, form in self._tip_and_form_arcs)
-        return pinion, wheel
-
-    @property
-    def backlash(self) -> float:
-        """Circumferential backlash at the mean pitch circles; negative where the teeth overlap [mm]."""
-        gears = self.pinion, self.wheel
-        spaces = (pi / gear.teeth - 2.0 * gear.half_thickness_angle for gear in gears)
-        radii = (gear.mean_cone_distance * sin(gear.pitch_angle) for gear in gears)
-        return sum(radius * space for radius, space in zip(radii, spaces, strict=True))
-
-    @property
-    def room(self) -> Room:
-        """Room that the whole gears leave each other: at mid-face, above the roots at the toe."""
-        pinion, wheel = (self.pinion.mean_cone_distance * (tip - form) for tip, form in self._tip_and_form_arcs)
-        return Room(self.backlash, (pinion, wheel), self.tip_clearances)
-
-    @property
-    def tip_clearances(self) -> tuple[float, float]:
-        """Clearance between the roots of both gears and the mating gear's tip at the toe, across the cones [mm]."""
-        both_ways = (self.pinion, self.wheel), (self.wheel, self.pinion)
-        pinion, wheel = (
-            toe * (self.shaft_angle - gear.root_cone_angle_at(toe) - mating.tip_angle_at(toe))
-            for gear, mating in both_ways
-            for toe in [max(gear.inner_cone_distance, mating.inner_cone_distance)]
-        )
-        return pinion, wheel
-
-    @property
-    def transverse_contact_ratio(self) -> float:
-        """eps_alpha: arc of contact over the base pitch 2 pi sin(delta_b1)/z1, on the sphere."""
-        length = self._line_of_action - sum(max(arcs) for arcs in self._tip_and_form_arcs)
-        return length * self.pinion.teeth / (2.0 * pi * sin(self.pinion.base_angle))
-
-    @property
-    def overlap_ratio(self) -> float:
-        """eps_beta: turn of the pinion over which the spiral passes the face, in pitches."""
-        gear, circle = self.pinion, self.pinion.cutter_circle
-        heel = min(self.pinion.outer_cone_distance, self.wheel.outer_cone_distance)
-        toe = max(self.pinion.inner_cone_distance, self.wheel.inner_cone_distance)
-        if circle is None:
-            turn = abs(tan(gear.spiral_angle)) / sin(gear.pitch_angle) * log(heel / toe)
-        else:
-            turn = float(circle.turn(heel) - circle.turn(toe)) / sin(gear.pitch_angle)
-        return turn * gear.teeth / (2.0 * pi)
-
-
-def bevel_mesh(
-    teeth: tuple[int, int],
-    outer_module: float,
-    face_width: float,
-    *,
-    shaft_angle: float = 0.5 * pi,
-    pressure_angle: float = radians(20),
-    spiral_angle: float = 0.0,
-    profile_shifts: tuple[float, float] = (0.0, 0.0),
-    face_angles: tuple[float | None, float | None] = (None, None),
-    root_angles: tuple[float | None, float | None] = (None, None),
-) -> BevelMesh:
-    """Pair of bevel gears from numbers of teeth and shaft angle.
-
-    Parameters
-    ----------
-    teeth : (int, int)
-    outer_module, face_width : float [mm]
-    shaft_angle : float [rad]
-        Sigma, between 0 and pi.
-    pressure_angle, spiral_angle : float [rad]
-        See :class:`BevelGear`; the spiral angle is that of the pinion, positive for right hand.
-    profile_shifts : (float, float)
-    face_angles, root_angles : (float or None, float or None) [rad]
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
-    GeometryError
-        If a tooth cannot exist.
-    """
-    require(*half_turn_checks(shaft_angle=shaft_angle))
-    pitches, spirals, names = pitch_angles(teeth, shaft_angle), (spiral_angle, -spiral_angle), ("pinion", "wheel")
-    members = zip(teeth, pitches, spirals, profile_shifts, face_angles, root_angles, names, strict=True)
-    pinion, wheel = (
-        BevelGear(count, outer_module, face_width, pitch, pressure_angle, *own) for count, pitch, *own in members
-    )
-    return BevelMesh(pinion, wheel)

@@ -9,17 +9,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import asin, atan, copysign, cos, degrees, inf, isclose, pi, radians, sin, sqrt, tan
+from math import asin, atan, cos, degrees, inf, isclose, pi, radians, sin, tan
 from typing import Any, Literal, get_args
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.bevel import pitch_angles
-from loaded_tca.gears.blank_gear import SECTIONS, BlankGear, Triple, virtual_curvature
+from loaded_tca.gears.blank_gear import (
+    SECTIONS,
+    BlankGear,
+    BlankPair,
+    Triple,
+    cutter_sine,
+    depth_angles_check,
+    taper_check,
+    virtual_contact_ratios,
+    virtual_curvature,
+)
 from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, half_turn_checks, input_checks, teeth_checks
 
 Taper = Literal["standard", "uniform", "duplex", "modified"]
 
-_MAX_DEPTH_ANGLE = radians(45)
 # The straight blade of a tool reaches this much deeper than the mating gear's tip (ISO 23509, clause 8).
 _TOOL_DEPTH = 1.1
 # "modified" taper: the most by which the dedendum angles may exceed the standard ones (ISO 23509, annex C.5).
@@ -29,9 +39,7 @@ _ROUNDED = 1e-3
 # Part of the face width that the overlap of ISO 10300-1 counts.
 _EFFECTIVE_WIDTH = 0.85
 
-
 BacklashKind = Literal["outer_normal", "outer_transverse", "mean_normal", "mean_transverse"]
-
 
 Cones = tuple[tuple[float, float] | None, tuple[float, float] | None]
 """Face and root cone of a gear: angle [rad] and how far the apex lies beyond the crossing point [mm]."""
@@ -39,7 +47,7 @@ NO_CONES: Cones = (None, None)
 
 
 @dataclass(frozen=True)
-class BevelBlank:
+class BevelBlank(BlankPair):
     r"""Blanks of two bevel gears on axes that meet.
 
     The profile shifts are opposite, the wheel's is :math:`-x_{hm}`. Face cones run parallel to the mating gear's root
@@ -177,16 +185,11 @@ class BevelBlank:
 
     def _check_inputs(self) -> None:
         """Refuse values out of their own ranges, then depths and tapers that do not go together."""
-        positive = (
-            "outer_module",
-            "face_width",
-            "cutter_radius",
-            "addendum_factor",
-            "dedendum_factor",
-            "pinion_face_width",
-        )
+        lengths = "outer_module", "face_width", "cutter_radius", "pinion_face_width"
+        positive = *lengths, "addendum_factor", "dedendum_factor"
         backlash, spiral = self.outer_normal_backlash, self.spiral_angle
-        shallow = self.wheel_angles is None or all(abs(angle) < _MAX_DEPTH_ANGLE for angle in self.wheel_angles)
+        cone_angles = [cone[0] for both in self.cones for cone in both if cone is not None]
+
         require(
             *teeth_checks(*self.teeth),
             *input_checks(self, positive, ("profile_shift", "thickness_modification")),
@@ -197,12 +200,8 @@ class BevelBlank:
                 f"spiral_angle: {spiral:.6g} rad is not from 0 to below 1.047 rad (60 deg)",
             ),
             (0.0 < self.outer_share < 1.0, f"outer_share: {self.outer_share} is not between 0 and 1"),
-            *(
-                half_turn
-                for cone in (one for both in self.cones for one in both if one is not None)
-                for half_turn in half_turn_checks(cones=cone[0])
-            ),
-            (shallow, f"wheel_angles: {self.wheel_angles} rad are not within 0.785 rad (45 deg)"),
+            *(check for angle in cone_angles for check in half_turn_checks(cones=angle)),
+            depth_angles_check(self.wheel_angles),
         )
         smallest = self.mean_cone_distance * sin(spiral)
         any_cutter = self.taper not in ("duplex", "modified") or self.wheel_angles is not None
@@ -212,7 +211,7 @@ class BevelBlank:
                 f"dedendum_factor: {self.dedendum_factor} is not above addendum_factor {self.addendum_factor}: no"
                 " clearance is left, tips of the mating gear would cut into the root",
             ),
-            (self.taper in get_args(Taper), f"taper: {self.taper!r} is not one of {', '.join(get_args(Taper))}"),
+            taper_check(self.taper, get_args(Taper)),
             (
                 any_cutter or (self.cutter_radius is not None and self.cutter_radius >= smallest),
                 f"cutter_radius: {self.cutter_radius} mm; a {self.taper} taper needs at least R_m sin(beta_m) ="
@@ -222,9 +221,7 @@ class BevelBlank:
 
     def _check_face(self) -> None:
         """Refuse faces without toe, or beyond the reach of the cutter."""
-        for width, distances in zip(
-            (self.face_widths[1], self.face_widths[0]), self._both_distances[::-1], strict=True
-        ):
+        for width, distances in zip(self.face_widths[::-1], self._both_distances[::-1], strict=True):
             if not distances[0] > 0.0:
                 raise GeometryError(
                     f"face_width {width:.6g} mm reaches the apex: no face is left at the toe; it must be below"
@@ -240,7 +237,7 @@ class BevelBlank:
 
     def _check_cones(self) -> None:
         """Refuse root and face cones that reach or cross the axis."""
-        for member, name in enumerate(("pinion", "wheel")):
+        for member, name in enumerate(GEARS):
             root = self.pitch_angles[member] - self.dedendum_angles[member]
             face = self.pitch_angles[member] + self.dedendum_angles[1 - member]
             if not (root > 0.0 and face < pi):
@@ -306,34 +303,14 @@ class BevelBlank:
         """m_mn = m_mt cos(beta_m) [mm]."""
         return self.mean_transverse_module * cos(self.spiral_angle)
 
-    @property
-    def working_depth(self) -> float:
-        """h_mw = 2 k_hap m_mn, at mid-face [mm]."""
-        return 2.0 * self.addendum_factor * self.mean_normal_module
-
-    @property
-    def clearance(self) -> float:
-        """c = (k_hfp - k_hap) m_mn, the same along the face [mm]."""
-        return (self.dedendum_factor - self.addendum_factor) * self.mean_normal_module
-
-    @property
-    def whole_depth(self) -> float:
-        """h_m = (k_hap + k_hfp) m_mn, at mid-face [mm]."""
-        return (self.addendum_factor + self.dedendum_factor) * self.mean_normal_module
-
     def spiral_angle_at(self, cone_distance: float) -> float:
-        r"""Spiral angle on the pitch cone [rad].
-
-        .. math:: \sin\beta = \frac{2 R_m r_{c0} \sin\beta_m - R_m^2 + R^2}{2 R r_{c0}}
-        """
+        """Spiral angle on the pitch cone [rad]."""
         return asin(self._sine_of_spiral(cone_distance))
 
     def _sine_of_spiral(self, cone_distance: float) -> float:
-        mean, sine = self.mean_cone_distance, sin(self.spiral_angle)
         if self.cutter_radius is None:
-            return sine
-        bend = (cone_distance - mean) * (cone_distance + mean) / (2.0 * self.cutter_radius)
-        return (mean * sine + bend) / cone_distance
+            return sin(self.spiral_angle)
+        return cutter_sine(cone_distance, self.mean_cone_distance, self.spiral_angle, self.cutter_radius)
 
     @property
     def dedendum_angles(self) -> tuple[float, float]:
@@ -342,13 +319,13 @@ class BevelBlank:
             return self.wheel_angles
         if self.taper == "uniform":
             return 0.0, 0.0
-        pinion, wheel = (atan(depth / self.mean_cone_distance) for depth in self._mean_dedenda)
+        pinion, wheel = (atan(depth / self.mean_cone_distance) for depth in self.mean_dedenda)
         if self.taper == "standard":
             return pinion, wheel
         whole = self.constant_slot_taper
         if self.taper == "modified":
             whole = min(whole, _LARGEST_TAPER * (pinion + wheel))
-        share = self._mean_addenda[1] / self.working_depth
+        share = self.mean_addenda[1] / self.working_depth
         return share * whole, (1.0 - share) * whole
 
     @property
@@ -368,18 +345,10 @@ class BevelBlank:
 
         The overlap is that of 0.85 of the face width.
         """
-        spiral, module = self.spiral_angle, self.mean_normal_module
-        pressure = atan(tan(self.pressure_angle) / cos(spiral))
-        length = 0.0
-        for member, pitch in enumerate(self.pitch_angles):
-            diameter = self.teeth[member] * self.mean_transverse_module / cos(pitch)
-            tip = diameter + 2.0 * self._mean_addenda[member]
-            base = diameter * cos(pressure)
-            length += 0.5 * (copysign(sqrt(max(tip**2 - base**2, 0.0)), diameter) - diameter * sin(pressure))
-        return (
-            length * cos(spiral) / (pi * module * cos(pressure)),
-            _EFFECTIVE_WIDTH * self.face_width * sin(spiral) / (pi * module),
-        )
+        d1, d2 = (count * self.mean_transverse_module / cos(self.pitch_angles[k]) for k, count in enumerate(self.teeth))
+        module, width = self.mean_normal_module, _EFFECTIVE_WIDTH * self.face_width
+        angles = self.pressure_angle, self.spiral_angle
+        return virtual_contact_ratios((d1, d2), self.mean_addenda, angles, module, width)
 
     @property
     def has_constant_slots(self) -> bool:
@@ -391,18 +360,6 @@ class BevelBlank:
         return self.cutter_radius is not None and isclose(sum(angles), self.constant_slot_taper, rel_tol=_ROUNDED)
 
     @property
-    def _mean_addenda(self) -> tuple[float, float]:
-        """h_am1, h_am2 [mm]."""
-        module, shift = self.mean_normal_module, self.profile_shift
-        return module * (self.addendum_factor + shift), module * (self.addendum_factor - shift)
-
-    @property
-    def _mean_dedenda(self) -> tuple[float, float]:
-        """h_fm1, h_fm2 [mm]."""
-        module, shift = self.mean_normal_module, self.profile_shift
-        return module * (self.dedendum_factor - shift), module * (self.dedendum_factor + shift)
-
-    @property
     def _apexes(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """(t_zF, t_zR) of pinion and wheel [mm].
 
@@ -411,8 +368,8 @@ class BevelBlank:
         """
         mean, (pitch1, pitch2) = self.mean_cone_distance, self.pitch_angles
         theta_a2, theta_f2 = self.dedendum_angles
-        face2 = (self._mean_addenda[1] * cos(theta_a2) - mean * sin(theta_a2)) / sin(pitch2 + theta_a2)
-        root2 = (mean * sin(theta_f2) - self._mean_dedenda[1] * cos(theta_f2)) / sin(pitch2 - theta_f2)
+        face2 = (self.mean_addenda[1] * cos(theta_a2) - mean * sin(theta_a2)) / sin(pitch2 + theta_a2)
+        root2 = (mean * sin(theta_f2) - self.mean_dedenda[1] * cos(theta_f2)) / sin(pitch2 - theta_f2)
         face1 = -(root2 * sin(pitch2 - theta_f2) + self.clearance) / sin(pitch1 + theta_f2)
         root1 = -(face2 * sin(pitch2 + theta_a2) + self.clearance) / sin(pitch1 - theta_a2)
         return (face1, root1), (face2, root2)
@@ -431,27 +388,23 @@ class BevelBlank:
         return max(needed)
 
     def _gear(self, member: int) -> BlankGear:
-        sign = (1.0, -1.0)[member]
-        shift, module = sign * self.profile_shift, self.mean_normal_module
         toe, middle, heel = self._both_distances[member]
-        # What the backlash takes from the thickness modification of either gear: j_en at the heel brought to R_m.
-        outer = self.outer_cone_distance
+        outer = self.outer_cone_distance  # from where j_en is brought to R_m
         narrower = middle * cos(self.spiral_angle) / (outer * cos(self.spiral_angle_at(outer)))
-        backlash = self.outer_normal_backlash * narrower / (4.0 * module * cos(self.pressure_angle))
-        thickening = sign * self.thickness_modification - backlash
+        backlash = self.outer_normal_backlash * narrower
         gear = BlankGear(
-            name=("pinion", "wheel")[member],
+            name=GEARS[member],
             teeth=self.teeth[member],
             pitch_angle=self.pitch_angles[member],
             pressure_angle=self.pressure_angle,
             cone_distances=(toe, middle, heel),
             spiral_angles=(self.spiral_angle_at(toe), self.spiral_angle_at(middle), self.spiral_angle_at(heel)),
-            mean_addendum=self._mean_addenda[member],
-            mean_dedendum=self._mean_dedenda[member],
+            mean_addendum=self.mean_addenda[member],
+            mean_dedendum=self.mean_dedenda[member],
             addendum_angle=self.dedendum_angles[1 - member],
             dedendum_angle=self.dedendum_angles[member],
-            mean_normal_thickness=module * (0.5 * pi + 2.0 * (thickening + shift * tan(self.pressure_angle))),
-            profile_shift=shift,
+            mean_normal_thickness=self.mean_normal_thickness(member, self.pressure_angle, backlash),
+            profile_shift=(1.0, -1.0)[member] * self.profile_shift,
             smallest_profile_shift=self._smallest_profile_shift(member),
             face_apex=self._apexes[member][0],
             root_apex=self._apexes[member][1],

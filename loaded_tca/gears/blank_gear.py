@@ -7,18 +7,22 @@ leave.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import acos, cos, inf, pi, sin, tan
-from typing import Any
+from math import acos, atan, copysign, cos, inf, pi, radians, sin, sqrt, tan
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError
 from loaded_tca.gears.involute import involute
 
 Triple = tuple[float, float, float]
 
+LARGEST_DEPTH_ANGLE = radians(45)
+"""Of addendum and dedendum angles, and of the pressure angles of hypoid flanks."""
 SECTIONS = ("toe", "mean point", "heel")
 
 # Height over radius, or angle, below which the virtual gear is a rack: cancellation would cost more than curvature.
@@ -50,6 +54,95 @@ def virtual_curvature(cone_distance: float, pitch_angle: float, spiral_angle: fl
     """
     turned = (sin(spiral_angle) * cos(pressure_angle)) ** 2
     return (1.0 - turned) / (cone_distance * tan(pitch_angle))
+
+
+def cutter_sine(cone_distance: float, mean_distance: float, spiral_angle: float, cutter_radius: float) -> float:
+    r"""sin(beta) at a cone distance, where the circle of a cutter has the spiral angle at the mean one.
+
+    .. math:: \sin\beta = \frac{2 R_m r_{c0} \sin\beta_m - R_m^2 + R^2}{2 R r_{c0}}
+
+    Parameters
+    ----------
+    cone_distance, mean_distance, cutter_radius : float [mm]
+        R, R_m and r_c0.
+    spiral_angle : float [rad]
+        beta_m.
+
+    Returns
+    -------
+    float
+        Of 1 and more the circle does not cross the cone distance.
+
+    References
+    ----------
+    ISO 23509:2016, formula 193.
+    """
+    bend = (cone_distance - mean_distance) * (cone_distance + mean_distance) / (2.0 * cutter_radius)
+    return (mean_distance * sin(spiral_angle) + bend) / cone_distance
+
+
+class BlankPair:
+    """What blanks on axes that meet and hypoid ones have in common at the calculation point: depths, thicknesses.
+
+    References
+    ----------
+    ISO 23509:2016, clause 7.
+    """
+
+    addendum_factor: float
+    dedendum_factor: float
+    profile_shift: float
+    thickness_modification: float
+
+    if TYPE_CHECKING:  # a property of each pair
+
+        @property
+        def mean_normal_module(self) -> float:
+            """m_mn [mm]."""
+
+    @property
+    def working_depth(self) -> float:
+        """h_mw = 2 k_hap m_mn [mm]."""
+        return 2.0 * self.addendum_factor * self.mean_normal_module
+
+    @property
+    def clearance(self) -> float:
+        """c = (k_hfp - k_hap) m_mn, the same along the face [mm]."""
+        return (self.dedendum_factor - self.addendum_factor) * self.mean_normal_module
+
+    @property
+    def whole_depth(self) -> float:
+        """h_m = (k_hap + k_hfp) m_mn [mm]."""
+        return (self.addendum_factor + self.dedendum_factor) * self.mean_normal_module
+
+    @property
+    def mean_addenda(self) -> tuple[float, float]:
+        """h_am1, h_am2 [mm]."""
+        module, shift = self.mean_normal_module, self.profile_shift
+        return module * (self.addendum_factor + shift), module * (self.addendum_factor - shift)
+
+    @property
+    def mean_dedenda(self) -> tuple[float, float]:
+        """h_fm1, h_fm2 [mm]."""
+        module, shift = self.mean_normal_module, self.profile_shift
+        return module * (self.dedendum_factor - shift), module * (self.dedendum_factor + shift)
+
+    def mean_normal_thickness(self, member: int, pressure_angle: float, backlash: float) -> float:
+        """s_mn of a gear [mm] with the mean normal backlash j_mn [mm] of the pair, half of it from each tooth."""
+        sign, module = (1.0, -1.0)[member], self.mean_normal_module
+        thickening = sign * self.thickness_modification - backlash / (4.0 * module * cos(pressure_angle))
+        return module * (0.5 * pi + 2.0 * (thickening + sign * self.profile_shift * tan(pressure_angle)))
+
+
+def depth_angles_check(wheel_angles: tuple[float, float] | None) -> tuple[bool, str]:
+    """Check for ``require`` of theta_a2 and theta_f2, where they are given."""
+    shallow = wheel_angles is None or all(abs(real(angle)) < LARGEST_DEPTH_ANGLE for angle in wheel_angles)
+    return shallow, f"wheel_angles: {wheel_angles} rad are not within 0.785 rad (45 deg)"
+
+
+def taper_check(taper: str, tapers: tuple[str, ...]) -> tuple[bool, str]:
+    """Check for ``require`` of how the depth falls from heel to toe."""
+    return taper in tapers, f"taper: {taper!r} is not one of {', '.join(tapers)}"
 
 
 @dataclass(frozen=True)
@@ -286,3 +379,28 @@ def _thickness_at(height: float, thickness: float, curvature: float, pressure_an
         return thickness - 2.0 * height * tan(pressure_angle)
     end = acos(cos(pressure_angle) / growth) if growth > cos(pressure_angle) else 0.0
     return growth * (thickness + 2.0 * (involute(pressure_angle) - involute(end)) / curvature)
+
+
+def virtual_contact_ratios(
+    diameters: Sequence[float], addenda: Sequence[float], angles: tuple[float, float], module: float, width: float
+) -> tuple[float, float]:
+    """Profile and overlap contact ratio of the virtual cylindrical gears of a pair (ISO 10300-1:2014, annex A).
+
+    Parameters
+    ----------
+    diameters, addenda : two floats [mm]
+        Of the virtual gears in the transverse section; the diameter of an internal one is negative.
+    angles : (float, float) [rad]
+        Normal pressure angle, spiral angle.
+    module : float [mm]
+        Normal.
+    width : float [mm]
+        Effective face width.
+    """
+    normal, spiral = angles
+    pressure = atan(tan(normal) / cos(spiral))
+    length = 0.0
+    for diameter, addendum in zip(diameters, addenda, strict=True):
+        tip, base = diameter + 2.0 * addendum, diameter * cos(pressure)
+        length += 0.5 * (copysign(sqrt(max(tip**2 - base**2, 0.0)), diameter) - diameter * sin(pressure))
+    return length * cos(spiral) / (pi * module * cos(pressure)), width * sin(spiral) / (pi * module)

@@ -10,16 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from math import atan, ceil, cos, inf, pi, sqrt, tan
+from math import ceil, inf, pi, tan
 from typing import NamedTuple
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear
-from loaded_tca.gears.involute import inverse_involute, involute
-from loaded_tca.gears.involute_mesh import InvoluteMesh
+from loaded_tca.gears.involute import InvoluteMesh, involute, working_pressure_angle
 
 # In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
 _NEGLIGIBLE_UNDERCUT = 1e-4
@@ -133,16 +131,11 @@ class CylindricalMesh(InvoluteMesh):
         self._check_centre_distance()
         self._check_undercut(first, second)
         self._check_undercut(second, first)
-        if self.path_of_contact.AE <= 0.0:
-            raise GeometryError(
-                f"{self.pinion.name} and {self.wheel.name}: no common flank at centre distance"
-                f" {self.working_centre_distance:.6g} mm: on the line of action the usable flanks end"
-                f" {-self.path_of_contact.AE:.4f} mm apart"
-            )
+        self.check_common_flank()
 
     def _check_centre_distance(self) -> None:
         """Refuse base circles that overlap or only touch."""
-        smallest = self.pinion.base_radius + self.wheel.base_radius
+        smallest = self.base_distance
         if self.centre_distance is None and self._involute_without_backlash <= 0.0:
             raise GeometryError(
                 f"profile_shift: for the sum {self._profile_shift_sum:.6g} no centre distance is without"
@@ -167,13 +160,12 @@ class CylindricalMesh(InvoluteMesh):
 
     def _roll_length_at_tip_of(self, mating: CylindricalGear) -> float:
         """Roll length on a gear where the tip of its mating gear touches; negative beyond the base circle [mm]."""
-        return self._line_of_action - mating.roll_length(mating.tip_radius)
+        return self.line_of_action - mating.roll_length(mating.tip_radius)
 
     @property
-    def _line_of_action(self) -> float:
-        """T1T2 = a sin(alpha_wt) [mm], without the loss of digits of the sine near alpha_wt = 0."""
-        base = self.pinion.base_radius + self.wheel.base_radius
-        return sqrt((self.working_centre_distance - base) * (self.working_centre_distance + base))
+    def base_distance(self) -> float:
+        """Centre distance r_b1 + r_b2 at which the base circles touch [mm]."""
+        return self.pinion.base_radius + self.wheel.base_radius
 
     @property
     def _profile_shift_sum(self) -> float:
@@ -190,19 +182,6 @@ class CylindricalMesh(InvoluteMesh):
     def gear_ratio(self) -> float:
         """Gear ratio u = z2/z1."""
         return self.wheel.teeth / self.pinion.teeth
-
-    @cached_property
-    def working_centre_distance(self) -> float:
-        """Centre distance as given, or the one at which teeth without thickness allowance have no backlash [mm]."""
-        if self.centre_distance is not None:
-            return self.centre_distance
-        base = self.pinion.base_radius + self.wheel.base_radius
-        return base / cos(inverse_involute(self._involute_without_backlash))
-
-    @property
-    def working_pressure_angle(self) -> float:
-        """Transverse working pressure angle alpha_wt, cos(alpha_wt) = (r_b1 + r_b2)/a [rad]."""
-        return atan(self._line_of_action / (self.pinion.base_radius + self.wheel.base_radius))
 
     @property
     def profile_shift_sum_without_backlash(self) -> float:
@@ -269,14 +248,14 @@ class CylindricalMesh(InvoluteMesh):
     def path_of_contact(self) -> PathOfContact:
         """Points T1, A, B, C, D, E, T2 on the line of action."""
         start = self.pinion_active_profile.start_roll_length
-        end = self._line_of_action - self.wheel_active_profile.start_roll_length
+        end = self.line_of_action - self.wheel_active_profile.start_roll_length
         return PathOfContact(
             A=start,
             B=end - self.pinion.base_pitch,
-            C=self._line_of_action / (1.0 + self.gear_ratio),
+            C=self.line_of_action / (1.0 + self.gear_ratio),
             D=start + self.pinion.base_pitch,
             E=end,
-            T2=self._line_of_action,
+            T2=self.line_of_action,
         )
 
 
@@ -388,6 +367,5 @@ def profile_shift_sum(pinion: CylindricalGear, wheel: CylindricalGear, centre_di
     base = pinion.base_radius + wheel.base_radius
     if not centre_distance > base:
         raise GeometryError(f"centre_distance: {centre_distance:.6g} mm is not above {base:.4f} mm, both base radii")
-    working = atan(sqrt((centre_distance - base) * (centre_distance + base)) / base)  # exact where both are near
-    difference = involute(working) - involute(pinion.transverse_pressure_angle)
+    difference = involute(working_pressure_angle(centre_distance, base)) - involute(pinion.transverse_pressure_angle)
     return 0.5 * (pinion.teeth + wheel.teeth) * difference / tan(pinion.pressure_angle)

@@ -13,22 +13,29 @@ from functools import cached_property
 from math import asin, atan, cos, degrees, inf, pi, sin, sqrt, tan
 from typing import Literal, get_args
 
-from loaded_tca.arrays import real
+from loaded_tca.arrays import GEARS, real
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.bevel_blank import BacklashKind
-from loaded_tca.gears.blank_gear import BlankGear, Triple
+from loaded_tca.gears.blank_gear import (
+    LARGEST_DEPTH_ANGLE,
+    BlankGear,
+    BlankPair,
+    Triple,
+    cutter_sine,
+    depth_angles_check,
+    taper_check,
+)
 from loaded_tca.gears.checks import teeth_checks
 from loaded_tca.gears.hypoid import Both, HypoidCones
 from loaded_tca.gears.pitch_cones import PitchConeParameters, limit_pressure_angle
 
 Taper = Literal["duplex", "standard", "uniform"]
 
-_MAX_DEPTH_ANGLE = pi / 4.0
 _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class HypoidBlank:
+class HypoidBlank(BlankPair):
     r"""Blanks of a face-milled hypoid pair.
 
     Parameters
@@ -101,7 +108,6 @@ class HypoidBlank:
 
     def __post_init__(self) -> None:
         widths = {"face_width": self.face_width, "cutter_radius": self.cutter_radius}
-        shallow = self.wheel_angles is None or all(abs(real(angle)) < _MAX_DEPTH_ANGLE for angle in self.wheel_angles)
         require(
             *teeth_checks(*self.teeth),
             *(
@@ -109,15 +115,15 @@ class HypoidBlank:
                 for name, width in widths.items()
             ),
             (
-                all(0.0 < real(angle) < _MAX_DEPTH_ANGLE for angle in self.pressure_angles),
+                all(0.0 < real(angle) < LARGEST_DEPTH_ANGLE for angle in self.pressure_angles),
                 f"pressure_angles: {self.pressure_angles} rad are not between 0 and 0.785 rad (45 deg)",
             ),
             (
                 0.0 < real(self.addendum_factor) <= real(self.dedendum_factor) < inf,
                 f"dedendum_factor: 0 < addendum_factor {self.addendum_factor} <= {self.dedendum_factor} does not hold",
             ),
-            (self.taper in get_args(Taper), f"taper: {self.taper!r} is not one of {', '.join(get_args(Taper))}"),
-            (shallow, f"wheel_angles: {self.wheel_angles} rad are not within 0.785 rad (45 deg)"),
+            taper_check(self.taper, get_args(Taper)),
+            depth_angles_check(self.wheel_angles),
             (0.0 <= real(self.backlash) < inf, f"backlash: {self.backlash} mm is negative or not finite"),
         )
         if self.wheel_cone_distances[0] <= abs(self.cones.offset_in_pitch_plane):
@@ -138,16 +144,6 @@ class HypoidBlank:
         """m_mn, of the wheel [mm]."""
         return 2.0 * self.cones.radii[1] * cos(self.pitch_cones.spiral_angles[1]) / self.teeth[1]
 
-    @property
-    def working_depth(self) -> float:
-        """h_mw [mm]."""
-        return 2.0 * self.addendum_factor * self.mean_normal_module
-
-    @property
-    def clearance(self) -> float:
-        """c [mm]."""
-        return (self.dedendum_factor - self.addendum_factor) * self.mean_normal_module
-
     @cached_property
     def limit_pressure_angle(self) -> float:
         """alpha_lim [rad]."""
@@ -159,18 +155,6 @@ class HypoidBlank:
         drive, coast = self.pressure_angles
         taken = self.limit_factor * self.limit_pressure_angle
         return drive + taken, coast - taken
-
-    @property
-    def mean_addenda(self) -> Both:
-        """h_am1, h_am2 [mm]."""
-        module, shift = self.mean_normal_module, self.profile_shift
-        return module * (self.addendum_factor + shift), module * (self.addendum_factor - shift)
-
-    @property
-    def mean_dedenda(self) -> Both:
-        """h_fm1, h_fm2 [mm]."""
-        module, shift = self.mean_normal_module, self.profile_shift
-        return module * (self.dedendum_factor - shift), module * (self.dedendum_factor + shift)
 
     @property
     def depth_angles(self) -> Both:
@@ -255,8 +239,7 @@ class HypoidBlank:
             If the circle does not cross it.
         """
         mean, spiral = self.cones.mean_cone_distances[1], self.pitch_cones.spiral_angles[1]
-        bend = (cone_distance - mean) * (cone_distance + mean) / (2.0 * self.cutter_radius)
-        sine = (mean * sin(spiral) + bend) / cone_distance
+        sine = cutter_sine(cone_distance, mean, spiral, self.cutter_radius)
         if not abs(sine) < 1.0:
             raise GeometryError(
                 f"cutter_radius {self.cutter_radius} mm: its circle does not cross the cone distance"
@@ -314,8 +297,7 @@ class HypoidBlank:
         return self.backlash * to_mean[self.backlash_kind]
 
     def _gear(self, member: int) -> BlankGear:
-        sign = (1.0, -1.0)[member]
-        module, pressure = self.mean_normal_module, 0.5 * sum(self.generated_pressure_angles)
+        pressure = 0.5 * sum(self.generated_pressure_angles)
         face, root = (
             self._planes[1]
             if member == 0
@@ -331,10 +313,8 @@ class HypoidBlank:
                 f"{('pinion', 'wheel')[member]}: root angle {degrees(root):.4f} deg, pitch angle {degrees(pitch):.4f} "
                 f"deg and face angle {degrees(face):.4f} deg are not in order; reduce taper or offset"
             )
-        shift, thicker = sign * self.profile_shift, sign * self.thickness_modification
-        thicker -= self._backlash_at_mean / (4.0 * module * cos(pressure))
         return BlankGear(
-            name=("pinion", "wheel")[member],
+            name=GEARS[member],
             teeth=self.teeth[member],
             pitch_angle=pitch,
             pressure_angle=pressure,
@@ -344,8 +324,8 @@ class HypoidBlank:
             mean_dedendum=self.mean_dedenda[member],
             addendum_angle=face - pitch,
             dedendum_angle=pitch - root,
-            mean_normal_thickness=module * (0.5 * pi + 2.0 * (thicker + shift * tan(pressure))),
-            profile_shift=shift,
+            mean_normal_thickness=self.mean_normal_thickness(member, pressure, self._backlash_at_mean),
+            profile_shift=(1.0, -1.0)[member] * self.profile_shift,
             smallest_profile_shift=-inf,
             face_apex=self._apexes[member][0],
             root_apex=self._apexes[member][1],

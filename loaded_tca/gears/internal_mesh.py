@@ -10,15 +10,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, atan, cos, degrees, inf, isclose, pi, sqrt, tan
+from math import acos, degrees, inf, isclose, pi, tan
 
 import numpy as np
 
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, ActiveProfile, PathOfContact, Room, interferences
-from loaded_tca.gears.involute import inverse_involute, involute
-from loaded_tca.gears.involute_mesh import InvoluteMesh
+from loaded_tca.gears.involute import InvoluteMesh, involute, working_pressure_angle
 from loaded_tca.gears.ring import RingGear
 
 _EQUAL = 1e-12
@@ -92,7 +91,7 @@ class InternalMesh(InvoluteMesh):
 
     def _check_centre_distance(self) -> None:
         """Refuse base circles that overlap or only touch."""
-        smallest = self._base_difference
+        smallest = self.base_distance
         if self.centre_distance is None and self._involute_without_backlash <= 0.0:
             raise GeometryError(
                 f"profile_shift: {self.pinion.profile_shift:.6g} of the pinion and {self.ring.profile_shift:.6g} of "
@@ -107,12 +106,12 @@ class InternalMesh(InvoluteMesh):
 
     def _check_flanks(self) -> None:
         """Refuse a ring whose tip leaves the line of action, and flanks that do not meet on it."""
-        pinion, ring, path = self.pinion, self.ring, self.path_of_contact
+        pinion, ring = self.pinion, self.ring
         if self.involute_interference:
-            least = ring.radius_at_roll_length(self._line_of_action)
+            least = ring.radius_at_roll_length(self.line_of_action)
             raise GeometryError(
                 f"involute interference: the tip of the {ring.name}, diameter {2.0 * ring.tip_radius:.4f} mm, lies "
-                f"{self._line_of_action - ring.roll_length(ring.tip_radius):.4f} mm beyond the base circle of the "
+                f"{self.line_of_action - ring.roll_length(ring.tip_radius):.4f} mm beyond the base circle of the "
                 f"{pinion.name} on the line of action; a tip_diameter of the ring of {2.0 * least:.4f} mm or more "
                 "avoids it"
             )
@@ -124,12 +123,7 @@ class InternalMesh(InvoluteMesh):
                 f"{ring.name} needs the flank; a profile_shift of at least "
                 f"{pinion.smallest_profile_shift:.4f} avoids it"
             )
-        if path.AE <= 0.0:
-            raise GeometryError(
-                f"{pinion.name} and {ring.name}: no common flank at centre distance "
-                f"{self.working_centre_distance:.6g} mm: on the line of action the usable flanks end "
-                f"{-path.AE:.4f} mm apart"
-            )
+        self.check_common_flank()
 
     @property
     def wheel(self) -> RingGear:
@@ -137,19 +131,14 @@ class InternalMesh(InvoluteMesh):
         return self.ring
 
     @property
-    def _base_difference(self) -> float:
+    def base_distance(self) -> float:
+        """Centre distance r_b2 - r_b1 at which the base circles touch from inside [mm]."""
         return self.ring.base_radius - self.pinion.base_radius
-
-    @property
-    def _line_of_action(self) -> float:
-        """T1T2 = abs(a) sin(alpha_wt) [mm], without the loss of digits of the sine near alpha_wt = 0."""
-        base, distance = self._base_difference, self.working_centre_distance
-        return sqrt((distance - base) * (distance + base))
 
     @property
     def _ring_tip_roll(self) -> float:
         """Roll length on the pinion where the tip of the ring touches; negative beyond the base circle [mm]."""
-        return self.ring.roll_length(self.ring.tip_radius) - self._line_of_action
+        return self.ring.roll_length(self.ring.tip_radius) - self.line_of_action
 
     @property
     def _profile_shift_sum(self) -> float:
@@ -175,18 +164,6 @@ class InternalMesh(InvoluteMesh):
     def gear_ratio(self) -> float:
         """Gear ratio abs(u) = abs(z2)/z1."""
         return self.ring.tooth_count / self.pinion.teeth
-
-    @cached_property
-    def working_centre_distance(self) -> float:
-        """Centre distance abs(a) as given, or without backlash from the profile shifts [mm]."""
-        if self.centre_distance is not None:
-            return self.centre_distance
-        return self._base_difference / cos(inverse_involute(self._involute_without_backlash))
-
-    @property
-    def working_pressure_angle(self) -> float:
-        """Transverse working pressure angle alpha_wt, cos(alpha_wt) = (r_b2 - r_b1)/abs(a) [rad]."""
-        return atan(self._line_of_action / self._base_difference)
 
     @property
     def profile_shift_sum_without_backlash(self) -> float:
@@ -216,7 +193,7 @@ class InternalMesh(InvoluteMesh):
         pinion, ring = self.pinion, self.ring
         below_form = (
             self._ring_tip_roll - pinion.roll_length(pinion.form_radius),
-            ring.roll_length(ring.form_radius) - self._line_of_action - pinion.roll_length(pinion.tip_radius),
+            ring.roll_length(ring.form_radius) - self.line_of_action - pinion.roll_length(pinion.tip_radius),
         )
         return Room(self.backlash, below_form, self.tip_clearances)
 
@@ -319,7 +296,7 @@ class InternalMesh(InvoluteMesh):
         """Part of the ring's flank that the pinion uses; it starts at the larger diameter, towards the root."""
         ring = self.ring
         form = ring.roll_length(ring.form_radius)
-        wanted = self.pinion.roll_length(self.pinion.tip_radius) + self._line_of_action
+        wanted = self.pinion.roll_length(self.pinion.tip_radius) + self.line_of_action
         start = min(form, wanted)
         return ActiveProfile(
             start_radius=ring.radius_at_roll_length(start),
@@ -332,7 +309,7 @@ class InternalMesh(InvoluteMesh):
     @property
     def path_of_contact(self) -> PathOfContact:
         """Points T2, T1, A, B, C, D, E on the line of action, counted from T1; T2 lies before T1."""
-        line = self._line_of_action
+        line = self.line_of_action
         start, end = self.pinion_active_profile.start_roll_length, self.wheel_active_profile.start_roll_length - line
         return PathOfContact(
             A=start,
@@ -378,8 +355,7 @@ def internal_profile_shift_sum(pinion: CylindricalGear, ring: RingGear, centre_d
             f"centre_distance: {centre_distance:.6g} mm is not above {base:.4f} mm, the base radius of the ring less "
             "that of the pinion"
         )
-    working = atan(sqrt((centre_distance - base) * (centre_distance + base)) / base)
-    difference = involute(pinion.transverse_pressure_angle) - involute(working)
+    difference = involute(pinion.transverse_pressure_angle) - involute(working_pressure_angle(centre_distance, base))
     return 0.5 * (ring.tooth_count - pinion.teeth) * difference / tan(pinion.pressure_angle)
 
 

@@ -92,8 +92,8 @@ def pitch_cones_by_method_1(
     The second pair of annex F:
 
     >>> from math import degrees, radians
-    >>> found = pitch_cones_by_method_1((13, 42), 15.0, 170.0, 30.0, radians(50), 63.5)
-    >>> [round(degrees(angle), 2) for angle in found.cones.pitch_angles]
+    >>> parameters = pitch_cones_by_method_1((13, 42), 15.0, 170.0, 30.0, radians(50), 63.5)
+    >>> [round(degrees(angle), 2) for angle in parameters.cones.pitch_angles]
     [21.29, 68.32]
     """
     lengths = {"wheel_diameter": wheel_diameter, "face_width": face_width, "cutter_radius": cutter_radius}
@@ -213,8 +213,8 @@ def limit_pressure_angle(cones: HypoidCones, spiral_angles: Both) -> float:
     Examples
     --------
     >>> from math import degrees, radians
-    >>> found = pitch_cones_by_method_1((13, 42), 15.0, 170.0, 30.0, radians(50), 63.5)
-    >>> round(degrees(limit_pressure_angle(found.cones, found.spiral_angles)), 2)
+    >>> parameters = pitch_cones_by_method_1((13, 42), 15.0, 170.0, 30.0, radians(50), 63.5)
+    >>> round(degrees(limit_pressure_angle(parameters.cones, parameters.spiral_angles)), 2)
     -2.25
     """
     (first, second), (pinion, wheel) = (tan(angle) for angle in cones.pitch_angles), cones.mean_cone_distances

@@ -19,8 +19,7 @@ from scipy.optimize import brentq
 from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks
-from loaded_tca.gears.involute import inverse_involute, involute
-from loaded_tca.gears.involute_gear import InvoluteGear
+from loaded_tca.gears.involute import InvoluteGear, inverse_involute, involute
 
 OUTSIDE_MODULES = 7.0
 """Depth of a ring between root and outside that has no outer diameter given, in normal modules."""

@@ -32,6 +32,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation
 from loaded_tca.separation.box import Box
+from loaded_tca.separation.polynomials import GapPolynomials
 from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import ContactPoint
 
@@ -43,7 +44,8 @@ Result = TypeVar("Result")
 class Gap(NamedTuple):
     """A separation to sample, in the box that a load needs or in a given one; see :func:`sample_separation`.
 
-    ``gears`` are those of a tooth pair that has flanks of its own; None: the common ones.
+    ``gears`` are those of a tooth pair that has flanks of its own; None: the common ones. ``polynomials`` are those of
+    another grid of the contact; ``cells_at_ends`` are used instead of ``cells`` in estimated boxes in which flanks end.
     """
 
     contact: ContactPoint
@@ -51,6 +53,8 @@ class Gap(NamedTuple):
     load: float | None = None
     box: Box | None = None
     gears: GearPair | None = None
+    polynomials: GapPolynomials | None = None
+    cells_at_ends: tuple[int, int] | None = None
 
 
 class Task(NamedTuple):
@@ -150,8 +154,11 @@ def _of_flanks(pair: GearPair, asked: dict[int, Any]) -> dict[int, Separation | 
     gears = requests[0].gears or pair
     if isinstance(requests[0], Ends):
         return dict(zip(asked, edge_compliances(gears, [one.separation for one in requests]), strict=True))
-    contacts, cells, loads, boxes, _ = zip(*requests, strict=True)
-    return dict(zip(asked, sample_separations(gears, contacts, cells=cells, loads=loads, boxes=boxes), strict=True))
+    contacts, cells, loads, boxes, _, polynomials, at_ends = zip(*requests, strict=True)
+    gaps = sample_separations(
+        gears, contacts, cells=cells, loads=loads, boxes=boxes, polynomials=polynomials, cells_at_ends=at_ends
+    )
+    return dict(zip(asked, gaps, strict=True))
 
 
 def with_gears(gears: GearPair | None, steps: Steps[Result]) -> Steps[Result]:

@@ -119,6 +119,12 @@ class CarriedOnSupports:
     mesh_rate: Array
 
     @property
+    def pitches_apart(self) -> int:
+        """How many pitches two tooth pairs that carry load at a position are apart at the most."""
+        spans = [int(np.ptp(self.carried.pairs[row > 0.0])) for row in self.carried.share[0] if (row > 0.0).any()]
+        return max(spans, default=0)
+
+    @property
     def drive_rate(self) -> Array:
         """Tangent of the torque over the rotation (n,) with the supports [N mm/rad]."""
         return np.asarray(self.carried.torque_rate[0])
@@ -351,22 +357,25 @@ def _moved_too_far(error: GeometryError, torque: float) -> GeometryError:
     return GeometryError(f"{error}; under {1e-3 * torque:g} N m the supports let the gears move too far")
 
 
-def pitches_apart(supports: SupportCompliance, torque: float, mesh: MeshPath) -> int:
-    """How many pitches tooth pairs within reach are apart, at rest and moved by a pinion torque [N mm].
+def pitches_apart(supports: SupportCompliance, torques: Sequence[float], mesh: MeshPath) -> int:
+    """How many pitches tooth pairs within reach are apart, at rest and moved by each pinion torque [N mm].
 
-    The force of the torque acts where the flanks touch first without load; ``mesh``: contact of the pair at rest.
+    The force of a torque acts where the flanks touch first without load; ``mesh``: contact of the pair at rest.
 
     Raises
     ------
     GeometryError
         If the moved flanks are not in contact.
     """
-    try:
-        loads = loads_at_first_contact(supports, mesh.pair, torque)
-        moved = moved_by(supports.under(loads), loads)
-        return max(farthest_apart(mesh), farthest_apart(trace_teeth(moved, mesh.pinion_angle)))
-    except GeometryError as error:
-        raise _moved_too_far(error, torque) from None
+    apart = farthest_apart(mesh)
+    for torque in torques:
+        try:
+            loads = loads_at_first_contact(supports, mesh.pair, torque)
+            moved = moved_by(supports.under(loads), loads)
+            apart = max(apart, farthest_apart(trace_teeth(moved, mesh.pinion_angle)))
+        except GeometryError as error:
+            raise _moved_too_far(error, torque) from None
+    return apart
 
 
 def loads_at_first_contact(supports: SupportCompliance, at_rest: GearPair, torque: float) -> Loads:

@@ -22,8 +22,9 @@ from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import Ends, Gap, LoadedContact, Steps, Task, found_alone
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
+from loaded_tca.separation.strips import strip_pressure
 from loaded_tca.unloaded import ContactPoint
-from loaded_tca.unloaded.scan import arcs_at, relief_start_distances
+from loaded_tca.unloaded.scan import arcs_at, has_relief_starts, relief_start_distances
 
 Coupling = Callable[[Separation], Array | None]
 """Displacement of the slices of a tooth pair's grid (ny,) [mm] by what the other pairs carry; None if nothing bends."""
@@ -113,15 +114,19 @@ def contact_under_load(
     if (problem := memory_problem(cells)) is not None:
         raise InputError(f"cells: {problem}")
     load = 0.0 if 0.0 < load <= SMALLEST_LOAD * pair.contact_modulus * pair.module**2 else load
-    separation = yield from _box_for_cap(pair, contact, load, (yield Gap(contact, cells, load=load)))
+    cells_at_ends = FIRST_CELLS_AT_ENDS if grid.cells is None else None
+    first = yield Gap(contact, cells, load=load, cells_at_ends=cells_at_ends)
+    separation = yield from _box_for_cap(pair, contact, load, first)
     if grid.cells is None and separation.cover.min() < 1.0:
         cells = FIRST_CELLS_AT_ENDS
-        separation = yield Gap(contact, cells, box=separation.box)
+    if separation.gap.shape != cells:
+        separation = yield Gap(contact, cells, box=separation.box, polynomials=separation.polynomials)
     for _ in range(MOST_BOXES):
         loaded = yield from _InBox(pair, contact, load, grid, separation, bending, number, coupling).steps()
         if not loaded.solution.reaches_border:
             break
-        separation = yield Gap(contact, cells, box=loaded.separation.box.grown(loaded.filled_ends, GROWTH))
+        box = loaded.separation.box.grown(loaded.filled_ends, GROWTH)
+        separation = yield Gap(contact, cells, box=box, polynomials=separation.polynomials)
     return loaded
 
 
@@ -131,7 +136,8 @@ def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation:
     while load > CAP_USE * separation.material_area * cap:
         along = separation.box.half_lengths[1] < pair.face_width
         box = separation.box.grown(((True, True), (along, along)), GROWTH)
-        wider = yield Gap(contact, (separation.gap.shape[0], separation.gap.shape[1]), box=box)
+        cells = separation.gap.shape[0], separation.gap.shape[1]
+        wider = yield Gap(contact, cells, box=box, polynomials=separation.polynomials)
         if wider.material_area <= separation.material_area:
             most = CAP_USE * separation.material_area * cap
             raise InputError(
@@ -170,10 +176,12 @@ class _InBox:
 
     def steps(self) -> Steps[LoadedContact]:
         loaded = yield from self._refined()
-        if self.grid.lines_held or self.load == 0.0 or loaded.solution.reaches_border:
+        if self.grid.lines_held or self.load == 0.0:
             return loaded
         if self.bending is None:
             return replace(loaded, separation=loaded.separation.loaded_by(loaded.solution.pressure, self.pair.module))
+        if loaded.solution.reaches_border:
+            return loaded
         bent = loaded.bent_by(self.bending, self.number, self.pair.module)
         coupling = None if self.coupling is None else self.coupling(bent.separation)
         bent = yield from bent.under(self.load, coupling)
@@ -186,8 +194,9 @@ class _InBox:
         if grid.cells is not None:
             solution = yield from self._solved(grid.cells, self.tolerance)
         else:
-            expected, cells = expected_pressure(self.first), (self.first.x.size, self.first.y.size)
-            across_start = _crosses_relief_start(pair, contact, self.first, expected)
+            first, cells = self.first, (self.first.x.size, self.first.y.size)
+            across_start = _crosses_relief_start(pair, contact, first, expected_pressure(first))
+            expected = strip_pressure(first.cut_gap, first.spacing, self.load, pair.contact_modulus) * first.cover
 
             def smooth(solution: ContactSolution) -> bool:
                 return not (across_start or _reaches_arc(pair, self.separation, solution.pressure_on_material))
@@ -211,8 +220,8 @@ class _InBox:
         """Solve on a grid of the box."""
         separation = self.first
         if separation.gap.shape != cells:
-            separation = yield Gap(self.contact, cells, box=self.first.box)
-        if start is not None and not self.grid.lines_held:
+            separation = yield Gap(self.contact, cells, box=self.first.box, polynomials=self.first.polynomials)
+        if start is not None and self.bending is not None and not self.grid.lines_held:
             separation = separation.loaded_by(start, self.pair.module)
         self.separation = separation
         self.displaced = None if self.coupling is None else self.coupling(separation)
@@ -260,6 +269,8 @@ def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Sep
     """Whether the start of a linear relief, of either flank, runs through the contact, whose ends lie within cells."""
     if contact.on_relief_start:
         return True
+    if not has_relief_starts(pair):
+        return False
     distances = relief_start_distances(pair, separation.points)
     for beyond in np.moveaxis(distances, -1, 0) if pressure.any() else ():
         values = np.concatenate([beyond[pressure > 0.0], values_at_ends(pressure, beyond, separation.cover)])

@@ -1,10 +1,9 @@
 """What is written to files and the terminal: reports, tables, comparisons, teeth, stresses, sensitivities, dynamics."""
 
+from loaded_tca.output.other_results import write_revolution, write_stage, write_tribology
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.result_files import describe_results, write_report
-from loaded_tca.output.revolution_files import write_revolution
 from loaded_tca.output.rexs import write_rexs
-from loaded_tca.output.stage_files import write_stage
 from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
 from loaded_tca.output.tables import (
     sensitivities_text,
@@ -13,7 +12,6 @@ from loaded_tca.output.tables import (
     write_sensitivities,
     write_subsurface,
 )
-from loaded_tca.output.tribology_files import write_tribology
 from loaded_tca.results.teeth import teeth_in_space
 
 __all__ = [

@@ -12,15 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.results.files import Buffer, FilePath, Part, replace_together
-from loaded_tca.results.findings import NAMES as EDGES
-from loaded_tca.results.findings import reached_edges
 from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.quantities import (
     BEARING_QUANTITIES,
     CYCLE,
-    GEARS,
     MAP_PARTS,
     OVER_CYCLE,
     PAIRS,
@@ -32,13 +30,14 @@ from loaded_tca.results.quantities import (
     SUPPORT_QUANTITIES,
 )
 from loaded_tca.results.summary import without_rounding
-from loaded_tca.units import factor_of
+from loaded_tca.results.warnings import EDGES, reached_edges
+from loaded_tca.units import as_ending, factor_of
 
 RESULT, SUMMARY, POSITIONS, CONTACTS = "result.nc", "summary.json", "positions.csv", "contacts.csv"
 """Names of the files; the last one is there only where tooth pairs share the load."""
 
-ENGINEERS_UNITS = {"rad": "arcsec", "N mm": "Nm", "N/(mm um)": "N_per_mm_um", "N/mm": "N_per_mm", "1": ""}
-"""Unit of a result -> ending of its column; others stay as they are."""
+ENGINEERS_UNITS = {"rad": "arcsec", "N mm": "Nm"}
+"""Unit of a result -> ending of its column, where tables have another unit."""
 COLUMNS = {
     "hertz_semi_minor": ("hertz_width_mm", 2.0),
     "hertz_semi_major": ("hertz_length_mm", 2.0),
@@ -108,7 +107,7 @@ def summary_json(result: MeshCycle) -> str:
             for place in (result.peak_contact(torque),)
         ],
     }
-    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text(content)
 
 
 def known(value: float, name: str) -> float | None:
@@ -130,13 +129,13 @@ def positions_csv(result: MeshCycle) -> str:
         "contact_point_wheel_diameter_mm": 2.0 * path.wheel_radius,
         "contact_point_wheel_axial_mm": path.wheel_axial,
         "unloaded_transmission_error_arcsec": path.transmission_error * ARCSEC,
-        "unloaded_transmission_error_um": path.transmission_error * result.wheel_base_radius * 1e3,
+        "unloaded_transmission_error_um": result.um_per_rad * path.transmission_error,
     }
     for name, (dimensions, unit, _) in QUANTITIES.items():
         if dimensions in (CYCLE, PAIRS) and name != "load_share":
             column, factor = _column(name, unit)
             columns[column] = (result.at_position(name) if dimensions == PAIRS else getattr(result, name)) * factor
-    columns["transmission_error_um"] = result.transmission_error * result.wheel_base_radius * 1e3
+    columns["transmission_error_um"] = result.um_per_rad * result.transmission_error
     columns |= {f"load_share_pair_{number}": result.load_share[..., k] for k, number in enumerate(result.pair)}
     for name, (dimensions, unit, _) in SUPPORT_QUANTITIES.items():
         if dimensions == CYCLE and result.scene.is_supported:
@@ -161,7 +160,7 @@ def contacts_csv(result: MeshCycle) -> str:
         "pinion_angle_deg": np.degrees(result.pinion_angle)[:, None],
         "tooth_pair": result.pair,
     }
-    for gear in ("pinion", "wheel"):
+    for gear in GEARS:
         for name, part, factor in (("diameter_mm", "radius", 2.0), ("axial_mm", "axial", 1.0)):
             values = [factor * getattr(path, f"{gear}_{part}") for path in result.paths]
             columns[f"contact_point_{gear}_{name}"] = np.stack(values, axis=-1)
@@ -176,6 +175,11 @@ def contacts_csv(result: MeshCycle) -> str:
     return csv_table({**under_load, "edges": np.array(words, dtype=object)})
 
 
+def json_text(content: Mapping[str, Any]) -> str:
+    """Return content as JSON, as :func:`write_report` writes it."""
+    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
 def csv_table(columns: Mapping[str, Iterable[Any]]) -> str:
     """Return columns of one length as CSV, numbers as :func:`write_report` writes them, words as they are."""
     text = io.StringIO()
@@ -188,7 +192,7 @@ def csv_table(columns: Mapping[str, Iterable[Any]]) -> str:
 
 def _column(name: str, unit: str) -> tuple[str, float]:
     """Header of a number, and the factor to the unit that it tells."""
-    ending = ENGINEERS_UNITS.get(unit, unit)
+    ending = ENGINEERS_UNITS.get(unit) or as_ending(unit)
     column, times = COLUMNS.get(name, (f"{name}_{ending}" if ending else name, 1.0))
     return column, times * (1.0 if unit == "um" else factor_of(column))
 

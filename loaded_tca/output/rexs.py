@@ -16,24 +16,22 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import require
 from loaded_tca.exchange.files import LARGEST_FILE, parse_rexs, with_attributes
 from loaded_tca.exchange.gearbox import Gearbox, Stage
-from loaded_tca.exchange.model import Attribute, Model, Reading
+from loaded_tca.exchange.model import LENGTH, Attribute, Model, Reading
 from loaded_tca.exchange.shafts import ShaftFrame
-from loaded_tca.exchange.units import LENGTH
 from loaded_tca.input_files import read_bytes
 from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
 from loaded_tca.results.files import replace_file
 from loaded_tca.results.load_factors import STRIPS, face_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import index_or_largest
+from loaded_tca.units import MICROMETRES
 
-GEARS = "pinion", "wheel"
 SAME_PLACE_mm = 1e-3
 """Between places of a bearing in the scene and in the model."""
-MICROMETRES = 1e3
-"""Per millimetre."""
 Results = dict[str, dict[str, Attribute]]
 """Attributes by the ids of components."""
 
@@ -101,7 +99,7 @@ def rexs_results(result: MeshCycle, model: Model, stage: str, torque: int | None
     gearbox = Gearbox(Reading(model))
     of_stage = gearbox.stage(stage)
     _require_same(result, of_stage)
-    index = int(np.argmax(result.torque)) if torque is None else torque
+    index = index_or_largest(result.torque, torque)
     results: Results = {stage: _of_stage(result, model.version, index)}
     for n, gear in enumerate(GEARS):
         shaft = of_stage.shafts[n]
@@ -109,9 +107,9 @@ def rexs_results(result: MeshCycle, model: Model, stage: str, torque: int | None
             continue
         frame = ShaftFrame(gearbox, of_stage, n, shaft)
         line = next(
-            one
-            for one in shaft_lines(result.scene)
-            if one.gear == gear and math.isclose(one.torque, float(result.torque[index]))
+            line
+            for line in shaft_lines(result.scene)
+            if line.gear == gear and math.isclose(line.torque, float(result.torque[index]))
         )
         results[shaft.id] = _of_shaft(line, frame)
         forces = np.nanmean(getattr(result, f"{gear}_bearing_force")[index, : _distinct(result)], axis=0)
@@ -122,10 +120,13 @@ def rexs_results(result: MeshCycle, model: Model, stage: str, torque: int | None
 
 def _require_same(result: MeshCycle, stage: Stage) -> None:
     """Refuse the result of another pair."""
-    own = tuple(abs(gear.teeth) for gear in (result.scene.pinion, result.scene.wheel))
-    same = own == stage.teeth
+    teeth = tuple(abs(gear.teeth) for gear in (result.scene.pinion, result.scene.wheel))
+    same = teeth == stage.teeth
     require(
-        (same, f"stage {stage.id}: has {stage.teeth[0]}/{stage.teeth[1]} teeth; found a result of {own[0]}/{own[1]}")
+        (
+            same,
+            f"stage {stage.id}: has {stage.teeth[0]}/{stage.teeth[1]} teeth; found a result of {teeth[0]}/{teeth[1]}",
+        )
     )
 
 
@@ -176,21 +177,21 @@ def _of_bearings(forces: Array, places: Sequence[float], frame: ShaftFrame) -> R
     results: Results = {}
     for at, bearing, side in frame.held_by():
         beside = 0.5 * (bearing.number("distance_between_bearing_rows", LENGTH) or 0.0) + SAME_PLACE_mm
-        found = [n for n, place in enumerate(places) if abs(place - at) < beside]
-        if not found:
+        rows = [n for n, place in enumerate(places) if abs(place - at) < beside]
+        if not rows:
             continue
-        force, moment = forces[found, :3].sum(axis=0), forces[found, 3:].sum(axis=0)
-        for n in found:  # rows beside the middle of the bearing tilt it
+        force, moment = forces[rows, :3].sum(axis=0), forces[rows, 3:].sum(axis=0)
+        for n in rows:  # rows beside the middle of the bearing tilt it
             moment = moment + np.cross([0.0, 0.0, places[n] - at], forces[n, :3])
         along, about = force @ frame.turn, 1e-3 * moment @ frame.turn
         other = "outer" if side == "inner" else "inner"
-        own: dict[str, Any] = {}
+        attributes: dict[str, Any] = {}
         for part, sign in ((side, -1.0), (other, 1.0)):
             for n, axis in enumerate("uvw"):
-                own[f"force_acting_on_{part}_component_{axis}"] = Attribute(sign * float(along[n]) + 0.0, "N")
+                attributes[f"force_acting_on_{part}_component_{axis}"] = Attribute(sign * float(along[n]) + 0.0, "N")
             for n, axis in ((1, "v"), (2, "w")):
-                own[f"torque_acting_on_{part}_component_{axis}"] = Attribute(sign * float(about[n]) + 0.0, "N m")
-        results[bearing.id] = own
+                attributes[f"torque_acting_on_{part}_component_{axis}"] = Attribute(sign * float(about[n]) + 0.0, "N m")
+        results[bearing.id] = attributes
     return results
 
 

@@ -9,7 +9,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -18,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.flank_maps.vh_check import VHCheck
-from loaded_tca.output.result_files import cell, csv_table, known
+from loaded_tca.output.result_files import cell, csv_table, json_text, known
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.comparison import Comparison
 from loaded_tca.results.dynamics import OVER_ORDERS, OVER_PITCH, PARTS
@@ -108,7 +107,7 @@ def _comparison_json(comparison: Comparison) -> str:
             for k, torque in enumerate(comparison.torque)
         ],
     }
-    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text(content)
 
 
 DYNAMICS = "dynamics.csv"

@@ -36,7 +36,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import unmodified
 from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank
 from loaded_tca.flanks.modification import FlankModifications
-from loaded_tca.gears.bevel import BevelMesh
+from loaded_tca.gears.bevel_mesh import BevelMesh
 from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 from loaded_tca.gears.hypoid import HypoidCones, OffsetFrame
 from loaded_tca.material import Material
@@ -287,12 +287,12 @@ def _closed_cones(pinion: FaceMilledGear, wheel: FaceMilledGear, offset: float, 
 def _require_rolling(cones: HypoidCones, teeth: tuple[int, int], angles: list[FlankAngles]) -> None:
     """Refuse flanks whose spiral angles belong to the opposite offset, or do not roll on each other at P."""
     pinion, wheel = (abs(one.spiral) for one in angles)
-    told = f"the flanks have spiral angles of {math.degrees(pinion):.4g} and {math.degrees(wheel):.4g} deg at P"
+    angles_at_p = f"the flanks have spiral angles of {math.degrees(pinion):.4g} and {math.degrees(wheel):.4g} deg at P"
     if abs(pinion - wheel + cones.offset_angle) < abs(pinion - wheel - cones.offset_angle):
         larger, sign = ("larger", "positive") if cones.offset > 0.0 else ("smaller", "negative")
         raise InputError(
-            f"offset: {cones.offset:g} mm; {told}; with a {sign} offset that of the pinion is the {larger} one: turn "
-            "the sign of the offset"
+            f"offset: {cones.offset:g} mm; {angles_at_p}; with a {sign} offset that of the pinion is the {larger} one: "
+            "turn the sign of the offset"
         )
     rolls = [
         radius * math.cos(spiral) / number
@@ -300,6 +300,6 @@ def _require_rolling(cones: HypoidCones, teeth: tuple[int, int], angles: list[Fl
     ]
     if not math.isclose(*rolls, rel_tol=_ROLLING):
         raise GeometryError(
-            f"{told}: half the normal modules there, {rolls[0]:.5g} and {rolls[1]:.5g} mm, differ by more than "
+            f"{angles_at_p}: half the normal modules there, {rolls[0]:.5g} and {rolls[1]:.5g} mm, differ by more than "
             f"{_ROLLING:.0%}: the flanks do not roll on each other"
         )

@@ -25,16 +25,15 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array, GearName
 from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.material import contact_modulus
 from loaded_tca.pairs.gear import Gear
-from loaded_tca.tooth.build import Resolution, build_tooth
-from loaded_tca.tooth.surface import ToothSurface, TriangleMesh, grid_triangles
+from loaded_tca.tooth.surface import Resolution, ToothSurface, TriangleMesh, build_tooth, grid_triangles
 
-Driving = Literal["pinion", "wheel"]
+Driving = GearName
 Sense = Literal["positive", "negative"]
 
 
@@ -115,6 +114,11 @@ class GearPair:
     def pitch(self) -> float:
         """Angular pitch of the pinion, 2 pi/z1 [rad]."""
         return 2.0 * math.pi / self.teeth[0]
+
+    @property
+    def rate_of_stiffness(self) -> float:
+        """d T1/d phi2 = 1e3 r_b1 r_b2 b [N mm/rad] where the mesh stiffness is 1 N/(mm um)."""
+        return 1e3 * self.base_radii[0] * self.base_radii[1] * self.face_width
 
     @property
     def contact_modulus(self) -> float:
@@ -219,7 +223,7 @@ def signs_of(driving: Driving, sense: Sense) -> tuple[int, int]:
     InputError
         If driving or sense is not one of the two.
     """
-    if driving not in ("pinion", "wheel"):
+    if driving not in GEARS:
         raise InputError(f"driving: {driving!r} is not 'pinion' or 'wheel'")
     if sense not in ("positive", "negative"):
         raise InputError(f"sense: {sense!r} is not 'positive' or 'negative'")

@@ -156,16 +156,16 @@ def mean_contact(
     GeometryError
         If the flanks cut into each other there, or the wheel runs ahead.
     """
-    field, own = _at_mean_point(pinion, wheel, pinion_flank, place)
-    return field.contact(own, pinion.teeth)
+    field, local = _at_mean_point(pinion, wheel, pinion_flank, place)
+    return field.contact(local, pinion.teeth)
 
 
 def mean_tilt(
     pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_flank: FlankName, place: tuple[Array, Array] | None = None
 ) -> float:
     """Angle between the normals of both flanks at the mean point, which are one where they touch there [rad]."""
-    field, own = _at_mean_point(pinion, wheel, pinion_flank, place)
-    return field.tilt(own)
+    field, local = _at_mean_point(pinion, wheel, pinion_flank, place)
+    return field.tilt(local)
 
 
 def _at_mean_point(
@@ -248,8 +248,8 @@ class _Asked:
         flanks: dict[FlankName, tuple[LocalFlank, bool]] = {}
         for flank, aim in zip((drive, OTHER_FLANK[drive]), aims, strict=True):
             field = MeanField.of(pinion, wheel, flank, place or _meeting(pinion, wheel))
-            own = LocalFlank(field.slopes, np.zeros(3)) if aim is None else field.flank_for(aim, pinion.teeth)
-            flanks[flank] = own, aim is not None
+            local = LocalFlank(field.slopes, np.zeros(3)) if aim is None else field.flank_for(aim, pinion.teeth)
+            flanks[flank] = local, aim is not None
         blank = pinion.blank
         distances = np.array([blank.mean_cone_distance, *blank.cone_distances])
         rho, z = distances * math.sin(blank.pitch_angle), distances * math.cos(blank.pitch_angle)
@@ -264,18 +264,18 @@ class _Asked:
             raise _NotCutError
         height = 0.5 * (cuts["concave"].height + cuts["convex"].height)
         slot = float(cuts["convex"].theta.value[0] - cuts["concave"].theta.value[0])
-        own = {flank: (local_flank(pinion, cut), float(cut.cradle[0])) for flank, cut in cuts.items()}
-        return own, np.array([height[0], height[2] - height[1]]), 2.0 * math.pi / pinion.teeth - slot
+        of_flanks = {flank: (local_flank(pinion, cut), float(cut.cradle[0])) for flank, cut in cuts.items()}
+        return of_flanks, np.array([height[0], height[2] - height[1]]), 2.0 * math.pi / pinion.teeth - slot
 
     def misses(self, pinion: FaceMilledGear, root_line: bool) -> Array:
         """What is left of every equation, over lengths of the size of the mean point's radius."""
         flanks, heights, angle = self._measures(pinion)
         size, rows = float(self.rho[0]), []
-        for flank, (own, has_bends) in self.flanks.items():
+        for flank, (wanted, has_bends) in self.flanks.items():
             there = flanks[flank][0]
-            rows.append((there.slopes - own.slopes) * size)
+            rows.append((there.slopes - wanted.slopes) * size)
             if has_bends:
-                rows.append((there.bends - own.bends) * size**2)
+                rows.append((there.bends - wanted.bends) * size**2)
         lengths = (heights - self.heights) / size
         rows.append(np.array([flanks[self.drive][1], lengths[0], angle - self.tooth_angle]))
         if root_line:
@@ -322,11 +322,11 @@ def _solve(pinion: FaceMilledGear, asked: _Asked, names: tuple[str, ...]) -> Fac
     """Newton's method to the nearest solution, and where it leads nowhere least squares, of more reach."""
     equations = _Equations(pinion, asked, names)
     start = np.zeros(len(names))
-    found = _newton(equations, start, nearest=True)
-    if found is None and len(names) == len(SCALES):
+    solution = _newton(equations, start, nearest=True)
+    if solution is None and len(names) == len(SCALES):
         reached = least_squares(equations.misses, start, xtol=NEAR, ftol=NEAR, gtol=NEAR, max_nfev=MOST_TRIALS)
-        found = _newton(equations, reached.x, nearest=False)
-    return None if found is None else equations.gear(found)
+        solution = _newton(equations, reached.x, nearest=False)
+    return None if solution is None else equations.gear(solution)
 
 
 def _newton(equations: _Equations, changes: Array, *, nearest: bool) -> Array | None:

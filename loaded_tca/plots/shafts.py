@@ -68,7 +68,7 @@ def _draw_outline(axes: Axes, line: ShaftLine) -> None:
     axes.axvspan(line.middle - 0.5 * width, line.middle + 0.5 * width, color=ACCENT, alpha=0.25, label="face")
     places = [bearing.at for bearing in shaft.bearings]
     axes.plot(places, [-0.72 * largest] * len(places), "^", color="black", markersize=9, label="bearing")
-    axes.plot(shaft.torque_at, 0.0, "x", color="black", label="torque enters")
+    axes.plot(shaft.torque_at, 0.0, "x", color="black", label="coupling")
     axes.set_ylim(-0.95 * largest, 0.95 * largest)
     axes.set_ylabel("radius [mm]")
     axes.set_title(f"shaft of the {line.gear}")

@@ -6,9 +6,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from loaded_tca.contact import ContactSolution
+from loaded_tca.errors import require
 from loaded_tca.plots.pressure_map import PRESSURE, scale_factor
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_LOAD, NO_MATERIAL, from_zero, tell
-from loaded_tca.reference.hertz import PointContact
+from loaded_tca.reference.hertz import LineContact, PointContact
 
 FINE = 400
 """Points of the curves after Hertz."""
@@ -16,7 +17,7 @@ ALIKE = 2.5
 """Ratio of the sides of a grid up to which it is drawn in one scale."""
 
 
-def plot_solution(solution: ContactSolution, hertz: PointContact | None = None) -> Figure:
+def plot_solution(solution: ContactSolution, hertz: PointContact | LineContact | None = None) -> Figure:
     """Pressure of a contact solution: a map of the grid, and the two lines through its highest cell.
 
     Places count from the middle of the grid. Cells without material are grey, without pressure white.
@@ -25,12 +26,18 @@ def plot_solution(solution: ContactSolution, hertz: PointContact | None = None) 
     ----------
     solution : ContactSolution
         Of :func:`loaded_tca.solve_contact` or :func:`loaded_tca.contact.solve_problem`.
-    hertz : PointContact, optional
-        Drawn beside it, its minor axis along the first axis of the grid, its middle in that of the grid.
+    hertz : PointContact or LineContact, optional
+        Drawn beside it, its minor axis along the first axis of the grid, its middle in that of the grid; a line without
+        ends along the second axis.
 
     Returns
     -------
     matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If ``hertz`` is none of these.
 
     Examples
     --------
@@ -41,6 +48,8 @@ def plot_solution(solution: ContactSolution, hertz: PointContact | None = None) 
     >>> [axes.get_xlabel() for axes in figure.axes][1:3]
     ['first axis [mm]', 'second axis [mm]']
     """
+    known = hertz is None or isinstance(hertz, PointContact | LineContact)
+    require((known, f"hertz: {hertz!r:.60} is neither a PointContact nor a LineContact of reference.hertz"))
     pressure, steps = solution.pressure, solution.spacing
     borders = [(np.arange(count + 1) - 0.5 * count) * step for count, step in zip(pressure.shape, steps, strict=True)]
     places = [0.5 * (ends[1:] + ends[:-1]) for ends in borders]
@@ -69,7 +78,8 @@ def plot_solution(solution: ContactSolution, hertz: PointContact | None = None) 
         axes.plot(place, section, "o-", markersize=3.0, linewidth=0.8, color="black", label="solution")
         if hertz is not None:
             fine = np.linspace(place[0], place[-1], FINE)
-            curve = hertz.pressure(fine, 0.0) if k == 0 else hertz.pressure(0.0, fine)
+            across, along = (fine, np.zeros_like(fine)) if k == 0 else (np.zeros_like(fine), fine)
+            curve = hertz.pressure(across) if isinstance(hertz, LineContact) else hertz.pressure(across, along)
             axes.plot(fine, curve, color=ACCENT, label=f"Hertz, peak {hertz.max_pressure:.5g} MPa")
         at = float(places[1 - k][top[1 - k]])
         axes.set_title(f"at {at:.3g} mm of the {('second', 'first')[k]} axis", fontsize="small")

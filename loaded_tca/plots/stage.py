@@ -79,7 +79,10 @@ def plot_stage_shares(result: StageResult, torque: int | None = None) -> Figure:
     shares = 100.0 * np.concatenate([result.planet_share[torque], result.planet_share[torque][:1]])
     for planet, share in enumerate(shares.T):
         colour = style.DISTINCT_COLOURS[planet % len(style.DISTINCT_COLOURS)]
-        axes.plot(_cycle(result), share, color=colour, marker=style.MARKERS[planet % 8], label=f"planet {planet}")
+        # The later ones thinner: planets with one share lie on each other.
+        width = 1.2 + 1.6 * (len(result.planet) - 1 - planet)
+        marker = style.MARKERS[planet % 8]
+        axes.plot(_cycle(result), share, color=colour, marker=marker, linewidth=width, label=f"planet {planet}")
     axes.axhline(100.0 / len(result.planet), color="0.35", linestyle=":", label="even share")
     axes.set_xlabel("mesh cycle of the sun")
     axes.set_ylabel("share of the torque [%]")
@@ -153,10 +156,13 @@ def plot_stage_sun_orbit(result: StageResult) -> Figure:
         )
     if not result.sun_motion.any():
         style.tell(axes, "the sun is held rigid")
+    places = 1e3 * result.sun_motion.reshape(-1, 2)
+    low, high = places.min(axis=0), places.max(axis=0)
+    at_rest = bool((low <= 0.0).all() and (high >= 0.0).all())
     for planet, angle in enumerate(result.planet_angle.tolist()):
         axes.annotate(
-            f"planet {planet}",
-            (0.5 + 0.43 * np.cos(angle), 0.5 + 0.43 * np.sin(angle)),
+            f"planet {planet}" if at_rest else f"towards planet {planet}",
+            (0.5 + 0.4 * np.cos(angle), 0.5 + 0.43 * np.sin(angle)),
             xycoords="axes fraction",
             ha="center",
             va="center",
@@ -165,8 +171,6 @@ def plot_stage_sun_orbit(result: StageResult) -> Figure:
         )
     axes.set_xlabel("x, towards the angle 0 of the carrier [µm]")
     axes.set_ylabel("y [µm]")
-    places = 1e3 * result.sun_motion.reshape(-1, 2)
-    low, high = places.min(axis=0), places.max(axis=0)
     half = max(0.8 * float((high - low).max()), LEAST_ORBIT)
     axes.set_xlim(*(0.5 * (low + high)[0] + np.array([-half, half])))
     axes.set_ylim(*(0.5 * (low + high)[1] + np.array([-half, half])))
@@ -174,7 +178,9 @@ def plot_stage_sun_orbit(result: StageResult) -> Figure:
     axes.ticklabel_format(useOffset=False)
     axes.grid(alpha=0.3)
     figure.legend(loc="outside lower center", ncols=3, fontsize="small")
-    return _title(figure, result, "motion of the sun's axis over a mesh cycle")
+    middle = 0.5 * (low + high)
+    away = () if at_rest else (f"around ({middle[0]:.4g}, {middle[1]:.4g}) µm from the axis of the carrier",)
+    return _title(figure, result, "motion of the sun's axis over a mesh cycle", *away)
 
 
 def plot_stage_error(result: StageResult, torque: int | None = None) -> Figure:

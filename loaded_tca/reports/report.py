@@ -1,22 +1,52 @@
-"""Reports of results, stages, studies and designs as one HTML file that needs nothing else."""
+"""Reports of results, stages, studies and designs as one HTML file that needs nothing else.
+
+What those of studies and designs tell is here too; results and stages are in :mod:`loaded_tca.reports.result_page`.
+"""
 
 from __future__ import annotations
 
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from loaded_tca.errors import InputError, require
+from loaded_tca.plots import plot_before_and_after, plot_peak_to_peak_over_torque, plot_study
+from loaded_tca.plots.style import label_of
 from loaded_tca.reports import page
-from loaded_tca.reports.result_page import result_content
-from loaded_tca.reports.stage_page import stage_content
-from loaded_tca.reports.study_page import design_content, study_content
-from loaded_tca.results.files import FilePath, make_directory, replace_file
+from loaded_tca.reports.page import Table, pictures_of
+from loaded_tca.reports.result_page import explained, result_content, scene_content, stage_content, stage_geometry
+from loaded_tca.results.files import STUDY, FilePath, make_directory, replace_file
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.stages import StageResult
+from loaded_tca.results.summary import shown, shown_torque
+from loaded_tca.results.warnings import without_place
+from loaded_tca.scene import parse_scene
+from loaded_tca.stages import Stage, StageResult
 from loaded_tca.studies.design import DesignResult
+from loaded_tca.studies.design_figures import FIGURES, FigureOfErrors
+from loaded_tca.studies.ranking import (
+    MAIN,
+    PERCENTILES,
+    QUANTILE,
+    figure_values,
+    is_sampled,
+    main_figures,
+    nominal_variant,
+    rank_combinations,
+    rank_variants,
+    varied_keys,
+)
+from loaded_tca.studies.stage import subject_of
 from loaded_tca.threads import one_thread
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 
 def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, rank_by: str | None = None) -> Path:
@@ -62,7 +92,7 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
     'report.html'
     """
     page.require_jinja2()
-    is_study = getattr(subject, "attrs", {}).get("kind") == "study"
+    is_study = getattr(subject, "attrs", {}).get("kind") == STUDY
     require((rank_by is None or is_study, f"rank_by: {rank_by!r:.60}; a {type(subject).__name__} has no ranking"))
     with one_thread():  # sums of several threads differ in their last digits each time
         if isinstance(subject, MeshCycle):
@@ -95,3 +125,239 @@ def _shown(date: str) -> str:
     except ValueError:
         return date
     return f"{when:%Y-%m-%d %H:%M} {when.tzname() or ''}".strip()
+
+
+MOST_ROWS = 30
+"""Variants of the ranking."""
+WAYS = {"table": "given one by one", "factor": "every combination", "distribution": "distributed"}
+STUDY_CAPTIONS = {
+    "study_lines": "The figure over the values of the first key, a line for each value of the second.",
+    "study_heat_map": "The figure over two keys, the best cell framed. Crosses: no variant has the figure.",
+    "study_histogram": "How the figure scatters over the variants.",
+    "study_over_torque": "Median and scatter over the torque.",
+    "study_scatter_matrix": "Figures over the keys, a dot for each variant.",
+}
+"""How the pictures are read whose names begin so."""
+
+
+def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str, Any]:
+    """Return what the template of a study takes.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        What :func:`loaded_tca.studies.run_study` returns.
+    rank_by : str, optional
+        As for :func:`loaded_tca.studies.rank_variants`.
+    """
+    by = rank_by if main_figures(study) else None  # where all variants were refused there is nothing to rank by
+    sampled = is_sampled(study)
+    combinations = rank_combinations(study, by) if sampled else None
+    grouped = combinations is not None and bool(combinations["rank"].notna().any())
+    subject = subject_of(study)
+    lines = Counter(line for warned in study["warnings"].values.tolist() for line in warned.splitlines())
+    by_reason: dict[str, list[str]] = {}
+    for line in lines:
+        by_reason.setdefault(without_place(line), []).append(line)
+    concerned = {
+        reason: sum(any(line in warned.splitlines() for line in places) for warned in study["warnings"].values.tolist())
+        for reason, places in by_reason.items()
+    }
+    variants = study.sizes["sample"]
+    figures = plot_study(study, rank_by=by)
+    figures.pop("study_ranking")  # a table of the page
+    return {
+        "title": subject.title or "Study",
+        "analysed_by": str(study.attrs.get("version", "")),
+        "statuses": Counter(study["status"].values.tolist()).most_common(),
+        "variants": variants,
+        "analysed": "ok" in study["status"].values,
+        **(stage_geometry(subject) if isinstance(subject, Stage) else scene_content(subject)),
+        "varied": _varied(study),
+        "seed": f"{study.attrs.get('seed', '-')}" if sampled else "",
+        "scatter": [*_scatter(study, by)],
+        "sampled": sampled,
+        "grouped": grouped,
+        "quantile": f"{QUANTILE:.0%}".replace("%", " %"),
+        "ranked_by": label_of(by or next(iter(main_figures(study)), "")),
+        "best_and_worst": _best_and_worst(study, by, combinations if grouped else None),
+        "ranking": _ranking(study, by, combinations if grouped else None),
+        "most_rows": MOST_ROWS,
+        "ranked": len(combinations) if grouped and combinations is not None else variants,
+        "failures": Counter(
+            f"{status}: {' '.join(reason.split())}"
+            for status, reason in zip(study["status"].values.tolist(), study["reason"].values.tolist(), strict=True)
+            if status != "ok"
+        ).most_common(),
+        "warnings": explained([f"{reason} ({count} of {variants} variants)" for reason, count in concerned.items()]),
+        "pictures": pictures_of(figures, STUDY_CAPTIONS, subject.title),
+    }
+
+
+def _varied(study: xarray.Dataset) -> Table:
+    """What varies, how, and over which values."""
+    rows = []
+    for key in varied_keys(study):
+        values = study[key].values
+        known = np.unique(values)
+        span = f"{_cell(known[0])} to {_cell(known[-1])}" if known.dtype.kind in "fiu" else ", ".join(map(str, known))
+        way = WAYS.get(study[key].attrs.get("sampling", "table"), "")
+        way += f", {study[key].attrs['distribution']}" if "distribution" in study[key].attrs else ""
+        rows.append((label_of(key), key, way, f"{len(known)}", span))
+    return Table(tuple(rows), ("what varies", "key", "how", "values", "from, to"), of_words=True)
+
+
+def _scatter(study: xarray.Dataset, by: str | None) -> Iterator[Table]:
+    """Percentiles of the main figures over the variants, a table for each torque."""
+    if not main_figures(study):
+        return
+    names = dict.fromkeys([*([by] if by else []), *main_figures(study), *(name for name in MAIN if name in study)])
+    torques = study["torque"].values if "torque" in study.coords else [None] * study.sizes["torque"]
+    for k, torque in enumerate(torques):
+        rows = []
+        for name in names:
+            values = figure_values(study, name)[:, k]
+            values = values[np.isfinite(values)]
+            if values.size:
+                at = np.percentile(values, [*PERCENTILES.values()]).tolist()
+                rows.append((label_of(name), *(shown(value, name) for value in at)))
+        under = "" if torque is None else f"under {shown_torque(torque)}"
+        if rows:
+            yield Table(tuple(rows), (under, *PERCENTILES))
+
+
+def _best_and_worst(study: xarray.Dataset, by: str | None, combinations: pandas.DataFrame | None) -> Table | None:
+    """Keys and figures of the best and the worst variant, and of that with the values of the scene if there is one.
+
+    Of combinations where these are given: a single sample is best by chance.
+    """
+    ranking = rank_variants(study, by) if combinations is None else combinations
+    ranked = ranking[ranking["rank"].notna()]
+    if ranked.empty:
+        return None
+    columns = {"best": ranked.iloc[0], "worst": ranked.iloc[-1]}
+    nominal = nominal_variant(study) if combinations is None else None
+    if nominal is not None:
+        columns["as the scene"] = ranking[ranking["sample"] == nominal].iloc[0]
+    names = _columns(study, by) if combinations is None else [*combinations.columns[1:]]
+    rows = [
+        (head, *(_cell(one[name]) for one in columns.values())) for name, head in zip(names, _heads(names), strict=True)
+    ]
+    return Table(tuple(rows), ("", *columns))
+
+
+def _ranking(study: xarray.Dataset, by: str | None, combinations: pandas.DataFrame | None) -> Table | None:
+    """The variants, or the combinations where these are given, the best first."""
+    ranking = rank_variants(study, by) if combinations is None else combinations
+    ranked = ranking[ranking["rank"].notna()].head(MOST_ROWS)
+    columns = [*combinations.columns] if combinations is not None else ["rank", *_columns(study, by), "warnings"]
+    rows = [tuple(_cell(value) for value in row) for row in ranked[columns].to_numpy().tolist()]
+    return Table(tuple(rows), tuple(_heads(columns))) if rows else None
+
+
+def _columns(study: xarray.Dataset, by: str | None) -> list[str]:
+    """What is told of a variant."""
+    return ["sample", *varied_keys(study), *dict.fromkeys([*([by] if by else []), *main_figures(study)])]
+
+
+def _heads(columns: Sequence[str]) -> Iterator[str]:
+    return (label_of(name) if name != "sample" else "variant" for name in columns)
+
+
+def _cell(value: Any) -> str:
+    """A number as tables have it, a word as it is."""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+PEAK = "MPa", "peak pressure, largest over the positions"
+DESIGN_CAPTIONS = {
+    "before_and_after": "Transmission error and peak pressure over a pitch, load factor and peak-to-peak over the "
+    "torque. Lines: mean of the samples of the scatter, bands: all of them.",
+    "peak_to_peak": "Peak-to-peak transmission error over the torque.",
+}
+
+
+def design_content(design: DesignResult) -> dict[str, Any]:
+    """Return what the template of a design takes.
+
+    Parameters
+    ----------
+    design : DesignResult
+    """
+    data = design.dataset
+    scene = parse_scene(data.attrs["scene_toml"], source="scene_toml", folder=None)
+    minimised = FIGURES[data.attrs["figure"]]
+    figures = {
+        "before_and_after": plot_before_and_after(design),
+        "peak_to_peak": plot_peak_to_peak_over_torque(design),
+    }
+    return {
+        "title": scene.title or "Design",
+        **scene_content(scene),
+        "objective": f"{data.attrs['objective']} of the {minimised.text}"
+        + (f" [{minimised.unit}]" if minimised.unit != "1" else ""),
+        "objectives": Table(
+            (
+                ("by the full analysis", *(f"{one:.4g}" for one in design.objective)),
+                ("on held contacts", *(f"{one:.4g}" for one in design.held_objective)),
+            ),
+            ("", "start", "optimum"),
+        ),
+        "values": _values(design),
+        "limits": [*map(_told_limit, data.attrs["limits"].splitlines())],
+        "scattered": _scattered(design),
+        "seeds": data.attrs.get("seeds", ""),
+        "evaluations": design.evaluations,
+        "samples": data.sizes["sample"],
+        "figures": _figures(design),
+        "warnings": explained(data.attrs["warnings"].splitlines()),
+        "pictures": pictures_of(figures, DESIGN_CAPTIONS, scene.title),
+        "optimum_toml": scene.with_changes(design.optimum).to_toml(),
+    }
+
+
+def _told_limit(limit: str) -> str:
+    """A limit with what its figure measures."""
+    name = limit.partition(" ")[0]
+    if name not in FIGURES:
+        return limit
+    figure = FIGURES[name]
+    return f"{limit} ({figure.text}{'' if isinstance(figure, FigureOfErrors) else figure.note})"
+
+
+def _values(design: DesignResult) -> Table:
+    """What was designed, within which range."""
+    data = design.dataset
+    bounds = data["range"].values.tolist() if "range" in data else [(math.nan, math.nan)] * len(design.start)
+    rows = (
+        (label_of(key), key, *(shown(one, key) for one in (*ends, before, design.optimum[key])))
+        for (key, before), ends in zip(design.start.items(), bounds, strict=True)
+    )
+    return Table(tuple(rows), ("what was designed", "key", "from", "to", "start", "optimum"), of_words=True)
+
+
+def _scattered(design: DesignResult) -> Table | None:
+    """What scatters, how, and over which values."""
+    data = design.dataset
+    rows = []
+    for line in data.attrs.get("distributions", "").splitlines():
+        key, _, words = line.partition(": ")
+        values = data["scatter"].sel(scatter_key=key).values
+        rows.append((label_of(key), key, words, shown(values.min(), key), shown(values.max(), key)))
+    return Table(tuple(rows), ("what scatters", "key", "how", "from", "to"), of_words=True) if rows else None
+
+
+def _figures(design: DesignResult) -> Table:
+    """The worst value over the samples of each figure under each torque, of start and optimum."""
+    data = design.dataset
+    rows = []
+    texts = {name: (figure.unit, figure.text) for name, figure in FIGURES.items()}
+    for name, (unit, words) in {"peak_pressure": PEAK, **texts}.items():
+        if name not in data:
+            continue
+        values = data[name].max("position") if name == "peak_pressure" else data[name]
+        worst = np.fmax.reduce(values.transpose("design", "sample", "torque").values, axis=1)
+        for k, torque in enumerate(data["torque"].values.tolist()):
+            label = words + (f" [{unit.replace('um', 'µm')}]" if unit != "1" else "")
+            rows.append((label, f"{1e-3 * torque:.4g}", *(shown(value, name) for value in worst[:, k].tolist())))
+    return Table(tuple(rows), ("largest of the samples", "pinion torque [N m]", "start", "optimum"))

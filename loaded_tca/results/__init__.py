@@ -1,7 +1,6 @@
 """Results of an analysis: the mesh cycle, its figures and file, stresses below the flanks, comparisons."""
 
 from loaded_tca.results.comparison import Comparison, compare_results
-from loaded_tca.results.findings import reached_edges
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.revolution import Revolution, Spectrum
@@ -10,6 +9,7 @@ from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.stress_below import StressBelow, stress_below
 from loaded_tca.results.supports import element_forces
 from loaded_tca.results.tolerances import default_tolerances, key_figure_slopes
+from loaded_tca.results.warnings import reached_edges
 
 load_result = MeshCycle.load
 

@@ -110,16 +110,18 @@ def _stiffnesses(
     scene: Scene, pair: GearPair, carried: Carried, on_supports: Sequence[CarriedOnSupports]
 ) -> dict[str, Array]:
     """Tangent and secant mesh stiffness of the teeth and, where supports give way, the arrays of these."""
-    lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
     if not on_supports:
         with np.errstate(divide="ignore", invalid="ignore"):
             secant = np.where(carried.rotation > 0.0, carried.torque[:, None] / carried.rotation, math.nan)
-        return {"mesh_stiffness": carried.torque_rate / lengths, "secant_stiffness": secant / lengths}
+        return {
+            "mesh_stiffness": carried.torque_rate / pair.rate_of_stiffness,
+            "secant_stiffness": secant / pair.rate_of_stiffness,
+        }
     angle, _ = scene.transverse_angles
     return {
-        "mesh_stiffness": np.stack([one.mesh_rate for one in on_supports]) / lengths,
-        "secant_stiffness": secant_on_rigid_supports(carried, on_supports) / lengths,
-        **support_arrays(pair, on_supports, pressure_angle=angle, stiffness_per_rate=1.0 / lengths),
+        "mesh_stiffness": np.stack([one.mesh_rate for one in on_supports]) / pair.rate_of_stiffness,
+        "secant_stiffness": secant_on_rigid_supports(carried, on_supports) / pair.rate_of_stiffness,
+        **support_arrays(pair, on_supports, pressure_angle=angle),
     }
 
 

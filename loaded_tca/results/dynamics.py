@@ -10,6 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Part, variables_of
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.unloaded.teeth import harmonic_coefficients
@@ -73,9 +74,39 @@ def dynamics_of(result: CycleNumbers) -> xarray.Dataset:
         (sharing, "analysis.load_sharing: found false; one tooth pair alone has no period, dynamics need true"),
         (count > 1, f"analysis.positions: found {count}; dynamics need the curves over a pitch, from 2 positions on"),
     )
-    pair, torque = result.gear_pair, 1e-3 * result.torque
-    first, second = (1e-3 * radius for radius in pair.base_radii)
-    pressure_angle, base_helix = result.scene.transverse_angles
+    arrays = _constants_of(result) | _curves_of(result)
+    known = {name: part for name, part in PARTS.items() if part[0] or math.isfinite(arrays[name])}  # not of bevels
+    variables = variables_of(known, arrays)
+    coordinates = {name: variables.pop(name) for name in COORDINATES}
+    return xarray.Dataset(variables, coordinates, _attributes_of(result))
+
+
+def teeth_and_radii(pair: GearPair) -> dict[str, float]:
+    """Numbers of teeth and base radii [m], by the names of ``PARTS``."""
+    return {
+        "pinion_teeth": pair.teeth[0],
+        "wheel_teeth": pair.teeth[1],
+        "pinion_base_radius_m": 1e-3 * pair.base_radii[0],
+        "wheel_base_radius_m": 1e-3 * pair.base_radii[1],
+    }
+
+
+def _constants_of(result: CycleNumbers) -> dict[str, Any]:
+    """Numbers of the gears, by the names of ``PARTS``; lengths in m."""
+    pair, (pressure_angle, base_helix) = result.gear_pair, result.scene.transverse_angles
+    return {
+        **teeth_and_radii(pair),
+        "mesh_frequency_Hz_per_pinion_rev_per_s": pair.teeth[0],
+        "face_width_m": 1e-3 * result.face_width,
+        "working_pressure_angle_rad": pressure_angle,
+        "pinion_base_helix_angle_rad": base_helix,
+    }
+
+
+def _curves_of(result: CycleNumbers) -> dict[str, Any]:
+    """Curves over the pitch and their Fourier coefficients, by the names of ``PARTS``, with what they run over."""
+    pair, torque, count = result.gear_pair, 1e-3 * result.torque, len(result.path)
+    radius = 1e-3 * pair.base_radii[1]
     begin = float(result.pinion_angle[0]) / pair.pitch
     phase = np.remainder(begin + np.arange(count - 1) / (count - 1), 1.0)
     ascending = np.argsort(phase)
@@ -87,41 +118,33 @@ def dynamics_of(result: CycleNumbers) -> xarray.Dataset:
     stiffness = 1e6 * result.face_width * result.mesh_stiffness
     per_torque = 1.0 / np.where(torque > 0.0, torque, math.nan)
     curves = {
-        "transmission_error": second * result.transmission_error,
+        "transmission_error": radius * result.transmission_error,
         "mesh_stiffness": stiffness,
         "loaded_pairs": result.loaded_pairs.astype(float),
     }
-    series = _fourier_series(curves, begin, (count - 2) // 2)
-    arrays: dict[str, Any] = {
-        "pinion_teeth": pair.teeth[0],
-        "wheel_teeth": pair.teeth[1],
-        "mesh_frequency_Hz_per_pinion_rev_per_s": pair.teeth[0],
-        "pinion_base_radius_m": first,
-        "wheel_base_radius_m": second,
-        "face_width_m": 1e-3 * result.face_width,
-        "working_pressure_angle_rad": pressure_angle,
-        "pinion_base_helix_angle_rad": base_helix,
+    return {
         TORQUE: torque,
         PHASE: phase[ascending],
         "pinion_angle_rad": pair.pitch * phase[ascending],
         "loaded_contact_ratio": curves["loaded_pairs"][:, :-1].mean(axis=-1),
-        "unloaded_transmission_error_m": over_pitch(second * result.unloaded_transmission_error),
+        "unloaded_transmission_error_m": over_pitch(radius * result.unloaded_transmission_error),
         "transmission_error_rad": over_pitch(result.transmission_error),
-        "torsional_stiffness_Nm_per_rad": over_pitch(second**2 * stiffness),
+        "torsional_stiffness_Nm_per_rad": over_pitch(radius**2 * stiffness),
         "normal_force_per_torque_N_per_Nm": over_pitch(result.normal_force.sum(axis=-1) * per_torque[:, None]),
+        **{f"{name}{ending(name)}": over_pitch(curve) for name, curve in curves.items()},
+        **_fourier_series(curves, begin, (count - 2) // 2),
     }
-    arrays |= series | {f"{name}{ending(name)}": over_pitch(curve) for name, curve in curves.items()}
-    known = {name: part for name, part in PARTS.items() if part[0] or math.isfinite(arrays[name])}  # not of bevels
-    variables = variables_of(known, arrays)
-    coordinates = {name: variables.pop(name) for name in COORDINATES}
-    driving = "pinion" if pair.driving > 0 else "wheel"
-    held = "" if result.scene.analysis.compliance == "contact" else ", from bores that are held rigid"
-    attributes = {
+
+
+def _attributes_of(result: CycleNumbers) -> dict[str, str]:
+    """What stands beside the numbers: where they are from, and what their signs mean."""
+    driving = "pinion" if result.gear_pair.driving > 0 else "wheel"
+    held = ", from bores that are held rigid" if result.scene.analysis.teeth_bend else ""
+    return {
         "title": result.scene.title,
         "version": result.version,
         "conventions": f"{CONVENTIONS}\nThe {driving} drives; {result.bending}{held}.",
     }
-    return xarray.Dataset(variables, coordinates, attributes)
 
 
 def ending(name: str) -> str:

@@ -82,7 +82,7 @@ def of_orders(_: str, result: CycleNumbers, *__: object) -> str:
 
 def of_bending(name: str, result: CycleNumbers, *_: object) -> str:
     """By how much a figure to which the bending of teeth belongs differs from finite elements."""
-    if result.scene.analysis.compliance == "contact":
+    if not result.scene.analysis.teeth_bend:
         return "of the flanks alone: the teeth do not bend"
     return compared(name, result)
 
@@ -198,7 +198,7 @@ def labelled(name: str, label: str) -> str:
 
 def length(sensitivities: Sensitivities) -> float:
     """Of a transmission error at the base circle of the wheel [um/rad]."""
-    return 1e3 * sensitivities.result.wheel_base_radius
+    return sensitivities.result.um_per_rad
 
 
 def slope_of_mean_error(sensitivities: Sensitivities) -> Array:

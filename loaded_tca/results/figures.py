@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.results.figure import (
     Figure,
     Line,
@@ -44,7 +45,6 @@ from loaded_tca.results.key_figures import (
     span_of,
 )
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.root_stress import FACTORS
 
 
@@ -399,9 +399,9 @@ SUMMARY: tuple[Line, ...] = (
     ),
     *(
         Line(f"    its Y_F | Y_S | Y_beta of the {gear}", tuple(f"{gear}_{name}_factor_iso_6336" for name in FACTORS))
-        for gear in ("pinion", "wheel")
+        for gear in GEARS
     ),
-    Line(RIM_LABEL, tuple(f"{gear}_rim_thickness_factor_iso_6336" for gear in ("pinion", "wheel"))),
+    Line(RIM_LABEL, tuple(f"{gear}_rim_thickness_factor_iso_6336" for gear in GEARS)),
     Line("root compression of pinion | wheel [MPa]", ("pinion_root_compression_MPa", "wheel_root_compression_MPa")),
     Line(
         "most cells across | along, worst residual",

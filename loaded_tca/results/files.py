@@ -21,6 +21,8 @@ if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes
     import xarray
 
 FORMAT = "loaded_tca"
+REVOLUTION, STAGE, STUDY, DESIGN = "revolution", "stage", "study", "design"
+"""Attribute ``kind`` of files that hold something else than the result of a mesh cycle."""
 FORMAT_VERSION = 7
 """Raised whenever the code of one version cannot read the files of another."""
 DIGITS = 64

@@ -180,7 +180,7 @@ class UnderTorque:
     @property
     def length(self) -> float:
         """Of a transmission error at the base circle of the wheel [um/rad]."""
-        return 1e3 * self.result.wheel_base_radius
+        return self.result.um_per_rad
 
     @cached_property
     def harmonics(self) -> Array:

@@ -14,17 +14,29 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError, require
+from loaded_tca.results.derivatives import sensitivities
 from loaded_tca.results.dynamics import dynamics_of
 from loaded_tca.results.figures import key_figures
-from loaded_tca.results.files import Buffer, FilePath, arrays_of, netcdf_of, read_dataset, replace_file, variables_of
-from loaded_tca.results.findings import findings_of
+from loaded_tca.results.files import (
+    DESIGN,
+    REVOLUTION,
+    STAGE,
+    STUDY,
+    Buffer,
+    FilePath,
+    arrays_of,
+    netcdf_of,
+    read_dataset,
+    replace_file,
+    variables_of,
+)
 from loaded_tca.results.numbers import CycleNumbers, dataset_of
 from loaded_tca.results.pressure_map import arrays_of_maps, maps_from
 from loaded_tca.results.quantities import (
     ABOUT,
     BEARING_QUANTITIES,
-    GEARS,
     IN_FILES,
     MOTIONS,
     PAIRS,
@@ -37,8 +49,9 @@ from loaded_tca.results.quantities import (
     not_asked,
 )
 from loaded_tca.results.root_stress import RootStressMap, root_stress_maps
-from loaded_tca.results.sensitivities import Sensitivities, sensitivities
+from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import signed, summary_text
+from loaded_tca.results.warnings import findings_of
 from loaded_tca.scene import parse_scene
 from loaded_tca.unloaded import ContactPath
 
@@ -300,14 +313,14 @@ class MeshCycle(CycleNumbers):
         """
         file = read_dataset(path)
         kind = file.attrs.get("kind")
-        if kind == "revolution":
+        if kind == REVOLUTION:
             raise InputError(
                 f"{path}: a whole revolution, not the result of a mesh cycle; read it with Revolution.load"
             )
-        if kind == "stage":
+        if kind == STAGE:
             beside = "sun_mesh.nc and ring_mesh.nc beside it are such results; StageResult.load reads the stage"
             raise InputError(f"{path}: a planetary stage, not the result of a mesh cycle; {beside}")
-        if kind in ("study", "design"):
+        if kind in (STUDY, DESIGN):
             reader = f"loaded_tca.studies.load_{kind}"
             raise InputError(f"{path}: a {kind}, not the result of a mesh cycle; read it with {reader}")
         if not IN_FILES.keys() & file.variables.keys():  # as of sensitivities, rather than a line for all it lacks

@@ -31,6 +31,7 @@ from loaded_tca.results.quantities import (
     not_asked,
 )
 from loaded_tca.scene import Scene
+from loaded_tca.units import MICROMETRES
 from loaded_tca.unloaded import ContactPath
 from loaded_tca.unloaded.teeth import harmonic_coefficients
 
@@ -53,6 +54,11 @@ def dataset_of(arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
     variables = variables_of(QUANTITIES | {name: part for name, part in optional.items() if name in arrays}, arrays)
     coordinates = {name: variables.pop(name) for name in COORDINATES}
     return xarray.Dataset(variables, coordinates, about)
+
+
+def index_or_largest(torques: Array, torque: int | None = None) -> int:
+    """Index of a torque among all, by default of the largest."""
+    return int(np.argmax(torques)) if torque is None else torque
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -116,6 +122,11 @@ class CycleNumbers:
         return self.scene.pair()
 
     @property
+    def um_per_rad(self) -> float:
+        """What a transmission error of one rad is at the base circle of the wheel [um]."""
+        return MICROMETRES * self.wheel_base_radius
+
+    @property
     def has_root_stress(self) -> bool:
         """Whether the analysis found root stress: its scene asked for it."""
         return "root_tension" in self.dataset
@@ -138,14 +149,14 @@ class CycleNumbers:
         float [N/(mm um)]
             NaN where teeth do not bend.
         """
-        if self.scene.analysis.compliance == "contact" or not stiffness > 0.0:
+        if not self.scene.analysis.teeth_bend or not stiffness > 0.0:
             return math.nan
         return 1.0 / (1.0 / stiffness - 1e3 * self.face_width * sum(body_torsion(self.gear_pair)))
 
     @property
     def bending(self) -> str:
         """Whether teeth bend, in words."""
-        return "teeth do not bend" if self.scene.analysis.compliance == "contact" else "teeth bend"
+        return "teeth bend" if self.scene.analysis.teeth_bend else "teeth do not bend"
 
     @property
     def peak_column(self) -> NDArray[np.int_]:

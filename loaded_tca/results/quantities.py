@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from loaded_tca.arrays import GEARS as GEARS
 from loaded_tca.errors import NotAskedError
 from loaded_tca.results.files import Part
 
@@ -82,7 +83,6 @@ OF_THE_PEAK = frozenset(
 """Numbers whose value at a position is that of the pair with the highest peak pressure."""
 OF_THE_EDGE = frozenset({"edge_pressure", "edge_is_rounded", "edge_pressure_error", "edge_radius", "edge_axial"})
 
-GEARS = "pinion", "wheel"
 OVER_CYCLE = ("torque", "position", "gear")
 ROOT_QUANTITIES: dict[str, Part] = {
     "root_tension": (OVER_CYCLE, "MPa", "largest stress at the roots of all teeth of pinion and wheel, on both sides"),

@@ -16,14 +16,24 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from loaded_tca.arrays import Array, index_checks
+from loaded_tca.arrays import GEARS, Array, index_checks
 from loaded_tca.errors import InputError, require
-from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replace_file, variables_of
+from loaded_tca.results.dynamics import PARTS, TORQUE, teeth_and_radii
+from loaded_tca.results.files import (
+    REVOLUTION,
+    FilePath,
+    Part,
+    arrays_of,
+    netcdf_of,
+    read_dataset,
+    replace_file,
+    variables_of,
+)
+from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.quantities import (
     BEARING_QUANTITIES,
     CYCLE,
-    GEARS,
     OVER_CYCLE,
     QUANTITIES,
     ROLLING_QUANTITIES,
@@ -33,14 +43,13 @@ from loaded_tca.results.quantities import (
 from loaded_tca.results.summary import shown
 from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
+from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
     import xarray
 
-KIND = "revolution"
 SIDEBANDS = 5
 """Orders of a gear beside a mesh order that are named its sidebands."""
-UM = 1e3
 
 OF_TEETH: dict[str, Part] = {
     "pinion_tooth": (("position", "pair"), "1", "tooth of the pinion, from 0"),
@@ -143,6 +152,11 @@ class Revolution:
         return self.dataset["torque"].values
 
     @property
+    def um_per_rad(self) -> float:
+        """What a transmission error of one rad is at the base circle of the wheel [um]."""
+        return MICROMETRES * float(self.dataset["wheel_base_radius"])
+
+    @property
     def counted_by(self) -> int:
         """Gear whose orders the spectrum counts: 1, the wheel, unless the pinion alone makes whole turns."""
         return 0 if self.pitches % self.teeth[1] and self.pitches % self.teeth[0] == 0 else 1
@@ -150,10 +164,9 @@ class Revolution:
     def error_um(self, torque: int | None = None) -> Array:
         """Transmission error (n,) [um] at the base circle of the wheel; without a torque the rigid one."""
         require(*index_checks(torque=(torque, len(self.torque))))
-        radius = UM * float(self.dataset["wheel_base_radius"])
         if torque is None:
-            return radius * self.dataset["rigid_transmission_error"].values
-        return radius * self.dataset["transmission_error"].values[torque]
+            return self.um_per_rad * self.dataset["rigid_transmission_error"].values
+        return self.um_per_rad * self.dataset["transmission_error"].values[torque]
 
     def spectrum(self, torque: int | None = None, *, rigid: bool = False) -> Spectrum:
         """Amplitudes of the transmission error over the orders of a gear, mesh orders and sidebands named.
@@ -171,7 +184,7 @@ class Revolution:
             Up to half as many orders as positions. Where a gear deviates, of which the revolution is no whole turn,
             amplitudes leak into neighbouring orders.
         """
-        torque = int(self.torque.argmax()) if torque is None else torque
+        torque = index_or_largest(self.torque, torque)
         curve = self.error_um(None if rigid else torque)
         cycles = np.arange(1, (len(curve) - 1) // 2 + 1)
         amplitude = 2.0 / len(curve) * np.abs(np.fft.rfft(curve))[cycles]
@@ -303,15 +316,15 @@ class Revolution:
     def to_table(self) -> dict[str, Array]:
         """Return the numbers of every torque and position as columns, by names that end in their unit."""
         data, torques = self.dataset, len(self.torque)
-        positions, radius = data.sizes["position"], UM * float(data["wheel_base_radius"])
+        positions = data.sizes["position"]
         tooth = {gear: data[f"{gear}_tooth"].values[:, self._column_of_zero] for gear in GEARS}
         columns = {
             "pinion_torque_Nm": np.repeat(1e-3 * self.torque, positions),
             "pinion_angle_deg": np.tile(np.degrees(data["pinion_angle"].values), torques),
             "pinion_tooth": np.tile(tooth["pinion"], torques),
             "wheel_tooth": np.tile(tooth["wheel"], torques),
-            "rigid_transmission_error_um": np.tile(radius * data["rigid_transmission_error"].values, torques),
-            "transmission_error_um": radius * data["transmission_error"].values.ravel(),
+            "rigid_transmission_error_um": np.tile(self.um_per_rad * data["rigid_transmission_error"].values, torques),
+            "transmission_error_um": self.um_per_rad * data["transmission_error"].values.ravel(),
             "mesh_stiffness_N_per_mm_um": data["mesh_stiffness"].values.ravel(),
             "loaded_pairs": data["loaded_pairs"].values.ravel(),
         }
@@ -343,28 +356,22 @@ class Revolution:
         """
         import xarray
 
-        data, pair = self.dataset, self.scene.pair()
-        first, second = (1e-3 * radius for radius in pair.base_radii)
-        over, torque = ("pinion_torque_Nm", "pinion_angle_rad"), 1e-3 * self.torque
-        error = data["transmission_error"].values
-        stiffness = 1e6 * float(data["face_width"]) * data["mesh_stiffness"].values
-        arrays = {
-            "transmission_error_rad": (over, error, {"units": "rad"}),
-            "transmission_error_m": (over, second * error, {"units": "m"}),
-            "mesh_stiffness_N_per_m": (over, stiffness, {"units": "N/m"}),
-            "loaded_pairs": (over, data["loaded_pairs"].values, {"units": "1"}),
-            "unloaded_transmission_error_m": (
-                over[1:],
-                second * data["rigid_transmission_error"].values,
-                {"units": "m"},
-            ),
-            "pinion_teeth": ((), self.teeth[0], {"units": "1"}),
-            "wheel_teeth": ((), self.teeth[1], {"units": "1"}),
-            "pitches": ((), self.pitches, {"units": "1"}),
-            "pinion_base_radius_m": ((), first, {"units": "m"}),
-            "wheel_base_radius_m": ((), second, {"units": "m"}),
+        data, angle = self.dataset, "pinion_angle_rad"
+        gears = teeth_and_radii(self.scene.pair())
+        radius, error = gears["wheel_base_radius_m"], data["transmission_error"].values
+        curves = {
+            "transmission_error_rad": error,
+            "transmission_error_m": radius * error,
+            "mesh_stiffness_N_per_m": 1e6 * float(data["face_width"]) * data["mesh_stiffness"].values,
+            "loaded_pairs": data["loaded_pairs"].values,
+            "unloaded_transmission_error_m": radius * data["rigid_transmission_error"].values,
         }
-        coordinates = {over[0]: torque, over[1]: data["pinion_angle"].values}
+        arrays: dict[str, Any] = {
+            name: ((TORQUE, angle)[-curve.ndim :], curve, {"units": PARTS[name][1]}) for name, curve in curves.items()
+        }
+        arrays |= {name: ((), number, {"units": PARTS[name][1]}) for name, number in gears.items()}
+        arrays["pitches"] = ((), self.pitches, {"units": "1"})
+        coordinates = {TORQUE: 1e-3 * self.torque, angle: data["pinion_angle"].values}
         return xarray.Dataset(arrays, coordinates, {"title": self.scene.title})
 
     def save(self, path: FilePath) -> None:
@@ -373,7 +380,7 @@ class Revolution:
 
     def to_netcdf(self) -> bytes | bytearray:
         """Return the bytes of the file that ``save`` writes."""
-        about = {"kind": KIND, "title": self.scene.title, "scene_toml": self.scene.to_toml()}
+        about = {"kind": REVOLUTION, "title": self.scene.title, "scene_toml": self.scene.to_toml()}
         return netcdf_of(self.dataset.assign_attrs(about))
 
     @classmethod
@@ -386,7 +393,7 @@ class Revolution:
             If it cannot be read, is damaged, or is no such file.
         """
         file = read_dataset(path)
-        if file.attrs.get("kind") != KIND:
+        if file.attrs.get("kind") != REVOLUTION:
             raise InputError(f"{path}: not a whole revolution; read it with load_result")
         try:
             scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml", folder=None)

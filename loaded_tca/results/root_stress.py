@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.compliance import FlankLine, RootStress, flank_lines
 from loaded_tca.contact.patch import top_weights
 from loaded_tca.loaded.sensitivity import LoadedGrid
@@ -24,7 +24,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.iso6336_3 import THINNEST_RIM, face_load_factor, rim_thickness_factor
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import Maps, PressureMap
-from loaded_tca.results.quantities import GEARS, ON_FILLETS, PLACE, ROOT_QUANTITIES
+from loaded_tca.results.quantities import ON_FILLETS, PLACE, ROOT_QUANTITIES
 from loaded_tca.threads import one_blas_thread
 
 STATES_AT_A_TIME = 32

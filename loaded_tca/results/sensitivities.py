@@ -13,7 +13,6 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array, Indices, Mask, real
 from loaded_tca.errors import require
-from loaded_tca.loaded.force_lines import bending_by_shift
 from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.results.face_slopes import (
     LITTLE,
@@ -31,22 +30,20 @@ from loaded_tca.results.figure_slopes import (
     pressure_norm,
     root_slopes,
 )
-from loaded_tca.results.gap_growth import GapGrowth, curvature_growth, gap_growth
-from loaded_tca.results.loaded_grids import states_of_maps
+from loaded_tca.results.gap_growth import GapGrowth, curvature_growth
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
 from loaded_tca.results.warnings import warn_of_contacts
-from loaded_tca.separation.pair_change import PairChange, pair_changes
+from loaded_tca.separation.pair_change import PairChange
 from loaded_tca.threads import one_blas_thread
+from loaded_tca.units import UNITS
 from loaded_tca.unloaded.teeth import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
 
 TORQUE = "load.pinion_torque_Nm"
-MICROMETRES = 1e3
-"""Of a millimetre."""
-NEWTON_MILLIMETRES = 1e3
+NEWTON_MILLIMETRES = UNITS["Nm"].factor
 """Of a newton metre."""
 LINEAR = 1e-6
 """Tolerance of the linear systems, which are known to the grid's percent."""
@@ -87,6 +84,8 @@ class Sensitivities:
 
     def __reduce__(self) -> tuple[Callable[..., Sensitivities], tuple[CycleNumbers, tuple[str, ...]]]:
         """Found anew by pickle and copy: the linear systems are large, and quickly made."""
+        from loaded_tca.results.derivatives import sensitivities  # which makes these
+
         return sensitivities, (self.result, self.keys)
 
     def __repr__(self) -> str:
@@ -135,8 +134,7 @@ class Sensitivities:
         change = self.tangents.rotation_change(self.growth.gaps, self.torques)
         slopes[*self.places] = -self.result.gear_pair.driving * change.T
         if self.growth.kinks.any():
-            length = MICROMETRES * self.result.gear_pair.base_radii[1]
-            warn_of_edges(self.keys, slopes, self.transmission_error_kinks, length, stacklevel=3)
+            warn_of_edges(self.keys, slopes, self.transmission_error_kinks, self.result.um_per_rad, stacklevel=3)
         return slopes
 
     @cached_property
@@ -409,51 +407,3 @@ class Sensitivities:
                 known = np.isfinite(amplitudes[t]) & np.isfinite(slope) & (amplitudes[t] > 0.0)
                 changes[t, known, k] = (wave[known].conj() * slope[known]).real / amplitudes[t, known]
         return changes
-
-
-NO_LOAD = "sensitivities: no tooth pair of the result carries load"
-
-
-def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
-    """Derivatives of a result to keys of its scene; see :meth:`MeshCycle.sensitivities`."""
-    listed = isinstance(keys, Iterable) and not isinstance(keys, str | bytes)
-    require((listed, f"keys: {keys!r:.80}; allowed is a list of keys"))
-    keys = [*keys]
-    require(
-        (bool(keys), "keys: none given"),
-        *((isinstance(key, str), f"keys: {key!r:.60} is no text; allowed are keys of the scene") for key in keys),
-        *((keys.count(key) < 2, f"keys: {key} is given twice") for key in dict.fromkeys(map(str, keys))),
-    )
-    with one_blas_thread():
-        made, moves_lines = (_on_supports if result.scene.is_supported else _of_rigid_gears)(result, keys)
-    if moves_lines:
-        warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts, stacklevel=4)
-    return made
-
-
-def _of_rigid_gears(result: CycleNumbers, keys: Sequence[str]) -> tuple[Sensitivities, bool]:
-    """Derivatives of gears that stand still, and whether a key moves lines on the flanks through contacts."""
-    named = [key for key in keys if key != TORQUE]
-    changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
-    solved, states = result.states or (None, ())
-    (loaded,) = states if solved == result.scene else (states_of_maps(result),)
-    count = [len(state) for state in loaded.grids]
-    require((any(count), NO_LOAD))
-    pairs = result.pair.tolist()
-    places = np.array(np.unravel_index(np.flatnonzero(count), result.transmission_error.shape))
-    tangents = loaded.tangents(LINEAR)
-    if loaded.bending is not None:
-        tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, loaded.bending))
-    columns = np.array([pairs.index(grid.number) for grid in tangents.grids])
-    growth = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
-    by_key = dict(zip(named, changes, strict=True))
-    every = tuple(by_key.get(key) for key in keys)
-    made = Sensitivities(tuple(keys), result, tangents, places, columns, growth.at_keys(at, len(keys)), every)
-    return made, any(not change.holds_lines for change in changes)
-
-
-def _on_supports(result: CycleNumbers, keys: Sequence[str]) -> tuple[Sensitivities, bool]:
-    """The same of gears on supports."""
-    from loaded_tca.results.sensitivities_on_supports import sensitivities_on_supports  # which joins several of these
-
-    return sensitivities_on_supports(result, keys)

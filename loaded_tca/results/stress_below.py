@@ -8,17 +8,16 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from loaded_tca.arrays import Array, index_checks
+from loaded_tca.arrays import GEARS, Array, GearName, index_checks
 from loaded_tca.contact import SubsurfaceStress, subsurface_stress
 from loaded_tca.contact.subsurface import graded_depths
 from loaded_tca.errors import InputError, require
 from loaded_tca.reference.hertz import LineContact, PointContact
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.summary import shown_torque
 
-GearName = Literal["pinion", "wheel"]
-GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
 Quantity = Literal["max_shear", "von_mises"]
 NAMES: dict[Quantity, str] = {
     "max_shear": "greatest shear stress",
@@ -132,6 +131,13 @@ class StressBelow:
         return along if one.pressure[:, along].any() else None
 
     @property
+    def _is_of_an_edge(self) -> bool:
+        """Whether the numbers are those of a spike at an edge, since the contact point lies within it, too."""
+        one = self.pressure_map
+        spike = self.result.on_edge[self._at] and one.pressure[one.edge_cell] == one.pressure.max()
+        return bool(spike) and self.beside_spike is None
+
+    @property
     def highest_pressure(self) -> tuple[int, int]:
         """Indices of the cell with the highest pressure, of the slice beside a spike where there is one."""
         pressure, beside = self.pressure_map.pressure, self.beside_spike
@@ -167,7 +173,7 @@ class StressBelow:
     def hertz_shear(self) -> HertzShear | None:
         """Greatest shear after Hertz, with its depth and the pressure and half width of the same contact.
 
-        Of the contact ellipse, from 0.31 p_0 at 0.48 a below a circle to 0.300 p_0 at 0.786 b below a slender one;
+        Of the contact ellipse, 0.310 p_0 below a circle, 0.325 p_0 below one of 2.5:1, 0.300 p_0 below a slender one;
         below a line contact, of a long line. None where Hertz does not hold.
         """
         result, at = self.result, self._at
@@ -188,6 +194,7 @@ class StressBelow:
         """Load and position of the map, and the flank, in words."""
         result, peak = self.result, float(self.pressure_map.pressure[self.highest_pressure])
         across = "" if self.beside_spike is None else " across the contact point"
+        across += " at the edge, mesh-dependent," if self._is_of_an_edge else ""
         angle = round(math.degrees(result.pinion_angle[self.position]), 3) + 0.0
         return (
             f"pinion torque {shown_torque(result.torque[self.torque])}, position {self.position + 1} of "
@@ -218,6 +225,12 @@ class StressBelow:
                 note += (
                     "; the numbers above are those across the contact point, not those of the edge: there the cells "
                     f"have up to {peak:.4g} MPa and {shear:.4g} MPa of shear"
+                )
+            elif self._is_of_an_edge:
+                without = float(self.result.peak_pressure[self._at])
+                note += (
+                    "; the numbers above are those of the edge, since the contact point lies within it or carries "
+                    f"nothing: they are not to be rated. Without the edge the contact has {without:.4g} MPa"
                 )
             lines.append(note)
         return "\n".join(lines)
@@ -329,7 +342,7 @@ def _place(result: MeshCycle, torque: int | None, position: int | None, pair: in
         *index_checks(torque=(torque, len(result.torque)), position=(position, len(result.path))),
         (pair is None or pair in pairs, f"pair: {pair!r} carries no load anywhere; {known}"),
     )
-    torque = int(np.argmax(result.torque)) if torque is None else torque
+    torque = index_or_largest(result.torque, torque)
     if pair is None:
         place = result.peak_contact(torque) if position is None else (position, result.peak_column[torque, position])
         if place is None:

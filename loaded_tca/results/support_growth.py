@@ -20,7 +20,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.compliance.model import SumOfParts
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import in_gear_angles
@@ -30,7 +30,6 @@ from loaded_tca.loaded.supported import Loads, standing_under
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.gap_growth import GapGrowth, gap_growth, moved
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.quantities import GEARS
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import PairChange, number_at, pair_changes
 from loaded_tca.supports import Support, SupportCompliance, support_compliance, supports_of

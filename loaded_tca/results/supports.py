@@ -8,26 +8,20 @@ from collections.abc import Sequence
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.supported import CarriedOnSupports, OnSupports
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.quantities import GEARS
 from loaded_tca.supports import RollingBearing, SupportCompliance, shafts_of
-
-MICROMETRES = 1e3
-"""Per millimetre."""
-
+from loaded_tca.units import MICROMETRES
 
 LARGEST_WAY, LARGEST_TURN = 0.1, 5e-3
 """Motions over the module, and rotations [rad], above which supports are softer than those of gears that mesh."""
 
 
-def support_arrays(
-    pair: GearPair, cycles: Sequence[OnSupports], *, pressure_angle: float, stiffness_per_rate: float
-) -> dict[str, Array]:
+def support_arrays(pair: GearPair, cycles: Sequence[OnSupports], *, pressure_angle: float) -> dict[str, Array]:
     """Arrays of ``SUPPORT_QUANTITIES``; of ``BEARING_QUANTITIES`` of gears with shafts, ``ROLLING_QUANTITIES`` of some.
 
     Parameters
@@ -38,8 +32,6 @@ def support_arrays(
         By torque.
     pressure_angle : float [rad]
         Working transverse one; NaN: axes that meet have no misalignment in a plane of action.
-    stiffness_per_rate : float [1/(mm^2 um)]
-        Of the drive stiffness over the tangent of the torque over the rotation.
     """
     motions = [_motions(pair, one) for one in cycles]
     forces = {
@@ -57,7 +49,7 @@ def support_arrays(
             "wheel_motion": np.stack([one[1] for one in motions]),
             "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),
             "wind_up": -pair.driving * np.stack([_wind_up(one) for one in cycles]),
-            "drive_stiffness": np.stack([one.drive_rate for one in cycles]) * stiffness_per_rate,
+            "drive_stiffness": np.stack([one.drive_rate for one in cycles]) * (1.0 / pair.rate_of_stiffness),
             **{f"{gear}_support_load": np.stack([one.held[n] for one in cycles]) for n, gear in enumerate(GEARS)},
         }
     )

@@ -11,6 +11,7 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.pairs import MatingTeeth
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.tooth import TriangleMesh
 
 
@@ -80,7 +81,7 @@ def teeth_in_space(
         If nothing is in contact at that position.
     """
     require(*index_checks(torque=(torque, len(result.torque)), position=(position, len(result.path))))
-    torque = int(np.argmax(result.torque)) if torque is None else torque
+    torque = index_or_largest(result.torque, torque)
     place = result.peak_contact(torque) if position is None else (position, int(result.peak_column[torque, position]))
     one = None if place is None else result.maps[torque][place[0]][place[1]]
     if place is None or one is None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from numbers import Real
 from typing import TYPE_CHECKING
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.scene import Scene
@@ -56,7 +56,7 @@ def default_tolerances(scene: Scene, keys: Iterable[str] | None = None) -> dict[
 def _varied(scene: Scene) -> list[str]:
     """Modifications that the gears have, mounting errors and the torque."""
     keys = []
-    for gear in ("pinion", "wheel"):
+    for gear in GEARS:
         for name, value in contents(getattr(scene, gear).modifications).items():
             if isinstance(value, Real) and value and name.rpartition("_")[2] in USUAL:
                 keys.append(f"{gear}.modifications.{name}")

@@ -15,9 +15,10 @@ from loaded_tca.scene.bevel import BevelScene
 from loaded_tca.scene.face_milled import FaceMilledScene
 from loaded_tca.scene.blank_face_milled import BlankFaceMilledScene
 from loaded_tca.scene.parse import describe_keys
-from loaded_tca.scene.hypoid_table import hypoid_table
+from loaded_tca.scene.face_milled import hypoid_table
 from loaded_tca.scene.flank_form import FlankForm, Measurement
-from loaded_tca.scene.model import Scene, scene_from_table
+from loaded_tca.scene.model import Scene
+from loaded_tca.scene.parse import scene_from_table
 from loaded_tca.scene.parse import parse_scene, read_scene
 from loaded_tca.scene.sections import Analysis, ElasticMaterial, Load, Modifications
 

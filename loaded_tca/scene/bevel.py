@@ -7,21 +7,24 @@ from dataclasses import dataclass
 from math import atan, cos, degrees, radians, sin, tan
 from typing import ClassVar, Literal
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import require
-from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
+from loaded_tca.gears.bevel import BevelGear, pitch_angles
 from loaded_tca.gears.bevel_blank import BevelBlank
+from loaded_tca.gears.bevel_mesh import BevelMesh
 from loaded_tca.gears.checks import LARGEST_PRESSURE_ANGLE
 from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import spiral
 from loaded_tca.scene.bevel_blank import MEASURED, MEASURED_RULES, Blank, Measured, settings_table
+from loaded_tca.scene.bevel_rows import blank_rows, common_blank_rows, cone_rows, depth_rows
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
-from loaded_tca.scene.blank_rows import blank_rows, common_blank_rows
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.machine_settings import METHODS, Method, Settings
-from loaded_tca.scene.model import Row, Scene, family, scene_from_table
+from loaded_tca.scene.model import Row, Scene
+from loaded_tca.scene.parse import family, scene_from_table
 from loaded_tca.scene.section import Rule, as_table, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, ERROR_mm, Pair
 from loaded_tca.scene.spiral import MountingErrors, SpiralScene
@@ -44,8 +47,6 @@ OF_EQUATIONS = (
     *MEASURED,
 )
 """Keys of a gear that a face-milled one has in its blank, or not."""
-ROUNDING = 1e-9
-"""Cone angles closer than this [rad] are the same."""
 
 
 def too_steep(normal: float | None, spiral: float | None) -> str | None:
@@ -329,7 +330,7 @@ class BevelScene(SpiralScene, BlankScene):
             "driving": self.geometry.driving,
             "sense": self.sense,
         }
-        for name, own, gear in zip(("pinion", "wheel"), (self.pinion, self.wheel), gears, strict=True):
+        for name, own, gear in zip(GEARS, (self.pinion, self.wheel), gears, strict=True):
             kept = {key: value for key, value in as_table(own).items() if key not in OF_EQUATIONS}
             table[name] = kept | settings_table(gear)
         return scene_from_table(table)
@@ -356,7 +357,7 @@ class BevelScene(SpiralScene, BlankScene):
             return BevelGear(**values, pitch_angle=pitch_angle, name=name)
 
         pitches = pitch_angles((self.pinion.teeth, self.wheel.teeth), radians(self.geometry.shaft_angle_deg))
-        return BevelMesh(*map(gear, (self.pinion, self.wheel), pitches, self.hand_signs, ("pinion", "wheel")))
+        return BevelMesh(*map(gear, (self.pinion, self.wheel), pitches, self.hand_signs, GEARS))
 
     @property
     def tip_clearances(self) -> tuple[float, ...]:
@@ -409,8 +410,8 @@ class BevelScene(SpiralScene, BlankScene):
             ("teeth z", str(mesh.pinion.teeth), str(mesh.wheel.teeth)),
             ("hand of the spiral", *(self.hands if gear.spiral_angle else ("none", "none"))),
             ("flank in contact", *self.contact_sides),
-            *_cone_rows(mesh, seen=blanks is not None),
-            *(_depth_rows(mesh) if blanks is None else blank_rows(blanks)),
+            *cone_rows(mesh, seen=blanks is not None),
+            *(depth_rows(mesh) if blanks is None else blank_rows(blanks)),
         ]
 
     @property
@@ -438,52 +439,3 @@ class BevelScene(SpiralScene, BlankScene):
             spiral.pitch_point(gear.mean_cone_distance, gear.pitch_angle) for gear in (mesh.pinion, mesh.wheel)
         )
         return spiral.force_rows((pair.pinion.nominal_flank, pair.wheel.nominal_flank), (first, second), torques)
-
-
-def _cone_rows(mesh: BevelMesh, *, seen: bool) -> list[Row]:
-    """Cone angles of both gears, diameters and depths at their pitch cones, and whether tips reach into fillets.
-
-    Angles of cones with apexes of their own are those ``seen`` from the pitch apex at mid-face.
-    """
-    aside = ", seen at R_m" if seen else ""
-    gears = mesh.pinion, mesh.wheel
-    starts = [active[0] for active in mesh.active_cones]
-    angles = (
-        ("pitch angle delta [deg]", [gear.pitch_angle for gear in gears]),
-        (f"face angle delta_a{aside} [deg]", [gear.tip_angle for gear in gears]),
-        ("start of active profile, cone angle [deg]", starts),
-        ("root form cone angle [deg]", [gear.form_angle for gear in gears]),
-        (f"root angle delta_f{aside} [deg]", [gear.root_cone_angle for gear in gears]),
-        ("base cone angle delta_b [deg]", [gear.base_angle for gear in gears]),
-    )
-    lengths = (
-        ()
-        if seen
-        else (
-            (
-                "outer pitch diameter d_e [mm]",
-                [2.0 * gear.outer_cone_distance * sin(gear.pitch_angle) for gear in gears],
-            ),
-            ("mean pitch diameter d_m [mm]", [2.0 * gear.mean_cone_distance * sin(gear.pitch_angle) for gear in gears]),
-            ("mean addendum h_am [mm]", [_height(gear, gear.tip_angle) for gear in gears]),
-            ("mean dedendum h_fm [mm]", [-_height(gear, gear.root_cone_angle) for gear in gears]),
-        )
-    )
-    interference = [start - gear.form_angle < ROUNDING for start, gear in zip(starts, gears, strict=True)]
-    return [
-        *((label, *(f"{degrees(value):.4f}" for value in values)) for label, values in angles),
-        *((label, *(f"{value:.4f}" for value in values)) for label, values in lengths),
-        ("mating tip reaches below the form cone", *("yes" if below else "no" for below in interference)),
-    ]
-
-
-def _depth_rows(mesh: BevelMesh) -> list[Row]:
-    """Depth of teeth without a blank beside that of ISO 23509, 2 m_mn."""
-    depth = _height(mesh.pinion, mesh.pinion.tip_angle) + _height(mesh.wheel, mesh.wheel.tip_angle)
-    standard = 2.0 * mesh.pinion.mean_normal_module
-    return [("working depth at mid-face h_mw; after ISO 23509 [mm]", f"{depth:.4f}", f"{standard:.4f}")]
-
-
-def _height(gear: BevelGear, cone_angle: float) -> float:
-    """Height of a cone over the pitch cone, across the pitch cone at mid-face [mm]."""
-    return gear.mean_cone_distance * tan(cone_angle - gear.pitch_angle)

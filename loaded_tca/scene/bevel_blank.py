@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from math import cos, degrees, pi, radians, sin, tan
 from typing import Any, ClassVar, Literal
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.gears.bevel_blank import BacklashKind, BevelBlank, Cones, Taper
@@ -47,7 +48,6 @@ def _one_of(*names: str) -> Rule:
 
 MEASURED = "mean_addendum_mm", "mean_dedendum_mm", "mean_normal_thickness_mm"
 """Keys of a gear that stand for the data of type I or II."""
-GEARS = "pinion", "wheel"
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,12 @@ from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import bevel, spiral
 from loaded_tca.scene.bevel import SIZES, BevelScene, GearSection, one_size, too_steep
 from loaded_tca.scene.bevel_blank import Blank
-from loaded_tca.scene.blank_rows import blank_rows, common_blank_rows
+from loaded_tca.scene.bevel_rows import MEAN_DEPTHS, blank_rows, common_blank_rows
 from loaded_tca.scene.face_milled import FaceMilledScene
-from loaded_tca.scene.face_milled_rows import MEAN_DEPTHS
 from loaded_tca.scene.keys import Choice, Number, key
 from loaded_tca.scene.machine_settings import Method, Settings, mean_contact_rows
-from loaded_tca.scene.model import Row, variant
+from loaded_tca.scene.model import Row
+from loaded_tca.scene.parse import variant
 from loaded_tca.scene.section import Rule, rule, subsection
 from loaded_tca.scene.sections import SENSE
 from loaded_tca.scene.spiral import MountingErrors

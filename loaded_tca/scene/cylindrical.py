@@ -11,7 +11,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
-from loaded_tca.gears.involute_mesh import InvoluteMesh
+from loaded_tca.gears.involute import InvoluteMesh
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
@@ -19,22 +19,12 @@ from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, Whole, above_zero, key
-from loaded_tca.scene.model import Row, family
+from loaded_tca.scene.model import Row
+from loaded_tca.scene.parse import family
 from loaded_tca.scene.section import Rule, Section, subsection
-from loaded_tca.scene.sections import (
-    DRIVING,
-    SENSE,
-    ContactStandard,
-    DIAMETER_mm,
-    ERROR_deg,
-    ERROR_mm,
-    Pair,
-    SLOPE_um,
-    below,
-    contact_standard,
-)
+from loaded_tca.scene.sections import DRIVING, SENSE, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
+from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
 from loaded_tca.scene.thickness import as_measured, needs, one_thickness, one_tip, thickness_rows
-from loaded_tca.scene.tolerance_class import slope_tolerances
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,28 +1,32 @@
-"""Scenes of face-milled spiral bevel gears: their sections, and the gears and pairs that follow from them."""
+"""Scenes of face-milled gears: their sections, the gears and pairs that follow, and gears as tables of scene files."""
 
 from __future__ import annotations
 
 import operator
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, degrees, isclose, radians
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import require
 from loaded_tca.gears import face_milled
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
+from loaded_tca.gears.hypoid import HypoidCones
 from loaded_tca.pairs.bevel import BevelMounting, face_milled_pair
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
-from loaded_tca.scene import face_milled_rows, hypoid, sections, spiral
+from loaded_tca.scene import bevel_rows, hypoid, sections, spiral
 from loaded_tca.scene.blank import opposite_hands
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
-from loaded_tca.scene.model import Hand, Row, Scene, family
-from loaded_tca.scene.section import Rule, Section, rule, subsection
+from loaded_tca.scene.model import Hand, Row, Scene
+from loaded_tca.scene.parse import family
+from loaded_tca.scene.section import Rule, Section, entries, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, Pair, end_reliefs_within
 from loaded_tca.scene.spiral import MountingErrors, SpiralScene
+from loaded_tca.units import factor_of, without_unit
 
 LENGTH_mm = above_zero(10000.0)
 SETTING_mm = Number(-10000.0, 10000.0)
@@ -329,17 +333,17 @@ class FaceMilledScene(SpiralScene):
         """Return cones, angles of the flanks in contact, machine settings and cutters."""
         mesh, sides = self.mesh(), self.sides(self.sense)
         _require_blades(mesh, sides)
-        return face_milled_rows.geometry_rows(mesh, sides)
+        return bevel_rows.geometry_rows(mesh, sides)
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""
-        flanks, points = face_milled_rows.flanks_and_points(self.mesh(), self.sides(self.sense))
+        flanks, points = bevel_rows.flanks_and_points(self.mesh(), self.sides(self.sense))
         return spiral.force_rows(flanks, points, torques)
 
     def interferences(self) -> Sequence[str]:
         """Return how the whole gears interfere without mounting errors; tips below form lines are those of the path."""
         mesh, sides = self.mesh(), self.sides(self.sense)
-        return interferences(*face_milled_rows.room_and_module(mesh, sides), AT_MID_FACE)
+        return interferences(*bevel_rows.room_and_module(mesh, sides), AT_MID_FACE)
 
 
 def _gear(own: GearSection, name: str, pitch_angle: float) -> FaceMilledGear:
@@ -368,3 +372,59 @@ def _require_blades(mesh: FaceMilledMesh, sides: tuple[spiral.Side, spiral.Side]
     for_each = zip(mesh.gears, sides, strict=True)
     message = "{0}.cutter.{1}: missing; it cuts the {1} flank of the {0}, which is asked for"
     require(*((getattr(gear.cutter, side) is not None, message.format(gear.name, side)) for gear, side in for_each))
+
+
+DEFAULTS: tuple[Any, ...] = (None, 0.0)
+"""Values of keys that a table can leave out."""
+
+
+def hypoid_table(gears: tuple[FaceMilledGear, FaceMilledGear], cones: HypoidCones) -> dict[str, Any]:
+    """Return the sections [pair], [pinion] and [wheel] of a scene of two gears, as :func:`scene_from_table` takes them.
+
+    Parameters
+    ----------
+    gears : (FaceMilledGear, FaceMilledGear)
+        As :func:`loaded_tca.flanks.synthesised_gears` makes them, apexes counted from those of the pitch cones.
+    cones : HypoidCones
+        On which they stand.
+
+    Examples
+    --------
+    >>> from math import radians
+    >>> from loaded_tca.flanks import synthesised_gears
+    >>> from loaded_tca.gears import HypoidBlank, pitch_cones_by_method_1
+    >>> pitch_cones = pitch_cones_by_method_1((13, 42), 15.0, 170.0, 30.0, radians(50), 63.5)
+    >>> blank = HypoidBlank((13, 42), pitch_cones, 30.0, 63.5, profile_shift=0.3)
+    >>> table = hypoid_table(synthesised_gears(blank), blank.cones)
+    >>> round(table["pair"]["offset_mm"], 9), round(table["wheel"]["blank"]["face_apex_mm"], 4)
+    (15.0, 1.8052)
+    """
+    pair = {"type": "face_milled", "shaft_angle_deg": degrees(cones.shaft_angle), "offset_mm": cones.offset}
+    sections = (_gear_table(gear, beyond) for gear, beyond in zip(gears, cones.apexes, strict=True))
+    return {"pair": pair} | dict(zip(GEARS, sections, strict=True))
+
+
+def _gear_table(gear: FaceMilledGear, beyond: float) -> dict[str, Any]:
+    """A gear as a section of a scene, apexes and machine centre to back counted from the crossing point."""
+    blank = replace(gear.blank, face_apex=gear.blank.face_apex + beyond, root_apex=gear.blank.root_apex + beyond)
+    back = gear.machine.machine_centre_to_back + beyond
+    cutter: dict[str, Any] = {"number": gear.cutter.number}
+    for flank in ("concave", "convex"):
+        if (blade := getattr(gear.cutter, flank)) is not None:
+            cutter[flank] = _keys(blade, Blade)
+    return {
+        "teeth": gear.teeth,
+        "blank": _keys(blank, Blank),
+        "machine": _keys(replace(gear.machine, machine_centre_to_back=back), Machine),
+        "cutter": cutter,
+    }
+
+
+def _keys(values: Any, section: type[Section]) -> dict[str, Any]:
+    """Values of a dataclass by the keys of a section, in its units."""
+    table = {}
+    for name, (_, entry) in entries(section).items():
+        value = getattr(values, without_unit(name))
+        if value not in DEFAULTS or getattr(entry, "required", False):
+            table[name] = value if isinstance(value, str) else value * factor_of(name)
+    return table

@@ -12,10 +12,10 @@ from contextlib import contextmanager
 from dataclasses import replace
 from math import degrees, radians
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError
 from loaded_tca.gears.face_milled import FaceMilledGear
-from loaded_tca.gears.hypoid import HypoidCones
-from loaded_tca.gears.hypoid_mesh import HypoidMesh
+from loaded_tca.gears.hypoid import HypoidCones, HypoidMesh
 from loaded_tca.scene.section import Rule
 
 ROUNDED_deg = 0.01
@@ -47,13 +47,13 @@ def _closes(offset: float, shaft_angle: float, *cones: float) -> str | None:
     try:
         closed = HypoidCones.closing(angles, distances, offset, radians(shaft_angle))
     except InputError as refused:
-        told = str(refused).removeprefix(f"offset: {offset:g} mm is ")
-        if told == str(refused):
-            told = (
+        reason = str(refused).removeprefix(f"offset: {offset:g} mm is ")
+        if reason == str(refused):
+            reason = (
                 f"with pair.shaft_angle_deg = {shaft_angle:g} no pinion of pitch_angle_deg = {first:g} stands beside "
                 f"wheel.blank.pitch_angle_deg = {second:g}"
             )
-        return f"found {offset:g}; {told}"
+        return f"found {offset:g}; {reason}"
     needed = degrees(closed.pitch_angles[0])
     if abs(needed - first) <= ROUNDED_deg:
         return None
@@ -75,7 +75,7 @@ CLOSED_AXES = Rule(
     (
         "pair.offset_mm",
         "pair.shaft_angle_deg",
-        *(f"{gear}.blank.{name}" for gear in ("pinion", "wheel") for name in CONES),
+        *(f"{gear}.blank.{name}" for gear in GEARS for name in CONES),
     ),
     _closes,
 )

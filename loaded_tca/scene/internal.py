@@ -11,16 +11,17 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears import CylindricalGear, InternalMesh, PinionCutter, RingGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING
 from loaded_tca.gears.internal_mesh import internal_interferences, internal_profile_shift_sum
-from loaded_tca.pairs.cylindrical import common_face_width
+from loaded_tca.pairs.cylindrical import common_face_width, internal_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
-from loaded_tca.pairs.internal import internal_pair
 from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
 from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
 from loaded_tca.scene.keys import Choice, Number, Whole, key
-from loaded_tca.scene.model import Hand, Row, Scene, variant
+from loaded_tca.scene.model import Hand, Row, Scene
+from loaded_tca.scene.parse import variant
 from loaded_tca.scene.section import Rule, Section, rule, subsection
-from loaded_tca.scene.sections import ContactStandard, DIAMETER_mm, below
+from loaded_tca.scene.sections import DIAMETER_mm, below
+from loaded_tca.scene.standards import ContactStandard
 from loaded_tca.scene.thickness import as_measured
 
 

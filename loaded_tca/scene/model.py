@@ -4,42 +4,39 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
-from typing import Any, ClassVar, Literal, TypeVar
+from typing import Any, ClassVar, Literal
 
-from loaded_tca.errors import InputError, require
+from loaded_tca.arrays import GEARS
+from loaded_tca.errors import require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
 from loaded_tca.pairs.tooth_deviations import ToothDeviations, ToothFlanks
 from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
-from loaded_tca.scene.keys import Choice, Line, key, literal
-from loaded_tca.scene.lubrication import LubricantSection, Operation
+from loaded_tca.scene.keys import Line, key
+from loaded_tca.scene.parse import scene_from_table, toml_lines
 from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.section import (
     Rule,
     Section,
-    Subsection,
-    as_given,
     as_table,
-    check,
     contents,
-    entries,
-    made,
     rule,
     subsection,
 )
 from loaded_tca.scene.sections import (
     Analysis,
-    ContactStandard,
     ElasticMaterial,
     GearSection,
     Load,
+    LubricantSection,
+    Operation,
     Pair,
 )
-from loaded_tca.scene.tolerance_class import scatter_of_class
+from loaded_tca.scene.standards import WithStandards
 
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
@@ -49,7 +46,7 @@ _OF_FAMILIES = frozenset({"pair", "pair.type", "pair.blank", "wheel", "wheel.tee
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene(Section, ABC):
+class Scene(WithStandards, ABC):
     """Input of an analysis in the engineer's units, as read from a scene file.
 
     Values are checked however a scene is made, ``dataclasses.replace`` included; docs/reference/scene_keys.md lists the
@@ -112,7 +109,7 @@ class Scene(Section, ABC):
                 lambda support, shaft: support is None or shaft is None,
                 f"found beside [{gear}.shaft]; give one of the two",
             )
-            for gear in ("pinion", "wheel")
+            for gear in GEARS
         ),
         *(
             rule(
@@ -120,7 +117,7 @@ class Scene(Section, ABC):
                 lambda bore, shaft, compliance: bore != 0.0 or shaft is None or compliance == "contact",
                 f"found {{0:g}}, a solid gear, whose torsion [{gear}.shaft] has, too; allowed the diameter of its seat",
             )
-            for gear in ("pinion", "wheel")
+            for gear in GEARS
         ),
         *(
             rule(
@@ -299,31 +296,9 @@ class Scene(Section, ABC):
         """
         pinion, wheel = (
             build_tooth_deviations(gear.pitch, teeth, name, pair.module, partial(self.pitch_tolerances, number))
-            for number, (name, gear, teeth) in enumerate(
-                zip(("pinion", "wheel"), (self.pinion, self.wheel), pair.teeth, strict=True)
-            )
+            for number, (name, gear, teeth) in enumerate(zip(GEARS, (self.pinion, self.wheel), pair.teeth, strict=True))
         )
         return pinion, wheel
-
-    def pitch_tolerances(self, gear: int, tolerance_class: int) -> tuple[float, float]:  # noqa: ARG002
-        """Return the single and the cumulative pitch tolerance of a gear [um], along the transverse line of action.
-
-        Parameters
-        ----------
-        gear : int
-            0 the pinion, 1 the wheel.
-        tolerance_class : int
-            Of ISO 1328-1:2013.
-
-        Raises
-        ------
-        InputError
-            Where the standard has none, as for bevel gears.
-        """
-        raise InputError(
-            f"tolerance_class: found {tolerance_class}; ISO 1328-1 has classes of cylindrical gears "
-            "alone; give index_um"
-        )
 
     def vh_steps(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Return three values of each key of ``vh_keys`` for a V-H check: none, and small errors of both signs.
@@ -353,26 +328,6 @@ class Scene(Section, ABC):
         """Return the rows of the geometry table: of the mesh, then of pinion and wheel."""
 
     @property
-    def tip_clearances(self) -> tuple[float, ...]:
-        """Clearances c of both roots and the mating gear's tip [mm]; none of bevel gears, whose blanks have them."""
-        return ()
-
-    @property
-    def pairs_in_contact(self) -> float:
-        """Tooth pairs that are in contact on the mean, roughly."""
-        return 3.0  # of face-milled teeth, whose contact ratio is not known before their contact
-
-    @property
-    def geometry_standard(self) -> str:
-        """What the rows of the geometry follow, as titles have it."""
-        return "ISO 21771" if self.path_points else "ISO 23509"
-
-    @property
-    def path_points(self) -> Mapping[str, float]:
-        """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion; none of bevel gears."""
-        return {}
-
-    @property
     def have_shafts(self) -> tuple[bool, bool]:
         """Whether pinion and wheel sit on a shaft."""
         return self.pinion.shaft is not None, self.wheel.shaft is not None
@@ -386,40 +341,6 @@ class Scene(Section, ABC):
     def face_middles(self) -> tuple[float, float]:
         """Axial coordinates, on the gears themselves, of the middles of both faces: motions are those of them [mm]."""
         return 0.0, 0.0
-
-    @property
-    def mean_contact_length(self) -> float:
-        """Mean length of all contact lines over a pitch [mm]; NaN for gears outside ISO 6336-1."""
-        return math.nan
-
-    @property
-    def transverse_angles(self) -> tuple[float, float]:
-        """Working transverse pressure angle, and base helix angle of the pinion [rad]; NaN for bevel gears."""
-        return math.nan, math.nan
-
-    @property
-    def nominal_root_stress(self) -> tuple[float, float]:
-        """Nominal root stress sigma_F0 of pinion and wheel after ISO 6336-3 per pinion torque [MPa/(N mm)].
-
-        NaN for gears of which the standard does not speak.
-        """
-        return math.nan, math.nan
-
-    @property
-    def contact_standard(self) -> ContactStandard:
-        """Contact factors and stiffnesses of ISO 6336; all NaN for gears outside the standard."""
-        return ContactStandard()
-
-    @property
-    def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-        """Y_F, Y_S, Y_beta of pinion and wheel after ISO 6336-3; NaN for gears outside the standard."""
-        unknown = (math.nan, math.nan, math.nan)
-        return unknown, unknown
-
-    @property
-    def tooth_height_over_width(self) -> float:
-        """Height of the teeth over the common face width, h/b of ISO 6336-1; NaN for gears outside the standard."""
-        return math.nan
 
     @abstractmethod
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
@@ -435,52 +356,10 @@ class Scene(Section, ABC):
             If nothing can turn.
         """
 
-    def slope_tolerances(self, tolerance_class: int) -> Mapping[str, float]:
-        """Return the tolerances of slopes of both gears of a class, by their keys [um].
-
-        Raises
-        ------
-        InputError
-            If there is no standard for gears of this kind, or it has no such class.
-        """
-        raise InputError(f"tolerance_class: {tolerance_class}; ISO 1328-1 holds for cylindrical gears alone")
-
-    def scatter_of_class(self, tolerance_class: int, *, deviations: bool = False) -> Mapping[str, Any]:
-        """Return how helix and profile slopes of both gears scatter that are of a tolerance class of ISO 1328-1:2013.
-
-        Each slope is normal about its value in the scene, with three standard deviations to its tolerance f_HbetaT or
-        f_HalphaT to either side, and independent of the others.
-
-        Parameters
-        ----------
-        tolerance_class : int
-            From 1 to 11.
-        deviations : bool
-            About zero instead, as the scatter of ``DesignModel`` counts it.
-
-        Returns
-        -------
-        mapping of str to frozen distribution of ``scipy.stats``
-            Key -> its distribution [um], as ``Study`` takes it.
-
-        Raises
-        ------
-        InputError
-            If the gears are not cylindrical, or outside the classes and ranges of the standard.
-
-        Examples
-        --------
-        >>> from loaded_tca import read_scene
-        >>> scatter = read_scene("examples/scenes/helical.toml").scatter_of_class(6)
-        >>> round(float(scatter["wheel.modifications.helix_slope_um"].std()), 3)
-        3.0
-        """
-        return scatter_of_class(self, tolerance_class, deviations=deviations)
-
     @property
     def flank_names(self) -> tuple[str, str]:
         """Names of the two flanks in contact in pictures."""
-        return "pinion", "wheel"
+        return GEARS
 
     @property
     def materials(self) -> tuple[ElasticMaterial, ElasticMaterial]:
@@ -531,82 +410,4 @@ class Scene(Section, ABC):
 
     def to_toml(self) -> str:
         """Return a scene file with every key; ``parse_scene`` makes the same scene of it."""
-        return "\n".join(_lines(self, "")) + "\n"
-
-
-FAMILIES: dict[str, type[Scene]] = {}
-"""Type of a gear pair, as files call it -> the scenes of its family; filled by ``family``."""
-
-VARIANTS: dict[type[Scene], dict[type[Scene], str]] = {}
-"""Class of a family -> its variants, which scenes of other keys are, and of what; filled by ``variant``."""
-
-SceneType = TypeVar("SceneType", bound=type[Scene])
-
-
-def family(*types: str) -> Callable[[SceneType], SceneType]:
-    """Make a class of scenes known to scene files, under the types of gear pairs of its section [pair]."""
-
-    def known(scene: SceneType) -> SceneType:
-        FAMILIES.update(dict.fromkeys(types, scene))
-        return scene
-
-    return known
-
-
-def variant(scenes: type[Scene], about: str) -> Callable[[SceneType], SceneType]:
-    """Make a class known as a variant of a family, for the tables that it describes; ``about`` says when."""
-
-    def known(scene: SceneType) -> SceneType:
-        VARIANTS.setdefault(scenes, {})[scene] = about
-        return scene
-
-    return known
-
-
-def scene_from_table(table: Mapping[str, Any]) -> Scene:
-    """Return the scene that nested dictionaries describe, as TOML would give them; ``pair.type`` picks the family.
-
-    Raises
-    ------
-    InputError
-        Every problem at once.
-    """
-    pair = {} if table.get("pair") is None else table["pair"]
-    pair = contents(pair) if isinstance(pair, Section) else pair
-    kind = pair.get("type") if isinstance(pair, Mapping) else None
-    try:
-        scenes = FAMILIES[Choice(tuple(FAMILIES)).read(kind)]  # type: ignore[index]
-    except ValueError as refused:
-        raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
-    scenes = next((one for one in VARIANTS.get(scenes, {}) if one.describes(table)), scenes)
-    values, problems = check(scenes, table)
-    if problems:
-        raise InputError(problems)
-    return made(scenes, values)
-
-
-def _problems_without_type(table: Mapping[str, Any], pair: Any, kind: Any, refusal: str) -> list[str]:
-    """Every problem of a scene of no known type: the others are those as the type that knows the most keys."""
-    if not isinstance(pair, Mapping):
-        return check(next(iter(FAMILIES.values())), table)[1]
-    complaint = f"missing; allowed {Choice(tuple(FAMILIES)).allowed}" if kind is None else refusal
-    trials = [check(scenes, {**table, "pair": {**pair, "type": name}})[1] for name, scenes in FAMILIES.items()]
-    fewest = min(trials, key=lambda problems: (sum("unknown key" in problem for problem in problems), len(problems)))
-    return [f"pair.type: {complaint}", *fewest]
-
-
-def _lines(section: Section, path: str) -> list[str]:
-    """Keys first, then the sections inside, each under its header."""
-    keys, sections = [], []
-    values = contents(section)
-    for name, (_, entry) in entries(type(section)).items():
-        value = values[name]
-        if isinstance(value, Section):
-            sections += ["", f"[{path}{name}]", *_lines(value, f"{path}{name}.")]
-        elif isinstance(entry, Subsection):
-            sections += ["", f"# [{path}{name}] is not given"]
-        elif value is None:
-            keys.append(f"# {name} is not given: {entry.absent}")
-        else:
-            keys.append(f"{name} = {literal(as_given(value))}")
-    return keys + sections
+        return "\n".join(toml_lines(self, "")) + "\n"

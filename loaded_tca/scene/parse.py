@@ -1,6 +1,6 @@
-"""Scene files: the only place that reads TOML.
+"""Scene files: read, which only this module does, made into scenes of their family, and written.
 
-The reference of all keys, from the same table that checks them.
+The reference of all keys comes last, from the same table that checks them.
 """
 
 from __future__ import annotations
@@ -9,15 +9,17 @@ import os
 import re
 import sys
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
-from loaded_tca.scene.keys import Key, literal, shown, shown_key
-from loaded_tca.scene.model import FAMILIES, VARIANTS, Scene, scene_from_table
-from loaded_tca.scene.section import Section, Subsection, entries
+from loaded_tca.scene.keys import Choice, Key, literal, shown, shown_key
+from loaded_tca.scene.section import Section, Subsection, as_given, check, contents, entries, made
+
+if TYPE_CHECKING:
+    from loaded_tca.scene.model import Scene
 
 LARGEST_FILE = 2**21
 """Bytes of a scene file; a full one has about 5000, one with two measured flanks of 100 x 100 points a million."""
@@ -79,11 +81,16 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
     ...
     """
     table = toml_table(text, source)
-    if isinstance(table.get("stage"), dict) and "sun" in table:
+    if is_table_of_stage(table):
         raise InputError(f"{source}: not the scene of a pair but a planetary stage; run it with 'loaded-tca stage'")
     if "pair" not in table and isinstance(table.get("scene"), str):
         raise InputError(f"{source}: not a scene but a study of {table['scene']}; run it with 'loaded-tca study'")
     return scene_from_table(with_files_from(None if folder is None else Path(folder), table))
+
+
+def is_table_of_stage(table: Mapping[str, Any]) -> bool:
+    """Whether the table of a file is that of a planetary stage."""
+    return isinstance(table.get("stage"), dict) and "sun" in table
 
 
 def literal_value(text: str) -> Any:
@@ -158,6 +165,84 @@ def toml_table(text: str, source: str) -> dict[str, Any]:
         digits = re.compile(rf"[\d_]{{{most + 1},}}")
         lines = [str(number) for number, line in enumerate(text.split("\n"), 1) if digits.search(line)]
         raise InputError(f"{source}: line {lines[0]} holds a whole number of more than {most} digits") from None
+
+
+FAMILIES: dict[str, type[Scene]] = {}
+"""Type of a gear pair, as files call it -> the scenes of its family; filled by ``family``."""
+
+VARIANTS: dict[type[Scene], dict[type[Scene], str]] = {}
+"""Class of a family -> its variants, which scenes of other keys are, and of what; filled by ``variant``."""
+
+SceneType = TypeVar("SceneType", bound="type[Scene]")
+
+
+def family(*types: str) -> Callable[[SceneType], SceneType]:
+    """Make a class of scenes known to scene files, under the types of gear pairs of its section [pair]."""
+
+    def known(scene: SceneType) -> SceneType:
+        FAMILIES.update(dict.fromkeys(types, scene))
+        return scene
+
+    return known
+
+
+def variant(scenes: type[Scene], about: str) -> Callable[[SceneType], SceneType]:
+    """Make a class known as a variant of a family, for the tables that it describes; ``about`` says when."""
+
+    def known(scene: SceneType) -> SceneType:
+        VARIANTS.setdefault(scenes, {})[scene] = about
+        return scene
+
+    return known
+
+
+def scene_from_table(table: Mapping[str, Any]) -> Scene:
+    """Return the scene that nested dictionaries describe, as TOML would give them; ``pair.type`` picks the family.
+
+    Raises
+    ------
+    InputError
+        Every problem at once.
+    """
+    pair = {} if table.get("pair") is None else table["pair"]
+    pair = contents(pair) if isinstance(pair, Section) else pair
+    kind = pair.get("type") if isinstance(pair, Mapping) else None
+    try:
+        scenes = FAMILIES[Choice(tuple(FAMILIES)).read(kind)]  # type: ignore[index]
+    except ValueError as refused:
+        raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
+    scenes = next((one for one in VARIANTS.get(scenes, {}) if one.describes(table)), scenes)
+    values, problems = check(scenes, table)
+    if problems:
+        raise InputError(problems)
+    return made(scenes, values)
+
+
+def _problems_without_type(table: Mapping[str, Any], pair: Any, kind: Any, refusal: str) -> list[str]:
+    """Every problem of a scene of no known type: the others are those as the type that knows the most keys."""
+    if not isinstance(pair, Mapping):
+        return check(next(iter(FAMILIES.values())), table)[1]
+    complaint = f"missing; allowed {Choice(tuple(FAMILIES)).allowed}" if kind is None else refusal
+    trials = [check(scenes, {**table, "pair": {**pair, "type": name}})[1] for name, scenes in FAMILIES.items()]
+    fewest = min(trials, key=lambda problems: (sum("unknown key" in problem for problem in problems), len(problems)))
+    return [f"pair.type: {complaint}", *fewest]
+
+
+def toml_lines(section: Section, path: str) -> list[str]:
+    """Keys first, then the sections inside, each under its header."""
+    keys, sections = [], []
+    values = contents(section)
+    for name, (_, entry) in entries(type(section)).items():
+        value = values[name]
+        if isinstance(value, Section):
+            sections += ["", f"[{path}{name}]", *toml_lines(value, f"{path}{name}.")]
+        elif isinstance(entry, Subsection):
+            sections += ["", f"# [{path}{name}] is not given"]
+        elif value is None:
+            keys.append(f"# {name} is not given: {entry.absent}")
+        else:
+            keys.append(f"{name} = {literal(as_given(value))}")
+    return keys + sections
 
 
 SAME_AS = {"wheel": "pinion", "pinion.material": "material", "pinion.cutter.convex": "pinion.cutter.concave"}

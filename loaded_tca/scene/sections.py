@@ -1,29 +1,24 @@
 """The sections that scenes of every family share, key by key.
 
-What ISO 6336 gives for the contact of a cylindrical pair, from its macro geometry alone.
+Last those on how a pair runs and what oil it has: the defaults of tribology, of which an analysis takes nothing.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot, nan, prod
 from typing import ClassVar
 
 import numpy as np
 
-from loaded_tca.arrays import Indices
-from loaded_tca.errors import InputError
+from loaded_tca.arrays import GEARS, Indices
 from loaded_tca.flanks.modification import NO_POLYNOMIAL
 from loaded_tca.flanks.rounding import LEAST_RADIUS
-from loaded_tca.gears import CylindricalMesh
-from loaded_tca.material import LARGEST_RATIO_IN_BENDING, SOFTEST, Material, contact_modulus
-from loaded_tca.reference import iso6336
+from loaded_tca.material import LARGEST_RATIO_IN_BENDING, SOFTEST
 from loaded_tca.scene.flank_form import FlankForm
-from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, ZeroOr, above_zero, key
+from loaded_tca.scene.keys import Choice, Either, Line, List, Number, Whole, ZeroOr, above_zero, key
 from loaded_tca.scene.pitch import Pitch
 from loaded_tca.scene.section import Rule, Section, Tables, subsection
-from loaded_tca.scene.shafts import ShaftSection
-from loaded_tca.scene.supports import SupportSection
+from loaded_tca.scene.shafts import ShaftSection, SupportSection
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
 
@@ -39,7 +34,7 @@ ERROR_deg = Number(-10.0, 10.0)
 ERROR_mm = Number(-1000.0, 1000.0)
 TORQUE_Nm = Number(0.0, 1e9)
 ROUNDING_mm = ZeroOr(Number(LEAST_RADIUS, 1000.0))
-DRIVING = Choice(("pinion", "wheel"))
+DRIVING = Choice(GEARS)
 SENSE = Choice(("positive", "negative"))
 
 
@@ -324,95 +319,71 @@ class Analysis(Section):
     )
 
     @property
+    def teeth_bend(self) -> bool:
+        """Whether teeth and gear bodies give way, by finite elements, and not the flanks alone."""
+        return self.compliance != "contact"
+
+    @property
     def without_bodies(self) -> str:
         """Settings with which no gear body is meshed; empty where none is."""
-        ways = [] if self.compliance == "contact" else ['analysis.compliance = "contact"']
+        ways = ['analysis.compliance = "contact"'] if self.teeth_bend else []
         return " and ".join([*ways, *(["analysis.root_stress = false"] if self.root_stress else [])])
 
 
-FITTED_SHIFTS = -0.5, 2.0
-"""Sums of profile shifts for which the standard's series of the single stiffness is fitted."""
+FACTOR = Number(1.0, 100.0)
+BASES = "mineral", "polyalphaolefin", "polyglycol", "water-soluble polyglycol", "ester"
+"""Kinds of base oils; ``loaded_tca.tribology`` has what each sets."""
+TEMPERATURE_C = Number(-50.0, 200.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactStandard:
-    """Contact factors and stiffnesses of ISO 6336-1 and -2; NaN where they give none, as for bevel gears.
+class Operation(Section):
+    """[operation]: how the pair runs, for tribology; the analysis takes nothing of it."""
 
-    Attributes
-    ----------
-    stress_per_root_torque : float [MPa/(N mm)^0.5]
-        sigma_H0 over the root of the pinion torque.
-    single_contact : (float, float)
-        Z_B of the pinion, Z_D of the wheel.
-    contact_ratio, helix_angle : float
-        Z_eps, Z_beta.
-    single_stiffness, mesh_stiffness : float [N/(mm um)]
-        c' and c_gamma_alpha under more than 100 N/mm, of solid discs.
-    largest_transverse_load_factor : float
-        Upper bound of K_Halpha.
-    """
-
-    stress_per_root_torque: float = nan
-    single_contact: tuple[float, float] = (nan, nan)
-    contact_ratio: float = nan
-    helix_angle: float = nan
-    single_stiffness: float = nan
-    mesh_stiffness: float = nan
-    largest_transverse_load_factor: float = nan
+    pinion_speed_rpm: float = key(above_zero(1e6), "speed of the pinion")
+    application_factor: float = key(FACTOR, "application factor K_A", 1.0)
+    dynamic_factor: float = key(FACTOR, "dynamic factor K_v", 1.0)
 
 
-def contact_standard(mesh: CylindricalMesh, width: float, materials: tuple[Material, Material]) -> ContactStandard:
-    """Values of the standard for a pair with a common face width [mm]."""
-    gear, alpha, beta = mesh.pinion, mesh.transverse_contact_ratio, mesh.overlap_ratio * width / mesh.common_face_width
-    try:
-        by_ratio = iso6336.contact_ratio_factor(alpha, beta)
-        single_contact = _single_contact(mesh, beta)
-    except InputError:  # a contact ratio up to 1 or from 4 on
-        return ContactStandard()
-    by_helix = iso6336.helix_angle_factor(gear.helix_angle)
-    by_shape = iso6336.zone_factor(gear.transverse_pressure_angle, mesh.working_pressure_angle, gear.base_helix_angle)
-    factors = prod((by_shape, iso6336.elasticity_factor(contact_modulus(*materials)), by_ratio, by_helix))
-    diameter = 2.0 * gear.reference_radius
-    single = _single_stiffness(mesh, materials)
-    return ContactStandard(
-        stress_per_root_torque=iso6336.nominal_contact_stress(
-            2.0 / diameter, diameter, width, mesh.gear_ratio, factors
+@dataclass(frozen=True, kw_only=True)
+class LubricantSection(Section):
+    """[lubricant]: the oil, and what tribology is to take of it; the analysis takes nothing of it."""
+
+    viscosity_40_mm2_s: float = key(Number(1.0, 1e5, above=True), "kinematic viscosity at 40 °C")
+    viscosity_100_mm2_s: float = key(Number(1.0, 1e5, above=True), "kinematic viscosity at 100 °C")
+    density_15_kg_m3: float = key(Number(600.0, 1400.0), "density at 15 °C", 890.0)
+    base: str = key(Choice(BASES), "kind of the base oil", "mineral")
+    oil_temperature_C: float = key(TEMPERATURE_C, "temperature of the oil that comes to the mesh")
+    pressure_viscosity_38_mm2_N: float | None = key(
+        above_zero(1.0), "pressure-viscosity coefficient at 38 °C", None, "by the base"
+    )
+    lubricant_factor: float | None = key(
+        Number(0.1, 3.0), "lubricant factor X_L of coefficients of friction", None, "by the base"
+    )
+    bulk_temperature_C: float | None = key(
+        Number(-50.0, 500.0), "bulk temperature of the teeth", None, "computed, of cylindrical gears"
+    )
+    supply: str = key(Choice(("dip", "spray", "submerged")), "how the oil comes to the gears", "dip")
+    friction: str | float | None = key(
+        Either((Choice(("mean", "local", "Xu-Kahraman")), Number(0.0, 1.0))),
+        "coefficient of friction: mean of ISO/TS 6336-22 (cylindrical gears), of each slice, or a number",
+        None,
+        "mean, of cylindrical gears",
+    )
+    scuffing_load_stage: int | None = key(
+        Whole(1, 14), "load stage of the oil in the FZG test A/8.3/90", None, "no safety against scuffing"
+    )
+    permissible_film_ratio: float | None = key(
+        above_zero(100.0), "permissible film ratio lambda_GFP", None, "no safety against micropitting"
+    )
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(
+            ("viscosity_100_mm2_s", "viscosity_40_mm2_s"),
+            lambda hot, cold: (
+                None
+                if hot < cold
+                else f"found {hot:g}; allowed below viscosity_40_mm2_s = {cold:g}: oils thin with heat"
+            ),
         ),
-        single_contact=single_contact,
-        contact_ratio=by_ratio,
-        helix_angle=by_helix,
-        single_stiffness=single,
-        mesh_stiffness=iso6336.mesh_stiffness(single, alpha) if single > 0.0 else nan,
-        largest_transverse_load_factor=iso6336.largest_transverse_load_factor(alpha, beta),
-    )
-
-
-def _single_contact(mesh: CylindricalMesh, overlap_ratio: float) -> tuple[float, float]:
-    """Z_B and Z_D, of the ends of the path of contact that is used."""
-    path, gears = mesh.path_of_contact, (mesh.pinion, mesh.wheel)
-    ends = path.E, path.T2 - path.A
-    first, second = (hypot(end, gear.base_radius) / gear.base_radius for gear, end in zip(gears, ends, strict=True))
-    return iso6336.single_contact_factors(
-        (mesh.pinion.teeth, mesh.wheel.teeth),
-        (first, second),
-        mesh.working_pressure_angle,
-        mesh.transverse_contact_ratio,
-        overlap_ratio,
-    )
-
-
-def _single_stiffness(mesh: CylindricalMesh, materials: tuple[Material, Material]) -> float:
-    """c' of both materials; NaN for profile shifts beyond those that the standard has fitted."""
-    gear, shifts = mesh.pinion, (mesh.pinion.profile_shift, mesh.wheel.profile_shift)
-    if not FITTED_SHIFTS[0] <= sum(shifts) <= FITTED_SHIFTS[1]:
-        return nan
-    first, second = (
-        iso6336.virtual_teeth(one.teeth, one.helix_angle, one.pressure_angle) for one in (mesh.pinion, mesh.wheel)
-    )
-    moduli = [material.youngs_modulus for material in materials]
-    return iso6336.single_stiffness(
-        iso6336.theoretical_single_stiffness((first, second), shifts),
-        gear.helix_angle,
-        basic_rack_factor=iso6336.basic_rack_factor(gear.dedendum_coefficient, gear.pressure_angle),
-        youngs_modulus=2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]),
     )

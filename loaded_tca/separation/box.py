@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol, Self
+from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from loaded_tca.errors import GeometryError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact, point_contact
 from loaded_tca.separation.normal_gap import NormalGap
+from loaded_tca.separation.polynomials import OUTSIDE, GapPolynomials
+from loaded_tca.separation.strips import strip_extents
 from loaded_tca.unloaded import ContactPoint, RelativeCurvature
 from loaded_tca.unloaded.curvature import relative_curvatures
 from loaded_tca.unloaded.search import find_roots
@@ -32,8 +34,6 @@ PROBE = (17, 33)
 ROOM = 1.5
 """Wanted half lengths of a coarse grid over those of the contact."""
 MOST_PROBES = 16
-LEAST_GROWTH, MOST_GROWTH = 2.0, 100.0
-"""Of a probe that a contact fills."""
 END_ALONG, END_ACROSS = 1e-6, 1e-3
 """Accuracy of the end of the material, over the half length of the box."""
 STRAIGHT_CHORD = 50.0
@@ -108,14 +108,22 @@ class Box:
         return replace(self, half_lengths=(half_lengths[0], half_lengths[1]), middle=(middle[0], middle[1]))
 
 
+class Estimate(NamedTuple):
+    """Box of a contact, the polynomials of its gap, None where none hold, and whether the material ends in the box."""
+
+    box: Box
+    polynomials: GapPolynomials | None
+    cut: bool = False
+
+
 def estimate_boxes(
     pair: GearPair,
     contacts: Sequence[ContactPoint],
     loads: Sequence[float],
     guesses: Sequence[tuple[float, float] | None],
     cells: Sequence[tuple[int, int]],
-) -> list[Box | GeometryError]:
-    """Boxes that hold n contacts, each under its load > 0 [N].
+) -> list[Estimate | GeometryError]:
+    """Boxes that hold n contacts, each under its load > 0 [N], and polynomials of the gaps around.
 
     Their axes are the principal directions of the relative curvature, turned where the contact under load lies
     askew on them, as where the contact point stands on the start of a relief: a contact is cut into strips across, and
@@ -137,12 +145,15 @@ def estimate_boxes(
         if not rows.size:
             break
         probes.fit(rows)
-    half_lengths, middles = probes.boxes(on_edge, np.array(cells))
+    probes.fit_polynomials()
+    half_lengths, middles, cut = probes.boxes(on_edge, np.array(cells))
     missing = "no flank around the contact point at pinion angle {:.6g} rad"
     return [
-        GeometryError(missing.format(contact.pinion_angle)) if math.isnan(across) else Box((across, along), own, (x, y))
-        for contact, (across, along), own, (x, y) in zip(
-            contacts, half_lengths.tolist(), probes.axes, middles.tolist(), strict=True
+        GeometryError(missing.format(contact.pinion_angle))
+        if math.isnan(across)
+        else Estimate(Box((across, along), probes.axes[row], (x, y)), probes.polynomials_of(row), bool(cut[row]))
+        for row, (contact, (across, along), (x, y)) in enumerate(
+            zip(contacts, half_lengths.tolist(), middles.tolist(), strict=True)
         )
     ]
 
@@ -162,6 +173,7 @@ class _Probes:
         count = len(contacts)
         self.gap = NormalGap(pair, contacts, axes)
         self.x, self.y, self.room = np.empty((count, PROBE[0])), np.empty((count, PROBE[1])), np.empty((count, *PROBE))
+        self.surfaces: Array | None = None  # gap and distances to the edges (surfaces, n, *PROBE), once sampled
         self.needed, self.end, self.slope = np.empty((count, 2)), np.empty(count), np.empty(count)
 
     def fit(self, rows: Indices) -> None:
@@ -173,11 +185,16 @@ class _Probes:
                 half[:, None] * np.linspace(-1.0, 1.0, n) for half, n in zip(have.T, PROBE, strict=True)
             )
             x, y = self.x[rows], self.y[rows]
-            fall, room = self.gap.of(rows).at(x[:, :, None], y[:, None])
+            surfaces = self.gap.of(rows).surfaces(x[:, :, None], y[:, None])
+            if self.surfaces is None:  # of all of them, at first
+                self.surfaces = surfaces
+            else:
+                self.surfaces[:, rows] = surfaces
+            fall, room = surfaces[0], surfaces[1:].min(axis=0)
             self.room[rows] = room
             bare = room.max(axis=(1, 2)) < 0.0
             there = (room >= 0.0) | bare[:, None, None]  # what is found of the bare ones is not used
-            need, self.end[rows], growth, self.slope[rows] = _strip_extents(
+            need, self.end[rows], growth, self.slope[rows] = strip_extents(
                 np.where(there, fall, np.inf), x, y, self.forces[rows], self.pair.contact_modulus
             )
             self.needed[rows] = need
@@ -203,12 +220,26 @@ class _Probes:
             self.gap = NormalGap(self.pair, self.contacts, self.axes)
         return askew
 
-    def boxes(self, on_edge: Mask, cells: Array) -> tuple[Array, Array]:
-        """Half lengths and middles of boxes, (n, 2) across and along [mm]; NaN where there is no material."""
+    def fit_polynomials(self) -> None:
+        """Fit polynomials to what was sampled."""
+        assert self.surfaces is not None
+        self.polynomials, self.smooth = GapPolynomials.fitted(
+            self.surfaces, np.stack([self.x[:, -1], self.y[:, -1]], axis=1)
+        )
+
+    def polynomials_of(self, row: int) -> GapPolynomials | None:
+        """Polynomials of one contact, if they hold."""
+        return self.polynomials.of(np.array([row])) if self.smooth[row] else None
+
+    def boxes(self, on_edge: Mask, cells: Array) -> tuple[Array, Array, Mask]:
+        """Half lengths and middles of boxes, (n, 2) across and along [mm]; NaN where there is no material.
+
+        The third (n,) tells in which of them the material ends.
+        """
         count, held = len(self.needed), np.flatnonzero(self.room.max(axis=(1, 2)) >= 0.0)
-        half_lengths, middles = np.full((count, 2), np.nan), np.full((count, 2), np.nan)
+        half_lengths, middles, cut = np.full((count, 2), np.nan), np.full((count, 2), np.nan), np.zeros(count, bool)
         if not held.size:
-            return half_lengths, middles
+            return half_lengths, middles, cut
         needed, cells, edged = self.needed[held], cells[held], on_edge[held]
         along, widest = MARGIN * needed[:, 1], np.where(edged, EDGE_MARGIN, SPIKE_MARGIN) * needed[:, 0]
         ends = self._ends(held, along, widest, END_ALONG, 1)
@@ -220,11 +251,13 @@ class _Probes:
         lengths = np.stack([needed[:, 0], np.minimum(self.end[held], needed[:, 1])], axis=1)
         reached = (lengths[..., None] > CERTAINLY_INSIDE * ends).any(axis=2, keepdims=True)
         ends = np.where(reached, ends, ends.max(axis=2, keepdims=True))
-        for row, ends_of, reach_of, counts in zip(held.tolist(), ends, reach, cells.tolist(), strict=True):
+        within = ends < reach[..., None]
+        cut[held] = within.any(axis=(1, 2))
+        for row, ends_of, within_of, counts in zip(held.tolist(), ends, within, cells.tolist(), strict=True):
             for axis, number in enumerate(counts):
-                spacing, below = _cells_to_ends(ends_of[axis], ends_of[axis] < reach_of[axis], number)
+                spacing, below = _cells_to_ends(ends_of[axis], within_of[axis], number)
                 half_lengths[row, axis], middles[row, axis] = 0.5 * number * spacing, (0.5 * number - below) * spacing
-        return half_lengths, middles
+        return half_lengths, middles, cut
 
     def _ends(self, rows: Indices, reach: Array, beside: Array, accuracy: float, axis: int) -> Array:
         """Distances (rows, 2) to the ends of the material either way along an axis, at most ``reach`` (rows,).
@@ -239,18 +272,31 @@ class _Probes:
         if not rows.size:
             return ends
         lines = np.linspace(-1.0, 1.0, PROBE[1 - axis])
-        # arcs of rounded edges, on which normals take more steps to the flank, end at the same edges
-        gap = NormalGap(self.pair.sharp, self.contacts, self.axes).of(rows)
 
         def room_at(of: Indices, places: Array) -> Array:
             """Largest distance to the edges (of, places) at places along the axis."""
-            on, aside = places[:, :, None], beside[of, None, None] * lines
-            return np.asarray(gap.of(of).at(*((aside, on) if axis else (on, aside)))[1].max(axis=2))
+            aside = beside[of, None] * lines
+            room = self._room(rows[of], *((aside, places) if axis else (places, aside)))
+            return np.asarray(room.max(axis=2 - axis))
 
         places = reach[:, None] * np.linspace(-1.0, 1.0, PROBE[axis])
         best = room_at(np.arange(rows.size), places)
         ends[near] = _ends_of_material(best, places, reach, accuracy, lambda of, at: room_at(of, at[:, None])[:, 0])
         return ends
+
+    def _room(self, rows: Indices, x: Array, y: Array) -> Array:
+        """Distance to the nearest edge (rows, nx, ny) where x (rows, nx) and y (rows, ny) cross."""
+        farthest = np.abs(x).max(axis=1) / self.x[rows, -1], np.abs(y).max(axis=1) / self.y[rows, -1]
+        smooth = self.smooth[rows] & (np.maximum(*farthest) <= OUTSIDE)
+        room = np.empty((rows.size, x.shape[1], y.shape[1]))
+        if smooth.any():
+            room[smooth] = self.polynomials.of(rows[smooth]).surfaces(x[smooth], y[smooth])[1:].min(axis=0)
+        if not smooth.all():
+            bent = ~smooth
+            # arcs of rounded edges, on which normals take more steps to the flank, end at the same edges
+            gap = NormalGap(self.pair.sharp, self.contacts, self.axes).of(rows[bent])
+            room[bent] = gap.at(x[bent, :, None], y[bent, None])[1]
+        return room
 
 
 def _cells_to_ends(ends: Array, cut: Mask, number: int) -> tuple[float, float]:
@@ -291,72 +337,6 @@ def _resized(needed: Array, window: Array, growth: Array) -> Array:
     """Windows that contacts of the needed half lengths fill to two thirds, or ``growth`` times as large."""
     fitting = np.minimum(np.maximum(ROOM * needed, 0.1 * window), 4.0 * window)
     return np.where(needed < 0.85 * window, fitting, growth * window)
-
-
-def _strip_extents(gap: Array, x: Array, y: Array, loads: Array, modulus: float) -> tuple[Array, Array, Array, Array]:
-    """Half lengths across and along (n, 2) [mm] of contacts that the strip model gives on coarse gaps (n, nx, ny).
-
-    They are rounded up to half a cell. The second (n,) is where the contact ends if its penetration falls as a
-    parabola. The third (n,) is how much larger a window should be that the contact fills: the cube root of the
-    penetration over the gap in it, as of point contacts, between two bounds. The fourth (n,) is the slope dx/dy of a
-    line through the centres of the strips, weighted with their loads.
-    """
-    floor = gap.min(axis=1)
-    depth = gap - np.where(np.isfinite(floor), floor, 0.0)[:, None]
-    ordered = np.sort(floor, axis=1)
-    sums = np.cumsum(ordered, axis=1)
-    across, reach, dx, dy = np.abs(x), np.abs(y), x[:, 1] - x[:, 0], y[:, 1] - y[:, 0]
-    width, length = x[:, -1], y[:, -1]
-    for _ in range(4):
-        slenderness = np.log(4.0 * np.maximum(length / width, 1.0)) - 1.0
-        stiffness = 0.5 * math.pi * modulus / np.maximum(slenderness, 0.25 * math.pi)
-        penetration = _water_level(ordered, sums, loads / (stiffness * dy)) - floor
-        closed = penetration > 0.0
-        lifted = np.where(closed, (2.0 * stiffness / (math.pi * modulus))[:, None] * penetration, -1.0)
-        loaded = (depth <= lifted[:, None]).max(axis=2)
-        width = _farthest(across, loaded) + 0.5 * dx
-        length = _farthest(reach, closed) + 0.5 * dy
-    deepest = penetration.max(axis=1)
-    rise = np.where(np.isfinite(gap), gap, -np.inf).max(axis=(1, 2)) - ordered[:, 0]
-    growth = np.cbrt(np.divide(deepest, rise, out=np.zeros(rise.shape), where=rise > 0.0))
-    ends = _ends_of_parabolas(reach, penetration, closed)
-    slope = _slope_of_centres(np.sqrt(np.maximum(lifted[:, None] - depth, 0.0)), x, y, np.maximum(penetration, 0.0))
-    return np.stack([width, length], axis=1), ends, np.clip(growth, LEAST_GROWTH, MOST_GROWTH), slope
-
-
-def _slope_of_centres(pressure: Array, x: Array, y: Array, load: Array) -> Array:
-    """Slopes dx/dy (n,) of lines through the centres of the pressure (n, nx, ny) of strips under loads (n, ny)."""
-    total = pressure.sum(axis=1)
-    load = np.where(total > 0.0, load, 0.0)
-    centre = np.divide((pressure * x[:, :, None]).sum(axis=1), total, out=np.zeros(total.shape), where=total > 0.0)
-    share = load / load.sum(axis=1, keepdims=True)
-    offset = y - (share * y).sum(axis=1, keepdims=True)
-    scatter = (share * offset**2).sum(axis=1)
-    return np.divide((share * offset * centre).sum(axis=1), scatter, out=np.zeros(len(x)), where=scatter > 0.0)
-
-
-def _farthest(distance: Array, there: Mask) -> Array:
-    """Largest distance in every row, of those that are there."""
-    return np.where(there, distance, 0.0).max(axis=1)
-
-
-def _ends_of_parabolas(distance: Array, penetration: Array, closed: Mask) -> Array:
-    """Distances (n,) at which penetrations end that fall as parabolas about y = 0; infinite if one does not fall."""
-    places, rows = np.arange(distance.shape[1]), np.arange(len(distance))
-    last = np.where(closed, distance, -1.0).argmax(axis=1)
-    others = np.where(closed & (places != last[:, None]), np.abs(places - last[:, None]), places.size)
-    beside = others.argmin(axis=1)
-    fall = np.where(closed.sum(axis=1) > 1, penetration[rows, beside] - penetration[rows, last], 0.0)
-    outer, inner = distance[rows, last] ** 2, distance[rows, beside] ** 2
-    rest = np.divide(penetration[rows, last] * (outer - inner), fall, out=np.full(fall.shape, np.inf), where=fall > 0.0)
-    return np.sqrt(outer + rest)
-
-
-def _water_level(ordered: Array, sums: Array, total: Array) -> Array:
-    """The deltas (n, 1) at which (delta - floor)_+ adds up to ``total``, of floors in order and their running sums."""
-    levels = (total[:, None] + sums) / np.arange(1, ordered.shape[1] + 1)
-    above = np.append(ordered[:, 1:], np.full((len(ordered), 1), np.inf), axis=1)
-    return np.take_along_axis(levels, (levels <= above).argmax(axis=1)[:, None], axis=1)
 
 
 def _ends_of_material(

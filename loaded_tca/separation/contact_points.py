@@ -23,12 +23,11 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from loaded_tca.arrays import Array, Mask
-from loaded_tca.flanks.modification import ModifiedFlank
+from loaded_tca.flanks.removal import ModifiedFlank
 from loaded_tca.flanks.rounding import sharp
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation.moving_edges import Distance, Places, edge_distance, grown, rises, start_distance
 from loaded_tca.separation.normal_gap import NormalGap
-from loaded_tca.separation.pair_change import PairChange
+from loaded_tca.separation.pair_change import Distance, PairChange, Places, edge_distance, grown, rises, start_distance
 from loaded_tca.separation.sample import Separation
 from loaded_tca.unloaded import ContactPoint
 from loaded_tca.unloaded.curvature import relative_curvatures

@@ -23,9 +23,17 @@ from scipy.ndimage import binary_dilation
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.contact_points import PointChanges, point_changes
-from loaded_tca.separation.moving_edges import MOTIONS, BorderCells, Places, following, grid_motions, grown, rises
 from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
-from loaded_tca.separation.pair_change import PairChange
+from loaded_tca.separation.pair_change import (
+    MOTIONS,
+    BorderCells,
+    PairChange,
+    Places,
+    following,
+    grid_motions,
+    grown,
+    rises,
+)
 from loaded_tca.separation.sample import Separation
 from loaded_tca.unloaded import ContactPoint
 from loaded_tca.unloaded.scan import arcs_at

@@ -10,7 +10,6 @@ import math
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, fields
-from functools import reduce
 
 import numpy as np
 
@@ -142,14 +141,18 @@ class NormalGap:
 
         The distance is negative where a flank has ended, and -inf where the normal does not meet it.
         """
+        surfaces = self.surfaces(x, y)
+        return surfaces[0], surfaces[1:].min(axis=0)
+
+    def surfaces(self, x: Array, y: Array) -> Array:
+        """Gap [mm], and distances to each edge of both flanks [mm], stacked, at points that broadcast."""
         count, shape = len(self._views[0][-1]), np.broadcast_shapes(x.shape, y.shape)
         size = max(1, count * TOGETHER // math.prod(shape))
         if size < count:
             parts = [slice(first, first + size) for first in range(0, count, size)]
-            gaps, rooms = zip(*(self.of(part).at(x[part], y[part]) for part in parts), strict=True)
-            return np.concatenate(gaps), np.concatenate(rooms)
+            return np.concatenate([self.of(part).surfaces(x[part], y[part]) for part in parts], axis=1)
         gap, distances = self.with_edges(x, y)
-        return gap, reduce(np.minimum, distances)
+        return np.stack([gap, *distances])
 
     def with_edges(self, x: Array, y: Array) -> tuple[Array, list[Array]]:
         """Gap [mm], and distances to each edge of both flanks [mm], at points that broadcast; signed as of ``at``."""

@@ -23,7 +23,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
 
 import numpy as np
 
@@ -31,8 +30,9 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation.box import MARGIN, Box, estimate_boxes
+from loaded_tca.separation.box import MARGIN, Box, Estimate, estimate_boxes
 from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
+from loaded_tca.separation.polynomials import GapPolynomials
 from loaded_tca.unloaded.curvature import relative_curvatures
 from loaded_tca.unloaded.path import ContactPoint, require_contact
 
@@ -124,6 +124,8 @@ class Separation:
     force_line : (ny,) array [mm]
         Where across the contact the force of every slice acts, from the contact point: near the centre of its pressure,
         as far as one is known (:meth:`loaded_by`); else zero.
+    polynomials : GapPolynomials or None
+        Of the gap about the contact point, for other grids of it in boxes like this; None: there are none.
     """
 
     gap: Array
@@ -136,6 +138,7 @@ class Separation:
     cover: Array
     cut_gap: Array
     force_line: Array
+    polynomials: GapPolynomials | None = None
 
     @property
     def points(self) -> Array:
@@ -256,6 +259,8 @@ def sample_separations(
     loads: Sequence[float | None],
     boxes: Sequence[Box | tuple[float, float] | None],
     guesses: Sequence[tuple[float, float] | None] | None = None,
+    polynomials: Sequence[GapPolynomials | None] | None = None,
+    cells_at_ends: Sequence[tuple[int, int] | None] | None = None,
     accuracy: float = 1e-3,
 ) -> list[Separation | InputError | GeometryError]:
     """Gaps of n contacts: of each what :func:`sample_separation` returns or raises, whatever stands beside it.
@@ -266,6 +271,10 @@ def sample_separations(
     contacts : sequence of n ContactPoint
     cells, loads, boxes, guesses : sequences of n
         For each contact, as of :func:`sample_separation`; a :class:`Box` may lie anywhere in the tangent plane.
+    polynomials : sequence of n, optional
+        Those of another grid of each contact, of the same pair and axes, or None; used as far as they reach.
+    cells_at_ends : sequence of n, optional
+        Cells instead of ``cells`` in estimated boxes in which the material ends along an axis, or None.
     accuracy : float
         Of all contacts whose cells are None.
     """
@@ -284,14 +293,17 @@ def sample_separations(
         else:
             across, along = shape if shape is not None else (cells_for_accuracy(accuracy),) * 2
             shapes[index] = int(across), int(along)
-    placed: dict[int, Box] = {}
-    for index, box_or_error in zip(shapes, _placed(pair, contacts, shapes, loads, boxes, guesses), strict=True):
-        if isinstance(box_or_error, Box):
-            placed[index] = box_or_error
-        else:
-            separations[index] = box_or_error
+    kept = [None] * len(contacts) if polynomials is None else polynomials
+    placed: dict[int, Estimate] = {}
+    for index, place in zip(shapes, _placed(pair, contacts, shapes, loads, boxes, guesses, kept), strict=True):
+        if not isinstance(place, Estimate):
+            separations[index] = place
+            continue
+        placed[index] = place
+        if place.cut and cells_at_ends is not None:
+            shapes[index] = cells_at_ends[index] or shapes[index]
     for shape in dict.fromkeys(shapes.values()):
-        sized = [(index, box) for index, box in placed.items() if shapes[index] == shape]
+        sized = [(index, place) for index, place in placed.items() if shapes[index] == shape]
         size = max(1, TOGETHER // math.prod(shape))
         for part in (dict(sized[first : first + size]) for first in range(0, len(sized), size)):
             gaps = _sampled(pair, [contacts[index] for index in part], [*part.values()], shape)
@@ -306,7 +318,8 @@ def _placed(
     loads: Sequence[float | None],
     boxes: Sequence[Box | tuple[float, float] | None],
     guesses: Sequence[tuple[float, float] | None],
-) -> list[Box | GeometryError]:
+    polynomials: Sequence[GapPolynomials | None],
+) -> list[Estimate | GeometryError]:
     """Box of each contact that has a shape of its grid: the given one, or one that holds it under its load."""
     principal = dict(zip(shapes, relative_curvatures(pair, [contacts[index] for index in shapes]), strict=True))
     to_size = [index for index in shapes if boxes[index] is None]
@@ -316,50 +329,79 @@ def _placed(
     placed = dict(zip(to_size, sized, strict=True))
     for index in shapes:
         if (box := boxes[index]) is not None:
-            placed[index] = box if isinstance(box, Box) else Box(box, principal[index].axes)
+            place = box if isinstance(box, Box) else Box(box, principal[index].axes)
+            placed[index] = Estimate(place, polynomials[index])
     return [placed[index] for index in shapes]
 
 
 def _sampled(
-    pair: GearPair, contacts: Sequence[ContactPoint], boxes: Sequence[Box], shape: tuple[int, int]
+    pair: GearPair, contacts: Sequence[ContactPoint], places: Sequence[Estimate], shape: tuple[int, int]
 ) -> Iterator[Separation]:
     """Gaps of n contacts in their boxes, on grids of one shape."""
+    boxes = [place.box for place in places]
     curvatures, axes = relative_curvatures(pair, contacts), np.array([box.axes for box in boxes])
     spacings = 2.0 * np.array([box.half_lengths for box in boxes]) / shape
     x, y = (
         middle[:, None] + (np.arange(n) - 0.5 * (n - 1)) * step[:, None]
         for n, step, middle in zip(shape, spacings.T, np.array([box.middle for box in boxes]).T, strict=True)
     )
-    gap = NormalGap(pair, contacts, axes)
-    heights, distances = gap.with_edges(x[:, :, None], y[:, None])
+    surfaces = _surfaces(pair, contacts, axes, [place.polynomials for place in places], x, y)
+    heights, distances = surfaces[0], surfaces[1:]
     covers = _covers(distances, spacings)
-    whole, cut = (np.where(there, heights, np.inf) for there in (reduce(np.minimum, distances) >= 0.0, covers > 0.0))
+    whole, cut = (np.where(there, heights, np.inf) for there in (distances.min(axis=0) >= 0.0, covers > 0.0))
     for k, (contact, curvature, (dx, dy)) in enumerate(zip(contacts, curvatures, spacings.tolist(), strict=True)):
         grid, origin = (whole[k].copy(), x[k], y[k], (dx, dy)), contact.point.copy()
         along_axes, line = curvature.along_axes(axes[k]), np.zeros(y.shape[1])
-        yield Separation(*grid, origin, axes[k], along_axes, covers[k].copy(), cut[k].copy(), line)
+        material = covers[k].copy(), cut[k].copy()
+        yield Separation(*grid, origin, axes[k], along_axes, *material, line, places[k].polynomials)
 
 
-def _covers(distances: list[Array], spacings: Array) -> Array:
-    """Part of every cell that has material (n, nx, ny), of the distances of the middles of the cells to each edge.
+def _surfaces(
+    pair: GearPair,
+    contacts: Sequence[ContactPoint],
+    axes: Array,
+    polynomials: Sequence[GapPolynomials | None],
+    x: Array,
+    y: Array,
+) -> Array:
+    """Gaps, and distances to each edge (surfaces, n, nx, ny) where x (n, nx) and y (n, ny) cross.
+
+    By the polynomials of contacts that have some, in boxes that they hold in.
+    """
+    held = [own is not None and own.hold_in(x[k], y[k]) for k, own in enumerate(polynomials)]
+    smooth, bent = np.flatnonzero(held), np.flatnonzero(np.logical_not(held))
+    parts = []
+    if smooth.size:
+        together = GapPolynomials.together([own for own, holds in zip(polynomials, held, strict=True) if own and holds])
+        parts.append(together.surfaces(x[smooth], y[smooth]))
+    if bent.size:
+        gap = NormalGap(pair, [contacts[k] for k in bent.tolist()], axes[bent])
+        parts.append(gap.surfaces(x[bent, :, None], y[bent, None]))
+    if len(parts) == 1:
+        return parts[0]
+    return np.concatenate(parts, axis=1)[:, np.argsort(np.concatenate([smooth, bent]))]
+
+
+def _covers(distances: Array, spacings: Array) -> Array:
+    """Part of every cell that has material (n, nx, ny), of the distances (edges, n, nx, ny) of their middles to edges.
 
     From one cell to the next the distance grows by a and b: with a straight edge along an axis of the grid the part is
     1/2 + distance/(|a| + |b|), from 0 to 1; with an oblique one nearly so.
     """
-    covers = np.ones(distances[0].shape)
-    for distance in distances:
-        near = np.flatnonzero(distance.min(axis=(1, 2)) < spacings.sum(axis=1))
-        if not near.size:
-            continue
-        ends, growth = distance[near], np.zeros((near.size, *covers.shape[1:]))
-        met = np.where(np.isfinite(ends), ends, np.nan)
-        for lines, sums in ((met, growth), (met.swapaxes(1, 2), growth.swapaxes(1, 2))):
-            if lines.shape[1] > 1:
-                steps = np.abs(lines[:, 1:] - lines[:, :-1])
-                sums[:, :-1] += steps
-                sums[:, -1] += steps[:, -1]
-        parts = np.divide(ends, growth, out=np.copysign(1.0, ends), where=growth > 0.0)
-        covers[near] = np.minimum(covers[near], 0.5 + parts)
+    covers, near = np.ones(distances.shape[1:]), distances.min(axis=(2, 3)) < spacings.sum(axis=1)
+    if not near.any():
+        return covers
+    ends, growth = distances[near], np.zeros((np.count_nonzero(near), *covers.shape[1:]))
+    met = np.where(np.isfinite(ends), ends, np.nan)
+    for lines, sums in ((met, growth), (met.swapaxes(1, 2), growth.swapaxes(1, 2))):
+        if lines.shape[1] > 1:
+            steps = np.abs(lines[:, 1:] - lines[:, :-1])
+            sums[:, :-1] += steps
+            sums[:, -1] += steps[:, -1]
+    parts = np.divide(ends, growth, out=np.copysign(1.0, ends), where=growth > 0.0)
+    parts += 0.5
+    for part, contact in zip(parts, np.nonzero(near)[1], strict=True):
+        np.minimum(covers[contact], part, out=covers[contact])
     return np.where(covers < SLIVER, 0.0, np.where(covers > 1.0 - SLIVER, 1.0, covers))
 
 

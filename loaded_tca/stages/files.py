@@ -7,7 +7,7 @@ from pathlib import Path
 
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
-from loaded_tca.scene.parse import LARGEST_FILE, section_lines, toml_table, with_files_from
+from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, section_lines, toml_table, with_files_from
 from loaded_tca.scene.section import Section
 from loaded_tca.stages.sections import PlanetaryStage, Stage, StageGeometry, StageLoad, stage_from_table
 
@@ -51,7 +51,7 @@ def is_stage_file(path: str | os.PathLike[str]) -> bool:
         table = toml_table(read_text(path, LARGEST_FILE), os.fspath(path))
     except InputError:
         return False
-    return isinstance(table.get("stage"), dict) and "sun" in table
+    return is_table_of_stage(table)
 
 
 def read_stage(path: str | os.PathLike[str]) -> Stage:

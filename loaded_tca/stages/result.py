@@ -13,7 +13,16 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.results import MeshCycle
-from loaded_tca.results.files import FilePath, Part, arrays_of, netcdf_of, read_dataset, replace_together, variables_of
+from loaded_tca.results.files import (
+    STAGE,
+    FilePath,
+    Part,
+    arrays_of,
+    netcdf_of,
+    read_dataset,
+    replace_together,
+    variables_of,
+)
 from loaded_tca.results.summary import shown, shown_torque
 from loaded_tca.stages.files import parse_stage
 from loaded_tca.stages.kinematics import neutralised
@@ -22,8 +31,7 @@ from loaded_tca.stages.sections import Stage
 if TYPE_CHECKING:
     import xarray
 
-KIND = "stage"
-FILES = "stage.nc", "sun_mesh.nc", "ring_mesh.nc"
+STAGE_FILE, *MESH_FILES = FILES = "stage.nc", "sun_mesh.nc", "ring_mesh.nc"
 """Names of the files of a result: the stage, and the mesh cycles of its two meshes."""
 MOST_ORDERS = 6
 CYCLE = "torque", "position"
@@ -237,7 +245,7 @@ class StageResult:
 
     def contents(self) -> dict[str, bytes | bytearray]:
         """Names and contents of the files that ``save`` writes."""
-        about = {"kind": KIND, "title": self.stage.title, "stage_toml": self.stage.to_toml()}
+        about = {"kind": STAGE, "title": self.stage.title, "stage_toml": self.stage.to_toml()}
         content = netcdf_of(self.dataset.assign_attrs(about))
         return dict(zip(FILES, (content, self.sun_mesh.to_netcdf(), self.ring_mesh.to_netcdf()), strict=True))
 
@@ -256,10 +264,10 @@ class StageResult:
             If one cannot be read, is damaged, or is no such file.
         """
         place = Path(directory)
-        place = place if place.is_dir() or place.name != FILES[0] else place.parent
-        path = place / FILES[0]
+        place = place if place.is_dir() or place.name != STAGE_FILE else place.parent
+        path = place / STAGE_FILE
         file = read_dataset(path)
-        if file.attrs.get("kind") != KIND:
+        if file.attrs.get("kind") != STAGE:
             raise InputError(f"{path}: not the result of a stage")
         try:
             stage = parse_stage(str(file.attrs.get("stage_toml", "")), source="stage_toml", folder=None)
@@ -268,10 +276,10 @@ class StageResult:
             require(*((file.sizes[name] == size, f"{name}: expected {size}") for name, size in sizes.items()))
         except InputError as error:
             raise InputError([f"{path}: not the result of a stage", *error.problems]) from None
-        cycles = [MeshCycle.load(place / name) for name in FILES[1:]]
-        for name, cycle, scene in zip(FILES[1:], cycles, (stage.sun_scene, stage.ring_scene), strict=True):
+        cycles = [MeshCycle.load(place / name) for name in MESH_FILES]
+        for name, cycle, scene in zip(MESH_FILES, cycles, (stage.sun_scene, stage.ring_scene), strict=True):
             if replace(cycle.scene, analysis=scene.analysis) != scene:
-                raise InputError(f"{place / name}: the mesh cycle of another stage than {FILES[0]} beside it")
+                raise InputError(f"{place / name}: the mesh cycle of another stage than {STAGE_FILE} beside it")
         about = {name: file.attrs[name] for name in ("version", "date", "warnings") if name in file.attrs}
         return cls(stage=stage, dataset=stage_dataset(arrays, **about), sun_mesh=cycles[0], ring_mesh=cycles[1])
 

@@ -18,7 +18,7 @@ from loaded_tca.scene.blank import OTHER
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.internal import InternalScene, RingSection
 from loaded_tca.scene.keys import Choice, Key, Line, List, Number, Whole, above_zero, key
-from loaded_tca.scene.model import _lines
+from loaded_tca.scene.parse import toml_lines
 from loaded_tca.scene.section import Rule, Section, as_table, check, contents, key_at, made, subsection
 from loaded_tca.scene.sections import Analysis, DIAMETER_mm, ElasticMaterial, Load, TORQUE_Nm
 from loaded_tca.stages.kinematics import spacing_problems
@@ -381,7 +381,7 @@ class Stage(Section):
 
     def to_toml(self) -> str:
         """Return a stage file with every key; ``parse_stage`` makes the same stage of it."""
-        return "\n".join(_lines(self, "")) + "\n"
+        return "\n".join(toml_lines(self, "")) + "\n"
 
 
 def _gears_of(sun_scene: CylindricalScene, ring_scene: InternalScene) -> tuple[CylindricalMesh, InternalMesh]:

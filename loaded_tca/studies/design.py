@@ -24,12 +24,11 @@ import numpy as np
 from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import ConvergenceError, InputError, noted_accuracy_warnings, require
-from loaded_tca.results.files import variables_of
+from loaded_tca.results.files import DESIGN, variables_of
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
 from loaded_tca.studies.design_figures import (
     FIGURES,
-    KIND,
     PARTS,
     SMOOTHING,
     DesignResult,
@@ -340,7 +339,7 @@ def _analysed(scene: Scene) -> dict[str, Any]:
     """What is kept of the analysis of a scene, over its torques; in whatever process this is called."""
     with one_thread(), noted_accuracy_warnings(given=False) as warned:
         result = analyse(scene)
-    errors = 1e3 * result.wheel_base_radius * result.transmission_error[:, :-1]
+    errors = result.um_per_rad * result.transmission_error[:, :-1]
     figures = {
         "transmission_error": result.transmission_error,
         "peak_pressure": np.fmax.reduce(result.peak_pressure, axis=2),
@@ -398,7 +397,7 @@ def _analysed_result(
         "torque": ("torque", model.torques, {"units": "N mm"}),
         **({"scatter_key": [*model.scatter]} if model.scatter else {}),
     }
-    attributes = {"kind": KIND, "scene_toml": model.scene.to_toml()}
+    attributes = {"kind": DESIGN, "scene_toml": model.scene.to_toml()}
     attributes["warnings"] = "\n".join(
         f"{reason} (in {count} of {len(analyses)} analyses)" for reason, count in reasons.items()
     )

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array, real
+from loaded_tca.arrays import GEARS, Array, real
 from loaded_tca.compliance import RootStress
 from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.held_contacts import HeldContacts
@@ -23,10 +23,9 @@ from loaded_tca.loaded.sensitivity import LoadedGrid
 from loaded_tca.pairs.kinematics import surface_motions
 from loaded_tca.results.face_slopes import face_load_factor_slopes
 from loaded_tca.results.figure_slopes import EXPONENT, pressure_norm
-from loaded_tca.results.files import FilePath, Part, read_dataset, write_dataset
+from loaded_tca.results.files import DESIGN, FilePath, Part, read_dataset, write_dataset
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.root_stress import root_stress_of_gear, stress_at_extreme
 
 if TYPE_CHECKING:
@@ -304,7 +303,6 @@ class Limit:
     highest: float
 
 
-KIND = "design"
 TEXTS, NUMBERS = ("scene_toml", "warnings", "objective", "limits"), ("value", "objective", "held_objective")
 """Attributes and variables that every result has, besides its figure."""
 
@@ -411,7 +409,7 @@ def load_design(path: FilePath) -> DesignResult:
         If the file cannot be read, is damaged, is no design, or lacks what all designs have.
     """
     dataset = read_dataset(path)
-    if dataset.attrs.get("kind") != KIND:
+    if dataset.attrs.get("kind") != DESIGN:
         raise InputError(f"{path}: a result of loaded_tca, but no design; read it with load_result or load_study")
     renamed = {held + before: held + now for held in ("", "held_") for before, now in EARLIER.items()}
     dataset = dataset.rename({before: now for before, now in renamed.items() if before in dataset})

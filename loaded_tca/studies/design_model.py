@@ -14,7 +14,7 @@ solution for the transmission error and one more for each other figure, however 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -36,7 +36,14 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import value_at
 from loaded_tca.studies.design_figures import FIGURES, SMOOTHING, FigureOfErrors
-from loaded_tca.studies.study import Distribution, Study, is_finite, is_whole, told_distribution
+from loaded_tca.studies.study import (
+    Distribution,
+    deviations_of,
+    is_whole,
+    problems_of_key,
+    problems_of_range,
+    told_distribution,
+)
 from loaded_tca.supports import support_compliance
 from loaded_tca.unloaded import ContactPoint, trace_teeth
 
@@ -121,7 +128,7 @@ class DesignModel:
         self.cells = cells or scene.analysis.cells or CELLS
         self._check()
         self.start = np.array([value_at(scene, key) for key in self.keys])
-        self.deviations = self._samples()
+        self.deviations = deviations_of(scene, self.scatter, samples, seed, multiple)
         self.own_deviations = [np.array([one.get(key, 0.0) for key in self.keys]) for one in self.deviations]
         with named("within the ranges, with the scatter"):
             self.held = [self._sample(*one) for one in zip(self.deviations, self.own_deviations, strict=True)]
@@ -239,22 +246,6 @@ class DesignModel:
         drawn = any(hasattr(one, "ppf") for one in self.scatter.values())
         return [f"{self.seed} of the samples"] if drawn else []
 
-    def _samples(self) -> list[dict[str, float]]:
-        """What the keys of the scatter have, or deviate by, in each sample."""
-        if not self.scatter:
-            return [{}]
-        given = {key: one for key, one in self.scatter.items() if not hasattr(one, "ppf")}
-        drawn: dict[str, Any] = {key: one for key, one in self.scatter.items() if key not in given}
-        require((not given or not drawn, "scatter: distributions and given values; allowed one or the other"))
-        if given:
-            study = Study(self.scene, table=given)
-            medians = {key: float(np.median(column)) for key, column in study.table.items()}
-        else:
-            study = Study(self.scene, distributions=drawn, samples=self.samples, seed=self.seed)
-            medians = {key: float(one.ppf(0.5)) for key, one in drawn.items()}
-        samples = (study.changes(sample) for sample in range(len(study)))
-        return [{key: medians[key] + self.multiple * (by - medians[key]) for key, by in one.items()} for one in samples]
-
     @property
     def positions(self) -> int:
         """Positions of a pitch; the last one of the scene is the first one of the next pitch."""
@@ -292,7 +283,7 @@ class DesignModel:
         supports = support_compliance(scene, pair)
         assert supports is not None
         unmoved = trace_teeth(at_rest(supports), angles)
-        bending = model_of(scene, pair, pitches_apart(supports, float(self.torques.max()), unmoved))
+        bending = model_of(scene, pair, pitches_apart(supports, self.torques.tolist(), unmoved))
         assert bending is not None
         grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=scene.analysis.free_edges)
         cycle, held = SupportedCycle(pair, bending, angles, grid, load_sharing=True), []
@@ -308,9 +299,9 @@ class DesignModel:
         wanted, torques = self.scene.analysis, self.torques
         problems = []
         for key, bounds in self.variables.items():
-            problems += [*_problems_of_key(self.scene, key)] or [*_problems_of_range(self.scene, key, bounds)]
+            problems += [*problems_of_key(self.scene, key)] or [*problems_of_range(self.scene, key, bounds)]
         for key in self.scatter:
-            problems += _problems_of_key(self.scene, key)
+            problems += problems_of_key(self.scene, key)
         checks = (
             (bool(self.variables), "variables: none given; a design varies one key at least"),
             (
@@ -345,27 +336,6 @@ class DesignModel:
         problems += [problem for holds, problem in checks if not holds]
         if problems:
             raise InputError(problems)
-
-
-def _problems_of_key(scene: Scene, key: Any) -> Iterator[str]:
-    """Problems of a key that varies or scatters."""
-    if not isinstance(key, str):
-        yield f"{key!r:.60}: no text; allowed a key as of scene.with_changes"
-        return
-    try:
-        value_at(scene, key)
-    except InputError as error:
-        yield from (f"{key}: {problem}" for problem in error.problems)
-
-
-def _problems_of_range(scene: Scene, key: str, bounds: Any) -> Iterator[str]:
-    """Problems of the range of a key that varies."""
-    if key.startswith("mounting."):
-        yield f"{key}: a mounting error, which no design shapes; allowed in scatter"
-    elif not (np.shape(bounds) == (2,) and all(map(is_finite, bounds)) and bounds[0] < bounds[1]):
-        yield f"{key}: range {bounds!r:.60}; allowed two numbers, the lower one first"
-    elif not bounds[0] <= (value := value_at(scene, key)) <= bounds[1]:
-        yield f"{key}: the scene, where a design starts, has {value:g}; allowed {bounds[0]:g} to {bounds[1]:g}"
 
 
 def _within(bounds: tuple[str, tuple[float, float]], value: float) -> tuple[bool, str]:

@@ -22,8 +22,8 @@ from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
 from loaded_tca.scene.keys import did_you_mean, nearest
+from loaded_tca.studies.other_figures import tribology_figures
 from loaded_tca.studies.stage import TORQUES, nominal_of, subject_of, torque_name
-from loaded_tca.studies.tribology import tribology_figures
 from loaded_tca.units import without_unit
 
 if TYPE_CHECKING:
@@ -45,9 +45,9 @@ def varied_keys(study: xarray.Dataset) -> list[str]:
 
 def main_figures(study: xarray.Dataset) -> list[str]:
     """Figures of ``MAIN_FIGURES`` that a study has; if it has none, as with figures of its own, its first ones."""
-    known = [str(name) for name, values in study.data_vars.items() if values.dims == ("sample", "torque")]
-    figures_of = [name for name in MAIN_FIGURES if name in known and np.isfinite(figure_values(study, name)).any()]
-    return figures_of or [name for name in known if name not in TORQUES][: len(MAIN_FIGURES)]
+    names = [str(name) for name, values in study.data_vars.items() if values.dims == ("sample", "torque")]
+    figures_of = [name for name in MAIN_FIGURES if name in names and np.isfinite(figure_values(study, name)).any()]
+    return figures_of or [name for name in names if name not in TORQUES][: len(MAIN_FIGURES)]
 
 
 def figure_values(study: xarray.Dataset, name: str) -> Array:
@@ -58,9 +58,9 @@ def figure_values(study: xarray.Dataset, name: str) -> Array:
     InputError
         If the study has no such figure.
     """
-    known = [str(one) for one, values in study.data_vars.items() if values.dims == ("sample", "torque")]
-    if name not in known:
-        hint = did_you_mean(nearest(name, known)) or f"; allowed {', '.join(known) or 'nothing: there are none'}"
+    names = [str(figure) for figure, values in study.data_vars.items() if values.dims == ("sample", "torque")]
+    if name not in names:
+        hint = did_you_mean(nearest(name, names)) or f"; allowed {', '.join(names) or 'nothing: there are none'}"
         raise InputError(f"{name}: no figure of the study{hint}")
     ok = (study["status"].values == "ok")[:, None]
     return np.where(ok, np.asarray(study[name].values, dtype=float), np.nan)
@@ -160,14 +160,14 @@ def _standard_error(values: pandas.Series, largest_is_best: bool) -> float:
     """Standard error of the quantile of a figure over the samples that are ok (Maritz and Jarrett 1978)."""
     from scipy.stats import beta
 
-    known = np.sort(values.dropna().to_numpy())
-    if known.size < FEWEST_SAMPLES:
+    sorted_values = np.sort(values.dropna().to_numpy())
+    if sorted_values.size < FEWEST_SAMPLES:
         return float("nan")
     if largest_is_best:
-        known = -known[::-1]
-    rank = np.ceil(QUANTILE * known.size)
-    weights = np.diff(beta.cdf(np.linspace(0.0, 1.0, known.size + 1), rank, known.size - rank + 1.0))
-    return float(np.sqrt(weights @ (known - weights @ known) ** 2))
+        sorted_values = -sorted_values[::-1]
+    rank = np.ceil(QUANTILE * sorted_values.size)
+    weights = np.diff(beta.cdf(np.linspace(0.0, 1.0, sorted_values.size + 1), rank, sorted_values.size - rank + 1.0))
+    return float(np.sqrt(weights @ (sorted_values - weights @ sorted_values) ** 2))
 
 
 def rank_variants(
@@ -295,9 +295,10 @@ def study_summary(study: xarray.Dataset) -> str:
     Examples
     --------
     >>> import xarray
-    >>> found = {"face_load_factor": (("sample", "torque"), [[1.2], [1.6], [np.nan]])}
+    >>> figures = {"face_load_factor": (("sample", "torque"), [[1.2], [1.6], [np.nan]])}
     >>> words = {"status": ["ok", "ok", "refused"], "reason": ["", "", "pinion: pointed"], "warnings": ["", "", ""]}
-    >>> print(study_summary(xarray.Dataset({**found, **{name: ("sample", column) for name, column in words.items()}})))
+    >>> figures |= {name: ("sample", column) for name, column in words.items()}
+    >>> print(study_summary(xarray.Dataset(figures)))
     3 variants: 2 ok, 1 refused
                                min        5 %     median       95 %        max
     load factor K_Hbeta        1.2       1.22        1.4       1.58        1.6
@@ -320,9 +321,9 @@ def _table(study: xarray.Dataset) -> Iterator[str]:
     name = torque_name(study)
     torques = study[name].values if name in study else np.zeros((1, 1))
     for torque in range(study.sizes["torque"]):
-        known = torques[np.isfinite(torques[:, torque]), torque]
-        same = known.size and np.ptp(known) == 0.0 and study.sizes["torque"] > 1
-        head = f"under {known[0]:g} N m" if same else f"torque {torque + 1}" if study.sizes["torque"] > 1 else ""
+        of_variants = torques[np.isfinite(torques[:, torque]), torque]
+        same = of_variants.size and np.ptp(of_variants) == 0.0 and study.sizes["torque"] > 1
+        head = f"under {of_variants[0]:g} N m" if same else f"torque {torque + 1}" if study.sizes["torque"] > 1 else ""
         width = max(len(label) for label in (*shown.values(), head))
         yield f"{head:<{width}}" + "".join(f"{word:>11}" for word in PERCENTILES)
         for name, label in shown.items():

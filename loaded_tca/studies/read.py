@@ -20,7 +20,7 @@ from loaded_tca.errors import InputError, named
 from loaded_tca.input_files import read_text
 from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest, shown, shown_key
-from loaded_tca.scene.parse import LARGEST_FILE, toml_table
+from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, toml_table
 from loaded_tca.stages import Stage, read_stage
 from loaded_tca.studies.stage import nominal_of
 from loaded_tca.studies.study import MOST_VARIANTS, Distribution, Study, is_finite, is_whole
@@ -83,7 +83,7 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
     factors.mounting.misalignment_um: found a table; allowed a list of values or { from, to, count }
     """
     table = toml_table(text, source)
-    if "sun" in table and isinstance(table.get("stage"), dict):
+    if is_table_of_stage(table):
         raise InputError(f'{source}: not a study but a planetary stage; a study names it as stage = "..."')
     if "pair" in table:
         raise InputError(f'{source}: not a study but a scene; a study names it as scene = "..."')
@@ -222,8 +222,8 @@ def _of_class(scene: Scene | Stage | None, place: str, value: Mapping[str, Any])
     key = place.removeprefix("distributions.")
     if key not in bounded:
         raise InputError(f"{place}: ISO 1328-1 has no tolerance of it by class; allowed {', '.join(bounded)}")
-    found: Distribution = bounded[key]
-    return found
+    of_class: Distribution = bounded[key]
+    return of_class
 
 
 def _table(name: Any, folder: Path) -> dict[str, list[Any]]:

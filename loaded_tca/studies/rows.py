@@ -20,7 +20,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, reason_of
 from loaded_tca.input_files import require_regular
-from loaded_tca.results.files import FilePath, make_directory, read_dataset
+from loaded_tca.results.files import STUDY, FilePath, make_directory, read_dataset
 from loaded_tca.scene.keys import literal, shown
 from loaded_tca.studies.stage import TORQUES
 from loaded_tca.studies.study import Study, told_distribution
@@ -238,9 +238,6 @@ class Rows:
         return place
 
 
-KIND = "study"
-
-
 def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) -> xarray.Dataset:
     """Gather the rows of all variants, in their order.
 
@@ -287,7 +284,7 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
     if len(known) and (known == known[0]).all():  # the same in all variants
         places["torque"] = ("torque", known[0])
     return xarray.Dataset(
-        {**variables, **own, "seconds": spent}, coords={**places, **_varied(study)}, attrs={"kind": KIND, **attributes}
+        {**variables, **own, "seconds": spent}, coords={**places, **_varied(study)}, attrs={"kind": STUDY, **attributes}
     )
 
 
@@ -324,6 +321,6 @@ def load_study(path: FilePath) -> xarray.Dataset:
         If the file cannot be read, is damaged, or is no study.
     """
     dataset = read_dataset(path)
-    if dataset.attrs.get("kind") != KIND:
+    if dataset.attrs.get("kind") != STUDY:
         raise InputError(f"{path}: a result of loaded_tca, but no study; read it with load_result")
     return dataset

@@ -10,9 +10,10 @@ import signal
 import sys
 import time
 import warnings
-from collections.abc import Callable, Collection, Generator, Iterator, Mapping
+from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass
 from importlib.metadata import version
 from itertools import islice
 from multiprocessing import active_children, get_context, parent_process
@@ -109,20 +110,13 @@ def run_study(
     >>> from loaded_tca.cli import DEMO_SCENE
     >>> few = {"analysis.positions": 3, "analysis.compliance": "contact", "analysis.free_edges": False}
     >>> scene = parse_scene(DEMO_SCENE.read_text()).with_changes(few)
-    >>> found = run_study(Study(scene, {"pinion.modifications.lead_crowning_um": [2.0, 6.0]}))
-    >>> found["face_load_factor"].squeeze().diff("sample").item() > 0.0  # more crowning, less of the face carries
+    >>> study = run_study(Study(scene, {"pinion.modifications.lead_crowning_um": [2.0, 6.0]}))
+    >>> study["face_load_factor"].squeeze().diff("sample").item() > 0.0  # more crowning, less of the face carries
     True
     """
-    of_stage = isinstance(study.scene, Stage)
-    figures, with_maps = figures or (stage_figures if of_stage else key_figures), set(keep_maps)
-    unknown = sorted(with_maps.difference(range(len(study))))
-    named = "<lambda>" not in getattr(figures, "__qualname__", "<lambda>")
-    require(
-        (not with_maps or out is not None, "keep_maps: needs out"),
-        (not (with_maps and of_stage), "keep_maps: not of a study of stages; analyse_stage has their mesh cycles"),
-        (not unknown, f"keep_maps: {unknown[:3]} are not variants 0 to {len(study) - 1}"),
-        (named, f"figures: found {figures!r}; allowed a function with a name, which identifies its rows"),
-    )
+    figures = figures or (stage_figures if isinstance(study.scene, Stage) else key_figures)
+    with_maps = set(keep_maps)
+    _require_storable(study, figures, with_maps, out)
     digests = [*map(study.digests(figures), range(len(study)))]
     with ExitStack() as stack:
         place = Path(stack.enter_context(TemporaryDirectory()), "study.nc") if out is None else Path(out)
@@ -130,37 +124,66 @@ def run_study(
         stack.enter_context(_told_how_to_go_on(rows, out))
         maps = place.with_name(f"{place.stem}_maps")
         _remove_outdated(maps, study)
-        kept: list[int] = []
+        kept = {
+            variant
+            for variant, digest in enumerate(digests)
+            if digest in rows and (variant not in with_maps or _map_of(maps, variant).exists())
+        }
         missing: dict[str, list[int]] = {}  # variants that change the same are analysed once
-        for variant, digest in enumerate(digests):
-            if digest in rows and (variant not in with_maps or _map_of(maps, variant).exists()):
-                kept.append(variant)
-            else:
-                missing.setdefault(digest, []).append(variant)
+        for variant in sorted(set(range(len(study))) - kept):
+            missing.setdefault(digests[variant], []).append(variant)
         if missing and rows.damaged:
             warnings.warn(rows.damage, DamageWarning, stacklevel=2)
-        done, failed = len(kept), sum(row["status"] != "ok" for row in rows.of(digests[variant] for variant in kept))
-        tell = progress or (lambda *_: None)
+        tally = _Tally(len(study), progress)
         if kept:
-            tell(done, len(study), failed)
+            tally.add(rows.of(digests[variant] for variant in sorted(kept)))
         tasks = (
-            (study.scene, study.changes(variants[0]), known, figures, not with_maps.isdisjoint(variants))
-            for known, variants in missing.items()
+            (study.scene, study.changes(variants[0]), digest, figures, not with_maps.isdisjoint(variants))
+            for digest, variants in missing.items()
         )
         with closing(_in_this_process(tasks) if executor is None else _by(executor, tasks)) as batches:
             for batch in batches:
                 rows.append([row for row, _ in batch])
                 for row, whole in batch:
-                    variants = missing[row["digest"]]
-                    _keep(maps, with_maps.intersection(variants), whole)
-                    done, failed = done + len(variants), failed + len(variants) * (row["status"] != "ok")
-                tell(done, len(study), failed)
-        text = "stage_toml" if of_stage else "scene_toml"
+                    _keep(maps, with_maps.intersection(missing[row["digest"]]), whole)
+                tally.add(row for row, _ in batch for _ in missing[row["digest"]])
+        text = "stage_toml" if isinstance(study.scene, Stage) else "scene_toml"
         attributes = {text: study.scene.to_toml(), "version": version("loaded_tca"), "seed": study.seed}
         dataset = dataset_of(study, rows.of(digests), attributes)
         if out is not None:
             write_dataset(place, dataset)
     return dataset
+
+
+def _require_storable(study: Study, figures: Figures, with_maps: set[int], out: FilePath | None) -> None:
+    """Refuse figures whose rows nothing identifies, and maps that there will not be."""
+    unknown = sorted(with_maps.difference(range(len(study))))
+    named = "<lambda>" not in getattr(figures, "__qualname__", "<lambda>")
+    of_stage = isinstance(study.scene, Stage)
+    require(
+        (not with_maps or out is not None, "keep_maps: needs out"),
+        (not (with_maps and of_stage), "keep_maps: not of a study of stages; analyse_stage has their mesh cycles"),
+        (not unknown, f"keep_maps: {unknown[:3]} are not variants 0 to {len(study) - 1}"),
+        (named, f"figures: found {figures!r}; allowed a function with a name, which identifies its rows"),
+    )
+
+
+@dataclass
+class _Tally:
+    """How many variants of how many are done, and how many of these are not ok; it tells the ``progress``."""
+
+    total: int
+    progress: Progress | None
+    done: int = 0
+    failed: int = 0
+
+    def add(self, rows: Iterable[Row]) -> None:
+        """Count variants that are done, by their rows."""
+        status = [row["status"] for row in rows]
+        self.done += len(status)
+        self.failed += len(status) - status.count("ok")
+        if self.progress is not None:
+            self.progress(self.done, self.total, self.failed)
 
 
 Task = tuple[Scene | Stage, dict[str, Any], str, Figures, bool]

@@ -70,8 +70,8 @@ def stage_figures(stage: Stage) -> dict[str, Array]:
 
         pins = {f"stage.pin_tangential_um.{planet}": norm(0.0, 8.0) for planet in range(3)}
         study = Study(stage, {"stage.floating_sun": [True, False]}, pins, samples=256)
-        found = run_study(study)
-        found["mesh_load_factor"].quantile(0.95, "sample")
+        rows = run_study(study)
+        rows["mesh_load_factor"].quantile(0.95, "sample")
     """
     plain = stage.with_changes(dict.fromkeys(OF_BALANCE))
     result, sentences = _meshes_of(plain.to_toml())

@@ -16,10 +16,11 @@ from typing import Any, Protocol
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
 from loaded_tca.scene import Scene
 from loaded_tca.scene.keys import Key, Number, Whole, shown
 from loaded_tca.scene.section import as_table
+from loaded_tca.separation.pair_change import value_at
 from loaded_tca.stages import Stage
 from loaded_tca.studies.stage import key_of
 
@@ -281,3 +282,47 @@ def _problems_of_distribution(key: str, known: Key | None, distribution: Any) ->
         yield f"{key}: the distribution has no median: a parameter is out of its range, as a scale below 0"
     elif known is not None and isinstance(known.kind, Whole) and not middle.is_integer():
         yield f"{key}: the distribution gives {middle:g}; allowed are whole numbers"
+
+
+def problems_of_key(scene: Scene, key: Any) -> Iterator[str]:
+    """Problems of a key that varies or scatters."""
+    if not isinstance(key, str):
+        yield f"{key!r:.60}: no text; allowed a key as of scene.with_changes"
+        return
+    try:
+        value_at(scene, key)
+    except InputError as error:
+        yield from (f"{key}: {problem}" for problem in error.problems)
+
+
+def problems_of_range(scene: Scene, key: str, bounds: Any) -> Iterator[str]:
+    """Problems of the range of a key that varies."""
+    if key.startswith("mounting."):
+        yield f"{key}: a mounting error, which no design shapes; allowed in scatter"
+    elif not (np.shape(bounds) == (2,) and all(map(is_finite, bounds)) and bounds[0] < bounds[1]):
+        yield f"{key}: range {bounds!r:.60}; allowed two numbers, the lower one first"
+    elif not bounds[0] <= (value := value_at(scene, key)) <= bounds[1]:
+        yield f"{key}: the scene, where a design starts, has {value:g}; allowed {bounds[0]:g} to {bounds[1]:g}"
+
+
+def deviations_of(
+    scene: Scene,
+    scatter: Mapping[str, Distribution | Sequence[float]],
+    samples: int,
+    seed: int,
+    multiple: float,
+) -> list[dict[str, float]]:
+    """What keys that scatter have, or deviate by, in each sample; ``multiple`` times as far from their medians."""
+    if not scatter:
+        return [{}]
+    given = {key: one for key, one in scatter.items() if not hasattr(one, "ppf")}
+    drawn: dict[str, Any] = {key: one for key, one in scatter.items() if key not in given}
+    require((not given or not drawn, "scatter: distributions and given values; allowed one or the other"))
+    if given:
+        study = Study(scene, table=given)
+        medians = {key: float(np.median(column)) for key, column in study.table.items()}
+    else:
+        study = Study(scene, distributions=drawn, samples=samples, seed=seed)
+        medians = {key: float(one.ppf(0.5)) for key, one in drawn.items()}
+    changes = (study.changes(sample) for sample in range(len(study)))
+    return [{key: medians[key] + multiple * (by - medians[key]) for key, by in one.items()} for one in changes]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import named, require
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
@@ -22,7 +22,6 @@ from loaded_tca.supports.support import Support, SupportCompliance
 
 STATIONS = 9
 """Places over the face at which teeth follow their shaft: with 17 K_Hbeta of a slender pinion is 0.2 % less."""
-GEARS = "pinion", "wheel"
 ROLLING_KEYS = {
     "at": "at",
     "pitch_diameter": "pitch_diameter",

@@ -30,8 +30,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import Material
-from loaded_tca.supports.balance import Seat, balanced, solved
-from loaded_tca.supports.bearing import AnyBearing, Bearing
+from loaded_tca.supports.bearing import AnyBearing, Bearing, Seat, balanced, solved
 
 SAME_PLACE = 1e-9
 """Places closer than this over the length of the shaft are one node."""

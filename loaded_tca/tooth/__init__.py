@@ -1,6 +1,5 @@
 """Complete teeth: flanks, fillets, tip and root lands as one surface, for every kind of gear."""
 
-from loaded_tca.tooth.build import Resolution, build_tooth
 from loaded_tca.tooth.families import (
     BevelTooth,
     CylindricalTooth,
@@ -10,10 +9,9 @@ from loaded_tca.tooth.families import (
     ToothForm,
     ToothGeometry,
 )
-from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, RackFillet
+from loaded_tca.tooth.fillet import ApexSpheres, ArcFillet, Fillet, FilletCurve, RackFillet, Sections, TransversePlanes
 from loaded_tca.tooth.ring import InvertedPlanes, RingFillet, RingTooth
-from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
-from loaded_tca.tooth.surface import PATCHES, ToothSurface, TriangleMesh
+from loaded_tca.tooth.surface import PATCHES, Resolution, ToothSurface, TriangleMesh, build_tooth
 
 __all__ = [
     "PATCHES",

@@ -1,4 +1,4 @@
-"""What a family of gears tells of the teeth of one gear: flanks of both sides, modifications, form.
+"""What a family of gears tells of the teeth of one gear: flanks of both sides, modifications, form, what it is held by.
 
 The form is what shapes a tooth beside its flanks: how far apart they stand, the root surface, the fillet. Families are
 spur and helical gears, straight and spiral bevel gears, and face-milled gears, cut after machine settings.
@@ -16,7 +16,7 @@ from typing import ClassVar
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import GeometryError
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank, unmodified
 from loaded_tca.flanks.bevel import SphericalInvoluteFlank, chebyshev_nodes, face_cone_angles
 from loaded_tca.flanks.cylindrical import InvoluteFlank
@@ -25,10 +25,59 @@ from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears import BevelGear, CylindricalGear, FaceMilledGear
 from loaded_tca.gears.cylindrical_mesh import ActiveProfile
 from loaded_tca.gears.face_milled import BLADE_SIGNS
-from loaded_tca.gears.involute_gear import InvoluteGear
-from loaded_tca.tooth.fillet import ArcFillet, Fillet, RackFillet
-from loaded_tca.tooth.held import Bore, Held
-from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
+from loaded_tca.gears.involute import InvoluteGear
+from loaded_tca.tooth.fillet import ApexSpheres, ArcFillet, Fillet, RackFillet, Sections, TransversePlanes
+
+DEFAULT_BORE = 0.55
+"""Bore of a gear that has none given, or journals of a solid gear, over the root diameter."""
+SMALLEST_BORE, LARGEST_BORE = 0.05, 0.98
+"""Bores over the smallest root diameter. A larger one leaves no rim below the teeth; at a smaller one a gear twists
+about its bore twenty times as far as its teeth bend, and no shaft is so thin."""
+
+
+class Held(ABC):
+    """Cylinder of a gear that is held rigid where its teeth bend."""
+
+    @abstractmethod
+    def radius(self, diameter: float | None, root: Array) -> Array:
+        """Radius (k,) of the cylinder in sections whose root circles have radii ``root`` (k,) [mm].
+
+        Parameters
+        ----------
+        diameter : float [mm], optional
+            As given; None: the default.
+        root : (k,) array [mm]
+
+        Raises
+        ------
+        InputError
+            If it leaves no rim below the teeth.
+        """
+
+
+@dataclass(frozen=True)
+class Bore(Held):
+    """The bore of an external gear, or the journals of a solid one, whose diameter is given as 0.
+
+    Examples
+    --------
+    >>> Bore().radius(None, np.array([50.0]))
+    array([27.5])
+    """
+
+    def radius(self, diameter: float | None, root: Array) -> Array:
+        """Radius (k,) of the bore or the journals [mm]; a bore that is too thin to hold the gear by is refused, too."""
+        if diameter is None or diameter == 0.0:
+            return DEFAULT_BORE * root
+        smallest = 2.0 * root.min()
+        if not SMALLEST_BORE * smallest <= diameter < LARGEST_BORE * smallest:
+            thin = "it is held rigid, and the body would twist about so thin a bore far more than the teeth bend"
+            raise InputError(
+                f"bore_diameter: {diameter:.6g} mm is not between {SMALLEST_BORE:g} and {LARGEST_BORE:g} times the "
+                f"smallest root diameter, {smallest:.6g} mm, nor 0, a solid gear: "
+                + (thin if diameter < smallest * SMALLEST_BORE else "no rim is left below the teeth")
+            )
+        return np.full_like(root, 0.5 * diameter)
 
 
 @dataclass(frozen=True)

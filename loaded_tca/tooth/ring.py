@@ -19,12 +19,10 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.ring import RingFlank
+from loaded_tca.flanks.cylindrical import RingFlank
 from loaded_tca.gears.ring import RingGear
-from loaded_tca.tooth.families import InvoluteTooth, RootCylinder, ToothForm
-from loaded_tca.tooth.fillet import Fillet, FilletCurve, Profile, RackFillet
-from loaded_tca.tooth.held import Held
-from loaded_tca.tooth.sections import Sections
+from loaded_tca.tooth.families import Held, InvoluteTooth, RootCylinder, ToothForm
+from loaded_tca.tooth.fillet import Fillet, FilletCurve, Profile, RackFillet, Sections
 
 FARTHEST = 1e3
 """Images nearer to the middle than those of this many root radii are taken for theirs."""

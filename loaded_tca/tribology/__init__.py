@@ -6,7 +6,7 @@ from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
     from loaded_tca.tribology.call import tribology_of
-    from loaded_tca.tribology.lubricant import Lubricant
+    from loaded_tca.tribology.conditions import Lubricant
     from loaded_tca.tribology.tribology import Tribology
 else:
     __getattr__, __dir__ = lazy_names(__name__)

@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.tribology.conditions import conditions_of
-from loaded_tca.tribology.lubricant import Lubricant
+from loaded_tca.tribology.conditions import Lubricant, conditions_of
 from loaded_tca.tribology.slices import cylindrical_mesh
 from loaded_tca.tribology.tribology import Tribology
 

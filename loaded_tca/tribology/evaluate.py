@@ -13,8 +13,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.reference.friction import schlenk, xu_kahraman
 from loaded_tca.reference.iso6336_22 import bulk_temperature, film_thickness, flash_temperature, mean_friction
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.tribology.conditions import LOCAL, MEAN, Conditions
-from loaded_tca.tribology.lubricant import Lubricant
+from loaded_tca.tribology.conditions import LOCAL, MEAN, Conditions, Lubricant
 from loaded_tca.tribology.slices import Slices, cylindrical_mesh
 
 MILLI, MICRO = 1e-3, 1e-6

@@ -50,6 +50,7 @@ FLASH = SPEED | FRICTION
 BULK = frozenset({"bulk"})
 HOT = FLASH | BULK
 FILM = HOT | {"lubricant"}
+SCUFFING = frozenset({"lubricant", "load_stage"})
 
 EXTREMES = {
     "largest_flash_temperature": "flash_temperature",
@@ -136,3 +137,30 @@ COLUMNS: dict[str, tuple[str, str, frozenset[str]]] = {
     "film_ratio": ("1", "film ratio lambda_GF", FILM | {"roughness"}),
 }
 """Columns of the table of slices: unit, long name, needs."""
+
+
+LEAST = {"film_thickness", "isothermal_film_thickness", "film_ratio"}
+"""Numbers of slices whose extreme is the least one."""
+
+
+SUMMARY = {
+    "loss_factor": "loss factor H_VL",
+    "mean_friction": "mean coefficient of friction",
+    "mean_friction_power": "friction power, mean",
+    "efficiency": "efficiency of the mesh",
+    "bulk_temperature": "bulk temperature",
+    "largest_flash_temperature": "largest flash temperature",
+    "largest_contact_temperature": "largest contact temperature",
+    "scuffing_safety": "safety against scuffing S_B",
+    "least_film_thickness": "least film thickness",
+    "least_film_ratio": "least film ratio",
+    "micropitting_safety": "safety against micropitting S_lambda",
+    "pressure_velocity": "largest pressure times sliding velocity",
+}
+"""Names of the lines of the summary, and their labels."""
+
+
+def place_of(name: str) -> tuple[str, str]:
+    """Extreme and end of the name of a place; empty where it is none."""
+    extreme, _, end = name.rpartition("_")
+    return (extreme, end) if extreme in EXTREMES and end in PLACES else ("", "")

@@ -17,6 +17,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, Mask
+from loaded_tca.flanks.base import Flank
 from loaded_tca.loaded.line_load import AVERAGED_OVER, stretch_parts
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.pairs.kinematics import PlaneMotion, surface_motions
@@ -298,3 +299,17 @@ def _own_contact(result: CycleNumbers, place: tuple[int, int, int], one: Pressur
         pinion_angle=contact.pinion_angle - turned,
         wheel_angle=contact.wheel_angle - turned * pair.ratio,
     )
+
+
+def cells_of_flank(
+    flank: Flank, rho: Array, z: Array, cells: tuple[int, int]
+) -> tuple[tuple[Indices, ...], list[Array]]:
+    """Cells, by height and lengthwise, of a grid over a flank that places (n,) lie in, and the edges of the cells."""
+    along, height = flank.frame.to_picture(rho, z)
+    outline = flank.frame.to_picture(*flank.grid(9, 9))
+    edges = [np.linspace(one.min(), one.max(), n + 1) for one, n in zip(outline[::-1], cells, strict=True)]
+    index = tuple(
+        np.clip(np.searchsorted(edge, values, "right") - 1, 0, count - 1)
+        for edge, values, count in zip(edges, (height, along), cells, strict=True)
+    )
+    return index, edges

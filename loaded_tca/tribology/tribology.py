@@ -6,35 +6,40 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices, place_checks
+from loaded_tca.arrays import GEARS, Array, GearName, Indices, place_checks
 from loaded_tca.errors import NotAskedError, require
 from loaded_tca.reference.iso6336_20 import scuffing_safety, scuffing_temperature
 from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replace_file
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.summary import shown_torque
-from loaded_tca.tribology.conditions import MEAN, Conditions
-from loaded_tca.tribology.evaluate import Evaluation, pitch_weights
-from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, NEEDS, OF_PITCH, PLACES, QUANTITIES
-from loaded_tca.tribology.slices import Slices, cylindrical_mesh, slices_of
+from loaded_tca.tribology.conditions import Conditions
+from loaded_tca.tribology.evaluate import MILLI, Evaluation, pitch_weights
+from loaded_tca.tribology.quantities import (
+    COLUMNS,
+    EXTREMES,
+    LEAST,
+    NEEDS,
+    OF_PITCH,
+    PLACES,
+    QUANTITIES,
+    SCUFFING,
+    SUMMARY,
+    place_of,
+)
+from loaded_tca.tribology.slices import Slices, cells_of_flank, cylindrical_mesh, slices_of
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
-GearName = Literal["pinion", "wheel"]
 CELLS = (24, 32)
 """Of the grid of a flank along the profile and lengthwise."""
-LEAST = {"film_thickness", "isothermal_film_thickness", "film_ratio"}
-"""Numbers of slices whose extreme is the least one."""
 FEWEST = 5
 """Positions of a mean over a pitch: of three or four the loss factor of a spur pair is a quarter too small."""
-MILLI = 1e-3
-SCUFFING = frozenset({"lubricant", "load_stage"})
-"""What a scuffing temperature needs."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -80,7 +85,7 @@ class Tribology:
             return self._shaped(name)
         if name == "scuffing_temperature":  # its NotAskedError is an AttributeError, after which Python asks here
             self._require(name, SCUFFING)
-        extreme, end = _place_of(name)
+        extreme, end = place_of(name)
         if extreme:
             self._require(name, QUANTITIES[extreme].needs)
             return self._place(extreme, end)
@@ -176,12 +181,12 @@ class Tribology:
             rows = numbers.friction[None] * parts.torques[:, None]
             return np.stack([self._per_pair(np.add.reduceat(row, parts.starts, axis=-1)) for row in rows], axis=-1)
         if name in ("sum_velocity", "rolling_velocity", "specific_sliding"):
-            found: dict[str, Callable[[], Array]] = {
+            of_pairs: dict[str, Callable[[], Array]] = {
                 "sum_velocity": lambda: numbers.sum_velocity[:, self._sliding_most],
                 "rolling_velocity": lambda: numbers.rolling[:, :, self._sliding_most],
                 "specific_sliding": lambda: parts.specific_sliding[:, None, self._sliding_most],
             }
-            values = found[name]()
+            values = of_pairs[name]()
             if values.ndim == 2:
                 return self._per_pair(values)
             both = np.stack([self._per_pair(rows) for rows in values], axis=-1)
@@ -284,9 +289,9 @@ class Tribology:
             for end, (unit, text) in PLACES.items() if name in EXTREMES else ():
                 place = {"units": unit, "long_name": f"{text} of the {quantity.text}"}
                 variables[f"{name}_{end}"] = (before + quantity.dims, self._place(name, end), place)
-        own = self.result.dataset
-        coordinates: dict[str, Any] = {name: own[name] for name in ("torque", "pinion_angle", "pair")}
-        coordinates["gear"] = ("gear", ["pinion", "wheel"])
+        of_contact = self.result.dataset
+        coordinates: dict[str, Any] = {name: of_contact[name] for name in ("torque", "pinion_angle", "pair")}
+        coordinates["gear"] = ("gear", [*GEARS])
         if self.conditions.several:
             speed = {"units": "1/min", "long_name": "speed of the pinion"}
             coordinates["speed"] = ("speed", self.conditions.speeds, speed)
@@ -315,8 +320,8 @@ class Tribology:
 
         self.check(torque, speed)
         some = self.sweep.of_torque(torque)
-        known = {name: self._column(name, speed)[some] for name in COLUMNS if not self._lacking(COLUMNS[name][2])}
-        return pandas.DataFrame(known)
+        columns = {name: self._column(name, speed)[some] for name in COLUMNS if not self._lacking(COLUMNS[name][2])}
+        return pandas.DataFrame(columns)
 
     def check(self, torque: int, speed: int) -> None:
         """Refuse indices of a torque and a speed that there are not."""
@@ -327,7 +332,7 @@ class Tribology:
         """A column of the table of slices, of all torques."""
         parts = self.sweep
         gear = 0 if name.startswith("pinion") else 1
-        own: dict[str, Callable[[], Array]] = {
+        of_slices: dict[str, Callable[[], Array]] = {
             "pair": lambda: self.result.pair[parts.column],
             "pinion_radius": lambda: parts.radius,
             "pinion_axial": lambda: parts.axial,
@@ -338,8 +343,8 @@ class Tribology:
             "pinion_rolling_velocity": lambda: self._numbers.rolling[gear][speed],
             "wheel_rolling_velocity": lambda: self._numbers.rolling[gear][speed],
         }
-        if name in own:
-            return np.asarray(own[name]())
+        if name in of_slices:
+            return np.asarray(of_slices[name]())
         return np.asarray(getattr(parts, name) if hasattr(parts, name) else getattr(self._numbers, name)[speed])
 
     def over_flank(
@@ -379,25 +384,17 @@ class Tribology:
         whole = whole and all(isinstance(one, int | np.integer) and one >= 1 for one in cells)
         require(
             (isinstance(name, str) and name in COLUMNS, f"name: {name!r:.60}; allowed {', '.join(COLUMNS)}"),
-            (gear in ("pinion", "wheel"), f"gear: {gear!r:.60}; allowed 'pinion' or 'wheel'"),
+            (gear in GEARS, f"gear: {gear!r:.60}; allowed 'pinion' or 'wheel'"),
             (whole, f"cells: {cells!r:.60}; allowed two whole numbers from 1 on"),
         )
         self._require(name, COLUMNS[name][2] | (OF_PITCH if name == "friction_power" else set()))
         parts, some = self.sweep, self.sweep.of_torque(torque)
-        flank = getattr(self.result.gear_pair, gear).flank
         rho, z = (parts.radius, parts.axial) if gear == "pinion" else (parts.wheel_radius, parts.wheel_axial)
-        along, height = flank.frame.to_picture(rho[some], z[some])
-        outline = flank.frame.to_picture(*flank.grid(9, 9))
-        edges = [np.linspace(one.min(), one.max(), n + 1) for one, n in zip(outline[::-1], cells, strict=True)]
-        index = tuple(
-            np.clip(np.searchsorted(edge, values, "right") - 1, 0, count - 1)
-            for edge, values, count in zip(edges, (height, along), cells, strict=True)
-        )
+        index, edges = cells_of_flank(getattr(self.result.gear_pair, gear).flank, rho[some], z[some], cells)
         values = self._column(name, speed)[some]
         if name == "friction_power":
             grid = np.zeros(cells)
-            weights = pitch_weights(len(self.result.path))
-            np.add.at(grid, index, values * weights[parts.position[some]])
+            np.add.at(grid, index, values * pitch_weights(len(self.result.path))[parts.position[some]])
             reached = np.zeros(cells, dtype=bool)
             reached[index] = True
             grid = np.where(reached, grid, math.nan)
@@ -420,13 +417,12 @@ class Tribology:
         rows = self.rows(speed)
         width, longest = max(len(cell) for _, *cells in rows for cell in cells) + 2, max(len(row[0]) for row in rows)
         table = [f"{head:<{longest}}" + "".join(f"{cell:>{width}}" for cell in cells) for head, *cells in rows]
-        lacking = {name: self.lacking(name) for name in SUMMARY}
         reasons: dict[str, list[str]] = {}
-        for name, reason in lacking.items():
-            if reason:
+        for name in SUMMARY:
+            if reason := self.lacking(name):
                 reasons.setdefault(reason, []).append(SUMMARY[name])
         notes = [f"not known: {', '.join(names)}: {reason}" for reason, names in reasons.items()]
-        return "\n".join([self.result.scene.title or "Tribology", self._about(speed), *table, *notes])
+        return "\n".join([self.result.scene.title or "Tribology", self.conditions.in_words(speed), *table, *notes])
 
     def rows(self, speed: int = 0) -> list[tuple[str, ...]]:
         """Lines of the summary: the torques, and each number that is known under them."""
@@ -437,22 +433,6 @@ class Tribology:
             label = SUMMARY[name] + (f" [{unit}]" if unit != "1" else "")
             rows.append((label, *("-" if math.isnan(one) else f"{one:.4g}" for one in values)))
         return rows
-
-    def _about(self, speed: int) -> str:
-        """Speed, oil and friction in words."""
-        given = self.conditions
-        oil, rpm = given.lubricant, given.speeds[speed]
-        friction = (
-            given.friction if isinstance(given.friction, str) else f"{given.friction:g}" if given.friction else ""
-        )
-        parts = [
-            "no speed" if math.isnan(rpm) else f"pinion at {rpm:g} rpm",
-            "no oil" if oil is None else f"{oil.base} oil of {oil.viscosity_40:g} mm2/s at {oil.oil_temperature:g} C",
-            "no roughness" if given.roughness is None else "Ra {:g} and {:g} um".format(*given.roughness),
-            f"friction: {'mean of ' if friction == MEAN else ''}{friction}" if friction else "no friction",
-            f"K_A {given.application_factor:g}, K_v {given.dynamic_factor:g}",
-        ]
-        return ", ".join(parts)
 
     def save(self, path: FilePath) -> None:
         """Write the dataset to a NetCDF-3 file, whole or not at all.
@@ -467,26 +447,3 @@ class Tribology:
     def to_netcdf(self) -> Buffer:
         """Return the bytes of the file that ``save`` writes; in it gears are 0, the pinion, and 1, the wheel."""
         return netcdf_of(self.dataset.drop_vars("gear").assign_attrs(kind="tribology"))
-
-
-SUMMARY = {
-    "loss_factor": "loss factor H_VL",
-    "mean_friction": "mean coefficient of friction",
-    "mean_friction_power": "friction power, mean",
-    "efficiency": "efficiency of the mesh",
-    "bulk_temperature": "bulk temperature",
-    "largest_flash_temperature": "largest flash temperature",
-    "largest_contact_temperature": "largest contact temperature",
-    "scuffing_safety": "safety against scuffing S_B",
-    "least_film_thickness": "least film thickness",
-    "least_film_ratio": "least film ratio",
-    "micropitting_safety": "safety against micropitting S_lambda",
-    "pressure_velocity": "largest pressure times sliding velocity",
-}
-"""Names of the lines of the summary, and their labels."""
-
-
-def _place_of(name: str) -> tuple[str, str]:
-    """Extreme and end of the name of a place; empty where it is none."""
-    extreme, _, end = name.rpartition("_")
-    return (extreme, end) if extreme in EXTREMES and end in PLACES else ("", "")

@@ -133,15 +133,15 @@ class EaseOff:
         if self.beyond is None:
             return 0, 0
         flank = self.pair.pinion.flank
-        own = len(flank.relief_starts(*flank.grid(2, 2)))
-        return own, self.beyond.shape[-1] - own
+        of_pinion = len(flank.relief_starts(*flank.grid(2, 2)))
+        return of_pinion, self.beyond.shape[-1] - of_pinion
 
     def sides(self, phi1: Array, rho: Array, z: Array) -> Array:
         """On which side of each relief start the points (n,) lie: (n, relief starts) bool, the pinion's first."""
         station = self.station(phi1, rho, z)
-        own = self.pair.pinion.flank.relief_starts(station.rho, station.z)
+        of_pinion = self.pair.pinion.flank.relief_starts(station.rho, station.z)
         other = self.pair.wheel.flank.relief_starts(station.wheel_rho, station.wheel_z)
-        sides = [np.broadcast_to(jet.value > 0.0, rho.shape) for jet in (*own, *other)]
+        sides = [np.broadcast_to(jet.value > 0.0, rho.shape) for jet in (*of_pinion, *other)]
         return np.stack(sides, axis=-1) if sides else np.zeros((*rho.shape, 0), dtype=bool)
 
     def restricted(self, rows: Any) -> EaseOff:
@@ -207,19 +207,19 @@ class EaseOff:
     def edge_normal(self, station: Station, edge: int) -> Array:
         """Gradient of one edge in space, (..., 3), in the fixed frame: normal to the surface it ends on."""
         jets = self._edge_jets(station.rho, station.z, station.wheel_rho, station.wheel_z)
-        own = int(self.edge_owner()[edge])
+        owner = int(self.edge_owner()[edge])
         jet = [*jets[0], *jets[1]][edge]
         parts = np.stack(np.broadcast_arrays(jet.rho, 0.0, jet.z, station.rho)[:3], axis=-1)
         azimuth = np.arctan2(station.point[..., 1], station.point[..., 0])
-        basis = station.wheel_basis if own else cylindrical_basis(azimuth)
+        basis = station.wheel_basis if owner else cylindrical_basis(azimuth)
         return np.einsum("...k,...kj->...j", parts, basis)
 
     def edge_hessian(self, station: Station, weights: Array) -> Array:
         """Sum of weights[..., k] times the Hessian of edge k: (..., 2, 2)."""
         pinion, wheel = self._edge_jets(station.rho, station.z, station.wheel_rho, station.wheel_z)
-        own = weighted_sum(pinion, weights)
+        of_pinion = weighted_sum(pinion, weights)
         total = station.hessian(weighted_sum(wheel, weights[..., len(pinion) :]))
-        for part, (i, j) in zip((own.rho_rho, own.rho_z, own.z_z), PARTS, strict=True):
+        for part, (i, j) in zip((of_pinion.rho_rho, of_pinion.rho_z, of_pinion.z_z), PARTS, strict=True):
             total[..., i, j] += part
         total[..., 1, 0] = total[..., 0, 1]
         return total
@@ -244,17 +244,17 @@ class EaseOff:
     def _sides(self, member: int) -> Any:
         if self.beyond is None:
             return None
-        own = self._relief_starts[0]
-        return self.beyond[..., own:] if member else self.beyond[..., :own]
+        of_pinion = self._relief_starts[0]
+        return self.beyond[..., of_pinion:] if member else self.beyond[..., :of_pinion]
 
     def _edge_jets(self, rho: Array, z: Array, wheel_rho: Array, wheel_z: Array) -> tuple[list[Jet], list[Jet]]:
         pinion_flank, wheel_flank = self.pair.pinion.flank, self.pair.wheel.flank
         pinion, wheel = [*pinion_flank.edges(rho, z)], [*wheel_flank.edges(wheel_rho, wheel_z)]
         if self.beyond is not None:
             signs = np.where(self.beyond, 1.0, -1.0)
-            own, other = pinion_flank.relief_starts(rho, z), wheel_flank.relief_starts(wheel_rho, wheel_z)
-            pinion += [jet * signs[..., k] for k, jet in enumerate(own)]
-            wheel += [jet * signs[..., len(own) + k] for k, jet in enumerate(other)]
+            of_pinion, other = pinion_flank.relief_starts(rho, z), wheel_flank.relief_starts(wheel_rho, wheel_z)
+            pinion += [jet * signs[..., k] for k, jet in enumerate(of_pinion)]
+            wheel += [jet * signs[..., len(of_pinion) + k] for k, jet in enumerate(other)]
         return pinion, wheel
 
 

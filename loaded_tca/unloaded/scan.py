@@ -44,6 +44,12 @@ def relief_start_distances(pair: GearPair, points: Array) -> Array:
     return np.stack(np.broadcast_arrays(*values, axial)[:-1], axis=-1) if values else np.zeros((*axial.shape, 0))
 
 
+def has_relief_starts(pair: GearPair) -> bool:
+    """Whether any flank has a linear relief."""
+    nowhere = np.zeros(0)
+    return any(gear.flank.relief_starts(nowhere, nowhere) for gear in (pair.pinion, pair.wheel))
+
+
 def past_tangents(station: Station) -> Array:
     """Lengths (n, 8) [mm] from where the arcs of all edges begin, the pinion's first; -inf at sharp edges."""
     return lengths_past_tangents(station.pair, (station.rho, station.z), (station.wheel_rho, station.wheel_z))

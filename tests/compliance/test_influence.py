@@ -12,7 +12,7 @@ from loaded_tca.compliance.finite_elements import discretise
 from loaded_tca.compliance.flexibility import MOST_IN_MEMORY
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.gears.transverse_profile import half_tooth
+from loaded_tca.gears.cylindrical import half_tooth
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.reference.weber_banaschek import ring_torsion, tooth_deflection

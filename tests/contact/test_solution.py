@@ -8,6 +8,7 @@ import pytest
 
 from loaded_tca.contact import ContactStatus, solve_contact
 from loaded_tca.contact.solution import CoarserGrid
+from loaded_tca.errors import AccuracyWarning
 
 E_STAR = 115e3
 
@@ -44,10 +45,12 @@ def test_border_and_material_edge_are_told_apart():
     assert wide.bounded
     gap = np.zeros((40, 40))
     gap[:5], gap[-5:], gap[:, :5], gap[:, -5:] = (np.inf,) * 4
-    punch = solve_contact(gap, (0.1, 0.1), E_STAR, load=10.0)
+    with pytest.warns(AccuracyWarning, match="reaches an end of the material, where the pressure has no limit"):
+        punch = solve_contact(gap, (0.1, 0.1), E_STAR, load=10.0)
     assert punch.reaches_material_edge
     assert not punch.reaches_border
-    assert punch.accuracy_warnings == ()
+    assert len(punch.accuracy_warnings) == 1
+    assert solve_contact(gap, (0.1, 0.1), E_STAR, load=10.0, max_pressure=50.0).accuracy_warnings == ()
 
 
 def test_peak_of_a_capped_contact_is_the_cap():

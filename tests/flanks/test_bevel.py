@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.flanks import InvoluteFlank, SphericalInvoluteFlank
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.flanks.bevel import spherical_involute, unwound_arc
-from loaded_tca.gears.cutter_circle import CutterCircle
+from loaded_tca.gears.bevel import CutterCircle
 from tests.refusals import refused_calls
 
 PITCH, PRESSURE, DISTANCES = math.radians(50.0), math.radians(20.0), (60.0, 80.0)

@@ -9,8 +9,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks import GeneratedFlank, Mismatch, synthesised_gears
-from loaded_tca.flanks.envelope import conjugate_flank
-from loaded_tca.flanks.face_milled import tooth_angle
+from loaded_tca.flanks.face_milled import conjugate_flank, tooth_angle
 from loaded_tca.gears import BevelBlank, HypoidBlank, HypoidCones, PitchConeParameters
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.pairs.bevel import face_milled_pair

@@ -12,15 +12,8 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, ModifiedFlank
 from loaded_tca.flanks.base import outward_normal
-from loaded_tca.flanks.modification import (
-    NO_POLYNOMIAL,
-    CircularArc,
-    Term,
-    linear,
-    logarithmic,
-    one_sided_parabola,
-    parabola,
-)
+from loaded_tca.flanks.modification import NO_POLYNOMIAL
+from loaded_tca.flanks.removal import CircularArc, Term, linear, logarithmic, one_sided_parabola, parabola
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications, InvoluteFlank
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
-from loaded_tca.flanks.ring import RingFlank
+from loaded_tca.flanks.cylindrical import RingFlank
 from tests.samples.internal_pairs import ring_pair
 
 BASE, WORKING, RADII, WIDTH = 84.6, 90.0, (93.0, 87.6), 25.0

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.gears.cutter_circle import CutterCircle
+from loaded_tca.gears.bevel import CutterCircle
 
 CIRCLE = CutterCircle(81.273, math.radians(35.0), 114.3)
 DISTANCES = np.array([68.6, 75.0, 81.273, 88.0, 93.9])

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalGear
-from loaded_tca.gears.transverse_profile import half_tooth, transverse_profile
+from loaded_tca.gears.cylindrical import half_tooth, transverse_profile
 
 ROUNDING = 1e-12
 """mm or rad, of lengths of 100 mm and angles below one: 7e-17 rad was seen."""

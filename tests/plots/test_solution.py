@@ -5,7 +5,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import solve_contact
 from loaded_tca.errors import InputError
 from loaded_tca.plots import plot_solution
-from loaded_tca.reference.hertz import point_contact, point_contact_gap
+from loaded_tca.reference.hertz import line_contact, point_contact, point_contact_gap
 
 MODULUS, LOAD, RADII = 115385.0, 100.0, (10.0, 40.0)
 POINT = point_contact(LOAD, (1.0 / RADII[0], 1.0 / RADII[1]), MODULUS)
@@ -28,6 +28,18 @@ def test_map_and_sections_are_those_of_the_solution_and_hertz():
     assert_allclose(hertz.get_ydata()[inside], expected, rtol=1e-9)
     assert bar.get_ylabel() == across.get_ylabel() == "contact pressure [MPa]"
     assert (area.get_xlabel(), area.get_aspect()) == ("second axis [mm]", 1.0)
+
+
+def test_line_after_hertz_has_no_ends():
+    line = line_contact(50.0, 1.0 / RADII[0], MODULUS)
+    _, across, along, _ = solution().plot(line).axes
+    assert_allclose(across.lines[1].get_ydata(), line.pressure(across.lines[1].get_xdata()))
+    assert_allclose(along.lines[1].get_ydata(), line.max_pressure)
+
+
+def test_anything_else_than_hertz_is_refused():
+    with pytest.raises(InputError, match=r"hertz: 1250\.0 is neither a PointContact nor a LineContact"):
+        solution().plot(1250.0)
 
 
 def test_without_load_the_picture_says_so():

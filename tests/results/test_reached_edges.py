@@ -8,7 +8,7 @@ import pytest
 
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning
-from loaded_tca.results.findings import NAMES, reached_edges
+from loaded_tca.results.warnings import EDGES, reached_edges
 from loaded_tca.scene import read_scene
 from tests.samples.results import FLANKS_ALONE, SCENES, changed, result, with_a_gap
 
@@ -26,7 +26,7 @@ def test_finding_names_the_edges_of_the_largest_edge_pressure_and_the_relief_tha
     pressures = np.where(cycle.load_share[0] >= 1e-3, cycle.edge_pressure[0], -1.0)
     at = (0, *np.unravel_index(pressures.argmax(), pressures.shape))
     assert f"edge pressure {cycle.edge_pressure[at]:.4g} MPa at 130 N m on " in sentences[0]
-    reached = [name for name, one in zip(NAMES, reached_edges(cycle)[at], strict=True) if one]
+    reached = [name for name, one in zip(EDGES, reached_edges(cycle)[at], strict=True) if one]
     assert " + ".join(reached) in sentences[0]
     assert "end relief on the pinion or wheel of more than" in sentences[0]
     assert f"finding: {sentences[0]}" in cycle.summary()
@@ -68,7 +68,7 @@ def test_relief_of_the_deflection_takes_the_load_off_the_edge():
 
 
 def names(cycle):
-    return {name for name, one in zip(NAMES, reached_edges(cycle).any(axis=(0, 1, 2)), strict=True) if one}
+    return {name for name, one in zip(EDGES, reached_edges(cycle).any(axis=(0, 1, 2)), strict=True) if one}
 
 
 def test_point_contact_in_the_middle_reaches_none():
@@ -95,7 +95,7 @@ def test_contact_that_comes_into_mesh_early_reaches_the_tip_of_the_wheel():
     cycle = result("mesh_cycle_helical", positions=5, torques=(260.0,))
     reached = reached_edges(cycle)[0]
     column = {int(pair): k for k, pair in enumerate(cycle.pair)}
-    tips = [NAMES.index("wheel tip"), NAMES.index("pinion tip")]
+    tips = [EDGES.index("wheel tip"), EDGES.index("pinion tip")]
     assert reached[:, column[1], tips[0]].any()
     assert not reached[:, column[1], tips[1]].any()
     assert reached[:, column[-1], tips[1]].any()

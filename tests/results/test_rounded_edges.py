@@ -12,7 +12,8 @@ from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.plots import plot_contact_path
-from loaded_tca.results.findings import NAMES, reached_edges
+from loaded_tca.results.warnings import EDGES as EDGE_NAMES
+from loaded_tca.results.warnings import reached_edges
 from loaded_tca.scene import read_scene
 from tests.samples.results import FLANKS_ALONE, SCENES
 
@@ -64,7 +65,7 @@ def test_edge_is_rounded_where_the_reached_edge_has_a_radius():
     assert_array_equal(cycle.edge_is_rounded, cycle.on_edge)
     assert cycle.on_edge.any()
     assert not any(TOLD in one for one in told)
-    names = {name for name, one in zip(NAMES, reached_edges(cycle).any(axis=(0, 1, 2)), strict=True) if one}
+    names = {name for name, one in zip(EDGE_NAMES, reached_edges(cycle).any(axis=(0, 1, 2)), strict=True) if one}
     assert names <= {"pinion upper side", "wheel upper side"}
     assert names
     assert "at a sharp edge" not in cycle.summary()

@@ -260,3 +260,13 @@ def test_spike_beside_a_slice_without_load_is_itself_looked_at():
     below = stress_below(replace(whole, maps=(((bare,),),)))
     assert below.beside_spike is None
     assert "of the pressure at" in below.summary()
+
+
+def test_spike_that_holds_the_contact_point_is_told_as_one():
+    below = stress_below(result("misaligned", positions=1))
+    cycle, at = below.result, (below.torque, below.position, below.column)
+    assert below.pressure_map.pressure.max() == cycle.edge_pressure[at] > cycle.peak_pressure[at]
+    assert "highest pressure at the edge, mesh-dependent, " in below.where[1]
+    note = below.summary().splitlines()[-1]
+    assert "not to be rated" in note
+    assert note.endswith(f"the contact has {cycle.peak_pressure[at]:.4g} MPa")

@@ -7,7 +7,7 @@ import pytest
 
 from loaded_tca.errors import InputError
 from loaded_tca.scene import describe_keys, parse_scene
-from loaded_tca.scene.model import FAMILIES
+from loaded_tca.scene.parse import FAMILIES
 
 ROOT = Path(__file__).parents[2]
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.scene import Scene, parse_scene, read_scene, scene_from_table
 from loaded_tca.scene.keys import Choice, Either, Grid, Key, Line, List, Number, Whole, ZeroOr
-from loaded_tca.scene.model import FAMILIES
+from loaded_tca.scene.parse import FAMILIES
 from loaded_tca.scene.section import Subsection, Tables, as_table, entries
 
 ROOT = Path(__file__).parents[2]

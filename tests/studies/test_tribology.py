@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, analyse
 from loaded_tca.studies import DesignModel, Study, figures, rank_variants, run_study, tribology_figures
-from loaded_tca.studies.tribology import FIGURES
+from loaded_tca.studies.other_figures import FIGURES
 from tests.samples.tribology import OIL, known, shared
 
 OPERATION = {

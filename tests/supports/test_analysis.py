@@ -12,12 +12,15 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import MeshCycle, analyse, load_result, read_scene
 from loaded_tca.arrays import Array
+from loaded_tca.compliance import model_of
 from loaded_tca.errors import AccuracyWarning, GeometryError, NotAskedError
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.output.result_files import positions_csv
 from loaded_tca.results import reached_edges
 from loaded_tca.scene import Scene
-from loaded_tca.supports import supports_of
+from loaded_tca.separation import sample_separation
+from loaded_tca.supports import support_compliance, supports_of
+from loaded_tca.unloaded import trace_contact
 from validation.loaded.moved_gears import settled
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # contacts at edges: not the matter here
@@ -70,6 +73,20 @@ def test_coupled_analysis_equals_rigid_ones_with_moved_gears(name: str, size: tu
     motions = np.stack([result.pinion_motion[0, 0], result.wheel_motion[0, 0]])
     largest = np.abs(expected.motions).reshape(2, 2, 3).max(axis=-1).repeat(3, axis=-1)
     assert (np.abs(motions - expected.motions) < MOTIONS_AGREE * largest).all()
+
+
+def test_supports_couple_tooth_pairs_that_no_model_of_teeth_has_together() -> None:
+    """A helix slope against soft shafts brings four pairs within reach: two of them three pitches apart."""
+    slope = {"pinion.modifications.helix_slope_um": -17.0}
+    scene = scene_of("helical_on_shafts", **slope, **{"analysis.compliance": "contact+tooth"})
+    pair = scene.pair()
+    grid = sample_separation(pair, trace_contact(pair, [0.0])[0], cells=(4, 6), box=(0.2, 3.0))
+    bending, supports = model_of(scene, pair, 1), support_compliance(scene, pair)
+    assert bending is not None
+    assert supports is not None
+    assert_allclose(bending.between((0, grid), (3, grid)), supports.between((0, grid), (3, grid)))
+    result = analyse(scene)
+    assert_allclose(result.load_share.sum(axis=-1), 1.0, rtol=1e-9)
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
-from loaded_tca.scene.supports import SupportSection
+from loaded_tca.scene.shafts import SupportSection
 
 SOFT = np.diag([1e-6, 2e-6, 1e-6, 1e-10, 1e-10, 3e-10])
 STIFF = np.linalg.inv(SOFT)

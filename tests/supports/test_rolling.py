@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.supports import BallBearing, RollerBearing, RollingBearing
-from loaded_tca.supports.balance import Seat, balanced
+from loaded_tca.supports.bearing import Seat, balanced
 from loaded_tca.supports.bearing_life import ball_factor, ball_life, ball_rating, roller_factor, roller_life
 
 SMALL = BallBearing(at=0.0, elements=7, diameter=11.5, pitch_diameter=43.5, rating=23400.0)

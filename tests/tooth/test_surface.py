@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.gears.transverse_profile import transverse_profile
+from loaded_tca.gears.cylindrical import transverse_profile
 from loaded_tca.tooth import PATCHES, Resolution
 from loaded_tca.tooth.surface import CLOSING
 from tests.refusals import refused_calls

@@ -4,9 +4,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.scene.lubrication import BASES as OF_SCENES
+from loaded_tca.scene.sections import BASES as OF_SCENES
 from loaded_tca.tribology import Lubricant
-from loaded_tca.tribology.lubricant import BASES
+from loaded_tca.tribology.conditions import BASES
 from tests.refusals import refused_calls
 from tests.samples.tribology import OIL
 

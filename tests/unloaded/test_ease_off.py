@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import outward_normal
-from loaded_tca.flanks.modification import Term, logarithmic
+from loaded_tca.flanks.removal import Term, logarithmic
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.pairs.gear_pair import cylindrical_basis
 from loaded_tca.unloaded.ease_off import EaseOff

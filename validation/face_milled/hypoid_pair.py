@@ -23,8 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.flanks.envelope import conjugate_flank
-from loaded_tca.flanks.face_milled import GeneratedFlank
+from loaded_tca.flanks.face_milled import GeneratedFlank, conjugate_flank
 from loaded_tca.gears import (
     Blade,
     Cutter,

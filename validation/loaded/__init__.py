@@ -27,5 +27,6 @@
 - ``rounded_edges``: pressure at rounded edges over columns, grids and radii; its time, in minutes; a page;
 - ``user_scenes``: time told and taken of scenes by defaults alone; a page;
 - ``cycles``: time of whole mesh cycles before and after a change, and what it is spent on;
+- ``one_contact``: time of one contact, before and after a change, and what of it its gaps take;
 - ``speed``: time against error of whole analyses.
 """

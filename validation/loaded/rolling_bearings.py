@@ -27,7 +27,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.results import MeshCycle
 from loaded_tca.supports import BallBearing, RollerBearing, RollingBearing, Support, supports_of
-from loaded_tca.supports.balance import Seat, balanced
+from loaded_tca.supports.bearing import Seat, balanced
 from loaded_tca.supports.bearing_life import ball_factor, roller_factor
 from validation.loaded.moved_gears import settled
 from validation.page import SCENES, Page, formatted, lines, machine, write_page

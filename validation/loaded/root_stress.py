@@ -29,14 +29,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance import FlankLine, MeshDensity, RootStress
 from loaded_tca.compliance.body import factorised, gear_nodes
 from loaded_tca.compliance.finite_elements import discretise
-from loaded_tca.compliance.root_stress import (
-    BEST,
-    DENSITY,
-    OUTLINE,
-    first_told,
-    stress_density,
-    tangent_angles,
-)
+from loaded_tca.compliance.geometry import tangent_angles
+from loaded_tca.compliance.root_stress import BEST, DENSITY, OUTLINE, first_told, stress_density
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.gears import CylindricalGear, CylindricalMesh

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import log
 
-from loaded_tca.flanks.modification import LOGARITHMIC_STEEPNESS
+from loaded_tca.flanks.removal import LOGARITHMIC_STEEPNESS
 from validation.page import line
 
 ALIKE = 0.1

@@ -1,0 +1,208 @@
+"""What the command line names: scenes with their changes, results, tolerances, places for files, engines of studies."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from loaded_tca.errors import InputError, named, reason_of, require
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    import xarray
+
+    from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.scene import Scene
+    from loaded_tca.stages import Stage, StageResult
+    from loaded_tca.studies import DesignResult
+
+STUDY_FILE, DESIGN_FILE = "study.nc", "design.nc"
+"""Files of a study and of a design in their directories."""
+REACHED_WITHIN = 10.0
+"""Seconds for a scheduler to answer."""
+
+
+def scene_of(options: argparse.Namespace) -> Scene:
+    """The scene that the command line names, with its changes."""
+    from loaded_tca.scene import read_scene
+
+    scene, changes = read_scene(options.scene), changes_of(options)
+    return scene.with_changes(changes) if changes else scene
+
+
+def stage_of(options: argparse.Namespace) -> Stage:
+    """The stage that the command line names, with its changes."""
+    from loaded_tca.stages import read_stage
+
+    stage, changes = read_stage(options.scene), changes_of(options)
+    return stage.with_changes(changes) if changes else stage
+
+
+def changes_of(options: argparse.Namespace) -> dict[str, Any]:
+    """Keys that the command line changes, with their values."""
+    from loaded_tca.scene.parse import literal_value
+
+    return {key: literal_value(value) for key, value in options.set}
+
+
+def result_of(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, int | None]:
+    """What the command line names: the result, the directory to write to, and indices of the torque and position."""
+    from loaded_tca.results.mesh_cycle import MeshCycle
+
+    path = result_file(options.result)
+    result = MeshCycle.load(path)
+    torque = index_of_torque(options.torque, result)
+    given = getattr(options, "position", None)
+    position = index_of_position(given, result)
+    chosen = {"torque_{:g}_Nm": options.torque, "position_{}": given}
+    chosen |= {"pair_{}": getattr(options, "pair", None), "below_{}": getattr(options, "gear", None)}
+    names = [name.format(value) for name, value in chosen.items() if value not in (None, "pinion")]
+    directory = options.out or path.parent / "_".join(names)  # files of a part do not replace those of the whole
+    check_place(directory)
+    return result, directory, torque, position
+
+
+def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]:
+    """Keys of a scene that the command line names, or the usual ones, with their standard deviations."""
+    from loaded_tca.results.tolerances import default_tolerances
+    from loaded_tca.scene.section import key_at
+
+    given: list[tuple[str, float | None]] = options.keys or []
+    problems: list[str] = []
+    for key in dict.fromkeys(key for key, _ in given):
+        try:
+            key_at(type(scene), key)
+        except InputError as error:
+            problems += error.problems
+        if [one for one, _ in given].count(key) > 1:
+            problems.append(f"{key}: given twice")
+    if problems:
+        raise InputError(f"--keys {problem}" for problem in problems)
+    usual = default_tolerances(scene, [key for key, _ in given] or None)
+    return usual | {key: tolerance for key, tolerance in given if tolerance is not None}
+
+
+def result_file(path: Path) -> Path:
+    """The file of a result that is named by itself or by its directory; that of a stage is refused by its reader."""
+    from loaded_tca.output.result_files import RESULT
+    from loaded_tca.stages.result import STAGE_FILE
+
+    if not os.path.isdir(path):
+        return path
+    return path / (STAGE_FILE if (path / STAGE_FILE).is_file() and not (path / RESULT).exists() else RESULT)
+
+
+def file_of_report(path: Path) -> Path:
+    """The file of a result, a stage, a study or a design that is named by itself or by its directory."""
+    from loaded_tca.output.result_files import RESULT
+    from loaded_tca.stages.result import STAGE_FILE
+
+    result, *others = (path / name for name in (RESULT, STAGE_FILE, STUDY_FILE, DESIGN_FILE))
+    if not os.path.isdir(path):
+        return path
+    return next((one for one in (result, *others) if one.is_file()), result)
+
+
+def subject_of_report(path: Path) -> MeshCycle | StageResult | xarray.Dataset | DesignResult:
+    """The result, stage, study or design in a file."""
+    from loaded_tca.results.files import DESIGN, STAGE, STUDY, read_dataset
+    from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.studies import load_design, load_study
+
+    kind = read_dataset(path).attrs.get("kind")
+    if kind == STUDY:
+        return load_study(path)
+    if kind == STAGE:
+        from loaded_tca.stages import StageResult
+
+        return StageResult.load(path.parent)
+    return load_design(path) if kind == DESIGN else MeshCycle.load(path)
+
+
+def index_of_torque(given: float | None, result: MeshCycle) -> int | None:
+    """Index of a torque [N m] of a result, as the command line gives it; None: not given."""
+    if given is None:
+        return None
+    known = [f"{1e-3 * float(one):.6g}" for one in result.torque]
+    require((f"{given:.6g}" in known, f"--torque {given:g}: the result has {', '.join(known)} N m"))
+    return known.index(f"{given:.6g}")
+
+
+def index_of_position(position: int | None, result: MeshCycle) -> int | None:
+    """Index from 0 of a position of a result that is in contact, given from 1."""
+    if position is None:
+        return None
+    if not 1 <= position <= len(result.path):
+        raise InputError(f"--position {position}: the result has the positions 1 to {len(result.path)}")
+    if not result.path.in_contact[position - 1]:
+        raise InputError(f"--position {position}: no tooth pair is in contact there")
+    return position - 1
+
+
+def ends_that_differ(paths: Sequence[Path]) -> list[str]:
+    """Shortest ends of the paths of results, without the usual name of their files, that tell them apart."""
+    from loaded_tca.output.result_files import RESULT
+
+    whole = [Path(os.path.abspath(path)) for path in paths]
+    for one in whole:
+        if whole.count(one) > 1:
+            raise InputError(f"{one}: given twice; a comparison takes different results")
+    parts = [(one.parent if one.name == RESULT else one.with_suffix("")).parts for one in whole]
+    longest = max(map(len, parts))
+    ends = (["/".join(part[-length:]) for part in parts] for length in range(1, longest + 1))
+    return next((names for names in ends if len(set(names)) == len(names)), [str(one) for one in whole])
+
+
+def check_place(directory: Path) -> None:
+    """Refuse a directory that cannot be written before the analysis rather than after it; makes nothing."""
+    whole = directory.absolute()
+    existing = next(place for place in (whole, *whole.parents) if os.path.lexists(place))
+    if not os.path.isdir(existing):
+        what = "a link that leads nowhere" if existing.is_symlink() else "a file"
+        raise InputError(f"--out {directory}: {existing} is {what}; give a directory")
+    if not os.access(existing, os.W_OK):
+        raise InputError(f"--out {directory}: {existing} cannot be written to; give another directory")
+    for place in (whole, *(existing / name for name in whole.relative_to(existing).parts)):
+        try:
+            with suppress(FileNotFoundError):
+                place.lstat()
+        except OSError as error:  # a name that is too long
+            raise InputError(f"--out {directory}: cannot be made a directory: {reason_of(error)}") from error
+
+
+def check_files(outs: Sequence[Path], read: Path) -> None:
+    """Refuse files that cannot be written, or that would replace the one that is read, before any work."""
+    from loaded_tca.results.files import require_replaceable
+
+    for out in outs:
+        check_place(out.parent)
+        with named("--out"):
+            require_replaceable(out, [read])
+
+
+@contextmanager
+def executor_of(options: argparse.Namespace, variants: int) -> Iterator[Executor | None]:
+    """Who analyses: processes of this machine, those of a cluster, or nobody else."""
+    from loaded_tca.studies import process_pool
+
+    if options.workers is not None:
+        with process_pool(min(options.workers, variants)) as pool:
+            yield pool
+    elif options.scheduler is not None:
+        try:
+            from distributed import Client
+        except ModuleNotFoundError:
+            raise InputError("--scheduler: needs the package distributed; 'pip install distributed' gets it") from None
+        try:
+            client = Client(options.scheduler, timeout=REACHED_WITHIN)
+        except (OSError, ValueError) as error:
+            raise InputError(f"--scheduler {options.scheduler}: not reached: {reason_of(error)}") from None
+        with client:
+            yield client.get_executor(pure=False)
+    else:
+        yield None

@@ -1,0 +1,289 @@
+"""Files of what is no mesh cycle: whole revolutions, planetary stages, tribology, shafts under load."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.arrays import GEARS
+from loaded_tca.loaded.shaft_lines import ShaftLine
+from loaded_tca.output.result_files import csv_table, json_text, known
+from loaded_tca.results.files import Buffer, FilePath, replace_together
+from loaded_tca.results.revolution import Revolution
+from loaded_tca.stages import StageResult
+from loaded_tca.supports import RollingBearing
+from loaded_tca.tribology import Tribology
+from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, PLACES, QUANTITIES, TORQUE
+from loaded_tca.units import as_ending
+
+REVOLUTION_FILES = "revolution.nc", "revolution.json", "revolution.csv", "teeth.csv", "orders.csv"
+"""Names of the files."""
+
+
+def write_revolution(revolution: Revolution, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
+    """Write a revolution and its tables, all files or none.
+
+    Parameters
+    ----------
+    revolution : Revolution
+    directory : str or path
+        Made if it does not exist.
+    more : mapping of str to bytes
+        Contents of files to write with these, by their names: pictures.
+
+    Returns
+    -------
+    tuple of Path
+        All files.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    texts = (
+        revolution_json(revolution),
+        csv_table(revolution.to_table()),
+        teeth_csv(revolution),
+        orders_csv(revolution),
+    )
+    contents = [revolution.to_netcdf(), *(text.encode() for text in texts)]
+    return replace_together(directory, {**dict(zip(REVOLUTION_FILES, contents, strict=True)), **more})
+
+
+def revolution_json(revolution: Revolution) -> str:
+    """Return the figures of each torque as JSON, null where one is not known."""
+    rows = [
+        {"pinion_torque_Nm": 1e-3 * float(torque), **{name: known(value, name) for name, value in figures.items()}}
+        for torque, figures in zip(revolution.torque, revolution.key_figures(), strict=True)
+    ]
+    content = {"title": revolution.scene.title, "torques": rows, "warnings": list(revolution.warnings)}
+    return json_text(content)
+
+
+def teeth_csv(revolution: Revolution) -> str:
+    """Return a row for each torque, gear and tooth: the largest share, force and pressure of the tooth."""
+    columns: dict[str, list[object]] = {
+        name: [] for name in ("pinion_torque_Nm", "gear", "tooth", "load_share", "normal_force_N", "peak_pressure_MPa")
+    }
+    for t, torque in enumerate(revolution.torque):
+        for gear in GEARS:
+            teeth = revolution.by_tooth(gear)
+            count = teeth.sizes["tooth"]
+            parts = [[1e-3 * torque] * count, [gear] * count, range(count)]
+            parts += [teeth[name].values[t] for name in ("load_share", "normal_force", "peak_pressure")]
+            for column, values in zip(columns.values(), parts, strict=True):
+                column.extend(values)
+    return csv_table(columns)
+
+
+def orders_csv(revolution: Revolution) -> str:
+    """Return a row for each order of the transmission error: rigid, and under each torque."""
+    rigid = revolution.spectrum(rigid=True)
+    gear = GEARS[revolution.counted_by]
+    columns = {f"order_of_{gear}": rigid.order, "kind": np.array(rigid.kind, dtype=object)}
+    columns["rigid_amplitude_um"] = rigid.amplitude
+    for t, torque in enumerate(revolution.torque):
+        columns[f"amplitude_at_{1e-3 * torque:.6g}_Nm_um"] = revolution.spectrum(t).amplitude
+    return csv_table(columns)
+
+
+DATA, TABLE, SLICES = TRIBOLOGY_FILES = "tribology.nc", "tribology.csv", "tribology_slices.csv"
+"""Names of the files."""
+
+
+def write_tribology(tribology: Tribology, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
+    """Write ``tribology.nc``, ``tribology.csv`` and ``tribology_slices.csv``, all files or none.
+
+    Parameters
+    ----------
+    tribology : Tribology
+    directory : str or path
+        Made if it does not exist.
+    more : mapping of str to bytes
+        Contents of files to write with these, by their names: pictures.
+
+    Returns
+    -------
+    tuple of Path
+        All files.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    contents = tribology.to_netcdf(), tribology_csv(tribology).encode(), slices_csv(tribology).encode()
+    return replace_together(directory, {**dict(zip(TRIBOLOGY_FILES, contents, strict=True)), **more})
+
+
+def tribology_csv(tribology: Tribology) -> str:
+    """Return a row for each speed and torque: numbers of the mesh that are known, and where extremes lie."""
+    result, speeds = tribology.result, tribology.conditions.speeds
+    torques = range(len(result.torque))
+    columns: dict[str, list[float]] = {
+        "pinion_speed_rpm": [float(speed) for speed in speeds for _ in torques],
+        "pinion_torque_Nm": [1e-3 * float(torque) for _ in speeds for torque in result.torque],
+    }
+    for name, quantity in QUANTITIES.items():
+        if quantity.dims != TORQUE or tribology.lacking(name):
+            continue
+        columns[_column(name, quantity.unit)] = tribology.by_speed(name).ravel().tolist()
+        for end, (unit, _) in PLACES.items() if name in EXTREMES else ():
+            columns[_column(f"{name}_{end}", unit)] = tribology.by_speed(f"{name}_{end}").ravel().tolist()
+    return csv_table(columns)
+
+
+def slices_csv(tribology: Tribology) -> str:
+    """Return a row for each slice of each contact under each torque, at the first speed."""
+    columns: dict[str, list[float]] = {}
+    for torque, moment in enumerate(tribology.result.torque):
+        table = tribology.slices(torque)
+        columns.setdefault("pinion_torque_Nm", []).extend([1e-3 * float(moment)] * len(table))
+        for name in table:
+            columns.setdefault(_column(str(name), COLUMNS[str(name)][0]), []).extend(table[name].astype(float).tolist())
+    return csv_table(columns)
+
+
+def _column(name: str, unit: str) -> str:
+    """Head of a column: its name with its unit."""
+    return f"{name}_{ending}" if (ending := as_ending(unit)) else name
+
+
+def write_stage(result: StageResult, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
+    """Write a stage, its figures and its table, all files or none.
+
+    Parameters
+    ----------
+    result : StageResult
+    directory : str or path
+        Made if it does not exist.
+    more : mapping of str to bytes
+        Contents of files to write with these, by their names: pictures.
+
+    Returns
+    -------
+    tuple of Path
+        ``stage.nc``, ``sun_mesh.nc``, ``ring_mesh.nc``, ``stage.json``, ``stage.csv``, and those of ``more``.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    tables = {"stage.json": stage_json(result).encode(), "stage.csv": csv_table(result.to_table()).encode()}
+    return replace_together(directory, {**result.contents(), **tables, **more})
+
+
+def stage_json(result: StageResult) -> str:
+    """Return the figures of each torque, phases and orders as JSON, null where a figure is not known."""
+    rows = [{name: known(value, name) for name, value in figures.items()} for figures in result.key_figures()]
+    orders = [
+        {
+            "order": one.order,
+            "stage_um": one.stage,
+            "one_path_um": one.one_path,
+            "cancelled_in_torsion": one.torsion_cancels,
+            "cancelled_in_translation": one.translation_cancels,
+        }
+        for one in result.orders()
+    ]
+    content = {
+        "title": result.stage.title,
+        "sun_mesh_phase": result.sun_mesh_phase.tolist(),
+        "ring_mesh_phase": result.ring_mesh_phase.tolist(),
+        "torques": rows,
+        "orders_under_the_last_torque": orders,
+        "findings": list(result.findings()),
+        "warnings": list(result.warnings),
+    }
+    return json_text(content)
+
+
+FORCES = "force_x_N", "force_y_N", "force_z_N", "moment_x_Nm", "moment_y_Nm", "moment_z_Nm"
+MOTIONS = "x_um", "y_um", "z_um", "about_x_rad", "about_y_rad", "about_z_rad"
+INSIDE = "element_force_N", "element_pressure_MPa", "life_Mrev"
+"""Columns of rolling bearings."""
+
+
+def shaft_csv(lines: Sequence[ShaftLine]) -> str:
+    """Return one row per gear, torque and place along its shaft, units in the header."""
+    rows = [(line, n) for line in lines for n in range(len(line.places))]
+    columns: dict[str, list[Any]] = {
+        "gear": [line.gear for line, _ in rows],
+        "pinion_torque_Nm": [1e-3 * line.torque for line, _ in rows],
+        "axial_mm": [float(line.places[n]) for line, n in rows],
+    }
+    for k, name in enumerate(MOTIONS):
+        columns[name] = [float(line.motions[n, k]) * (1e3 if k < 3 else 1.0) for line, n in rows]
+    return csv_table(columns)
+
+
+def bearings_csv(lines: Sequence[ShaftLine]) -> str:
+    """Return one row per gear, torque and bearing: forces and moments on it, axes of the gear's own frame.
+
+    Where a bearing is a rolling one, its largest element force, contact pressure and life stand beside; empty cells of
+    linear ones, and of a life without load.
+    """
+    rows = [(line, n) for line in lines for n in range(len(line.bearing_forces))]
+    columns: dict[str, list[Any]] = {
+        "gear": [line.gear for line, _ in rows],
+        "pinion_torque_Nm": [1e-3 * line.torque for line, _ in rows],
+        "bearing": [n for _, n in rows],
+        "axial_mm": [line.shaft.bearings[n].at for line, n in rows],
+    }
+    for k, name in enumerate(FORCES):
+        columns[name] = [float(line.bearing_forces[n, k]) * (1.0 if k < 3 else 1e-3) for line, n in rows]
+    inside = [rolling_figures(line, n) for line, n in rows]
+    if any(inside):
+        for name in INSIDE:
+            columns[name] = [one.get(name, math.nan) for one in inside]
+    return csv_table(columns)
+
+
+def rolling_figures(line: ShaftLine, place: int) -> dict[str, float]:
+    """Largest element force, contact pressure and life of the bearing at a place in the list; nothing of a linear one.
+
+    Parameters
+    ----------
+    line : ShaftLine
+    place : int
+    """
+    bearing, motion = line.shaft.bearings[place], line.bearing_motions[place]
+    if not isinstance(bearing, RollingBearing):
+        return {}
+    values = float(bearing.element_forces(motion).max()), bearing.largest_pressure(motion), bearing.life(motion)
+    return dict(zip(INSIDE, values, strict=True))
+
+
+def bearings_text(lines: Sequence[ShaftLine]) -> str:
+    """Return forces on the bearings and the motion of the middles of the faces as text.
+
+    Examples
+    --------
+    >>> from loaded_tca import read_scene
+    >>> from loaded_tca.loaded.shaft_lines import shaft_lines
+    >>> lines = shaft_lines(read_scene("examples/scenes/helical_on_shafts.toml"))
+    >>> bearings_text(lines[:1]).splitlines()[0]
+    'pinion under 40 N m'
+    """
+    text = []
+    for line in lines:
+        text.append(f"{line.gear} under {1e-3 * line.torque:g} N m")
+        for n, force in enumerate(line.bearing_forces):
+            parts = " | ".join(f"{one:.1f}" for one in force[:3])
+            text.append(f"  bearing {n} at {line.shaft.bearings[n].at:g} mm: force x | y | z {parts} N")
+            if inside := rolling_figures(line, n):
+                largest, pressure, life = inside.values()
+                lasting = "no load" if math.isinf(life) else f"life {life:.4g} million revolutions"
+                text.append(f"    largest element force {largest:.1f} N, pressure {pressure:.0f} MPa, {lasting}")
+        at = abs(line.places - line.middle).argmin()
+        x, y, z, about_x, about_y, about_z = line.motions[at].tolist()
+        text.append(f"  middle of the face: x | y | z {1e3 * x:.2f} | {1e3 * y:.2f} | {1e3 * z:.2f} um")
+        turns = " | ".join(f"{1e6 * one:.1f}" for one in (about_x, about_y, about_z))
+        text.append(f"    about x | y | z {turns} urad")
+    return "\n".join(text)

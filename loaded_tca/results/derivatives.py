@@ -1,0 +1,271 @@
+"""How the derivatives of a result are found: its contact problems made again, of gears that are held or on supports.
+
+On supports they are found torque by torque, each in the gears as they stand under it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+import loaded_tca.warning_kinds as kinds
+from loaded_tca.arrays import Array, Indices
+from loaded_tca.compliance.model import SumOfParts, model_of
+from loaded_tca.errors import InputError, require
+from loaded_tca.loaded.cycle import farthest_apart
+from loaded_tca.loaded.force_lines import bending_by_shift
+from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.loaded.load_sharing import tooth_pairs_at
+from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, Tangents, loaded_states
+from loaded_tca.loaded.supported import given_motions
+from loaded_tca.loaded.tooth_contact import contact_problem
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.figure_slopes import (
+    EXPONENT,
+)
+from loaded_tca.results.gap_growth import GapGrowth, gap_growth
+from loaded_tca.results.numbers import CycleNumbers
+from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.sensitivities import LINEAR, NEWTON_MILLIMETRES, TORQUE, Sensitivities
+from loaded_tca.results.support_growth import (
+    UnderOneTorque,
+    changes_at_rest,
+    growth_on_supports,
+    under_one_torque,
+)
+from loaded_tca.results.warnings import warn_of_contacts
+from loaded_tca.separation.box import Box
+from loaded_tca.separation.pair_change import PairChange, pair_changes
+from loaded_tca.separation.sample import Separation, sample_separations
+from loaded_tca.supports import SupportCompliance
+from loaded_tca.threads import one_blas_thread
+from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
+from loaded_tca.unloaded.curvature import relative_curvatures
+
+SAME = 1e-6
+"""Distance of two contact points, over the module, that are the same."""
+
+
+def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = None) -> LoadedStates:
+    """Contact problems that the pressure maps of a result solve, and how they answer.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    supports : SupportCompliance, optional
+        What the gears stand on, as it gives way where they stand; default: they are rigid.
+
+    Raises
+    ------
+    InputError
+        If the maps do not belong to the scene of the result.
+    """
+    pair, wanted, numbers = result.gear_pair, result.scene.analysis, result.pair.tolist()
+    unloaded, apart = _unloaded_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
+    if supports is None:
+        bending = model_of(result.scene, pair, apart)
+    else:
+        at_rest = model_of(result.scene, result.scene.pair(), apart)
+        assert at_rest is not None
+        bending = at_rest.on_supports(supports).mounted(pair)
+    places = np.argwhere(result.normal_force > 0.0).tolist()
+    maps = [one for t, n, k in places if (one := result.maps[t][n][k]) is not None]
+    contacts = [unloaded[n][numbers[k]] for _, n, k in places if numbers[k] in unloaded[n]]
+    if len(contacts) < len(maps) or any(
+        not np.allclose(one.origin, contact.point, rtol=0.0, atol=SAME * pair.module)
+        for one, contact in zip(maps, contacts, strict=True)
+    ):
+        raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
+    separations = _separations(pair, contacts, maps)
+    ends = edge_compliances(pair, separations) if wanted.free_edges else [None] * len(maps)
+    positions = len(result.path)
+    states: list[list[LoadedGrid]] = [[] for _ in range(len(result.torque) * positions)]
+    for (t, n, k), one, contact, separation, end in zip(places, maps, contacts, separations, ends, strict=True):
+        if isinstance(end, InputError):
+            raise end
+        bent = None if bending is None else bending.within(numbers[k], separation)
+        problem = contact_problem(pair, separation, float(result.normal_force[t, n, k]), bent, end)
+        states[t * positions + n].append(LoadedGrid(numbers[k], contact, separation, problem, one.pressure, bent))
+    return loaded_states(states, bending)
+
+
+def _unloaded_contacts(pair: GearPair, angles: Array, *, alone: bool) -> tuple[list[dict[int, ContactPoint]], int]:
+    """Contacts by position and number of the tooth pair, and how many pitches those of a position are apart."""
+    if alone:
+        path = trace_contact(pair, angles)
+        return [{0: path[n]} for n in range(len(path))], 1
+    mesh = trace_teeth(pair, angles)
+    contacts = [{one.pair: one.contact for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
+    return contacts, max(farthest_apart(mesh), 1)
+
+
+def _separations(pair: GearPair, contacts: Sequence[ContactPoint], maps: Sequence[PressureMap]) -> list[Separation]:
+    """Grids of maps; where the flanks do not end the gap is that under load, which is of no account here."""
+    bends = relative_curvatures(pair, contacts)
+    ends = [bool(np.isinf(one.gap).any()) for one in maps]
+    cut_maps = [one for one, cut in zip(maps, ends, strict=True) if cut]
+    sampled = iter(
+        sample_separations(
+            pair,
+            [contact for contact, cut in zip(contacts, ends, strict=True) if cut],
+            cells=[one.pressure.shape for one in cut_maps],
+            loads=[None] * len(cut_maps),
+            boxes=[Box.of(one) for one in cut_maps],
+        )
+    )
+    separations = []
+    for one, bend, cut in zip(maps, bends, ends, strict=True):
+        whole = np.ones(one.gap.shape)
+        place = one.x, one.y, one.spacing, one.origin, one.axes, bend.along_axes(one.axes)
+        made = next(sampled) if cut else Separation(one.gap, *place, whole, one.gap, one.force_line)
+        if not isinstance(made, Separation):
+            raise made
+        separations.append(replace(made, force_line=one.force_line))
+    return separations
+
+
+def _by_torque(name: str) -> cached_property[Any]:
+    """Attribute of sensitivities that has the torque first, put together of those of each torque."""
+    joined = cached_property(lambda self: self.of_torques(name))
+    joined.__doc__ = getattr(Sensitivities, name).__doc__
+    return joined
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SensitivitiesOnSupports(Sensitivities):
+    """Derivatives of a result on supports, which holds those under each torque by themselves.
+
+    Attributes
+    ----------
+    parts : tuple of Sensitivities or None
+        By torque, each of a result with that one; None where no tooth pair carries load. What a state or a grid has is
+        in these alone.
+    """
+
+    tangents: Tangents = field(init=False)
+    places: Indices = field(init=False)
+    pairs: Indices = field(init=False)
+    growth: GapGrowth = field(init=False)
+    changes: tuple[PairChange | None, ...] = field(init=False)
+    parts: tuple[Sensitivities | None, ...]
+
+    transmission_error = _by_torque("transmission_error")
+    transmission_error_kinks = _by_torque("transmission_error_kinks")
+    load_share = _by_torque("load_share")
+    on_cut_slices = _by_torque("on_cut_slices")
+    at_corners = _by_torque("at_corners")
+    across_relief_starts = _by_torque("across_relief_starts")
+    line_load = _by_torque("line_load")
+    peak_pressure = _by_torque("peak_pressure")
+    face_load_factor = _by_torque("face_load_factor")
+    root_tension = _by_torque("root_tension")
+    root_compression = _by_torque("root_compression")
+
+    def __repr__(self) -> str:
+        states = sum(one.places.shape[1] for one in self.parts if one is not None)
+        return f"Sensitivities({len(self.keys)} keys, {states} states)"
+
+    def of_torques(self, name: str) -> Array:
+        """An array of all torques, of those of each: NaN, or false, under those that load nothing."""
+        return self._joined([None if one is None else getattr(one, name) for one in self.parts])
+
+    def pressure_norm(self, exponent: float = EXPONENT) -> Array:
+        """As of :meth:`Sensitivities.pressure_norm`."""
+        return self._joined([None if one is None else one.pressure_norm(exponent) for one in self.parts])
+
+    @cached_property
+    def weight_maps(self) -> tuple[tuple[tuple[Array | None, ...], ...], ...]:
+        """As of :class:`Sensitivities`."""
+        _, positions, pairs = self.result.load_share.shape
+        none = ((None,) * pairs,) * positions
+        return tuple(none if one is None else one.weight_maps[0] for one in self.parts)
+
+    @staticmethod
+    def _joined(arrays: Sequence[Array | None]) -> Array:
+        like = next(one for one in arrays if one is not None)
+        none = np.full(like.shape, np.nan if like.dtype.kind == "f" else 0, dtype=like.dtype)
+        return np.concatenate([none if one is None else one for one in arrays])
+
+
+def sensitivities_on_supports(result: CycleNumbers, keys: Sequence[str]) -> tuple[SensitivitiesOnSupports, bool]:
+    """Derivatives of a result on supports, and whether a key moves lines on the flanks through contacts."""
+    at_rest = changes_at_rest(result.scene, [key for key in keys if key != TORQUE])
+    solved, kept = result.states or (None, ())
+    parts = []
+    for t in range(len(result.torque)):
+        one = under_one_torque(result, t)
+        states = kept[t] if solved == result.scene else states_of_maps(one, one.supports)
+        parts.append(_of_torque(one, states, keys, at_rest) if any(states.grids) else None)
+    require((any(parts), NO_LOAD))
+    made = SensitivitiesOnSupports(tuple(keys), result, tuple(parts))
+    return made, any(not change.holds_lines for change in at_rest.values())
+
+
+def _of_torque(
+    result: UnderOneTorque, states: LoadedStates, keys: Sequence[str], at_rest: Mapping[str, PairChange]
+) -> Sensitivities:
+    """Derivatives under one torque."""
+    bending = states.bending
+    assert isinstance(bending, SumOfParts)
+    tangents = states.tangents(LINEAR)
+    given = partial(result.supports.opened, motions=given_motions(result.supports, result.held))
+    tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, bending, given))
+    columns = np.array([result.pair.tolist().index(grid.number) for grid in tangents.grids])
+    of_torque = np.flatnonzero([len(state) for state in states.grids])
+    places = np.stack([np.zeros_like(of_torque), of_torque])
+    raised = np.array([[NEWTON_MILLIMETRES if key == TORQUE else 0.0] for key in keys])
+    growth, changes = growth_on_supports(
+        result,
+        tangents,
+        bending,
+        (*places[:, tangents.state], columns),
+        keys,
+        at_rest,
+        raised,
+    )
+    return Sensitivities(tuple(keys), result, tangents, places, columns, growth, changes)
+
+
+NO_LOAD = "sensitivities: no tooth pair of the result carries load"
+
+
+def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
+    """Derivatives of a result to keys of its scene; see :meth:`MeshCycle.sensitivities`."""
+    listed = isinstance(keys, Iterable) and not isinstance(keys, str | bytes)
+    require((listed, f"keys: {keys!r:.80}; allowed is a list of keys"))
+    keys = [*keys]
+    require(
+        (bool(keys), "keys: none given"),
+        *((isinstance(key, str), f"keys: {key!r:.60} is no text; allowed are keys of the scene") for key in keys),
+        *((keys.count(key) < 2, f"keys: {key} is given twice") for key in dict.fromkeys(map(str, keys))),
+    )
+    with one_blas_thread():
+        made, moves_lines = (sensitivities_on_supports if result.scene.is_supported else _of_rigid_gears)(result, keys)
+    if moves_lines:
+        warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts, stacklevel=4)
+    return made
+
+
+def _of_rigid_gears(result: CycleNumbers, keys: Sequence[str]) -> tuple[Sensitivities, bool]:
+    """Derivatives of gears that stand still, and whether a key moves lines on the flanks through contacts."""
+    named = [key for key in keys if key != TORQUE]
+    changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
+    solved, states = result.states or (None, ())
+    (loaded,) = states if solved == result.scene else (states_of_maps(result),)
+    count = [len(state) for state in loaded.grids]
+    require((any(count), NO_LOAD))
+    pairs = result.pair.tolist()
+    places = np.array(np.unravel_index(np.flatnonzero(count), result.transmission_error.shape))
+    tangents = loaded.tangents(LINEAR)
+    if loaded.bending is not None:
+        tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, loaded.bending))
+    columns = np.array([pairs.index(grid.number) for grid in tangents.grids])
+    growth = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
+    by_key = dict(zip(named, changes, strict=True))
+    every = tuple(by_key.get(key) for key in keys)
+    made = Sensitivities(tuple(keys), result, tangents, places, columns, growth.at_keys(at, len(keys)), every)
+    return made, any(not change.holds_lines for change in changes)
