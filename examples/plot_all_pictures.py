@@ -1,19 +1,18 @@
-"""All kinds of pictures
-=====================
+"""All kinds of pictures of results
+================================
 
-Every kind of picture that the package draws, with what one reads from it; ``loaded-tca plot DIR --all`` draws some.
+Every kind of picture of a result, a bevel pair, a revolution, a stage and an oil, with what one reads from it;
+``loaded-tca plot DIR --all`` draws some. Those of studies are on a page of their own.
 """
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from scipy.stats import norm
-
 from loaded_tca import analyse, analyse_revolution, plots, read_scene, shaft_lines
 from loaded_tca.flank_maps import ease_off_map, vh_check
 from loaded_tca.results import stress_below
 from loaded_tca.stages import analyse_stage, read_stage
-from loaded_tca.studies import DesignModel, Study, optimise, robustness, run_study, vh_study
+from loaded_tca.studies import run_study, vh_study
 from loaded_tca.tribology import Lubricant
 
 SCENES, STAGE = Path(__file__).parent / "scenes", Path(__file__).parent / "stages" / "helical_automotive.toml"
@@ -25,11 +24,10 @@ HELICAL = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(COARSE | R
 BEVEL = read_scene(SCENES / "mesh_cycle_bevel.toml").with_changes(FEW | {"analysis.torques_Nm": [0.8]})
 OIL = Lubricant(viscosity_40=220.0, viscosity_100=19.0, density_15=890.0, oil_temperature=80.0)
 (V, H), STEPS = BEVEL.vh_keys, (-0.01, 0.0, 0.01)
-SCATTER = {"mounting.misalignment_um": norm(0.0, 5.0), LEAD: norm(5.0, 1.0)}
 
 
 def main() -> None:
-    """Draw those of results, a bevel pair, a revolution, a stage, an oil, sensitivities, studies and a design."""
+    """Draw those of results, a bevel pair, a revolution, a stage and an oil."""
     result, other = (analyse(HELICAL.with_changes({"analysis.root_stress": True, LEAD: um})) for um in (5.0, 10.0))
     drawn = plots.result_figures(result, more=True)
     drawn |= {"teeth": plots.plot_teeth(result), "stress_below": plots.plot_stress_below(stress_below(result))}
@@ -39,11 +37,11 @@ def main() -> None:
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
     drawn["shafts"] = plots.plot_shafts(shaft_lines(read_scene(SCENES / "helical_on_shafts.toml")))
     on = read_scene(SCENES / "helical_on_rolling_bearings.toml").with_changes(FEW | {"analysis.torques_Nm": [40, 130]})
-    on_bearings, rigid = analyse(on), analyse(on.with_changes({"pinion.shaft": None, "wheel.shaft": None}))
+    on_bearings, rigid = analyse(on), analyse(on.on_rigid_supports())
     drawn |= {kind: getattr(plots, f"plot_{kind}")(on_bearings) for kind in ("misalignment", "bearing_loads")}
     drawn["face_load_on_supports"] = plots.plot_face_load_on_supports(on_bearings, rigid)
-    few = HELICAL.with_changes(FEW)
-    turn = analyse_revolution(few.with_changes({"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
+    turning = {"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}
+    turn = analyse_revolution(HELICAL.with_changes(FEW | turning))
     drawn |= {name: draw(turn) for name, draw in plots.REVOLUTION_PICTURES.items()}
     stage = analyse_stage(read_stage(STAGE).with_changes(FEW))
     drawn |= {name: draw(stage) for name, draw in plots.STAGE_PICTURES.items()}
@@ -53,17 +51,6 @@ def main() -> None:
     with TemporaryDirectory() as folder:
         loaded = run_study(vh_study(BEVEL, STEPS, STEPS), out=Path(folder, "vh.nc"), keep_maps=range(9))
         drawn["loaded_vh_check"] = plots.plot_loaded_vh_check(loaded, Path(folder, "vh_maps"))
-    sampled, found = run_study(Study(few, {}, SCATTER, 8)), result.sensitivities(list(SCATTER))
-    for kind in ("tornado", "sensitivity_curves", "transmission_error_band", "removal_weights"):
-        drawn[kind] = getattr(plots, f"plot_{kind}")(found)
-    drawn["first_order_scatter"] = plots.plot_first_order_scatter(analyse(few).sensitivities(list(SCATTER)), sampled)
-    swept = run_study(Study(few, {LEAD: [2.0, 5.0, 8.0], TIP: [5.0, 10.0]}))
-    drawn |= plots.plot_study(swept, ["peak_pressure_MPa"]) | plots.plot_study(sampled, ["transmission_error_span_um"])
-    model = DesignModel(few, {LEAD: (0.0, 15.0), TIP: (0.0, 30.0)}, SCATTER, torques=[60e3, 130e3], samples=2)
-    design = optimise(model, "mean + k sigma")
-    kept = robustness(model, {"start": design.start, "optimum": design.optimum}, [0.0, 1.0, 2.0])
-    drawn |= {"before_and_after": plots.plot_before_and_after(design), "robustness": plots.plot_robustness(kept)}
-    drawn["peak_to_peak_over_torque"] = plots.plot_peak_to_peak_over_torque(design)
     for name, figure in drawn.items():
         plots.save_figure(figure, f"{name}.png")
 

@@ -1,5 +1,6 @@
 """``python -m loaded_tca`` is the command ``loaded-tca``."""
 
+import gc
 import sys
 
 INTERRUPTED = 130
@@ -16,6 +17,7 @@ def main() -> int:
         code = INTERRUPTED
     if code == INTERRUPTED:
         exec("")  # CPython ends by the signal, not by the code, if an interrupt went through the last exec of a text
+    gc.freeze()  # the interpreter would look all objects through as it ends: a tenth of the time of the demo
     return code
 
 

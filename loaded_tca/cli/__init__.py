@@ -9,11 +9,13 @@ import io
 import sys
 import traceback
 from collections.abc import Sequence
+from contextlib import nullcontext
 
 from loaded_tca.cli.arguments import command_line
 from loaded_tca.cli.commands import DEMO_SCENE
-from loaded_tca.cli.terminal import flush, let_go, say, warnings_in_one_line_each
+from loaded_tca.cli.terminal import collecting_garbage, flush, let_go, say, warnings_in_one_line_each
 from loaded_tca.errors import ConvergenceError, ExecutorError, InputError, LoadedTCAError, reason_of
+from loaded_tca.lazy import hidden
 
 __all__ = ["DEMO_SCENE", "command_line", "main"]
 
@@ -37,9 +39,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):  # titles may hold characters that the terminal does not know
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
-        with warnings_in_one_line_each():
+        with collecting_garbage(False), warnings_in_one_line_each():
             options = command_line().parse_args(arguments)
-            options.command(options)
+            with nullcontext() if getattr(options, "scheduler", None) else hidden("dask"):
+                options.command(options)
             flush()
     except (Exception, KeyboardInterrupt) as error:  # whatever happens ends in one line
         if "--traceback" in arguments and not isinstance(error, KeyboardInterrupt | BrokenPipeError):

@@ -1,0 +1,70 @@
+"""Layout whose first pass goes by estimates: near what is measured, and pictures as of two measured passes."""
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from loaded_tca.plots.layout import estimated_at_first, estimated_box
+
+PIXEL = 1.0
+NEAR = 14.0
+"""Points: a digit or two of tick labels, and half a line."""
+
+
+def panels():
+    """Two rows with a colour bar, a second scale, titles and labels of several lines, on which ticks depend."""
+    figure = Figure(figsize=(8.0, 6.0), layout="constrained", dpi=120)
+    (first, second), (third, fourth) = figure.subplots(2, 2)
+    figure.colorbar(first.pcolormesh(np.arange(12.0).reshape(3, 4)), ax=first, label="pressure [MPa]")
+    second.plot([0.0, 1.0], [-2000.0, 500.0])
+    second.set(title="a title\nof two lines", ylabel="share of\nthe torque [%]", xlabel="angle [deg]")
+    second.twinx().set(ylim=(0.0, 1e-3), ylabel="at the base circle [µm]")
+    third.set(xlim=(0.0, 12345.0), ylabel="stress")
+    fourth.set_axis_off()
+    figure.suptitle("all of it")
+    return figure
+
+
+def positions(figure):
+    return np.array([axes.get_position().extents for axes in figure.axes]) * [*figure.bbox.size, *figure.bbox.size]
+
+
+def test_panels_lie_where_two_measured_passes_put_them():
+    """Within a pixel."""
+    measured, estimated = panels(), panels()
+    FigureCanvasAgg(measured).draw()
+    with estimated_at_first(estimated):
+        FigureCanvasAgg(estimated).draw()
+    np.testing.assert_allclose(positions(estimated), positions(measured), atol=PIXEL)
+
+
+def test_each_panel_is_measured_in_one_pass_of_two():
+    """Colour bars are measured twice in a pass; what is in space is measured always."""
+    figure, calls = panels(), []
+    space = figure.add_subplot(3, 3, 9, projection="3d")
+    for axes in figure.axes:
+        measured = axes.get_tightbbox
+        axes.get_tightbbox = lambda *a, _m=measured, _x=axes, **k: calls.append(_x) or _m(*a, **k)
+    with estimated_at_first(figure):
+        FigureCanvasAgg(figure).draw()
+    counts = {axes.get_label() or axes.name: calls.count(axes) for axes in figure.axes}
+    assert counts == {"<colorbar>": 2, "rectilinear": 1, "3d": 2}
+    assert calls.count(space) == 2
+
+
+def test_estimates_are_near_what_is_measured():
+    figure = panels()
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    for axes in figure.axes:
+        measured = axes.get_tightbbox(canvas.get_renderer(), for_layout_only=True)
+        assert estimated_box(axes).extents == pytest.approx(measured.extents, abs=NEAR * figure.dpi / 72.0)
+
+
+def test_figures_measure_as_before_afterwards():
+    """Whoever draws the figure again, in a notebook, gets the layout of Matplotlib."""
+    figure = panels()
+    with pytest.raises(RuntimeError), estimated_at_first(figure):
+        raise RuntimeError
+    assert not any("get_tightbbox" in vars(axes) for axes in figure.axes)
