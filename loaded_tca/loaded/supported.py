@@ -212,11 +212,16 @@ class SupportedCycle:
     def settled(self, torques: Sequence[float]) -> list[Loads]:
         """Mean loads under pinion torques [N mm] whose motions of the geometry are those that follow from them.
 
-        Loads are nearly in proportion to the torque: those between the smallest and the largest one follow from these.
+        Loads are nearly in proportion to the torque: those between the smallest and the largest one follow from these,
+        where a cycle of enough positions checks them.
         """
-        low, high = _ends(torques)
-        if high == 0.0:
+        loaded = sorted({torque for torque in torques if torque > 0.0})
+        if not loaded:
             return [_no_loads(self.supports) for _ in torques]
+        if len(self.angles) <= ENOUGH:
+            each = dict(zip(loaded, self._settled(loaded), strict=True))
+            return [each[torque] if torque > 0.0 else _no_loads(self.supports) for torque in torques]
+        low, high = loaded[0], loaded[-1]
         first, last = self._settled([low, high])
 
         def between(torque: float) -> Loads:
@@ -286,12 +291,6 @@ class SupportedCycle:
             else:
                 states = OnePairsCycle(pair, trace_contact(pair, angles), torques, grid, bending, given)
         return _MovedCycle(torque, loads, bending, states)
-
-
-def _ends(torques: Sequence[float]) -> tuple[float, float]:
-    """Smallest torque above zero, and the largest one."""
-    loaded = [torque for torque in torques if torque > 0.0]
-    return min(loaded, default=0.0), max(loaded, default=0.0)
 
 
 def _halfway(one: Loads, other: Loads) -> Loads:
@@ -368,7 +367,7 @@ def pitches_apart(supports: SupportCompliance, torques: Sequence[float], mesh: M
         If the moved flanks are not in contact.
     """
     apart = farthest_apart(mesh)
-    for torque in torques:
+    for torque in sorted(torques, reverse=True):  # what the largest one asks for is told first
         try:
             loads = loads_at_first_contact(supports, mesh.pair, torque)
             moved = moved_by(supports.under(loads), loads)

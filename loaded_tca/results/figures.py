@@ -201,12 +201,12 @@ FIGURES: dict[str, Figure] = {
         slope=Slope(1, "TE, mean", slope_of_mean_error),
     ),
     "transmission_error_span_arcsec": Figure(
-        of=lambda under: span_of(under.transmission_error) * ARCSEC,
+        of=lambda under: span_of(under.transmission_error, under.result.places_of_mesh) * ARCSEC,
         axis="peak-to-peak transmission error",
         accuracy=of_bending,
     ),
     "transmission_error_span_um": Figure(
-        of=lambda under: span_of(under.transmission_error) * under.length,
+        of=lambda under: span_of(under.transmission_error, under.result.places_of_mesh) * under.length,
         axis="peak-to-peak transmission error",
         accuracy=of_bending,
         is_compared=True,
@@ -225,11 +225,11 @@ FIGURES: dict[str, Figure] = {
         of=lambda under: mean_over_a_pitch(under.result.unloaded_transmission_error) * under.length
     ),
     "unloaded_transmission_error_span_arcsec": Figure(
-        of=lambda under: span_of(under.result.unloaded_transmission_error) * ARCSEC,
+        of=lambda under: span_of(under.result.unloaded_transmission_error, under.result.places_of_mesh) * ARCSEC,
         axis="peak-to-peak unloaded transmission error",
     ),
     "unloaded_transmission_error_span_um": Figure(
-        of=lambda under: span_of(under.result.unloaded_transmission_error) * under.length,
+        of=lambda under: span_of(under.result.unloaded_transmission_error, under.result.places_of_mesh) * under.length,
         axis="peak-to-peak unloaded transmission error",
         label="unloaded transmission error, peak to peak",
         below="  unloaded, peak to peak",

@@ -250,6 +250,6 @@ def positions_with(flags: Array) -> int:
     return int(flags.any(axis=-1).sum())
 
 
-def span_of(error: Array) -> float:
-    """Peak-to-peak of a transmission error; one position has none: NaN."""
-    return reduced(np.ptp, error) if np.isfinite(error).sum() > 1 else math.nan
+def span_of(error: Array, places: int) -> float:
+    """Peak-to-peak of a transmission error at so many places of the mesh; one has none: NaN."""
+    return reduced(np.ptp, error) if min(places, np.isfinite(error).sum()) > 1 else math.nan

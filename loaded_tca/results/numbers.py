@@ -230,6 +230,11 @@ class CycleNumbers:
         """
         return np.angle(self._harmonic_coefficients(count))
 
+    @property
+    def places_of_mesh(self) -> int:
+        """Positions that are places of their own: where pairs share the load both ends of a pitch are one."""
+        return len(self.pinion_angle) - int(self.scene.analysis.load_sharing and len(self.pinion_angle) > 1)
+
     def _harmonic_coefficients(self, count: int) -> NDArray[np.complex128]:
         """Complex amplitudes (m, count) [rad] of the orders, phases from the pinion angle 0."""
         if not isinstance(count, int | np.integer) or count < 1:

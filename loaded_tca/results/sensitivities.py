@@ -385,14 +385,14 @@ class Sensitivities:
 
     @property
     def peak_to_peak(self) -> Array:
-        """Derivatives of the peak-to-peak transmission error, (torque, key) [rad per unit]; NaN with one position.
+        """Derivatives of the peak-to-peak transmission error, (torque, key) [rad per unit]; NaN at one place alone.
 
         That of the highest position less that of the lowest one.
         """
         errors, slopes = self.result.transmission_error, self.transmission_error
         changes = np.full((len(errors), len(self.keys)), np.nan)
         for t, error in enumerate(errors):
-            if np.isfinite(error).sum() > 1:
+            if min(self.result.places_of_mesh, np.isfinite(error).sum()) > 1:
                 changes[t] = slopes[t, np.nanargmax(error)] - slopes[t, np.nanargmin(error)]
         return changes
 

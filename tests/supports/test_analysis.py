@@ -89,6 +89,15 @@ def test_supports_couple_tooth_pairs_that_no_model_of_teeth_has_together() -> No
     assert_allclose(result.load_share.sum(axis=-1), 1.0, rtol=1e-9)
 
 
+def test_torque_between_others_is_that_by_itself() -> None:
+    """Cycles of few positions do not check the mean load that would follow from the smallest and largest torque."""
+    scene = on(scene_of("helical", **{"analysis.positions": 2}), matrix(4e-6, 3e-9, 1e-9, seed=1), None)
+    torques = ([50.0], [5.0, 50.0, 250.0])
+    alone, among = (analyse(scene.with_changes({"analysis.torques_Nm": one})) for one in torques)
+    assert np.array_equal(among.transmission_error[1], alone.transmission_error[0])
+    assert np.array_equal(among.peak_pressure[1][:, among.pair == 0], alone.peak_pressure[0][:, alone.pair == 0])
+
+
 @pytest.fixture(scope="module")
 def soft() -> MeshCycle:
     scene = scene_of("mesh_cycle_helical", **{"analysis.positions": 3, "analysis.torques_Nm": [20.0, 60.0]})

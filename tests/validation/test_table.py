@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import validation
-from loaded_tca.flanks import modification
+from loaded_tca.flanks import removal
 from validation import __main__ as programme
 from validation import cases
 from validation.cases import Outcome, run_case, run_cases, times
@@ -208,7 +208,7 @@ def test_rows_are_known_by_their_names_where_others_came_or_went():
 
 
 def test_logarithmic_steepness_is_judged(monkeypatch):
-    monkeypatch.setattr(modification, "LOGARITHMIC_STEEPNESS", 0.97)
+    monkeypatch.setattr(removal, "LOGARITHMIC_STEEPNESS", 0.97)
     reduced_tca_tables.pair.cache_clear()
     row = reduced_tca_tables._logarithmic_shift(reduced_tca_tables.LINES[9])
     reduced_tca_tables.pair.cache_clear()
