@@ -92,6 +92,29 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
     return usual | {key: tolerance for key, tolerance in given if tolerance is not None}
 
 
+def _require_result(directory: Path, path: Path, command: str) -> None:
+    """Refuse a directory without a result that holds something else, in words that say what to give instead."""
+    from loaded_tca.output.result_files import RESULT
+    from loaded_tca.output.tribology_files import FILES as TRIBOLOGY_FILES
+
+    if path.exists():
+        return
+    parts = [one.name for one in sorted(directory.iterdir()) if (one / RESULT).is_file()]
+    if (directory / "revolution.nc").is_file():
+        raise InputError(
+            f"{directory}: holds a whole revolution, of which '{command}' takes none: its numbers are in "
+            "revolution.json and its tables; give the directory of 'loaded-tca run'"
+        )
+    if parts:
+        these = " or ".join(f"'{command} {directory / name}'" for name in parts)
+        raise InputError(f"{directory}: holds results in {', '.join(parts)}; give one of them: {these}")
+    if any((directory / name).is_file() for name in TRIBOLOGY_FILES):
+        raise InputError(
+            f"{directory}: holds tribology alone, without the result that it is of; give the directory of "
+            "'loaded-tca run', whose report has tribology where its scene has [operation] or [lubricant]"
+        )
+
+
 def result_file(path: Path) -> Path:
     """The file of a result that is named by itself or by its directory; that of a stage is refused by its reader."""
     from loaded_tca.output.result_files import RESULT
@@ -110,7 +133,9 @@ def file_of_report(path: Path) -> Path:
     result, *others = (path / name for name in (RESULT, STAGE_FILE, STUDY_FILE, DESIGN_FILE))
     if not os.path.isdir(path):
         return path
-    return next((one for one in (result, *others) if one.is_file()), result)
+    found = next((one for one in (result, *others) if one.is_file()), result)
+    _require_result(path, found, "loaded-tca report")
+    return found
 
 
 def subject_of_report(path: Path) -> MeshCycle | StageResult | xarray.Dataset | DesignResult:
@@ -278,7 +303,8 @@ def _run_scene(scene: Scene, directory: Path) -> None:
 def revolution(options: argparse.Namespace) -> None:
     """Analyse a whole revolution, write everything into a directory, and show the summary."""
     from loaded_tca.output.revolution_files import write_revolution
-    from loaded_tca.plots import REVOLUTION_PICTURES, png_of
+    from loaded_tca.plots import png_of
+    from loaded_tca.plots.revolution import revolution_figures
     from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
 
     scene, directory = scene_of(options), options.out
@@ -286,7 +312,7 @@ def revolution(options: argparse.Namespace) -> None:
     effort = expected_revolution_effort(scene)
     with progress_bar(effort, "states", effort.contacts // 2) as progress:
         result = analyse_revolution(scene, progress=progress)
-    pictures = {f"{name}.png": png_of(draw(result)) for name, draw in REVOLUTION_PICTURES.items()}
+    pictures = {f"{name}.png": png_of(figure) for name, figure in revolution_figures(result).items()}
     written = write_revolution(result, directory, pictures)
     print_summary(result.summary(), written)
 
@@ -300,6 +326,8 @@ def tribology(options: argparse.Namespace) -> None:
     from loaded_tca.results.mesh_cycle import MeshCycle
 
     path = result_file(options.result)
+    if os.path.isdir(options.result):
+        _require_result(options.result, path, "loaded-tca tribology")
     result = MeshCycle.load(path)
     directory = options.out or path.parent
     check_place(directory)

@@ -85,6 +85,7 @@ def conditions_of(
     bulk_temperature_C: float | None,
     scuffing_load_stage: float | None,
     permissible_film_ratio: float | None,
+    supply: str | None = None,
 ) -> Conditions:
     """Arguments, those not given from the scene.
 
@@ -117,6 +118,9 @@ def conditions_of(
     friction = _friction(friction, oil, cylindrical, problems)
     if lubricant is not None and not isinstance(lubricant, Lubricant):
         problems.append(f"lubricant: {lubricant!r:.60}; allowed a loaded_tca.tribology.Lubricant")
+    supply = supply if supply is not None else oil.supply if oil else "dip"
+    if supply not in SUPPLY_FACTORS:
+        problems.append(f"supply: {supply!r:.60}; allowed {' or '.join(map(repr, SUPPLY_FACTORS))}")
     if problems:
         raise InputError(problems)
     return Conditions(
@@ -130,7 +134,7 @@ def conditions_of(
         bulk_temperature=values["bulk_temperature_C"],
         load_stage=values["scuffing_load_stage"],
         permissible_film_ratio=values["permissible_film_ratio"],
-        supply_factor=SUPPLY_FACTORS[oil.supply if oil else "dip"],
+        supply_factor=SUPPLY_FACTORS[supply],
     )
 
 

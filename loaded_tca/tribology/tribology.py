@@ -446,7 +446,9 @@ class Tribology:
         )
         parts = [
             "no speed" if math.isnan(rpm) else f"pinion at {rpm:g} rpm",
-            "no oil" if oil is None else f"{oil.base} oil of {oil.viscosity_40:g} mm2/s at {oil.oil_temperature:g} C",
+            "no oil"
+            if oil is None
+            else f"{oil.base} oil of {oil.viscosity_40:g} mm2/s at 40 C, supplied at {oil.oil_temperature:g} C",
             "no roughness" if given.roughness is None else "Ra {:g} and {:g} um".format(*given.roughness),
             f"friction: {'mean of ' if friction == MEAN else ''}{friction}" if friction else "no friction",
             f"K_A {given.application_factor:g}, K_v {given.dynamic_factor:g}",
