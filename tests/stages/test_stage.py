@@ -98,7 +98,7 @@ def test_planet_whose_pin_is_far_off_is_slack(result):
 def test_warnings_are_of_loads_up_to_the_largest_share_of_a_planet(result):
     """An even share of four is 75 N m, and 120 N m the next force of the meshes; two slack planets leave 150."""
     slack = rebalanced(result, {"stage.pin_tangential_um": [500.0, 0.0, 500.0, 0.0], "stage.floating_sun": False})
-    assert slack.planet_share.max() > 0.4 > 0.26 > result.planet_share.max()
+    assert slack.planet_share.max() > 0.4 > 0.27 > result.planet_share.max()
     for one, largest in ((result, 120.5), (slack, 300.5)):
         cycle = one.sun_mesh
         torques = 1e-3 * cycle.torque
@@ -126,7 +126,7 @@ def test_edge_pressure_is_that_of_the_mesh_under_the_largest_share(result):
         torque = 75e3 if name == "sun_mesh" else 50e3
         at = int(np.argmin(np.abs(cycle.torque - torque)))
         below, above = (np.nanmax(cycle.edge_pressure[k], initial=0.0) for k in (at, at + 1))
-        assert 0.0 < below <= own < above  # the largest share is up to 1.04 even ones
+        assert 0.0 < below <= own < above  # the largest share is up to 1.05 even ones
     line = next(line for line in result.summary().splitlines() if "at a sharp edge, mesh-dependent" in line)
     assert line.split()[-1] == shown(result.key_figures()[1]["sun_mesh_edge_pressure_MPa"], "")
 
