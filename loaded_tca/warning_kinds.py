@@ -204,8 +204,9 @@ CLEARANCE = Kind(
     "a smaller tip diameter of the mating gear, or a deeper dedendum",
 )
 BEYOND_YIELD = Kind(
-    "the pressure is above {most:g} MPa, which no gear steel carries without yielding",
-    "the contact is elastic: real flanks yield below their surface, and carry the load on a wider contact",
+    "4/pi of the mean pressure of a contact is above {most:g} MPa, which no gear steel carries without yielding",
+    "4/pi of its mean is the peak of a line contact; load on cells beside edges, which `peak_pressure` leaves out, "
+    "counts, too. The contact is elastic: real flanks yield below their surface, and carry the load on a wider contact",
     "`max_pressure_MPa`, less torque, or another unit of what was given",
 )
 ROOT_BEYOND_YIELD = Kind(

@@ -753,8 +753,8 @@ FAULTS = (
             ),
             (
                 "results/figures.py",
-                "span_of(under.transmission_error) * under.length",
-                "span_of(under.transmission_error)",
+                "span_of(under.transmission_error, under.result.places_of_mesh) * under.length",
+                "span_of(under.transmission_error, under.result.places_of_mesh)",
             ),
             (
                 "results/root_stress.py",

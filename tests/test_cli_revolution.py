@@ -18,7 +18,7 @@ QUICK = [
 ]
 SCENE = "examples/scenes/revolution_helical.toml"
 TABLES = ["orders.csv", "revolution.csv", "revolution.json", "revolution.nc", "teeth.csv"]
-PICTURES = [f"revolution_{name}.png" for name in ("error", "shares", "spectrum", "waterfall")]
+PICTURES = [f"revolution_{name}.png" for name in ("error", "shares", "spectrum")]  # of one torque
 
 
 def options(*changes):

@@ -107,7 +107,7 @@ REVOLUTION = """files in DIR:
   revolution_error.png      transmission error over the revolution, rigid and under each torque
   revolution_spectrum.png   its orders under the largest torque
   revolution_shares.png     share of every tooth as a band, highest pressure of every tooth
-  revolution_waterfall.png  orders over the torque
+  revolution_waterfall.png  orders over the torque; of two torques or more
 [pinion.pitch], [wheel.pitch] and [revolution] of the scene say where the teeth stand and which pitches follow each
 other; docs/guide/whole_revolutions.md says more."""
 STAGE = """files in DIR:

@@ -18,6 +18,7 @@ from loaded_tca.cli.inputs import (
     file_of_report,
     index_of_position,
     index_of_torque,
+    require_result,
     result_file,
     result_of,
     scene_of,
@@ -96,7 +97,8 @@ def _run_scene(scene: Scene, directory: Path) -> None:
 def revolution(options: argparse.Namespace) -> None:
     """Analyse a whole revolution, write everything into a directory, and show the summary."""
     from loaded_tca.output.other_results import write_revolution
-    from loaded_tca.plots import REVOLUTION_PICTURES, png_of
+    from loaded_tca.plots import png_of
+    from loaded_tca.plots.revolution import revolution_figures
     from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
 
     scene, directory = scene_of(options), options.out
@@ -104,7 +106,7 @@ def revolution(options: argparse.Namespace) -> None:
     effort = expected_revolution_effort(scene)
     with progress_bar(effort, "states", effort.contacts // 2) as progress:
         result = analyse_revolution(scene, progress=progress)
-    pictures = {f"{name}.png": png_of(draw(result)) for name, draw in REVOLUTION_PICTURES.items()}
+    pictures = {f"{name}.png": png_of(figure) for name, figure in revolution_figures(result).items()}
     written = write_revolution(result, directory, pictures)
     print_summary(result.summary(), written)
 
@@ -118,6 +120,8 @@ def tribology(options: argparse.Namespace) -> None:
     from loaded_tca.results.mesh_cycle import MeshCycle
 
     path = result_file(options.result)
+    if options.result.is_dir():
+        require_result(options.result, path, "loaded-tca tribology")
     result = MeshCycle.load(path)
     directory = options.out or path.parent
     check_place(directory)

@@ -87,6 +87,29 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
     return usual | {key: tolerance for key, tolerance in given if tolerance is not None}
 
 
+def require_result(directory: Path, path: Path, command: str) -> None:
+    """Refuse a directory without a result that holds something else, in words that say what to give instead."""
+    from loaded_tca.output.other_results import TRIBOLOGY_FILES
+    from loaded_tca.output.result_files import RESULT
+
+    if path.exists():
+        return
+    parts = [one.name for one in sorted(directory.iterdir()) if (one / RESULT).is_file()]
+    if (directory / "revolution.nc").is_file():
+        raise InputError(
+            f"{directory}: holds a whole revolution, of which '{command}' takes none: its numbers are in "
+            "revolution.json and its tables; give the directory of 'loaded-tca run'"
+        )
+    if parts:
+        these = " or ".join(f"'{command} {directory / name}'" for name in parts)
+        raise InputError(f"{directory}: holds results in {', '.join(parts)}; give one of them: {these}")
+    if any((directory / name).is_file() for name in TRIBOLOGY_FILES):
+        raise InputError(
+            f"{directory}: holds tribology alone, without the result that it is of; give the directory of "
+            "'loaded-tca run', whose report has tribology where its scene has [operation] or [lubricant]"
+        )
+
+
 def result_file(path: Path) -> Path:
     """The file of a result that is named by itself or by its directory; that of a stage is refused by its reader."""
     from loaded_tca.output.result_files import RESULT
@@ -105,7 +128,9 @@ def file_of_report(path: Path) -> Path:
     result, *others = (path / name for name in (RESULT, STAGE_FILE, STUDY_FILE, DESIGN_FILE))
     if not os.path.isdir(path):
         return path
-    return next((one for one in (result, *others) if one.is_file()), result)
+    found = next((one for one in (result, *others) if one.is_file()), result)
+    require_result(path, found, "loaded-tca report")
+    return found
 
 
 def subject_of_report(path: Path) -> MeshCycle | StageResult | xarray.Dataset | DesignResult:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from loaded_tca.errors import require
 from loaded_tca.plots import style
 from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.revolution import Revolution
@@ -18,6 +21,8 @@ MOST_ORDERS = 3.5
 """Mesh orders that are shown."""
 BESIDE_MESH = 0.3
 """Pitches before and after the mesh of a tooth pair that are shown."""
+WATERFALL = "revolution_waterfall"
+"""Picture that needs several torques."""
 LEAST_SHOWN = 1e-4
 """Amplitude [um] below which orders are not told from each other."""
 
@@ -195,7 +200,15 @@ def plot_revolution_waterfall(revolution: Revolution) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the revolution has one torque, whose orders ``plot_revolution_spectrum`` draws.
     """
+    require(
+        (len(revolution.torque) > 1, "torque: the revolution has one; allowed two or more, to draw orders over them")
+    )
     figure = Figure(figsize=(9.0, 5.0), layout="constrained")
     axes = figure.add_subplot()
     ascending = np.argsort(revolution.torque, kind="stable").tolist()
@@ -217,10 +230,26 @@ def plot_revolution_waterfall(revolution: Revolution) -> Figure:
     return figure
 
 
-REVOLUTION_PICTURES = {
+REVOLUTION_PICTURES: dict[str, Callable[[Revolution], Figure]] = {
     "revolution_error": plot_revolution_error,
     "revolution_spectrum": plot_revolution_spectrum,
     "revolution_shares": plot_revolution_shares,
-    "revolution_waterfall": plot_revolution_waterfall,
+    WATERFALL: plot_revolution_waterfall,
 }
-"""Pictures that the command draws, by the names of their files."""
+"""Pictures of the command, by the names of their files."""
+
+
+def revolution_figures(revolution: Revolution) -> dict[str, Figure]:
+    """Draw every picture of a revolution: that over the torque needs two of them.
+
+    Parameters
+    ----------
+    revolution : Revolution
+
+    Returns
+    -------
+    dict of str to matplotlib.figure.Figure
+        By the names of ``REVOLUTION_PICTURES``.
+    """
+    several = len(revolution.torque) > 1
+    return {name: draw(revolution) for name, draw in REVOLUTION_PICTURES.items() if several or name != WATERFALL}

@@ -252,10 +252,12 @@ STAGE_CAPTIONS = {
     "stage_phases": "Planets in phase have the same direction. Between both dials: how far the mesh of a planet with "
     "the ring is ahead of its mesh with the sun.",
     "stage_shares": "Share of every planet in the torque of the sun; the largest over an even one is K_gamma.",
-    "stage_load_factor": "K_gamma as pin errors grow. It falls with the torque: errors stay, deflections grow.",
+    "stage_load_factor": "K_gamma as pin errors grow. Where they make it more than 1 it falls with the torque: errors "
+    "stay, deflections grow. Three planets about a floating sun stay at 1, whatever the pins.",
     "stage_sun_orbit": "How far the sun goes to even the shares out, in the frame of the carrier.",
     "stage_error": "Where the phases cancel orders, the planets together excite less than one alone.",
-    "stage_orders": "Amplitudes of the stage and of one planet alone; pin errors bring cancelled orders back.",
+    "stage_orders": "Amplitudes of the stage and of one planet alone; unequal shares bring orders back that equal "
+    "planets cancel.",
 }
 """How each picture is read, in reports."""
 STAGE_PICTURES: dict[str, Callable[[StageResult], Figure]] = {

@@ -239,8 +239,12 @@ def stage_geometry(stage: Stage) -> dict[str, Any]:
 def _stage_figures(result: StageResult, part: slice) -> Table:
     """Every figure under some torques."""
     figures = result.key_figures()[part]
-    first, *names = figures[0]
-    rows = ((label_of(name), *(shown(row[name], name) for row in figures)) for name in names)
+    first, *names = result.known_figures()
+    heads = {name: label_of(name) for name in names}
+    heads |= {
+        name: f"{heads[name]}, {edge}" for name in names if "_edge_" in name and (edge := result.kind_of_edge(name))
+    }
+    rows = ((heads[name], *(shown(row[name], name) for row in figures)) for name in names)
     return Table(tuple(rows), (label_of(first), *(shown(row[first], first) for row in figures)))
 
 

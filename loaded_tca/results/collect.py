@@ -93,7 +93,7 @@ def mesh_cycle(
     if roots:
         in_contact = ~np.isnan(arrays["normal_force"]).all(axis=-1)
         arrays |= root_stress_arrays(pair, roots, arrays["pair"].tolist(), in_contact, stacked, moved)
-        warn_of_root_stress(arrays["root_tension"], arrays["root_compression"])
+        warn_of_root_stress(carried.torque, arrays["root_tension"], arrays["root_compression"])
     return MeshCycle(
         scene=scene,
         dataset=dataset_of(

@@ -143,6 +143,7 @@ class MeshCycle(CycleNumbers):
         bulk_temperature_C: float | None = None,
         scuffing_load_stage: float | None = None,
         permissible_film_ratio: float | None = None,
+        supply: str | None = None,
     ) -> Tribology:
         """Return loss, temperatures, films and safeties at one speed or several, with an oil and a roughness.
 
@@ -167,6 +168,8 @@ class MeshCycle(CycleNumbers):
             Of the oil in the FZG test A/8.3/90, from 1 to 14.
         permissible_film_ratio : float, optional
             lambda_GFP.
+        supply : {"dip", "spray", "submerged"}, optional
+            How the oil comes to the gears, for the bulk temperature; default: of the scene, or "dip".
 
         Returns
         -------
@@ -208,6 +211,7 @@ class MeshCycle(CycleNumbers):
             bulk_temperature_C=bulk_temperature_C,
             scuffing_load_stage=scuffing_load_stage,
             permissible_film_ratio=permissible_film_ratio,
+            supply=supply,
         )
 
     def to_dynamics(self) -> xarray.Dataset:

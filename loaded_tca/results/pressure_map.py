@@ -64,6 +64,11 @@ class PressureMap:
         return np.asarray(self.pressure.sum(axis=0) * math.prod(self.spacing))
 
     @property
+    def mean_pressure(self) -> float:
+        """Mean pressure [MPa] of the cells under pressure, those beside edges among them."""
+        return mean_pressure_of(self.pressure)
+
+    @property
     def points(self) -> Array:
         """Cell centres (nx, ny, 3) in the tangent plane, in the fixed frame [mm]."""
         return self.origin + self.x[:, None, None] * self.axes[0] + self.y[:, None] * self.axes[1]
@@ -104,6 +109,12 @@ class PressureMap:
             for centres, step in zip((self.x, self.y), self.spacing, strict=True)
         )
         return float(np.hypot(x[:, None], y)[np.isinf(self.gap)].min(initial=math.inf))
+
+
+def mean_pressure_of(pressure: Array) -> float:
+    """Mean pressure [MPa] of the cells of a grid that are under pressure; 0 where none is."""
+    under = int(np.count_nonzero(pressure))
+    return float(pressure.sum()) / under if under else 0.0
 
 
 Maps = tuple[tuple[tuple[PressureMap | None, ...], ...], ...]

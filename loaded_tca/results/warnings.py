@@ -6,7 +6,7 @@ Warnings are of gears that jam or are no gears, too. Findings name the edges tha
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.pressure_map import arc_cells
+from loaded_tca.results.pressure_map import arc_cells, mean_pressure_of
 from loaded_tca.results.support_growth import standing
 from loaded_tca.scene import Scene
 from loaded_tca.scene.section import values_of
@@ -50,6 +50,8 @@ HARDEST_ROOT_MPa = 1500.0
 """Root stress that no gear steel carries: nominal strengths sigma_FE of ISO 6336-5 end at 1050 MPa."""
 MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
+OF_THE_LARGEST = (kinds.ROUNDED_EDGE, kinds.BODY_TWIST, kinds.DEFLECTION)
+"""Kinds whose sentences say how large it becomes under any torque."""
 
 
 def warn_of_accuracy(
@@ -75,29 +77,77 @@ def warn_of_accuracy(
     body_torsion : float [mm/N]
         Twist of both gear bodies about their bores at the base circle, where teeth bend.
     """
-    places: dict[str, list[str]] = {}
-    solved, sentences = 0, []
+    torques, maps = np.asarray(carried.torque, dtype=float), []
     limit = LARGE_ERROR * (1.0 + ROUNDING)
     large = {place: peak.error for place, peak in at_rounded_edges.items() if peak.error > limit}
-    worst = max(large.values(), default=0.0)
-    size = "without a limit" if worst == math.inf else f"{worst:.0%} at the most"
-    mesh_error = kinds.ROUNDED_EDGE.sentence(limit=LARGE_ERROR, size=size)
-    for t, (torque, rows) in enumerate(zip(carried.torque.tolist(), carried.contacts, strict=True)):
-        loads = [loaded.solution.load for row in rows for loaded in row if loaded is not None]
-        if torque > 0.0 and not any(loads):
-            sentences.append(kinds.NO_TORQUE.sentence(torque=1e-3 * torque))
+    for t, (torque, rows) in enumerate(zip(torques.tolist(), carried.contacts, strict=True)):
         for n, (angle, row) in enumerate(zip(carried.path.pinion_angle.tolist(), rows, strict=True)):
             for k, (number, loaded) in enumerate(zip(carried.pairs.tolist(), row, strict=True)):
                 if loaded is not None:
-                    solved += 1
-                    place = place_of(torque, angle, number)
-                    at_rounding = [mesh_error] if (t, n, k) in large else []
-                    for reason in [*at_rounding, *reasons_of(pair, grid, loaded)]:
-                        places.setdefault(reason, []).append(place)
-    sentences += [at_places(reason, at, solved) for reason, at in places.items()]
-    sentences += rotation_reasons(pair, carried.torque, carried.rotation, body_torsion, load_sharing=load_sharing)
-    for sentence in sentences:
+                    reasons = reasons_of(pair, grid, loaded)
+                    error = large.get((t, n, k), 0.0)
+                    maps.append((torque, place_of(torque, angle, number), loaded.solution.load, error, reasons))
+
+    def under(largest: float) -> dict[str, str]:
+        """Sentences on the contacts under torques up to the largest, by what all of one reason have in common."""
+        some = [one for one in maps if one[0] <= largest]
+        worst = max((error for *_, error, _ in some), default=0.0)
+        size = "without a limit" if worst == math.inf else f"{worst:.0%} at the most"
+        at_rounding = kinds.ROUNDED_EDGE.sentence(limit=LARGE_ERROR, size=size)
+        places: dict[str, list[str]] = {}
+        for _, place, _, error, reasons in some:
+            for reason in [*([at_rounding] if error else []), *reasons]:
+                places.setdefault(reason, []).append(place)
+        sentences = [
+            kinds.NO_TORQUE.sentence(torque=1e-3 * torque)
+            for torque in torques[torques <= largest].tolist()
+            if torque > 0.0 and not any(load for of, _, load, *_ in some if of == torque)
+        ]
+        sentences += [at_places(reason, at, len(some)) for reason, at in places.items()]
+        rows = torques <= largest
+        sentences += rotation_reasons(
+            pair, torques[rows], carried.rotation[rows], body_torsion, load_sharing=load_sharing
+        )
+        return {_without_size(sentence): sentence for sentence in sentences}
+
+    for sentence in sentences_of_torques(torques, under):
         give_accuracy_warning(sentence, stacklevel=3)
+
+
+class SentenceOfTorques(str):
+    """A sentence on contacts under several torques, and what it says of the smaller ones.
+
+    Attributes
+    ----------
+    up_to : tuple of (str or None)
+        For each torque in rising order: the sentence on contacts under it and all smaller ones; None: no reason there.
+    """
+
+    up_to: tuple[str | None, ...] = ()
+
+
+def sentences_of_torques(torques: Array, under: Callable[[float], Mapping[str, str]]) -> list[SentenceOfTorques]:
+    """Sentences on all torques [N mm], with what each says of the smaller ones.
+
+    Parameters
+    ----------
+    torques : (k,) array [N mm]
+    under : callable
+        Sentences on torques up to a largest one, by a key that all sentences for one reason have.
+    """
+    parts = [under(largest) for largest in np.unique(torques).tolist()]
+    sentences = []
+    for key, sentence in (parts[-1] if parts else {}).items():
+        one = SentenceOfTorques(sentence)
+        one.up_to = tuple(part.get(key) for part in parts)
+        sentences.append(one)
+    return sentences
+
+
+def _without_size(sentence: str) -> str:
+    """A reason without its places and without a size that is the largest one under all torques."""
+    known = kinds.kind_of(sentence)
+    return known.words if known is not None and known in OF_THE_LARGEST else without_place(sentence)
 
 
 def rotation_reasons(
@@ -225,13 +275,20 @@ def _small_clearances(scene: Scene, pair: GearPair) -> list[str]:
     ]
 
 
-def warn_of_root_stress(tension: Array, compression: Array) -> None:
+def warn_of_root_stress(torques: Array, tension: Array, compression: Array) -> None:
     """Give an AccuracyWarning for each gear with root stress (torque, position, gear) [MPa] beyond yield."""
-    for gear, name in enumerate(GEARS):
-        stress = float(np.nanmax(np.abs([tension[..., gear], compression[..., gear]]), initial=0.0))
-        if stress > HARDEST_ROOT_MPa:
-            sentence = kinds.ROOT_BEYOND_YIELD.sentence(gear=name, stress=stress, most=HARDEST_ROOT_MPa)
-            give_accuracy_warning(sentence, stacklevel=4)
+
+    def under(largest: float) -> dict[str, str]:
+        rows = torques <= largest
+        stresses = np.nanmax(np.abs([tension[rows], compression[rows]]), axis=(0, 1, 2), initial=0.0)
+        return {
+            name: kinds.ROOT_BEYOND_YIELD.sentence(gear=name, stress=stress, most=HARDEST_ROOT_MPa)
+            for name, stress in zip(GEARS, stresses.tolist(), strict=True)
+            if stress > HARDEST_ROOT_MPa
+        }
+
+    for sentence in sentences_of_torques(torques, under):
+        give_accuracy_warning(sentence, stacklevel=4)
 
 
 def without_place(sentence: str) -> str:
@@ -258,7 +315,7 @@ def reasons_of(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[
         reasons.append(kinds.BOX.sentence())
     if solution.load > 0.0 and solution.cells_across[0] < 8:
         reasons.append(kinds.FEW_CELLS.sentence())
-    if pair.max_pressure is None and OVER_MEAN * solution.load > HARDEST_MPa * solution.contact_area:
+    if pair.max_pressure is None and OVER_MEAN * mean_pressure_of(solution.pressure) > HARDEST_MPa:
         reasons.append(kinds.BEYOND_YIELD.sentence(most=HARDEST_MPa))
     if 0.5 * loaded.extent[0] > THICKEST_CONTACT * pair.module:
         reasons.append(kinds.WIDE.sentence())

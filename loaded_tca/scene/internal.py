@@ -239,7 +239,7 @@ class InternalScene(CylindricalScene):
             ("overlap interference at the tips [mm]", _room_cell(mesh.overlap_clearance)),
             (
                 "radial assembly [mm]",
-                _room_cell(assembly) if assembly >= 0.0 else f"{-assembly:.4f} overlap: along the axis only",
+                _assembly_cell(assembly),
             ),
             ("", "pinion", "wheel (ring)"),
             ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
@@ -268,6 +268,13 @@ class InternalScene(CylindricalScene):
 def _room_cell(clearance: float) -> str:
     """A clearance in words."""
     return "free" if math.isinf(clearance) else f"{clearance:.4f} free"
+
+
+def _assembly_cell(clearance: float) -> str:
+    """Clearance of a pinion that is pushed radially into its place, in words."""
+    if clearance == 0.0:
+        return "0.0000 free: teeth touch in mesh alone"
+    return _room_cell(clearance) if clearance > 0.0 else f"{-clearance:.4f} overlap: along the axis only"
 
 
 def _diameter_rows(mesh: InternalMesh) -> list[Row]:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -20,8 +19,9 @@ from loaded_tca.results import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.stages.balance import Deflections, Shares, balance, directions_of, pin_errors
 from loaded_tca.stages.kinematics import mesh_phases
-from loaded_tca.stages.result import StageResult, stage_dataset
+from loaded_tca.stages.result import EDGES, StageResult, stage_dataset
 from loaded_tca.stages.sections import PLACE, RING_MESH, SUN_MESH, Stage, in_words_of
+from loaded_tca.stages.warnings import MeshWarnings
 
 PARTS = 0.15, 0.5, 1.6
 """Forces of the mesh cycles over an even share, beside it and the whole force: where planets may come to."""
@@ -53,7 +53,8 @@ def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult
     Warns
     -----
     AccuracyWarning
-        As of :func:`loaded_tca.analyse`, of both meshes.
+        As of :func:`loaded_tca.analyse`, of both meshes under loads up to the largest share of a planet, and the next
+        force of the mesh cycles above it.
     """
     stage.require_assembly()
     torques = np.asarray(stage.sun_torques)
@@ -62,29 +63,30 @@ def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult
     forces = _forces(torques / base_radius, planets)
     count = len(forces) * stage.analysis.positions
     of_sun_mesh, of_ring_mesh = scenes_of(stage)
-    warned: list[str] = []
-    with _mesh_of(SUN_MESH, warned):
+    with in_words_of(SUN_MESH), noted_accuracy_warnings(given=False, alone=True) as of_sun_warned:
         of_sun = analyse(of_sun_mesh, _part_of(progress, 0, 2 * count))
-    with _mesh_of(RING_MESH, warned):
+    with in_words_of(RING_MESH), noted_accuracy_warnings(given=False, alone=True) as of_ring_warned:
         of_ring = analyse(of_ring_mesh, _part_of(progress, count, 2 * count))
     arrays = _shared(stage, torques, forces, (of_sun, of_ring))
+    warned = MeshWarnings.of(of_sun_warned, of_ring_warned)
+    sentences = warned.under(forces, *_largest_loads(stage, arrays))
     about = {
         "version": version("loaded_tca"),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        "warnings": "\n".join(warned),
+        "warnings": "\n".join(sentences),
+        "mesh_warnings": warned.to_text(),
     }
+    for sentence in sentences:
+        give_accuracy_warning(sentence)
     return StageResult(stage=stage, dataset=stage_dataset(arrays, **about), sun_mesh=of_sun, ring_mesh=of_ring)
 
 
-@contextmanager
-def _mesh_of(gears: Mapping[str, str], warned: list[str]) -> Iterator[None]:
-    """Tell problems in the words of the stage; note and give its accuracy warnings with the mesh that they are of."""
-    with in_words_of(gears), noted_accuracy_warnings(given=False, alone=True) as sentences:
-        yield
-    mesh = " and ".join(f"{name} ({gear})" for gear, name in gears.items())
-    for sentence in dict.fromkeys(sentences):
-        warned.append(f"{mesh}: {sentence}")
-        give_accuracy_warning(warned[-1], stacklevel=4)
+def _largest_loads(stage: Stage, arrays: Mapping[str, Array]) -> tuple[float, tuple[float, float]]:
+    """Largest force at the base circles that a planet has [N], and the torques of sun and planet under it [N mm]."""
+    sun = stage.meshes[0]
+    largest = float((arrays["planet_share"].max(axis=(1, 2)) * arrays["torque"]).max())
+    force = largest / sun.pinion.base_radius
+    return force, (largest, force * sun.wheel.base_radius)
 
 
 OF_BALANCE = frozenset(
@@ -96,7 +98,8 @@ OF_BALANCE = frozenset(
 def rebalanced(result: StageResult, changes: Mapping[str, Any]) -> StageResult:
     """The result of a stage with other pins, or another support of the sun: both meshes stay what they are.
 
-    For studies: a balance takes milliseconds a position, where the meshes take seconds.
+    For studies: a balance takes milliseconds a position, where the meshes take seconds. Its ``warnings`` are those of
+    the loads up to its own largest share; none is given.
 
     Parameters
     ----------
@@ -125,6 +128,9 @@ def rebalanced(result: StageResult, changes: Mapping[str, Any]) -> StageResult:
     forces = cycles[0].dataset["torque"].values / cycles[0].gear_pair.base_radii[0]
     about = {name: str(value) for name, value in result.dataset.attrs.items()}
     arrays = _shared(stage, result.dataset["torque"].values, forces, cycles)
+    if "mesh_warnings" in about:
+        warned = MeshWarnings.from_text(about["mesh_warnings"])
+        about["warnings"] = "\n".join(warned.under(forces, *_largest_loads(stage, arrays)))
     return replace(result, stage=stage, dataset=stage_dataset(arrays, **about))
 
 
@@ -238,6 +244,9 @@ def _shared(stage: Stage, torques: Array, forces: Array, cycles: tuple[MeshCycle
         "sun_mesh_peak_pressure": _largest(cycles[0], "peak_pressure", forces, largest),
         "ring_mesh_peak_pressure": _largest(cycles[1], "peak_pressure", forces, largest),
     }
+    for name, mesh in zip(EDGES, cycles, strict=True):
+        pressure = _largest(mesh, "edge_pressure", forces, largest)
+        arrays[name] = np.where(pressure > 0.0, pressure, math.nan)
     if stage.analysis.root_stress:
         names = ("sun_root_tension", "planet_root_tension_at_sun"), ("planet_root_tension_at_ring", "ring_root_tension")
         for mesh, of_gears in zip(cycles, names, strict=True):
@@ -247,8 +256,8 @@ def _shared(stage: Stage, torques: Array, forces: Array, cycles: tuple[MeshCycle
 
 
 def _largest(cycle: MeshCycle, name: str, forces: Array, wanted: Array, gear: int | None = None) -> Array:
-    """Largest value over a mesh cycle under forces (m,) [N], between those of the cycle."""
+    """Largest value over a mesh cycle under forces (m,) [N], between those of the cycle; 0 where there is none."""
     values = cycle.dataset[name].values
     values = values if gear is None else values[..., gear]
-    largest = np.nanmax(values.reshape(len(forces), -1), axis=1)
+    largest = np.nanmax(values.reshape(len(forces), -1), axis=1, initial=0.0)
     return np.asarray(PchipInterpolator(np.append(0.0, forces), np.append(0.0, largest))(wanted))

@@ -5,7 +5,8 @@ In the frame of the carrier planet i stands at psi_i and the sun has turned by p
 .. math:: \tau_{s,i} = \frac{z_s (\varphi_s - \psi_i)}{2\pi}, \qquad
           \tau_{r,i} = \frac{z_s \varphi_s + z_r \psi_i}{2\pi} + \gamma_{rs},
 
-where a whole number is the pitch point of an unmodified pair. A planet touches sun and ring with opposite flanks, so
+where a whole number is the pitch point of an unmodified pair, and z_r is positive, though stage files have it negative.
+A planet touches sun and ring with opposite flanks, so
 that between its two meshes lies its own thickness at both working circles:
 
 .. math:: \gamma_{rs} = \sigma\,\frac{z_p (\psi_p(r_{ws}) + \psi_p(r_{wr}))}{2\pi} - \frac{z_p}{2},

@@ -23,7 +23,7 @@ from loaded_tca.results.files import (
     replace_together,
     variables_of,
 )
-from loaded_tca.results.summary import shown, shown_torque
+from loaded_tca.results.summary import kind_of_edge, shown, shown_torque
 from loaded_tca.stages.files import parse_stage
 from loaded_tca.stages.kinematics import neutralised
 from loaded_tca.stages.sections import Stage
@@ -59,6 +59,15 @@ ROOTS: dict[str, Part] = {
     "ring_root_tension": (("torque",), "MPa", "root tension of the ring under the largest share"),
 }
 """Those of stages that ask for root stress."""
+EDGES: dict[str, Part] = {
+    f"{mesh}_mesh_edge_pressure": (
+        ("torque",),
+        "MPa",
+        f"pressure at an edge in the {mesh}'s mesh under the largest share, mesh-dependent if sharp; NaN: none reached",
+    )
+    for mesh in ("sun", "ring")
+}
+"""Those that results of earlier versions do not have."""
 LABELS = {
     "sun_torque_Nm": "sun torque [N m]",
     "mesh_load_factor": "mesh load factor K_gamma",
@@ -68,10 +77,12 @@ LABELS = {
     "one_path_peak_to_peak_um": "  of one path alone [um]",
     "sun_motion_largest_um": "largest motion of the sun [um]",
     "sun_mesh_peak_pressure_MPa": "peak pressure of the sun's mesh [MPa]",
+    "sun_mesh_edge_pressure_MPa": "  {edge} [MPa]",
     "ring_mesh_peak_pressure_MPa": "peak pressure of the ring's mesh [MPa]",
+    "ring_mesh_edge_pressure_MPa": "  {edge} [MPa]",
     **{f"{name}_MPa": f"{text.removesuffix(' under the largest share')} [MPa]" for name, (_, _, text) in ROOTS.items()},
 }
-"""Lines of the summary by the names of key figures."""
+"""Lines of the summary by the names of key figures; {edge} stands for the kind of edge."""
 COORDINATES = "torque", "sun_angle", "planet"
 
 
@@ -120,13 +131,13 @@ class StageResult:
 
     def __getattr__(self, name: str) -> Array:
         """Values of a quantity of the dataset."""
-        if name.startswith("_") or name not in {**QUANTITIES, **ROOTS}:
+        if name.startswith("_") or name not in {**QUANTITIES, **EDGES, **ROOTS}:
             raise AttributeError(f"StageResult has no {name}")
         return np.asarray(self.dataset[name].values)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences of the accuracy warnings of both meshes."""
+        """Sentences of the accuracy warnings of both meshes, under loads up to the largest share of a planet."""
         return tuple(str(self.dataset.attrs.get("warnings", "")).splitlines())
 
     def error_um(self, torque: int, *, one_path: bool = False) -> Array:
@@ -166,13 +177,28 @@ class StageResult:
                 "transmission_error_peak_to_peak_um": float(np.ptp(self.error_um(t))),
                 "one_path_peak_to_peak_um": float(np.ptp(self.error_um(t, one_path=True))),
                 "sun_motion_largest_um": 1e3 * float(np.hypot(*self.sun_motion[t].T).max()),
-                "sun_mesh_peak_pressure_MPa": float(self.sun_mesh_peak_pressure[t]),
-                "ring_mesh_peak_pressure_MPa": float(self.ring_mesh_peak_pressure[t]),
             }
+            for mesh in ("sun_mesh", "ring_mesh"):
+                row[f"{mesh}_peak_pressure_MPa"] = float(getattr(self, f"{mesh}_peak_pressure")[t])
+                edge = f"{mesh}_edge_pressure"
+                row[f"{edge}_MPa"] = float(getattr(self, edge)[t]) if edge in self.dataset else math.nan
             figures.append(
                 row | {f"{name}_MPa": float(getattr(self, name)[t]) for name in ROOTS if name in self.dataset}
             )
         return tuple(figures)
+
+    def kind_of_edge(self, name: str) -> str:
+        """At which kind of edge a mesh has its edge pressure, of the name of the figure; "" where it reaches none."""
+        mesh = self.sun_mesh if name.startswith("sun") else self.ring_mesh
+        figures = [row for row in mesh.key_figures() if math.isfinite(row["edge_pressure_MPa"])]
+        known = any(math.isfinite(row[name]) for row in self.key_figures())
+        return kind_of_edge(figures) if figures and known else ""
+
+    def known_figures(self) -> dict[str, str]:
+        """Labels of the key figures that a table has, by their names: without edges where none is reached."""
+        labels = {name: LABELS[name] for name in self.key_figures()[0]}
+        edges = {name: self.kind_of_edge(name) for name, label in labels.items() if "{edge}" in label}
+        return {name: label.format(edge=edges.get(name)) for name, label in labels.items() if edges.get(name) != ""}
 
     def findings(self) -> tuple[str, ...]:
         """Sentences on planets that carry nothing: under which torque, and whether at all positions."""
@@ -220,11 +246,13 @@ class StageResult:
             _line("phases of the ring's meshes", *(f"{phase:.4f}" for phase in self.ring_mesh_phase)),
             _line("orders that equal planets cancel", ", ".join(map(str, self.neutralised_orders)) or "none"),
         ]
-        lines += [_line(LABELS[name], *(shown(row[name], name) for row in figures)) for name in figures[0]]
+        lines += [
+            _line(label, *(shown(row[name], name) for row in figures)) for name, label in self.known_figures().items()
+        ]
         lines.append(_line("order of the mesh", "stage [um]", "one path [um]"))
         lines += [
             _line(
-                f"  {one.order}{', cancelled' if one.torsion_cancels else ''}",
+                f"  {one.order}{', cancels between equal planets' if one.torsion_cancels else ''}",
                 f"{one.stage:.4g}",
                 f"{one.one_path:.4g}",
             )
@@ -271,7 +299,8 @@ class StageResult:
             raise InputError(f"{path}: not the result of a stage")
         try:
             stage = parse_stage(str(file.attrs.get("stage_toml", "")), source="stage_toml", folder=None)
-            arrays = arrays_of(file, {**QUANTITIES, **(ROOTS if stage.analysis.root_stress else {})})
+            edges = {name: part for name, part in EDGES.items() if name in file}
+            arrays = arrays_of(file, {**QUANTITIES, **edges, **(ROOTS if stage.analysis.root_stress else {})})
             sizes = {"planet": len(stage.stage.angles), "torque": len(stage.sun_torques), "axis": 2}
             require(*((file.sizes[name] == size, f"{name}: expected {size}") for name, size in sizes.items()))
         except InputError as error:
@@ -280,7 +309,9 @@ class StageResult:
         for name, cycle, scene in zip(MESH_FILES, cycles, (stage.sun_scene, stage.ring_scene), strict=True):
             if replace(cycle.scene, analysis=scene.analysis) != scene:
                 raise InputError(f"{place / name}: the mesh cycle of another stage than {STAGE_FILE} beside it")
-        about = {name: file.attrs[name] for name in ("version", "date", "warnings") if name in file.attrs}
+        about = {
+            name: file.attrs[name] for name in ("version", "date", "warnings", "mesh_warnings") if name in file.attrs
+        }
         return cls(stage=stage, dataset=stage_dataset(arrays, **about), sun_mesh=cycles[0], ring_mesh=cycles[1])
 
 
@@ -289,8 +320,8 @@ def _line(label: str, *cells: str) -> str:
 
 
 def stage_dataset(arrays: dict[str, Array], **about: str) -> xarray.Dataset:
-    """Dataset of the arrays of ``QUANTITIES``, and of ``ROOTS`` where they are known."""
+    """Dataset of the arrays of ``QUANTITIES``, and of ``EDGES`` and ``ROOTS`` where they are known."""
     import xarray
 
-    parts = {name: part for name, part in {**QUANTITIES, **ROOTS}.items() if name in arrays}
+    parts = {name: part for name, part in {**QUANTITIES, **EDGES, **ROOTS}.items() if name in arrays}
     return xarray.Dataset(variables_of(parts, arrays), attrs=about).set_coords(COORDINATES)

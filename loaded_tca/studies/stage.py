@@ -74,22 +74,21 @@ def stage_figures(stage: Stage) -> dict[str, Array]:
         rows["mesh_load_factor"].quantile(0.95, "sample")
     """
     plain = stage.with_changes(dict.fromkeys(OF_BALANCE))
-    result, sentences = _meshes_of(plain.to_toml())
-    for sentence in sentences:
-        give_accuracy_warning(sentence)
     own = as_table(stage.stage)
     changes = {key: own.get(key.removeprefix("stage.")) for key in OF_BALANCE}
-    rows = rebalanced(result, changes).key_figures()
+    result = rebalanced(_meshes_of(plain.to_toml()), changes)
+    for sentence in result.warnings:
+        give_accuracy_warning(sentence)
+    rows = result.key_figures()
     names = [*(name for name in FIRST if name in rows[0]), *(name for name in rows[0] if name not in FIRST)]
     return {name: np.array([row[name] for row in rows], dtype=float) for name in names}
 
 
 @lru_cache(maxsize=KEPT)
-def _meshes_of(text: str) -> tuple[StageResult, tuple[str, ...]]:
-    """Result of a stage without pin errors, on a rigid sun, and its accuracy warnings."""
-    with noted_accuracy_warnings(given=False, alone=True) as sentences:
-        result = analyse_stage(parse_stage(text, folder=None))
-    return result, tuple(sentences)
+def _meshes_of(text: str) -> StageResult:
+    """Result of a stage without pin errors, on a rigid sun; gives no warnings."""
+    with noted_accuracy_warnings(given=False, alone=True):
+        return analyse_stage(parse_stage(text, folder=None))
 
 
 def expected_seconds(study: Study) -> float:

@@ -38,6 +38,7 @@ def tribology_of(
     bulk_temperature_C: float | None = None,
     scuffing_load_stage: float | None = None,
     permissible_film_ratio: float | None = None,
+    supply: str | None = None,
     warn: bool = True,
 ) -> Tribology:
     """Tribology of a result; see :meth:`loaded_tca.MeshCycle.tribology`, whose arguments are these.
@@ -46,7 +47,7 @@ def tribology_of(
     ----------
     result : MeshCycle
     pinion_speed_rpm, lubricant, roughness_um, application_factor, dynamic_factor, friction, bulk_temperature_C,\
- scuffing_load_stage, permissible_film_ratio
+ scuffing_load_stage, permissible_film_ratio, supply
         As there.
     warn : bool
         Whether accuracy warnings are given.
@@ -67,6 +68,7 @@ def tribology_of(
         bulk_temperature_C=bulk_temperature_C,
         scuffing_load_stage=scuffing_load_stage,
         permissible_film_ratio=permissible_film_ratio,
+        supply=supply,
     )
     tribology = Tribology(result, conditions)
     if warn:

@@ -222,7 +222,9 @@ class Conditions:
         friction = self.friction if isinstance(self.friction, str) else f"{self.friction:g}" if self.friction else ""
         parts = [
             "no speed" if math.isnan(rpm) else f"pinion at {rpm:g} rpm",
-            "no oil" if oil is None else f"{oil.base} oil of {oil.viscosity_40:g} mm2/s at {oil.oil_temperature:g} C",
+            "no oil"
+            if oil is None
+            else f"{oil.base} oil of {oil.viscosity_40:g} mm2/s at 40 C, supplied at {oil.oil_temperature:g} C",
             "no roughness" if self.roughness is None else "Ra {:g} and {:g} um".format(*self.roughness),
             f"friction: {'mean of ' if friction == MEAN else ''}{friction}" if friction else "no friction",
             f"K_A {self.application_factor:g}, K_v {self.dynamic_factor:g}",
@@ -243,6 +245,7 @@ def conditions_of(
     bulk_temperature_C: float | None,
     scuffing_load_stage: float | None,
     permissible_film_ratio: float | None,
+    supply: str | None = None,
 ) -> Conditions:
     """Arguments, those not given from the scene.
 
@@ -275,6 +278,9 @@ def conditions_of(
     friction = _friction(friction, oil, cylindrical, problems)
     if lubricant is not None and not isinstance(lubricant, Lubricant):
         problems.append(f"lubricant: {lubricant!r:.60}; allowed a loaded_tca.tribology.Lubricant")
+    supply = supply if supply is not None else oil.supply if oil else "dip"
+    if supply not in SUPPLY_FACTORS:
+        problems.append(f"supply: {supply!r:.60}; allowed {' or '.join(map(repr, SUPPLY_FACTORS))}")
     if problems:
         raise InputError(problems)
     return Conditions(
@@ -288,7 +294,7 @@ def conditions_of(
         bulk_temperature=values["bulk_temperature_C"],
         load_stage=values["scuffing_load_stage"],
         permissible_film_ratio=values["permissible_film_ratio"],
-        supply_factor=SUPPLY_FACTORS[oil.supply if oil else "dip"],
+        supply_factor=SUPPLY_FACTORS[supply],
     )
 
 

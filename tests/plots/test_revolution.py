@@ -1,5 +1,6 @@
 """Pictures of a revolution: curves and orders that they show are those of the result."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,12 +8,15 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import analyse_revolution, read_scene
+from loaded_tca.errors import InputError
 from loaded_tca.plots import (
     REVOLUTION_PICTURES,
     plot_revolution_error,
     plot_revolution_shares,
     plot_revolution_spectrum,
+    plot_revolution_waterfall,
 )
+from loaded_tca.plots.revolution import revolution_figures
 from loaded_tca.plots.style import png_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
@@ -28,6 +32,15 @@ CHANGES = {
 @cache
 def turn():
     return analyse_revolution(read_scene("examples/scenes/revolution_helical.toml").with_changes(CHANGES))
+
+
+def test_orders_over_the_torque_need_two_torques():
+    whole = turn()
+    assert list(revolution_figures(whole)) == list(REVOLUTION_PICTURES)
+    one = replace(whole, dataset=whole.dataset.isel(torque=[0]))
+    assert set(REVOLUTION_PICTURES) - set(revolution_figures(one)) == {"revolution_waterfall"}
+    with pytest.raises(InputError, match="the revolution has one; allowed two or more"):
+        plot_revolution_waterfall(one)
 
 
 @pytest.mark.parametrize("name", REVOLUTION_PICTURES)

@@ -178,13 +178,18 @@ def test_tip_that_comes_near_to_a_root_is_warned_of():
 def test_pressure_that_no_steel_carries_is_warned_of_unless_it_is_capped():
     def found(**changes):
         with noted_accuracy_warnings(given=False) as warned:
-            analyse(spur(**{"analysis.load_sharing": False}, **changes))
-        return [sentence for sentence in warned if "no gear steel carries" in sentence]
+            result = analyse(spur(**{"analysis.load_sharing": False}, **changes))
+        maps = [one for rows in result.maps for row in rows for one in row if one is not None]
+        over = sum(4.0 / math.pi * one.mean_pressure > 4000.0 for one in maps)
+        return over, [sentence for sentence in warned if "no gear steel carries" in sentence]
 
-    assert found(**{"analysis.torques_Nm": (100.0,)}) == []
-    (sentence,) = found(**{"analysis.torques_Nm": (20e3,)})
-    assert "above 4000 MPa" in sentence
-    assert found(**{"analysis.torques_Nm": (20e3,), "material.max_pressure_MPa": 6000.0}) == []
+    assert found(**{"analysis.torques_Nm": (100.0,)}) == (0, [])
+    over, (sentence,) = found(**{"analysis.torques_Nm": (100.0, 20e3)})
+    assert "4/pi of the mean pressure of a contact is above 4000 MPa" in sentence
+    assert f"(at {over} of " in sentence  # as the table of warnings says where to find them
+    # what it says of the smaller torque alone: nothing
+    assert sentence.up_to == (None, str(sentence))
+    assert found(**{"analysis.torques_Nm": (20e3,), "material.max_pressure_MPa": 6000.0})[1] == []
 
 
 def test_path_shorter_than_a_pitch_is_warned_of():

@@ -1,6 +1,7 @@
 """Stages: files and their refusals, shares and orders, saved and read again."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.results.summary import shown
 from loaded_tca.scene import InternalScene
 from loaded_tca.stages import StageResult, analyse_stage, parse_stage, read_stage, rebalanced
 from tests.refusals import refused_calls
@@ -91,6 +93,60 @@ def test_planet_whose_pin_is_far_off_is_slack(result):
     assert slack.findings()[0].startswith("under 100 N m planet 0 carries nothing at all positions")
     assert "note: under 300 N m planet 0 carries nothing" in slack.summary()
     assert result.findings() == ()
+
+
+def test_warnings_are_of_loads_up_to_the_largest_share_of_a_planet(result):
+    """An even share of four is 75 N m, and 120 N m the next force of the meshes; two slack planets leave 150."""
+    slack = rebalanced(result, {"stage.pin_tangential_um": [500.0, 0.0, 500.0, 0.0], "stage.floating_sun": False})
+    assert slack.planet_share.max() > 0.4 > 0.27 > result.planet_share.max()
+    for one, largest in ((result, 120.5), (slack, 300.5)):
+        cycle = one.sun_mesh
+        torques = 1e-3 * cycle.torque
+        solved = sum(
+            contact is not None
+            for torque, rows in zip(torques, cycle.maps, strict=True)
+            if torque < largest
+            for row in rows
+            for contact in row
+        )
+        sentences = [
+            sentence for sentence in one.warnings if sentence.startswith("sun (pinion)") and " (at " in sentence
+        ]
+        assert sentences
+        whose = f"N m: the sun's torque on one planet, up to {300.0 * one.planet_share[1].max():.4g})"
+        for sentence in sentences:
+            assert f" of {solved} pressure maps" in sentence
+            assert sentence.endswith(whose)
+
+
+def test_edge_pressure_is_that_of_the_mesh_under_the_largest_share(result):
+    """Even shares of 75 N m are a torque of the mesh cycles themselves."""
+    for name, cycle in (("sun_mesh", result.sun_mesh), ("ring_mesh", result.ring_mesh)):
+        own = result.key_figures()[1][f"{name}_edge_pressure_MPa"]
+        torque = 75e3 if name == "sun_mesh" else 50e3
+        at = int(np.argmin(np.abs(cycle.torque - torque)))
+        below, above = (np.nanmax(cycle.edge_pressure[k], initial=0.0) for k in (at, at + 1))
+        assert 0.0 < below <= own < above  # the largest share is up to 1.05 even ones
+    line = next(line for line in result.summary().splitlines() if "at a sharp edge, mesh-dependent" in line)
+    assert line.split()[-1] == shown(result.key_figures()[1]["sun_mesh_edge_pressure_MPa"], "")
+
+
+def test_result_of_a_file_without_edge_pressures_is_read(result, tmp_path):
+    result.save(tmp_path)
+    older = replace(
+        result, dataset=result.dataset.drop_vars([f"{mesh}_mesh_edge_pressure" for mesh in ("sun", "ring")])
+    )
+    older.save(tmp_path)
+    again = StageResult.load(tmp_path)
+    assert "edge" not in again.summary().split("warning:")[0]
+    assert math.isnan(again.key_figures()[0]["sun_mesh_edge_pressure_MPa"])
+
+
+def test_orders_that_pins_bring_back_are_not_said_to_be_cancelled(result):
+    moved = rebalanced(result, {"stage.pin_tangential_um": [5.0, 0.0, 0.0, 0.0]})
+    (first,) = (line for line in moved.summary().splitlines() if line.startswith("  1, "))
+    assert "cancels between equal planets" in first
+    assert moved.orders()[0].stage > 1e-3  # um
 
 
 def test_pins_that_turn_the_carrier_together_change_no_share(result):

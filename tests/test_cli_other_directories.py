@@ -1,0 +1,26 @@
+"""Directories of something else than a result: what they hold is said, and what to give instead."""
+
+import pytest
+
+from loaded_tca.cli import main
+
+HELD = {
+    "revolution.nc": "holds a whole revolution",
+    "tribology.nc": "holds tribology alone",
+    "rigid/result.nc": "holds results in rigid; give one of them: 'loaded-tca {} {}/rigid'",
+}
+
+
+@pytest.mark.parametrize("command", ["report", "tribology"])
+@pytest.mark.parametrize("name", HELD)
+def test_directory_of_something_else_is_told(command, name, tmp_path, capsys):
+    file = tmp_path / name
+    file.parent.mkdir(exist_ok=True)
+    file.write_bytes(b"")
+    assert main([command, str(tmp_path)]) == 2
+    assert HELD[name].format(command, tmp_path) in capsys.readouterr().err
+
+
+def test_directory_without_anything_is_told_as_before(tmp_path, capsys):
+    assert main(["report", str(tmp_path)]) == 2
+    assert "result.nc: cannot be read" in capsys.readouterr().err
