@@ -27,8 +27,8 @@ from loaded_tca.results.summary import shown, shown_torque
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import parse_scene
 from loaded_tca.stages import Stage, StageResult
-from loaded_tca.studies.design import DesignResult
-from loaded_tca.studies.design_figures import FIGURES, FigureOfErrors
+from loaded_tca.studies.design import KEPT, DesignResult
+from loaded_tca.studies.design_figures import FIGURES
 from loaded_tca.studies.ranking import (
     MAIN,
     PERCENTILES,
@@ -310,6 +310,8 @@ def design_content(design: DesignResult) -> dict[str, Any]:
         "evaluations": design.evaluations,
         "samples": data.sizes["sample"],
         "figures": _figures(design),
+        "unconfirmed": design.unconfirmed,
+        "advice": design.advice,
         "warnings": explained(data.attrs["warnings"].splitlines()),
         "pictures": pictures_of(figures, DESIGN_CAPTIONS, scene.title),
         "optimum_toml": scene.with_changes(design.optimum).to_toml(),
@@ -321,8 +323,7 @@ def _told_limit(limit: str) -> str:
     name = limit.partition(" ")[0]
     if name not in FIGURES:
         return limit
-    figure = FIGURES[name]
-    return f"{limit} ({figure.text}{'' if isinstance(figure, FigureOfErrors) else figure.note})"
+    return f"{limit} ({FIGURES[name].text}{FIGURES[name].note})"
 
 
 def _values(design: DesignResult) -> Table:
@@ -348,8 +349,8 @@ def _scattered(design: DesignResult) -> Table | None:
 
 
 def _figures(design: DesignResult) -> Table:
-    """The worst value over the samples of each figure under each torque, of start and optimum."""
-    data = design.dataset
+    """The worst value over the samples of each figure under each torque, of start and optimum, beside its limit."""
+    data, limits = design.dataset, design.limits
     rows = []
     texts = {name: (figure.unit, figure.text) for name, figure in FIGURES.items()}
     for name, (unit, words) in {"peak_pressure": PEAK, **texts}.items():
@@ -359,5 +360,16 @@ def _figures(design: DesignResult) -> Table:
         worst = np.fmax.reduce(values.transpose("design", "sample", "torque").values, axis=1)
         for k, torque in enumerate(data["torque"].values.tolist()):
             label = words + (f" [{unit.replace('um', 'µm')}]" if unit != "1" else "")
-            rows.append((label, f"{1e-3 * torque:.4g}", *(shown(value, name) for value in worst[:, k].tolist())))
-    return Table(tuple(rows), ("largest of the samples", "pinion torque [N m]", "start", "optimum"))
+            row = label, f"{1e-3 * torque:.4g}", *(shown(value, name) for value in worst[:, k].tolist())
+            highest = min((one.highest for one in limits if one.figure == name and k in one.torques), default=math.nan)
+            rows.append((*row, _told_beside(float(worst[1, k]), highest)) if limits else row)
+    head = "largest of the samples", "pinion torque [N m]", "start", "optimum"
+    return Table(tuple(rows), (*head, "limit of the optimum") if limits else head)
+
+
+def _told_beside(value: float, highest: float) -> str:
+    """A limit, and by how much the value exceeds it; nothing where there is none."""
+    if math.isnan(highest):
+        return ""
+    exceeded = f"{highest:.4g}, exceeded by {value / highest - 1.0:.1%}"
+    return exceeded if value > (1.0 + KEPT) * highest else f"{highest:.4g}"

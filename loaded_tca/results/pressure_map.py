@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import binary_dilation
+from scipy.ndimage import binary_dilation, distance_transform_edt
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.errors import InputError
@@ -84,6 +84,14 @@ class PressureMap:
         """Cells (nx, ny) beside the end of the material or of the grid, or beyond that of the material."""
         beyond = np.pad(np.isinf(self.gap), 1, constant_values=True)
         return np.asarray(binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1])
+
+    def near_end(self, distance: float) -> Mask:
+        """Cells (nx, ny) beside the end of the material or of the grid, or within a distance [mm] of the material's."""
+        there = np.isfinite(self.gap)
+        if there.all():
+            return self.beside_end
+        away = np.asarray(distance_transform_edt(there, sampling=self.spacing))
+        return np.asarray(self.beside_end | (away < distance))
 
     @cached_property
     def edge_cell(self) -> tuple[int, int]:

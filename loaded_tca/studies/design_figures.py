@@ -1,8 +1,6 @@
 """The figures of a design, each declared once: smooth functions of errors or pressures, with their derivatives.
 
 Those that are smoothed, and so another number than the key figure of a result, have a name of their own.
-
-Result of a design: what its dataset holds, and its file.
 """
 
 from __future__ import annotations
@@ -11,28 +9,29 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.ndimage import convolve1d
 
 from loaded_tca.arrays import GEARS, Array, real
 from loaded_tca.compliance import RootStress
-from loaded_tca.errors import InputError, require
+from loaded_tca.errors import require
 from loaded_tca.loaded.held_contacts import HeldContacts
 from loaded_tca.loaded.sensitivity import LoadedGrid
 from loaded_tca.pairs.kinematics import surface_motions
 from loaded_tca.results.face_slopes import face_load_factor_slopes
 from loaded_tca.results.figure_slopes import EXPONENT, pressure_norm
-from loaded_tca.results.files import DESIGN, FilePath, Part, read_dataset, write_dataset
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.root_stress import root_stress_of_gear, stress_at_extreme
-
-if TYPE_CHECKING:
-    import xarray
+from loaded_tca.tribology.tribology import FEWEST
 
 SMOOTHING = 0.01
 """tau of the span [um]: it exceeds the span by 2 tau ln(N) at the most."""
+NEAR_END = 0.05
+"""Distance over the module within which cells lie at the end of a flank. Beside a sharp end the pressure grows with
+finer cells; one cell alone would leave the more of that in the norm away from ends, the finer the cells are: twofold
+where a contact is a corner of the tip (cells of 4 um). From 0.03 on the norm is that of any grid to 1 %."""
 ROOT_EXPONENT = 50.0
 """Of the norm of the root tension over the positions: 3 % above the largest if four of them are alike."""
 
@@ -44,14 +43,16 @@ Positions = Sequence[Sequence[LoadedGrid]]
 """Loaded contacts of each position, the last one of the scene left out."""
 
 
-def pressure(_: Roots, __: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
-    """Norm of the pressure [MPa] of all cells that have no end of a flank beside them, and its derivatives."""
-    return mean_pressure_norm([[_map_of(grid) for grid in position] for position in positions], at_edges=False)
+def pressure(_: Roots, held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+    """Norm of the pressure [MPa] away from the ends of the flanks, and its derivatives."""
+    maps = [[_map_of(grid) for grid in position] for position in positions]
+    return mean_pressure_norm(maps, held.pair.module, at_edges=False)
 
 
-def edge_pressure(_: Roots, __: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
-    """The same of the cells that have one beside them."""
-    return mean_pressure_norm([[_map_of(grid) for grid in position] for position in positions], at_edges=True)
+def edge_pressure(_: Roots, held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+    """Norm of the averaged pressure [MPa] at the ends of the flanks, and its derivatives."""
+    maps = [[_map_of(grid) for grid in position] for position in positions]
+    return mean_pressure_norm(maps, held.pair.module, at_edges=True)
 
 
 def face_load_factor(_: Roots, held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
@@ -120,20 +121,46 @@ def _map_of(grid: LoadedGrid) -> PressureMap:
     return PressureMap(one.x, one.y, one.spacing, grid.pressure, one.gap, one.origin, one.axes, one.force_line)
 
 
-def mean_pressure_norm(positions: Sequence[Sequence[PressureMap]], *, at_edges: bool) -> tuple[float, list[Array]]:
-    """Norm [MPa] of the pressures of cells beside the ends of the flanks, or of all others, as a mean over positions.
+def mean_pressure_norm(
+    positions: Sequence[Sequence[PressureMap]], module: float, *, at_edges: bool
+) -> tuple[float, list[Array]]:
+    """Norm [MPa] of the pressures at the ends of the flanks, or of all others, as a mean over positions.
+
+    Those at the ends are averaged over squares twice as wide as the band there: the largest pressure at a sharp edge
+    depends on the cells, the force on a square does not.
 
     Also returns its derivatives by the forces of the cells of all maps [1/mm^2].
     """
-    by_force = []
+    band, by_force = NEAR_END * module, []
     for one in (one for position in positions for one in position):
-        kept = np.where(one.beside_end == at_edges, one.pressure, 0.0)
-        by_force.append(pressure_norm(kept, np.ones(kept.shape), one.spacing))
+        at_end = one.near_end(band)
+        own = averaged(one.pressure, one.spacing, 2.0 * band) if at_edges else one.pressure
+        norm, slopes = pressure_norm(np.where(at_end == at_edges, own, 0.0), np.ones(own.shape), one.spacing)
+        by_force.append((norm, averaged(slopes, one.spacing, 2.0 * band) if at_edges else slopes))
     largest = max((norm for norm, _ in by_force), default=0.0)
     if largest == 0.0:
         return 0.0, [slopes for _, slopes in by_force]
     norm = largest * (sum((own / largest) ** EXPONENT for own, _ in by_force) / len(positions)) ** (1.0 / EXPONENT)
     return norm, [slopes * (own / norm) ** (EXPONENT - 1.0) / len(positions) for own, slopes in by_force]
+
+
+def averaged(values: Array, spacing: tuple[float, float], width: float) -> Array:
+    """Means over squares of a width [mm] about the cells (nx, ny), nothing beyond the grid; of cells, where wider.
+
+    Its matrix is symmetric, so that it takes derivatives by means to those by values, too.
+
+    Examples
+    --------
+    >>> averaged(np.array([[0.0, 0.0, 9.0, 0.0]]), (1.0, 0.1), 0.2)
+    array([[0.  , 2.25, 4.5 , 2.25]])
+    """
+    for axis, step in enumerate(spacing):
+        if width > step:
+            reach = math.ceil(0.5 * width / step - 0.5)
+            away = step * np.abs(np.arange(-reach, reach + 1))
+            parts = np.minimum(0.5 * width - away + 0.5 * step, step) / width
+            values = convolve1d(values, parts, axis=axis, mode="constant")
+    return values
 
 
 def span(errors: Array, _: float) -> tuple[float, Array]:
@@ -183,7 +210,8 @@ class FigureOfErrors:
     text: str
     of: Callable[[Array, float], tuple[float, Array]]
     is_of_roots = False
-    is_confirmed = True
+    fewest_positions = 0
+    note = ""
 
 
 @dataclass(frozen=True)
@@ -198,8 +226,8 @@ class FigureOfForces:
         Of models of root stress, held contacts and positions: value and derivatives, an array for each contact.
     is_of_roots : bool
         Whether only scenes that ask for root stress have it.
-    is_confirmed : bool
-        Whether a limit on it must hold in the full analysis, too.
+    fewest_positions : int
+        Of scenes that have it.
     note : str
         Beside a limit in a report.
     """
@@ -208,7 +236,7 @@ class FigureOfForces:
     text: str
     of: Callable[[Roots, HeldContacts, Positions], tuple[float, list[Array]]]
     is_of_roots: bool = False
-    is_confirmed: bool = True
+    fewest_positions: int = 0
     note: str = ""
 
 
@@ -222,15 +250,18 @@ FIGURES: dict[str, FigureOfErrors | FigureOfForces] = {
     ),
     "pressure_MPa": FigureOfForces(
         "MPa",
-        "norm of the pressure away from the ends of the flanks",
+        f"norm of the pressure, farther than {NEAR_END:g} modules from the ends of the flanks",
         pressure,
-        note=", above or below the peak pressure by up to a third",
+        note="; above the peak pressure where contacts are large, below it where they are small, by up to a third",
     ),
-    "edge_pressure_norm_MPa": FigureOfForces(  # by the analysis a number of the grid where edges are sharp
-        "MPa", "norm of the pressure beside the ends of the flanks", edge_pressure, is_confirmed=False
+    "edge_pressure_norm_MPa": FigureOfForces(
+        "MPa",
+        f"norm of the pressure within {NEAR_END:g} modules of the ends of the flanks",
+        edge_pressure,
+        note=f", averaged over squares {2.0 * NEAR_END:g} modules wide; not the largest pressure there",
     ),
     "face_load_factor": FigureOfForces("1", "K_Hbeta", face_load_factor),
-    "loss_factor": FigureOfForces("1", "load loss factor H_VL", loss_factor, is_confirmed=False),
+    "loss_factor": FigureOfForces("1", "load loss factor H_VL", loss_factor, fewest_positions=FEWEST),
     **{
         f"{name}_root_tension_norm_MPa": FigureOfForces(
             "MPa", f"root tension of the {name}, smooth maximum", partial(root_tension, gear), is_of_roots=True
@@ -301,127 +332,3 @@ class Limit:
     figure: str
     torques: tuple[int, ...]
     highest: float
-
-
-TEXTS, NUMBERS = ("scene_toml", "warnings", "objective", "limits"), ("value", "objective", "held_objective")
-"""Attributes and variables that every result has, besides its figure."""
-
-ANALYSED = "design", "sample", "torque", "position"
-PARTS: dict[str, Part] = {
-    "value": (("design", "key"), "1", "value of the key, in the unit at the end of its name"),
-    "range": (("key", "bound"), "1", "lowest and highest value of the key"),
-    "scatter": (("sample", "scatter_key"), "1", "value of the key, or its deviation from that of the design"),
-    "transmission_error": (ANALYSED, "rad", "loaded transmission error"),
-    "peak_pressure": (ANALYSED, "MPa", "largest peak pressure of the tooth pairs"),
-    "transverse_load_factor": (ANALYSED[:3], "1", "K_Halpha"),
-    **{name: (ANALYSED[:3], figure.unit, figure.text) for name, figure in FIGURES.items()},
-    "objective": (ANALYSED[:1], "", "what was minimised, by the full analysis"),
-    "held_transmission_error": (
-        (*ANALYSED[:3], "held_position"),
-        "rad",
-        "loaded transmission error on held contacts, without the last position, the first one of the next pitch",
-    ),
-    **{
-        f"held_{name}": (ANALYSED[:3], figure.unit, f"{figure.text}, on held contacts")
-        for name, figure in FIGURES.items()
-    },
-    "held_objective": (ANALYSED[:1], "", "what was minimised, on held contacts"),
-    "history_x": (("evaluation", "key"), "1", "value of the key"),
-    "history_objective": (("evaluation",), "", "objective on held contacts"),
-    "history_excess": (("evaluation",), "1", "part by which a figure exceeds its limit; negative within all limits"),
-}
-"""What the dataset of a result holds."""
-
-
-EARLIER = {
-    "edge_pressure_MPa": "edge_pressure_norm_MPa",
-    **{f"{name}_root_tension_MPa": f"{name}_root_tension_norm_MPa" for name in GEARS},
-}
-"""Names of figures in files before version 0.3 -> their names now."""
-
-
-@dataclass(frozen=True, eq=False)
-class DesignResult:
-    """Result of a design: start and optimum, with the figures of both by the whole analysis.
-
-    Attributes
-    ----------
-    dataset : xarray.Dataset
-        Over ``design`` ("start", "optimum"), sample, torque, position and key: ``value`` of the keys, analysed
-        ``transmission_error`` [rad], ``peak_pressure`` [MPa], load factors and ``FIGURES``; those on held contacts as
-        ``held_...``; ``history_x``, ``history_objective`` and ``history_excess`` over the evaluations; ``range`` of the
-        keys and ``scatter``; ``attrs`` has in words ``limits``, ``distributions`` of the scatter, ``seeds`` and
-        ``warnings``, each with the number of analyses that it concerns.
-    """
-
-    dataset: xarray.Dataset
-
-    def __repr__(self) -> str:
-        before, after = self.objective
-        warnings = self.dataset.attrs["warnings"].count("\n") + 1 if self.dataset.attrs["warnings"] else 0
-        values = ", ".join(f"{key} = {value:.4g}" for key, value in self.optimum.items())
-        figure = f"{self.dataset.attrs['objective']} of {self.dataset.attrs['figure']}"
-        warned = f", {warnings} accuracy warnings in dataset.attrs" if warnings else ""
-        return f"DesignResult({figure}: {before:.4g} -> {after:.4g}, {values}{warned})"
-
-    @property
-    def start(self) -> dict[str, float]:
-        """Values of the keys where the design started."""
-        return self._values("start")
-
-    @property
-    def optimum(self) -> dict[str, float]:
-        """Values of the keys that were found."""
-        return self._values("optimum")
-
-    def _values(self, design: str) -> dict[str, float]:
-        values = self.dataset["value"].sel(design=design).values.tolist()
-        return dict(zip(self.dataset["key"].values.tolist(), values, strict=True))
-
-    @property
-    def objective(self) -> tuple[float, float]:
-        """Objective of start and optimum by the full analysis."""
-        before, after = self.dataset["objective"].values.tolist()
-        return before, after
-
-    @property
-    def held_objective(self) -> tuple[float, float]:
-        """Objective of start and optimum on held contacts."""
-        before, after = self.dataset["held_objective"].values.tolist()
-        return before, after
-
-    @property
-    def evaluations(self) -> int:
-        """How many designs were evaluated."""
-        return int(self.dataset.sizes["evaluation"])
-
-    def save(self, path: FilePath) -> None:
-        """Write the result to a NetCDF-3 file, to be read by :func:`load_design`."""
-        write_dataset(path, self.dataset)
-
-
-def load_design(path: FilePath) -> DesignResult:
-    """Read the result of a design.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is damaged, is no design, or lacks what all designs have.
-    """
-    dataset = read_dataset(path)
-    if dataset.attrs.get("kind") != DESIGN:
-        raise InputError(f"{path}: a result of loaded_tca, but no design; read it with load_result or load_study")
-    renamed = {held + before: held + now for held in ("", "held_") for before, now in EARLIER.items()}
-    dataset = dataset.rename({before: now for before, now in renamed.items() if before in dataset})
-    for name in ("figure", "limits"):
-        if isinstance(text := dataset.attrs.get(name), str):
-            lines = (line.split(" ", 1) for line in text.splitlines())
-            dataset.attrs[name] = "\n".join(" ".join([EARLIER.get(word, word), *rest]) for word, *rest in lines)
-    figure = dataset.attrs.get("figure")
-    require(
-        *((isinstance(dataset.attrs.get(name), str), f"{name}: missing, or no text") for name in TEXTS),
-        *((name in dataset, f"{name}: missing") for name in NUMBERS),
-        (str(figure) in FIGURES, f"figure: {figure!r:.60}; allowed {', '.join(FIGURES)}"),
-        owner=f"{path}: not the result of a design",
-    )
-    return DesignResult(dataset)

@@ -154,14 +154,17 @@ class DesignModel:
 
     @property
     def figures(self) -> tuple[str, ...]:
-        """Those of ``FIGURES`` that the scene asks for: root tension only with ``analysis.root_stress``."""
-        return tuple(name for name in FIGURES if not FIGURES[name].is_of_roots or self.roots)
+        """Those of ``FIGURES`` that the scene has: root tension only with ``analysis.root_stress``."""
+        known = {name: one for name, one in FIGURES.items() if one.fewest_positions <= self.scene.analysis.positions}
+        return tuple(name for name, one in known.items() if not one.is_of_roots or self.roots)
 
     def require_figure(self, argument: str, name: Any) -> None:
         """InputError, naming the argument, if the model does not have a figure."""
-        way = (
-            "; root tension needs analysis.root_stress = true" if name in FIGURES and FIGURES[name].is_of_roots else ""
-        )
+        figure, way = FIGURES.get(str(name)), ""
+        if figure is not None and figure.is_of_roots:
+            way = "; root tension needs analysis.root_stress = true"
+        elif figure is not None and figure.fewest_positions:
+            way = f"; {name} needs analysis.positions from {figure.fewest_positions} on"
         require((name in self.figures, f"{argument}: {name!r:.60}; allowed {', '.join(self.figures)}{way}"))
 
     @property
