@@ -1,3 +1,4 @@
+import csv
 import io
 import json
 import math
@@ -16,6 +17,7 @@ import loaded_tca.analysis
 import loaded_tca.plots
 from loaded_tca import cli, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError
+from loaded_tca.flank_maps.ease_off_map import ease_off_map
 
 SCENES = Path(__file__).parents[1] / "examples" / "scenes"
 HELICAL = str(SCENES / "helical.toml")
@@ -554,7 +556,13 @@ def test_file_that_the_system_does_not_give_is_no_fault(run, monkeypatch):
 def test_ease_off_of_a_scene_is_drawn(run, gear):
     code, out, err = run("ease-off", scene(), "--out", "maps", "--gear", gear)
     assert (code, err) == (0, [])
-    assert out == "Written to maps: ease_off.png\n"
+    *numbers, files = out.splitlines()
+    assert files == "Written to maps: ease_off.csv, ease_off.png"
+    ease_off = ease_off_map(read_scene(scene()).pair(), gear)
+    printed = {line[:34].strip(): float(line[34:]) for line in numbers}
+    assert printed == pytest.approx(ease_off.named, rel=5e-3, abs=1e-3)  # three digits
+    table = list(csv.DictReader(Path("maps/ease_off.csv").read_text().splitlines()))
+    assert float(table[-1]["ease_off_um"]) == pytest.approx(1e3 * ease_off.corners[1, 1], rel=1e-6)
     assert Path("maps/ease_off.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -32,7 +32,10 @@ COMPARE = """files in DIR:
   comparison.png            transmission error, its harmonics, stiffness, pressure and load share, over each other
   compared_maps.png         pressure maps side by side on one scale
 Pictures are those of one torque; docs/guide/comparing.md says more."""
-EASE_OFF = """files in DIR:
+EASE_OFF = """The values at the corners and the angles, crownings and twist of the second order are printed.
+
+files in DIR:
+  ease_off.csv              the map: radius and axial coordinate, place on the flank, ease-off of every point
   ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
                             corners, and its angles, crownings and twist"""
 SETTINGS = """SCENE has bevel gears with a section [pair.blank] and the radius of its cutter. FILE is a scene of type

@@ -283,6 +283,7 @@ def dynamics(options: argparse.Namespace) -> None:
 def ease_off(options: argparse.Namespace) -> None:
     """Draw the ease-off of a scene."""
     from loaded_tca.flank_maps.ease_off_map import ease_off_map
+    from loaded_tca.output.tables import ease_off_csv
     from loaded_tca.plots import plot_ease_off, png_of
     from loaded_tca.results.files import replace_together
 
@@ -290,7 +291,10 @@ def ease_off(options: argparse.Namespace) -> None:
     check_place(options.out)
     ease_off = ease_off_map(scene.pair(), options.gear)
     picture = png_of(plot_ease_off(ease_off, scene.title))
-    print_files(replace_together(options.out, {"ease_off.png": picture}))
+    paths = replace_together(options.out, {"ease_off.csv": ease_off_csv(ease_off).encode(), "ease_off.png": picture})
+    for name, value in ease_off.named.items():
+        print(f"{name:<34}{round(value, 3) + 0.0:>9.3g}")
+    print_files(paths)
 
 
 def settings(options: argparse.Namespace) -> None:

@@ -40,6 +40,7 @@ from loaded_tca.flank_maps.conjugate import (
 from loaded_tca.flanks.base import Flank, FlankFrame
 from loaded_tca.flanks.spline import flank_coordinates
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.units import MICROMETRES
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,21 @@ class SecondOrder:
     size: tuple[float, float]
     arcs: tuple[float, float]
     residual: float
+
+    @property
+    def named(self) -> dict[str, float]:
+        """All angles, slopes, crownings and the twist by names with their units, for tables."""
+        arcmin, um = math.degrees(60.0), MICROMETRES
+        return {
+            "spiral angle [arcmin]": arcmin * self.spiral_angle,
+            "pressure angle [arcmin]": arcmin * self.pressure_angle,
+            "lengthwise slope [um]": um * self.lengthwise_slope,
+            "profile slope [um]": um * self.profile_slope,
+            "lengthwise crowning [um]": um * self.lengthwise_crowning,
+            "profile crowning [um]": um * self.profile_crowning,
+            "twist [um]": um * self.twist,
+            "residual, rms [um]": um * self.residual,
+        }
 
     @property
     def spiral_angle(self) -> float:
@@ -219,6 +235,13 @@ class EaseOffMap:
     def corners(self) -> Array:
         """Ease-off [mm] at the foot and at the tip (rows), at toe and heel, or z < 0 and z > 0 (columns): (2, 2)."""
         return self.ease_off[[[0], [-1]], [0, -1]]
+
+    @property
+    def named(self) -> dict[str, float]:
+        """Corners, angles, slopes, crownings and the twist by names with their units."""
+        places = [f"{height}, {end}" for height in ("foot", "tip") for end in ("toe or z < 0", "heel or z > 0")]
+        corners = (MICROMETRES * self.corners).ravel().tolist()
+        return {f"{place} [um]": value for place, value in zip(places, corners, strict=True)} | self.second_order.named
 
     def __repr__(self) -> str:
         shape = " x ".join(str(count) for count in self.ease_off.shape)

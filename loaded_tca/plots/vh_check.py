@@ -5,7 +5,6 @@ The ease-off topography on the flank, with its corner values and second-order co
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -221,7 +220,6 @@ def _draw_cell(axes: Axes, pattern: ContactPattern, frame: FlankFrame, levels: A
 EASE_OFF_LEVELS = 10
 SMALLEST_SPAN_um = 0.01
 """Height of the colour scale below which a map would be rounding."""
-ARCMIN = math.degrees(60.0)
 
 
 def plot_ease_off(ease_off: EaseOffMap, title: str = "") -> Figure:
@@ -279,18 +277,8 @@ def _write_corners(axes: Axes, place: tuple[Array, Array], corners: Array) -> No
 
 def _write_numbers(axes: Axes, numbers: SecondOrder) -> None:
     """The second-order coefficients as a table."""
-    rows = (
-        ("spiral angle [arcmin]", ARCMIN * numbers.spiral_angle),
-        ("pressure angle [arcmin]", ARCMIN * numbers.pressure_angle),
-        ("lengthwise slope [µm]", 1e3 * numbers.lengthwise_slope),
-        ("profile slope [µm]", 1e3 * numbers.profile_slope),
-        ("lengthwise crowning [µm]", 1e3 * numbers.lengthwise_crowning),
-        ("profile crowning [µm]", 1e3 * numbers.profile_crowning),
-        ("twist [µm]", 1e3 * numbers.twist),
-        ("residual, rms [µm]", 1e3 * numbers.residual),
-    )
     axes.axis("off")
-    cells = [[name, f"{round(value, 3) + 0.0:.3g}"] for name, value in rows]
+    cells = [[name.replace("um]", "µm]"), f"{round(value, 3) + 0.0:.3g}"] for name, value in numbers.named.items()]
     table = axes.table(cells, cellLoc="left", colWidths=[0.75, 0.25], edges="horizontal", loc="upper center")
     table.auto_set_font_size(False)
     table.set_fontsize(9.0)

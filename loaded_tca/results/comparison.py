@@ -200,6 +200,8 @@ def _flat(table: Mapping[str, Any], place: str = "") -> Iterator[tuple[str, Any]
     for name, value in table.items():
         if isinstance(value, Mapping):
             yield from _flat(value, f"{place}{name}.")
+        elif isinstance(value, Sequence) and value and all(isinstance(one, Mapping) for one in value):
+            yield from _flat({str(n): one for n, one in enumerate(value)}, f"{place}{name}.")
         else:
             yield place + name, value
 
