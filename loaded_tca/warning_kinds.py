@@ -87,6 +87,13 @@ STRIPS_ALIKE = Kind(
     "that: of an aligned pair it rises to either side",
     "analyses on both sides, or a Monte Carlo study; not the spread to first order",
 )
+ANOTHER_POSITION = Kind(
+    "{figure}: its derivatives end within a tolerance: beyond a change by {change:+.2g} another position is the "
+    "highest or lowest, and they are others by {size:.0%} ({key}; {count} of {keys} keys)",
+    "the figure is that of one position, or of two, and follows another one beyond that change, by values and "
+    "derivatives of all positions: it may grow to either side where the table has it fall",
+    "read the change as far as that only; beyond it analyses, or a Monte Carlo study; not the spread to first order",
+)
 RELIEF_START_BESIDE = Kind(
     "a linear relief starts in the contact beside its point: derivatives depend on the grid by up to 25%",
     "the start runs through cells that have the gap of their middles: derivatives by mounting errors, machine "

@@ -46,6 +46,7 @@ def test_every_modification_and_mounting_error_is_looked_at(run, out):
         "edges of both gears end the contact at one place",
         "an edge cuts the slices of the largest line load",
         "an edge cuts the slices of the peak pressure",
+        "peak to peak",
     ]
     assert text.splitlines()[1].startswith("pinion torque 260 N m")
     assert text.splitlines()[-1] == f"Written to out: {', '.join(FILES)}"

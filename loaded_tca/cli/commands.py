@@ -249,6 +249,7 @@ def sensitivities(options: argparse.Namespace) -> None:
     from loaded_tca.output.tables import sensitivities_text, write_sensitivities
     from loaded_tca.plots import png_of
     from loaded_tca.plots.sensitivities import sensitivity_pictures
+    from loaded_tca.results.extremes import warn_of_positions
     from loaded_tca.results.numbers import index_or_largest
 
     result, directory, torque, _ = result_of(options)
@@ -260,6 +261,7 @@ def sensitivities(options: argparse.Namespace) -> None:
             getattr(slopes, name)
             if show is not None:
                 show(done, len(DERIVATIVES))
+    warn_of_positions(slopes, tolerances)
     text = sensitivities_text(slopes, tolerances, torque)
     pictures = sensitivity_pictures(slopes, tolerances, torque)
     written = write_sensitivities(

@@ -308,7 +308,16 @@ def study_summary(study: xarray.Dataset) -> str:
     counts = ", ".join(
         f"{count} {word}" for word, count in sorted(status.items(), key=lambda one: (one[0] != "ok", one))
     )
-    return "\n".join([f"{study.sizes['sample']} variants: {counts}", *_table(study), *_reasons(study)])
+    head = f"{study.sizes['sample']} variants: {counts}"
+    return "\n".join([head, *_told_mixed(study), *_table(study), *_reasons(study)])
+
+
+def _told_mixed(study: xarray.Dataset) -> Iterator[str]:
+    """That the table has all combinations of given values together, where distributions scatter about each."""
+    keys = design_keys(study)
+    combinations = len(set(zip(*(study[key].values.tolist() for key in keys), strict=True)))
+    if keys and combinations > 1:
+        yield f"all {combinations} combinations of {', '.join(keys)} together; ranking.csv has each by itself"
 
 
 def _table(study: xarray.Dataset) -> Iterator[str]:

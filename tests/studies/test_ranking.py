@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+import xarray
 from numpy.testing import assert_array_equal
 
 from loaded_tca.errors import InputError
-from loaded_tca.studies import rank_combinations, rank_variants
+from loaded_tca.studies import rank_combinations, rank_variants, study_summary
 from loaded_tca.studies.ranking import figure_values, main_figures, nominal_variant, varied_keys
 from tests.samples.study_datasets import LEAD, SCENE, TIP, dataset, grid
 
@@ -93,3 +94,17 @@ def test_one_sample_has_no_standard_error():
     study = dataset({LEAD: [0.0, 3.0], TIP: [1.0, 2.0]}, {"face_load_factor": [[1.0], [2.0]]})
     study[TIP].attrs["sampling"] = "distribution"
     assert rank_combinations(study)["standard_error"].isna().all()
+
+
+def test_a_summary_of_several_designs_says_that_it_has_them_together():
+    """As load factors of floating and rigid suns, of which no variant has the median."""
+    keys = {
+        "sun.support": ("sample", ["floating", "floating", "rigid", "rigid"], {"sampling": "factor"}),
+        "mounting.misalignment_um": ("sample", [0.0, 9.0, 0.0, 9.0], {"sampling": "distribution"}),
+    }
+    words = {name: ("sample", [word] * 4) for name, word in {"status": "ok", "reason": "", "warnings": ""}.items()}
+    study = xarray.Dataset({"face_load_factor": (("sample", "torque"), [[1.0], [1.1], [2.0], [2.2]]), **words}, keys)
+    told = "all 2 combinations of sun.support together; ranking.csv has each by itself"
+    assert told in study_summary(study)
+    assert "together" not in study_summary(study.isel(sample=[0, 1])), "one combination"
+    assert "together" not in study_summary(study.drop_vars("mounting.misalignment_um")), "each variant is a design"
