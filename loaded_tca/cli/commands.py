@@ -285,7 +285,7 @@ def dynamics(options: argparse.Namespace) -> None:
 def ease_off(options: argparse.Namespace) -> None:
     """Draw the ease-off of a scene."""
     from loaded_tca.flank_maps.ease_off_map import ease_off_map
-    from loaded_tca.output.tables import ease_off_csv
+    from loaded_tca.output.other_results import ease_off_csv
     from loaded_tca.plots import plot_ease_off, png_of
     from loaded_tca.results.files import replace_together
 

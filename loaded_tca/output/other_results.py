@@ -1,4 +1,4 @@
-"""Files of what is no mesh cycle: whole revolutions, planetary stages, tribology, shafts under load."""
+"""Files of what is no mesh cycle: whole revolutions, planetary stages, tribology, shafts under load, ease-off."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import GEARS
+from loaded_tca.flank_maps.ease_off_map import EaseOffMap
 from loaded_tca.loaded.shaft_lines import ShaftLine
 from loaded_tca.output.result_files import csv_table, json_text, known
 from loaded_tca.results.files import Buffer, FilePath, replace_together
@@ -18,7 +19,7 @@ from loaded_tca.stages import StageResult
 from loaded_tca.supports import RollingBearing
 from loaded_tca.tribology import Tribology
 from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, PLACES, QUANTITIES, TORQUE
-from loaded_tca.units import as_ending
+from loaded_tca.units import MICROMETRES, as_ending
 
 REVOLUTION_FILES = "revolution.nc", "revolution.json", "revolution.csv", "teeth.csv", "orders.csv"
 """Names of the files."""
@@ -287,3 +288,11 @@ def bearings_text(lines: Sequence[ShaftLine]) -> str:
         turns = " | ".join(f"{1e6 * one:.1f}" for one in (about_x, about_y, about_z))
         text.append(f"    about x | y | z {turns} urad")
     return "\n".join(text)
+
+
+def ease_off_csv(ease_off: EaseOffMap) -> str:
+    """Return the ease-off of a flank as CSV, a row for each point of its grid, lengthwise first."""
+    columns = {f"{name}_mm": getattr(ease_off, name) for name in ("radius", "axial", "lengthwise", "profile")}
+    columns["ease_off_um"] = MICROMETRES * ease_off.ease_off
+    columns["mating_gear_reaches"] = ease_off.covered.astype(int)
+    return csv_table({name: values.ravel().tolist() for name, values in columns.items()})

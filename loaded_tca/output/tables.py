@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loaded_tca.flank_maps.ease_off_map import EaseOffMap
 from loaded_tca.flank_maps.vh_check import VHCheck
 from loaded_tca.output.result_files import cell, csv_table, json_text, known
 from loaded_tca.results import MeshCycle
@@ -30,7 +29,7 @@ from loaded_tca.results.stress_below import StressBelow
 from loaded_tca.results.summary import shown
 from loaded_tca.results.tolerances import key_figure_slopes
 from loaded_tca.studies.ranking import main_figures, ranking, varied_keys
-from loaded_tca.units import MICROMETRES, unit_of
+from loaded_tca.units import unit_of
 
 if TYPE_CHECKING:
     import xarray
@@ -141,14 +140,6 @@ def vh_table(check: VHCheck, keys: tuple[str, str]) -> str:
     for name, values in (("centre", check.centre), ("shift", check.shift)):
         columns |= {f"{name}_lengthwise_mm": values[..., 0], f"{name}_profile_mm": values[..., 1]}
     columns["edge_share"] = check.edge_share
-    return csv_table({name: values.ravel().tolist() for name, values in columns.items()})
-
-
-def ease_off_csv(ease_off: EaseOffMap) -> str:
-    """Return the ease-off of a flank as CSV, a row for each point of its grid, lengthwise first."""
-    columns = {f"{name}_mm": getattr(ease_off, name) for name in ("radius", "axial", "lengthwise", "profile")}
-    columns["ease_off_um"] = MICROMETRES * ease_off.ease_off
-    columns["mating_gear_reaches"] = ease_off.covered.astype(int)
     return csv_table({name: values.ravel().tolist() for name, values in columns.items()})
 
 

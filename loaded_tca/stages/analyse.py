@@ -228,7 +228,7 @@ def _shared(stage: Stage, torques: Array, forces: Array, cycles: tuple[MeshCycle
             alone[t, n] = PchipInterpolator(tables[0].force, total[:, n, 0])(whole / planets)
     factor = planets * shares.max(axis=(1, 2))
     largest = factor * torques / base_radius / planets
-    arrays = {
+    return {
         "torque": torques,
         "sun_angle": cycle * 2.0 * math.pi / stage.sun.teeth,
         "planet": np.arange(planets),
@@ -241,15 +241,22 @@ def _shared(stage: Stage, torques: Array, forces: Array, cycles: tuple[MeshCycle
         "planet_share": shares,
         "sun_motion": motion,
         "mesh_load_factor": factor,
-        "sun_mesh_peak_pressure": _largest(cycles[0], "peak_pressure", forces, largest),
-        "ring_mesh_peak_pressure": _largest(cycles[1], "peak_pressure", forces, largest),
+        **_under_largest_share(stage, forces, cycles, largest),
     }
+
+
+def _under_largest_share(
+    stage: Stage, forces: Array, cycles: tuple[MeshCycle, MeshCycle], largest: Array
+) -> dict[str, Array]:
+    """Pressures and root stresses of both meshes under the largest forces (torques,) [N] of a planet."""
+    names = "sun_mesh_peak_pressure", "ring_mesh_peak_pressure"
+    arrays = {name: _largest(mesh, "peak_pressure", forces, largest) for name, mesh in zip(names, cycles, strict=True)}
     for name, mesh in zip(EDGES, cycles, strict=True):
         pressure = _largest(mesh, "edge_pressure", forces, largest)
         arrays[name] = np.where(pressure > 0.0, pressure, math.nan)
     if stage.analysis.root_stress:
-        names = ("sun_root_tension", "planet_root_tension_at_sun"), ("planet_root_tension_at_ring", "ring_root_tension")
-        for mesh, of_gears in zip(cycles, names, strict=True):
+        roots = ("sun_root_tension", "planet_root_tension_at_sun"), ("planet_root_tension_at_ring", "ring_root_tension")
+        for mesh, of_gears in zip(cycles, roots, strict=True):
             for gear, name in enumerate(of_gears):
                 arrays[name] = _largest(mesh, "root_tension", forces, largest, gear)
     return arrays

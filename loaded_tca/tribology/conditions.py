@@ -278,9 +278,7 @@ def conditions_of(
     friction = _friction(friction, oil, cylindrical, problems)
     if lubricant is not None and not isinstance(lubricant, Lubricant):
         problems.append(f"lubricant: {lubricant!r:.60}; allowed a loaded_tca.tribology.Lubricant")
-    supply = supply if supply is not None else oil.supply if oil else "dip"
-    if supply not in SUPPLY_FACTORS:
-        problems.append(f"supply: {supply!r:.60}; allowed {' or '.join(map(repr, SUPPLY_FACTORS))}")
+    supply_factor = _supply_factor(supply if supply is not None else oil.supply if oil else "dip", problems)
     if problems:
         raise InputError(problems)
     return Conditions(
@@ -294,7 +292,7 @@ def conditions_of(
         bulk_temperature=values["bulk_temperature_C"],
         load_stage=values["scuffing_load_stage"],
         permissible_film_ratio=values["permissible_film_ratio"],
-        supply_factor=SUPPLY_FACTORS[supply],
+        supply_factor=supply_factor,
     )
 
 
@@ -309,6 +307,13 @@ def lubricant_of(section: LubricantSection) -> Lubricant:
         pressure_viscosity_38=section.pressure_viscosity_38_mm2_N,
         lubricant_factor=section.lubricant_factor,
     )
+
+
+def _supply_factor(supply: str, problems: list[str]) -> float:
+    """X_S of ISO/TS 6336-20 of how the oil comes to the mesh."""
+    if supply not in SUPPLY_FACTORS:
+        problems.append(f"supply: {supply!r:.60}; allowed {' or '.join(map(repr, SUPPLY_FACTORS))}")
+    return SUPPLY_FACTORS.get(supply, math.nan)
 
 
 def _speeds(speed: Any, problems: list[str]) -> tuple[Array, bool]:
