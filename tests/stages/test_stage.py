@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.gears.internal_mesh import internal_interferences
 from loaded_tca.results.summary import shown
 from loaded_tca.scene import InternalScene
 from loaded_tca.stages import StageResult, analyse_stage, parse_stage, read_stage, rebalanced
@@ -223,3 +224,13 @@ test_stages_that_cannot_be_are_refused = refused_calls(
 def test_other_meshes_are_not_rebalanced(result):
     with pytest.raises(InputError, match=r"sun.teeth: needs other meshes"):
         rebalanced(result, {"sun.teeth": 31})
+
+
+def test_shortest_stage_of_the_guide_can_be_built():
+    guide = Path(__file__).parents[2] / "docs" / "guide" / "planetary_stages.md"
+    (shortest,) = (block for block in guide.read_text(encoding="utf-8").split("```toml\n") if "[ring]\nteeth" in block)
+    stage = parse_stage(shortest.partition("```")[0])
+    sun, ring = stage.meshes
+    assert sun.transverse_contact_ratio > 1.2
+    assert ring.transverse_contact_ratio > 1.2
+    assert not internal_interferences(ring, "")
