@@ -67,7 +67,7 @@ LINE_ERROR = 1e-3
 force: 2 um on module 2, less than 1 nm of transmission error. Forces that swing keep their places."""
 SAME_BOX = (0.75, 1.25)
 """Loads over the one a box was made for, between which the contact still fills it well, if it does not reach it."""
-SLENDER, LINE_EXPONENT = 4.0, 0.7
+SLENDER, LINE_EXPONENT = 4.0, 0.9
 """First guess of the deformation of a contact along the face: so many times F/(E* b), and its growth with the force."""
 
 
