@@ -89,13 +89,13 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
 
 def require_result(directory: Path, path: Path, command: str) -> None:
     """Refuse a directory without a result that holds something else, in words that say what to give instead."""
-    from loaded_tca.output.other_results import TRIBOLOGY_FILES
+    from loaded_tca.output.other_results import REVOLUTION_FILES, TRIBOLOGY_FILES
     from loaded_tca.output.result_files import RESULT
 
     if path.exists():
         return
     parts = [one.name for one in sorted(directory.iterdir()) if (one / RESULT).is_file()]
-    if (directory / "revolution.nc").is_file():
+    if (directory / REVOLUTION_FILES[0]).is_file():
         raise InputError(
             f"{directory}: holds a whole revolution, of which '{command}' takes none: its numbers are in "
             "revolution.json and its tables; give the directory of 'loaded-tca run'"

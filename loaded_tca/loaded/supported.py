@@ -220,7 +220,7 @@ class SupportedCycle:
             return [_no_loads(self.supports) for _ in torques]
         if len(self.angles) <= ENOUGH:
             each = dict(zip(loaded, self._settled(loaded), strict=True))
-            return [each[torque] if torque > 0.0 else _no_loads(self.supports) for torque in torques]
+            return [each.get(torque) or _no_loads(self.supports) for torque in torques]
         low, high = loaded[0], loaded[-1]
         first, last = self._settled([low, high])
 
@@ -367,7 +367,9 @@ def pitches_apart(supports: SupportCompliance, torques: Sequence[float], mesh: M
         If the moved flanks are not in contact.
     """
     apart = farthest_apart(mesh)
-    for torque in sorted(torques, reverse=True):  # what the largest one asks for is told first
+    for torque in sorted(
+        (torque for torque in torques if torque > 0.0), reverse=True
+    ):  # what the largest one asks for is told first
         try:
             loads = loads_at_first_contact(supports, mesh.pair, torque)
             moved = moved_by(supports.under(loads), loads)

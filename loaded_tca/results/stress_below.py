@@ -121,9 +121,8 @@ class StressBelow:
         relief start, or nearer to an edge than half the contact is wide; or where its slice carries nothing.
         """
         result, one, path = self.result, self.pressure_map, self.result.paths[self.column]
-        at_edge = result.on_edge[self._at] and one.pressure[one.edge_cell] == one.pressure.max()
         near = path.on_edge[self.position] or path.on_relief_start[self.position]
-        if not (at_edge or result.on_relief_start[self._at]) or near:
+        if not (self._peaks_at_edge or result.on_relief_start[self._at]) or near:
             return None
         if result.on_edge[self._at] and one.flank_ends_within(0.5 * float(result.contact_width[self._at])):
             return None
@@ -133,9 +132,13 @@ class StressBelow:
     @property
     def _is_of_an_edge(self) -> bool:
         """Whether the numbers are those of a spike at an edge, since the contact point lies within it, too."""
+        return self._peaks_at_edge and self.beside_spike is None
+
+    @property
+    def _peaks_at_edge(self) -> bool:
+        """Whether the largest cell lies at an edge, where it is mesh-dependent."""
         one = self.pressure_map
-        spike = self.result.on_edge[self._at] and one.pressure[one.edge_cell] == one.pressure.max()
-        return bool(spike) and self.beside_spike is None
+        return bool(self.result.on_edge[self._at] and one.pressure[one.edge_cell] == one.pressure.max())
 
     @property
     def highest_pressure(self) -> tuple[int, int]:
