@@ -143,6 +143,10 @@ STAGE = 'stage = "../stages/helical_automotive.toml"\n'
 
 test_bad_studies_are_refused = refused_calls(
     (lambda stage: Study(stage, {PIN.format("x"): [1.0]}), "stage.pin_tangential_um"),
+    (
+        lambda stage: Study(stage, {PIN.format(4): [1.0]}),
+        "stage.pin_tangential_um.4: 4 is past the end of a list of 4; allowed 0 to 3",
+    ),
     (lambda stage: Study(stage, {"load.sun_torque_Nm": [1.0]}), "load.sun_torque_Nm: changes nothing beside"),
     (lambda stage: Study(stage, {"stage.pinions": [3]}), "stage.pinions: unknown key"),
     (
