@@ -146,6 +146,26 @@ def test_summary_tells_what_is_known_and_what_is_missing():
     assert "needs pinion_speed_rpm" in shared("mesh_cycle_spur").tribology().summary()
 
 
+def test_summary_says_where_the_hottest_and_the_thinnest_film_lie():
+    found = known(shared("mesh_cycle_bevel", analysis__torques_Nm=(0.0, 1.6)))
+    lines = found.summary().splitlines()
+    for label, column, worst in (
+        ("largest contact temperature [°C]", "contact_temperature", "idxmax"),
+        ("least film thickness [um]", "film_thickness", "idxmin"),
+    ):
+        table = found.slices(1)
+        row = table.loc[getattr(table[column], worst)()]
+        at = next(n for n, line in enumerate(lines) if line.startswith(label))
+        angle, place = (
+            line.replace("[deg]", "]").replace("[mm]", "]").split("]")[1] for line in lines[at + 1 : at + 3]
+        )
+        degrees = math.degrees(found.result.pinion_angle[int(row["position"])])
+        assert angle.split() == ["-", f"{degrees:.4g}"]  # without torque there is no place
+        diameter, axial = 2.0 * row["pinion_radius"], row["pinion_axial"]
+        assert place.split() == ["-", "|", "-", f"{diameter:.4g}", "|", f"{axial:.4g}"]
+    assert "pinion angle" not in shared("mesh_cycle_spur").tribology().summary()
+
+
 def test_every_number_says_what_it_lacks():
     bare = shared("mesh_cycle_bevel").tribology()
     for name, quantity in QUANTITIES.items():
