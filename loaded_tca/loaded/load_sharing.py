@@ -434,15 +434,22 @@ class _Balance:
             displaced = self._deflection((index, one.separation), (other, two.separation), two.slice_shares)
             compliance[index, other] = compliance[other, index] = one.slice_shares @ displaced
         loaded_pairs = dict(self._loaded())
-        for index, separation in enumerate(self.first_grids):
-            if index not in loaded_pairs:
-                self._correct_apart(index, separation, loaded_pairs, compliance)
+        places = {
+            index: self._correct_apart(index, separation, loaded_pairs, compliance)
+            for index, separation in enumerate(self.first_grids)
+            if index not in loaded_pairs
+        }
+        if self.given is not None and places and np.linalg.eigvalsh(compliance)[0] < 0.0:
+            self._correct_between_apart(places, compliance)
         return compliance
 
     def _correct_apart(
         self, index: int, separation: Separation, loaded_pairs: dict[int, LoadedContact], compliance: Array
-    ) -> None:
-        """Correct the compliance (k, k) of a pair that carries nothing, where the others let it touch first."""
+    ) -> int:
+        """Correct the compliance (k, k) of a pair that carries nothing, where the others let it touch first.
+
+        Returns the slice of that place.
+        """
         bent = {
             other: self._deflection((index, separation), (other, two.separation), two.slice_shares)
             for other, two in loaded_pairs.items()
@@ -459,6 +466,24 @@ class _Balance:
             compliance[index, other] = compliance[other, index] = displaced[place]
         if given is not None:
             self.given_means[index] = given[place]
+        return place
+
+    def _correct_between_apart(self, places: dict[int, int], compliance: Array) -> None:
+        """Take the compliance (k, k) between pairs that carry nothing at the places where they touch first, too.
+
+        That of line loads instead, beside places elsewhere on a gear whose support tilts, is of no body: two forces
+        could move each other further than themselves, and no balance would be found.
+        """
+        assert self.bending is not None
+        one_force = {index: np.eye(len(self.first_grids[index].y))[place] for index, place in places.items()}
+        for index, place in places.items():
+            grid = self.first_grids[index]
+            compliance[index, index] = self.bending.within(self.tooth_pairs[index].pair, grid)[place, place]
+        for index, other in combinations(places, 2):
+            if self._coupled(index, other):
+                at, under = (index, self.first_grids[index]), (other, self.first_grids[other])
+                displaced = self._deflection(at, under, one_force[other])[places[index]]
+                compliance[index, other] = compliance[other, index] = displaced
 
     def _settled(self, forces: Array, rotation: float) -> bool:
         """Whether the rotation closes no pair that carries nothing, and all were solved as the others still bend them.
