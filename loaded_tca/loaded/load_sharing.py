@@ -278,8 +278,8 @@ class _Balance:
             if capped and shared is not None and count > SWINGING and count % SWINGING != 1:
                 forces = yield from self._solve_at_common_rotation(shared)
             else:  # also now and then there, since pairs that are apart may come under load
-                before = forces
-                forces = balance(self.laws, self._first_rotations, self.levers, self.torque, self.compliance)
+                before, known = forces, None if shared is None else forces
+                forces = balance(self.laws, self._first_rotations, self.levers, self.torque, self.compliance, known)
                 if count > SWINGING and not capped:
                     forces = 0.5 * (before + forces)
                 for index in np.flatnonzero(forces).tolist():

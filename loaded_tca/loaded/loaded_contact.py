@@ -28,6 +28,7 @@ from loaded_tca.contact.solution import ContactSolution, ContactStatus
 from loaded_tca.contact.solver import solve_problems
 from loaded_tca.errors import LoadedTCAError
 from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation
@@ -213,9 +214,8 @@ class LoadedContact:
         Displacement of the slices under the load of other tooth pairs, if there are any.
     bending, ends : (ny, ny) array or None [mm/N]
         Slice compliance of the teeth, and of their free edges.
-    line_load_error : float
-        Estimated relative error of the pressure of slices by that of their line load, from the two finest grids; NaN
-        where there was one.
+    line_loads : tuple of callables
+        Return the line loads on the two finest grids, which few contacts are asked for; fewer where there was one grid.
     judged : (float, float) or None [MPa], [N]
         Largest pressure and load of the solution that the errors were estimated of: lines of forces and other pairs may
         have moved the pressure since. None: it is that.
@@ -230,7 +230,7 @@ class LoadedContact:
     coupling_deflection: Array | None = None
     bending: Array | None = None
     ends: Array | None = None
-    line_load_error: float = math.nan
+    line_loads: tuple[Callable[[], SliceLoads], ...] = ()
     judged: tuple[float, float] | None = None
 
     @property
@@ -260,6 +260,14 @@ class LoadedContact:
             return float(np.maximum(self.solution.error_estimate.peak_pressure, self.peak_change))
         least = LEAST_ERROR_OF_SLICES / min(self.solution.cells_across) ** 2
         return float(np.maximum(self.line_load_error, least))
+
+    @cached_property
+    def line_load_error(self) -> float:
+        """Estimated relative error of the pressure of slices by their line load; NaN where there was one grid."""
+        if len(self.line_loads) < 2:
+            return math.nan
+        coarse, fine = (line_load() for line_load in self.line_loads)
+        return fine.error_of_largest(coarse)
 
     @property
     def peak_change(self) -> float:
