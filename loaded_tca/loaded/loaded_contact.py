@@ -3,8 +3,8 @@
 Work on many contacts at once: each asks for gaps and pressures, and what all ask for is found together.
 
 A contact, or the tooth pairs of a position that share a torque, is a generator. It yields what it needs next, a
-:class:`Gap`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its result. So it reads as if it
-were alone, and its numbers do not depend on what stands beside it.
+:class:`Gap`, :class:`Line`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its result. So it reads
+as if it were alone, and its numbers do not depend on what stands beside it.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from loaded_tca.contact.patch import values_at_ends, widths
 from loaded_tca.contact.solution import ContactSolution, ContactStatus
 from loaded_tca.contact.solver import solve_problems
 from loaded_tca.errors import LoadedTCAError
+from loaded_tca.loaded.expected_line import ExpectedLine, expected_lines
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.pairs.gear_pair import GearPair
@@ -58,6 +59,14 @@ class Gap(NamedTuple):
     cells_at_ends: tuple[int, int] | None = None
 
 
+class Line(NamedTuple):
+    """The slices that a contact is expected to load; see :func:`loaded_tca.loaded.expected_line.expected_lines`."""
+
+    contact: ContactPoint
+    half_length: float
+    gears: GearPair | None = None
+
+
 class Task(NamedTuple):
     """A contact problem to solve to a tolerance, from a pressure to start from or none."""
 
@@ -73,7 +82,8 @@ class Ends(NamedTuple):
     gears: GearPair | None = None
 
 
-Steps = Generator[Gap | Ends | Task, Any, Result]
+Request = Gap | Line | Ends | Task
+Steps = Generator[Request, Any, Result]
 
 
 def found_together(
@@ -81,7 +91,7 @@ def found_together(
 ) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
 
-    In a round what most ask for is found: all gaps, or all free edges, or all problems on one grid.
+    In a round what most ask for is found: all gaps, or all lines, or all free edges, or all problems on one grid.
     Whenever one returns, another one begins: so many are under way that stacks are full, and no more, so that memory
     stays bounded and progress steady.
 
@@ -103,9 +113,9 @@ def found_together(
         The first one that a generator does not deal with.
     """
     results: dict[int, Result] = {}
-    asked: dict[int, Gap | Ends | Task] = {}
+    asked: dict[int, Request] = {}
 
-    def advance(index: int, step: Callable[[], Gap | Ends | Task]) -> None:
+    def advance(index: int, step: Callable[[], Request]) -> None:
         try:
             asked[index] = step()
         except StopIteration as end:
@@ -131,13 +141,13 @@ def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
 
 
 def _answers(
-    pair: GearPair, asked: dict[int, Gap | Ends | Task]
-) -> dict[int, Separation | Array | ContactSolution | LoadedTCAError | None]:
-    """Answer what most ask for, gaps, free edges or problems on one grid; errors are answers."""
+    pair: GearPair, asked: dict[int, Request]
+) -> dict[int, Separation | ExpectedLine | Array | ContactSolution | LoadedTCAError | None]:
+    """Answer what most ask for, gaps, lines, free edges or problems on one grid; errors are answers."""
     kinds = {index: one.problem.cells if isinstance(one, Task) else type(one) for index, one in asked.items()}
     (most, _), *_ = Counter(kinds.values()).most_common(1)
     chosen: Any = {index: asked[index] for index, kind in kinds.items() if kind == most}
-    if most in (Gap, Ends):
+    if most in (Gap, Line, Ends):
         by_gears: dict[int, dict[int, Any]] = {}
         for index, request in chosen.items():
             by_gears.setdefault(id(request.gears), {})[index] = request
@@ -149,12 +159,17 @@ def _answers(
     }
 
 
-def _of_flanks(pair: GearPair, asked: dict[int, Any]) -> dict[int, Separation | Array | LoadedTCAError | None]:
-    """Answer requests for gaps, or for free edges, of the same gears."""
+def _of_flanks(
+    pair: GearPair, asked: dict[int, Any]
+) -> dict[int, Separation | ExpectedLine | Array | LoadedTCAError | None]:
+    """Answer requests for gaps, for lines, or for free edges, of the same gears."""
     requests = list(asked.values())
     gears = requests[0].gears or pair
     if isinstance(requests[0], Ends):
         return dict(zip(asked, edge_compliances(gears, [one.separation for one in requests]), strict=True))
+    if isinstance(requests[0], Line):
+        contacts, half_lengths, _ = zip(*requests, strict=True)
+        return dict(zip(asked, expected_lines(gears, contacts, half_lengths), strict=True))
     contacts, cells, loads, boxes, _, polynomials, at_ends = zip(*requests, strict=True)
     gaps = sample_separations(
         gears, contacts, cells=cells, loads=loads, boxes=boxes, polynomials=polynomials, cells_at_ends=at_ends

@@ -1,0 +1,64 @@
+"""Slices that a contact is expected to load before its gap is known: a first guess of how its teeth bend."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.unloaded import ContactPoint
+from loaded_tca.unloaded.curvature import relative_curvatures
+from loaded_tca.unloaded.scan import edge_distances
+
+SLICES = 16
+"""Of a line, as of the coarsest grids."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExpectedLine:
+    """Slices along a contact, as :class:`loaded_tca.pairs.gear_pair.ContactGrid` has them, and how they share its load.
+
+    Attributes
+    ----------
+    y : (ny,) array [mm]
+        Middles of the slices along the contact, from the contact point.
+    origin : (3,) array [mm]
+        The contact point in the fixed frame.
+    axes : (3, 3) array
+        Rows: across, along and normal to the contact.
+    force_line : (ny,) array [mm]
+        Where across the contact the forces act, from the contact point.
+    force : (ny,) array
+        Of the slices, in any unit.
+    """
+
+    y: Array
+    origin: Array
+    axes: Array
+    force_line: Array
+    force: Array
+
+
+def expected_lines(
+    pair: GearPair, contacts: Sequence[ContactPoint], half_lengths: Sequence[float]
+) -> list[ExpectedLine]:
+    """Lines along n contacts, their line loads those of ellipses that are cut off where the flanks end.
+
+    Parameters
+    ----------
+    pair : GearPair
+    contacts : sequence of n ContactPoint
+    half_lengths : sequence of n float [mm]
+        Of the ellipses.
+    """
+    axes = np.array([curvature.axes for curvature in relative_curvatures(pair, contacts)])
+    origins, middles = np.array([one.point for one in contacts]), (2.0 * np.arange(SLICES) + 1.0) / SLICES - 1.0
+    y = np.asarray(half_lengths)[:, None] * middles
+    there = edge_distances(pair.sharp, origins[:, None] + y[..., None] * axes[:, None, 1]).min(axis=-1) >= 0.0
+    there |= ~there.any(axis=1, keepdims=True)  # in a corner of a flank
+    force = np.where(there, 1.0 - middles**2, 0.0)
+    held = np.zeros(SLICES)
+    return [ExpectedLine(y[n], origins[n], axes[n], held, force[n]) for n in range(len(contacts))]
