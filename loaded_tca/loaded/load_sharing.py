@@ -257,6 +257,7 @@ class _Balance:
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
         self.grids_apart: dict[int, Separation] = {}  # of pairs that carried nothing yet
+        self.deflections: dict[tuple[int, int], tuple[Separation, LoadedContact, Array]] = {}
         self.on_grids = given is not None or grid.lines_held  # all pairs, since what is given goes with grids
         usual = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
         self.agreement = usual if grid.agreement is None else grid.agreement
@@ -423,8 +424,7 @@ class _Balance:
         displaced = np.zeros(len(separation.y)) if given is None else given
         for n, other in self._loaded():
             if n != index and forces[n] > 0.0:
-                force = forces[n] * other.slice_shares
-                displaced += self._deflection((index, separation), (n, other.separation), force)
+                displaced += forces[n] * self._deflection(index, separation, n, other)
         return displaced
 
     def _coupled(self, index: int, other: int) -> bool:
@@ -432,11 +432,20 @@ class _Balance:
         apart = abs(self.tooth_pairs[index].pair - self.tooth_pairs[other].pair)
         return self.bending is not None and apart <= self.bending.neighbours
 
-    def _deflection(self, at: tuple[int, Separation], under: tuple[int, Separation], forces: Array) -> Array:
-        """Deflection (m,) [mm] of the slices of a pair's grid under forces (n,) [N] on those of another."""
+    def _deflection(self, index: int, separation: Separation, other: int, loaded: LoadedContact) -> Array:
+        """Deflection (m,) [mm/N] of the slices of a pair's grid by the force of another one, spread as in its solution.
+
+        Kept as long as grid and solution are the last ones that were asked for.
+        """
         assert self.bending is not None
-        here, there = ((self.tooth_pairs[index].pair, separation) for index, separation in (at, under))
-        return self.bending.deflection(here, there, forces)
+        known = self.deflections.get((index, other))
+        if known is None or known[0] is not separation or known[1] is not loaded:
+            here, there = (
+                (self.tooth_pairs[n].pair, at) for n, at in ((index, separation), (other, loaded.separation))
+            )
+            known = separation, loaded, self.bending.deflection(here, there, loaded.slice_shares)
+            self.deflections[index, other] = known
+        return known[2]
 
     def _corrected(self) -> Steps[Array]:
         """Compliance (k, k) [mm/N], that of the pairs solved so far the mean over the forces on their slices."""
@@ -448,7 +457,7 @@ class _Balance:
             if self.given is not None:
                 self.given_means[index] = loaded.slice_shares @ self.given(loaded.separation)
         for (index, one), (other, two) in combinations(self._loaded(), 2):
-            displaced = self._deflection((index, one.separation), (other, two.separation), two.slice_shares)
+            displaced = self._deflection(index, one.separation, other, two)
             compliance[index, other] = compliance[other, index] = one.slice_shares @ displaced
         loaded_pairs = dict(self._loaded())
         rotation = max(
@@ -466,7 +475,7 @@ class _Balance:
     ) -> None:
         """Correct the compliance (k, k) of a pair that carries nothing, where the others let it touch first."""
         bent = {
-            other: self._deflection((index, separation), (other, two.separation), two.slice_shares)
+            other: self._deflection(index, separation, other, two)
             for other, two in loaded_pairs.items()
             if self._coupled(index, other)
         }

@@ -202,6 +202,9 @@ EQUAL = 1e-3
 LARGEST_MISFIT = 0.3
 """Of a gap from its paraboloid, where Hertz's pressure is still told: it differs by up to a tenth then; where a relief
 begins in the ellipse the misfit is above 1."""
+LINE_KEPT = 1e-4
+"""Distance over the module by which forces of slices move, in the mean, before teeth bend at other places: a tenth of
+``load_sharing.LINE_ERROR``, less than 0.1 nm of transmission error."""
 BESIDE = 0.5 + 1e-6
 """Distance over a cell along both axes within which cells lie beside the contact point."""
 LEAST_ERROR_OF_SLICES = 3.0
@@ -418,14 +421,22 @@ class LoadedContact:
         return float(deflection - self.coupling_deflection @ force / force.sum())
 
     def bent_by(self, bending: BendingModel, number: int, module: float) -> LoadedContact:
-        """Return the contact as it is, to be solved next with teeth that bend at the centres of its pressure."""
+        """Return the contact as it is, to be solved next with teeth that bend at the centres of its pressure.
+
+        Where they moved by less than ``LINE_KEPT``, it is returned as it is.
+        """
         separation = self.separation.loaded_by(self.solution.pressure, module)
+        if self.bending is not None and self._moved(separation) <= LINE_KEPT * module:
+            return self
         return replace(self, separation=separation, bending=bending.within(number, separation))
 
     def line_error(self, module: float) -> float:
         """How far the forces that bend the teeth are from the centres of the pressure, the mean over the force [mm]."""
-        force, centred = self.slice_force, self.separation.loaded_by(self.solution.pressure, module)
-        moved = np.abs(centred.force_line - self.separation.force_line)
+        return self._moved(self.separation.loaded_by(self.solution.pressure, module))
+
+    def _moved(self, other: Separation) -> float:
+        """Distance of the line of the forces of the same grid, the mean over the force [mm]."""
+        force, moved = self.slice_force, np.abs(other.force_line - self.separation.force_line)
         return float(force @ moved / force.sum()) if force.any() else 0.0
 
     def under(self, load: float, coupling: Array | None = None) -> Steps[LoadedContact]:
