@@ -39,14 +39,13 @@ from scipy.optimize import brentq
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, InputError, named
-from loaded_tca.loaded.balance import PowerLaw, balance
-from loaded_tca.loaded.expected_line import ExpectedLine
+from loaded_tca.loaded.balance import balance
+from loaded_tca.loaded.first_guess import ExpectedLine, first_law
 from loaded_tca.loaded.loaded_contact import Gap, Line, LoadedContact, Steps, found_alone, with_gears
 from loaded_tca.loaded.tooth_contact import FIRST_CELLS, Coupling, GridChoice, contact_under_load, expected_pressure
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
-from loaded_tca.reference.hertz import point_contact
 from loaded_tca.separation import Separation
-from loaded_tca.unloaded import ContactPoint, MeshPath, relative_curvature
+from loaded_tca.unloaded import ContactPoint, MeshPath
 
 SMALLEST_SHARED = 1e-12
 """Forces below this times E* m_n^2 are not shared, but taken for none: what the pairs deform then is near the rounding
@@ -70,8 +69,6 @@ SAME_BOX = (0.75, 1.25)
 """Loads over the one a box was made for, between which the contact still fills it well, if it does not reach it."""
 FAR = 2.0
 """Initial separation, over the rotation, of pairs that others do not bend into contact: by less than they close."""
-SLENDER, LINE_EXPONENT = 4.0, 0.9
-"""First guess of the deformation of a contact along the face: so many times F/(E* b), and its growth with the force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,7 +249,7 @@ class _Balance:
         self.first_gaps = np.zeros(len(tooth_pairs))  # [mm], where the grid of a pair touches first: it grows, is cut
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
         self.levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts]).T
-        firsts = [self._first_law(tooth_pair) for tooth_pair in tooth_pairs]
+        firsts = [first_law(one.gears or pair, one.contact, torque / one.contact.pinion_lever) for one in tooth_pairs]
         self.laws, self.half_lengths = [law for law, _ in firsts], [length for _, length in firsts]
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
@@ -261,19 +258,6 @@ class _Balance:
         self.on_grids = given is not None or grid.lines_held  # all pairs, since what is given goes with grids
         usual = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
         self.agreement = usual if grid.agreement is None else grid.agreement
-
-    def _first_law(self, tooth_pair: ToothPair) -> tuple[PowerLaw, float]:
-        """Hertz's law of the curvatures at the contact point, or of a slender contact; half of its length [mm]."""
-        contact, gears = tooth_pair.contact, tooth_pair.gears or self.pair
-        load, modulus = self.torque / contact.pinion_lever, self.pair.contact_modulus
-        curvature = relative_curvature(gears, contact)
-        longest = math.hypot(gears.face_width, gears.pinion.flank.extent[0])
-        if curvature.across >= curvature.along > 0.0:
-            ellipse = point_contact(load, (curvature.across, curvature.along), modulus)
-            longest = min(ellipse.semi_major, longest)
-            if 2.0 * ellipse.semi_major < self.pair.face_width:
-                return PowerLaw(load, ellipse.approach), longest
-        return PowerLaw(load, SLENDER * load / (modulus * self.pair.face_width), LINE_EXPONENT), longest
 
     def steps(self) -> Steps[SharedLoad]:
         shared: SharedLoad | None = None

@@ -27,7 +27,7 @@ from loaded_tca.contact.patch import values_at_ends, widths
 from loaded_tca.contact.solution import ContactSolution, ContactStatus
 from loaded_tca.contact.solver import solve_problems
 from loaded_tca.errors import LoadedTCAError
-from loaded_tca.loaded.expected_line import ExpectedLine, expected_lines
+from loaded_tca.loaded.first_guess import ExpectedLine, expected_lines
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.pairs.gear_pair import GearPair
@@ -60,7 +60,7 @@ class Gap(NamedTuple):
 
 
 class Line(NamedTuple):
-    """The slices that a contact is expected to load; see :func:`loaded_tca.loaded.expected_line.expected_lines`."""
+    """The slices that a contact is expected to load; see :func:`loaded_tca.loaded.first_guess.expected_lines`."""
 
     contact: ContactPoint
     half_length: float

@@ -1,25 +1,50 @@
-"""Slices that a contact is expected to load before its gap is known: a first guess of how its teeth bend."""
+"""First guess of how tooth pairs give way, before their gaps are known: after Hertz, by curvatures."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.loaded.balance import PowerLaw
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.unloaded import ContactPoint
+from loaded_tca.reference.hertz import point_contact
+from loaded_tca.unloaded import ContactPoint, relative_curvature
 from loaded_tca.unloaded.curvature import relative_curvatures
 from loaded_tca.unloaded.scan import edge_distances
 
-SLICES = 16
-"""Of a line, as of the coarsest grids."""
+SLENDER, LINE_EXPONENT = 4.0, 0.9
+"""Deformation of a contact along the face: so many times F/(E* b), and its growth with the force."""
+SLICES = 8
+"""Of a line."""
+
+
+def first_law(pair: GearPair, contact: ContactPoint, load: float) -> tuple[PowerLaw, float]:
+    """Hertz's law of the curvatures at a contact point, or of a slender contact over the face; half of its length [mm].
+
+    Parameters
+    ----------
+    pair : GearPair
+    contact : ContactPoint
+    load : float [N]
+        Positive.
+    """
+    curvature = relative_curvature(pair, contact)
+    longest = math.hypot(pair.face_width, pair.pinion.flank.extent[0])
+    if curvature.across >= curvature.along > 0.0:
+        ellipse = point_contact(load, (curvature.across, curvature.along), pair.contact_modulus)
+        longest = min(ellipse.semi_major, longest)
+        if 2.0 * ellipse.semi_major < pair.face_width:
+            return PowerLaw(load, ellipse.approach), longest
+    return PowerLaw(load, SLENDER * load / (pair.contact_modulus * pair.face_width), LINE_EXPONENT), longest
 
 
 @dataclass(frozen=True, eq=False)
 class ExpectedLine:
-    """Slices along a contact, as :class:`loaded_tca.pairs.gear_pair.ContactGrid` has them, and how they share its load.
+    """Slices along a contact, as ``ContactGrid`` has them, and how they share its load.
 
     Attributes
     ----------
