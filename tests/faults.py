@@ -427,7 +427,7 @@ FAULTS = (
             ),
             (
                 "the start of a relief that crosses one is not seen",
-                "contact/rounded_edge.py",
+                "contact/pressed_arc.py",
                 "if growth <= MOST_GROWTH else math.inf",
                 "if growth < math.inf else math.inf",
                 "contact/test_rounded_edge.py::test_edge_crossed_by_a_jump_of_the_slope_has_no_limit",

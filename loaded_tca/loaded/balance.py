@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -71,7 +72,14 @@ class PowerLaw:
         return PowerLaw(load, deformation, exponent)
 
 
-def balance(laws: Sequence[PowerLaw], separations: Array, levers: Array, torque: float, compliance: Array) -> Array:
+def balance(
+    laws: Sequence[PowerLaw],
+    separations: Array,
+    levers: Array,
+    torque: float,
+    compliance: Array,
+    start: Array | None = None,
+) -> Array:
     """Forces of tooth pairs whose contact laws are known.
 
     Parameters
@@ -85,6 +93,8 @@ def balance(laws: Sequence[PowerLaw], separations: Array, levers: Array, torque:
         Of the pinion, positive.
     compliance : (k, k) array [mm/N]
         Deflection of pair i under a unit force on pair j.
+    start : (k,) array, optional [N]
+        Forces near the wanted ones, some of them not zero; default: all alike.
 
     Returns
     -------
@@ -106,44 +116,66 @@ def balance(laws: Sequence[PowerLaw], separations: Array, levers: Array, torque:
     """
     if not (levers > 0.0).all():
         raise ConvergenceError(f"load sharing: no rotation gives a torque of {torque:.6g} N mm", last=levers)
-    separations = separations - separations.min()
-    forces, change = np.full(len(laws), torque / float(levers[0].sum())), math.inf
+    lever, turning = levers.tolist()
+    apart = (turning * (separations - separations.min())).tolist()
+    pairs = [_Pair(*parts) for parts in zip(laws, apart, lever, turning, compliance.tolist(), strict=True)]
+    forces, change = [torque / sum(lever)] * len(pairs) if start is None else start.tolist(), math.inf
     for _ in range(MOST_STEPS):
-        target = _newton_step(laws, separations, levers, torque, compliance, forces)
-        before, change = change, float(np.abs(target - forces).max() / target.max())
+        target = _newton_step(pairs, torque, forces)
+        before, change = change, max(abs(new - old) for new, old in zip(target, forces, strict=True)) / max(target)
         forces = target
         if change <= STEP_TOLERANCE or before <= change <= STALLED:
-            return forces * (torque / (levers[0] @ forces))
+            found = np.array(forces)
+            return np.asarray(found * (torque / (levers[0] @ found)))
     raise ConvergenceError(f"load sharing: forces of the tooth pairs not found in {MOST_STEPS} steps", last=forces)
 
 
-def _newton_step(
-    laws: Sequence[PowerLaw], separations: Array, levers: Array, torque: float, compliance: Array, forces: Array
-) -> Array:
+class _Pair(NamedTuple):
+    """What the balance knows of a tooth pair: numbers and lists, in which a few pairs take less time than in arrays."""
+
+    law: PowerLaw
+    separation: float  # along its line of action [mm]
+    lever: float
+    wheel_lever: float
+    compliance: list[float]
+
+
+def _newton_step(pairs: Sequence[_Pair], torque: float, forces: Sequence[float]) -> list[float]:
     """Forces (k,) after one step for the pairs under load, and those that come under load or part.
 
     No force falls below a tenth at once. The deformation grows without end over a force that vanishes (or not at all),
     so that a pair parts once its force is little and the rotation that the heaviest pair asks for, less the coupling,
     does not close it: that of the step counts on forces below zero.
     """
-    loaded = np.flatnonzero(forces).tolist()
-    carried, lever, wheel_lever = forces[loaded], levers[0, loaded], levers[1, loaded]
-    tangent = compliance[loaded][:, loaded]
-    pressed = np.array([laws[n].deformation_under(forces[n]) for n in loaded])
-    missing = -pressed - tangent @ carried - wheel_lever * separations[loaded]
-    tangent.flat[:: len(loaded) + 1] += np.array([laws[n].exponent for n in loaded]) * pressed / carried
-    by_rotation, by_rest = np.linalg.solve(tangent, np.array([wheel_lever, missing]).T).T
-    rotation = (torque - lever @ (carried + by_rest)) / (lever @ by_rotation)
-    target = forces.copy()
-    wanted = carried + rotation * by_rotation + by_rest
-    target[loaded] = np.minimum(np.maximum(wanted, LARGEST_FALL * carried), torque / lever)
-    displaced, heaviest = compliance @ target, int(target.argmax())
-    deflected = laws[heaviest].deformation_under(target[heaviest]) + displaced[heaviest]
-    asked = separations[heaviest] + deflected / levers[1, heaviest]
-    by_others = displaced - compliance.diagonal() * target
-    closed = levers[1] * (asked - separations) > by_others
-    target[(target < LITTLE * target.max()) & ~closed] = 0.0
-    deflection = levers[1] * (rotation - separations) - by_others
-    for n in np.flatnonzero((forces == 0.0) & (deflection > 0.0)).tolist():
-        target[n] = min(laws[n].force_at(deflection[n]), target.max())
+    loaded = [n for n, force in enumerate(forces) if force > 0.0]
+    tangent = [[pairs[n].compliance[m] for m in loaded] for n in loaded]
+    sides = []
+    for row, n in enumerate(loaded):
+        one, force = pairs[n], forces[n]
+        pressed = one.law.deformation_under(force)
+        others = sum(part * forces[m] for part, m in zip(tangent[row], loaded, strict=True))
+        sides.append((one.wheel_lever, -pressed - others - one.separation))
+        tangent[row][row] += one.law.exponent * pressed / force
+    solved = np.linalg.solve(tangent, sides).tolist()
+    given = sum(pairs[n].lever * (forces[n] + rest) for n, (_, rest) in zip(loaded, solved, strict=True))
+    rotation = (torque - given) / sum(pairs[n].lever * turned for n, (turned, _) in zip(loaded, solved, strict=True))
+    target = [*forces]
+    for n, (turned, rest) in zip(loaded, solved, strict=True):
+        wanted = forces[n] + rotation * turned + rest
+        target[n] = min(max(wanted, LARGEST_FALL * forces[n]), torque / pairs[n].lever)
+    most = max(target)
+    by_others = [
+        sum(part * force for m, (part, force) in enumerate(zip(one.compliance, target, strict=True)) if m != n)
+        for n, one in enumerate(pairs)
+    ]
+    heaviest = target.index(most)
+    one = pairs[heaviest]
+    asked = one.separation + one.law.deformation_under(most) + one.compliance[heaviest] * most + by_others[heaviest]
+    asked /= one.wheel_lever
+    for n, one in enumerate(pairs):
+        if target[n] < LITTLE * most and one.wheel_lever * asked - one.separation <= by_others[n]:
+            target[n] = 0.0
+    for n, one in enumerate(pairs):
+        if forces[n] == 0.0 and (closed := one.wheel_lever * rotation - one.separation - by_others[n]) > 0.0:
+            target[n] = min(one.law.force_at(closed), max(target))
     return target

@@ -43,7 +43,9 @@ def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Arr
     (array([-0.5,  0.5,  0.5,  1.5,  1.5,  2.5]), array([0., 1., 1., 3., 3., 0.]))
     """
     places = np.sort(np.concatenate([borders - 0.5 * length, borders + 0.5 * length]))
-    return places, (stretch_parts(borders, places, length) * force).sum(axis=1) / length
+    summed = np.concatenate([[0.0], np.cumsum(force)])
+    below, above = (np.interp(places + side * length, borders, summed) for side in (-0.5, 0.5))
+    return places, (above - below) / length
 
 
 def stretch_parts(borders: Array, places: Array, length: float) -> Array:

@@ -21,7 +21,7 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from loaded_tca.arrays import Array
-from loaded_tca.contact.rounded_edge import RoundedEdge
+from loaded_tca.contact.pressed_arc import RoundedEdge
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import Arc, RoundedFlank, material_cosines
 from loaded_tca.loaded.loaded_contact import LoadedContact

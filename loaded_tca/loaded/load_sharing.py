@@ -39,13 +39,13 @@ from scipy.optimize import brentq
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, InputError, named
-from loaded_tca.loaded.balance import PowerLaw, balance
-from loaded_tca.loaded.loaded_contact import Gap, LoadedContact, Steps, found_alone, with_gears
+from loaded_tca.loaded.balance import balance
+from loaded_tca.loaded.first_guess import ExpectedLine, first_law
+from loaded_tca.loaded.loaded_contact import Gap, Line, LoadedContact, Steps, found_alone, with_gears
 from loaded_tca.loaded.tooth_contact import FIRST_CELLS, Coupling, GridChoice, contact_under_load, expected_pressure
-from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.reference.hertz import point_contact
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.separation import Separation
-from loaded_tca.unloaded import ContactPoint, MeshPath, relative_curvature
+from loaded_tca.unloaded import ContactPoint, MeshPath
 
 SMALLEST_SHARED = 1e-12
 """Forces below this times E* m_n^2 are not shared, but taken for none: what the pairs deform then is near the rounding
@@ -67,8 +67,8 @@ LINE_ERROR = 1e-3
 force: 2 um on module 2, less than 1 nm of transmission error. Forces that swing keep their places."""
 SAME_BOX = (0.75, 1.25)
 """Loads over the one a box was made for, between which the contact still fills it well, if it does not reach it."""
-SLENDER, LINE_EXPONENT = 4.0, 0.9
-"""First guess of the deformation of a contact along the face: so many times F/(E* b), and its growth with the force."""
+FAR = 2.0
+"""Initial separation, over the rotation, of pairs that others do not bend into contact: by less than they close."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,23 +249,15 @@ class _Balance:
         self.first_gaps = np.zeros(len(tooth_pairs))  # [mm], where the grid of a pair touches first: it grows, is cut
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
         self.levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts]).T
-        self.laws = [self._first_law(tooth_pair) for tooth_pair in tooth_pairs]
+        firsts = [first_law(one.gears or pair, one.contact, torque / one.contact.pinion_lever) for one in tooth_pairs]
+        self.laws, self.half_lengths = [law for law, _ in firsts], [length for _, length in firsts]
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
-        self.first_grids: list[Separation] = []
+        self.grids_apart: dict[int, Separation] = {}  # of pairs that carried nothing yet
+        self.deflections: dict[tuple[int, int], tuple[Separation, LoadedContact, Array]] = {}
+        self.on_grids = given is not None or grid.lines_held  # all pairs, since what is given goes with grids
         usual = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
         self.agreement = usual if grid.agreement is None else grid.agreement
-
-    def _first_law(self, tooth_pair: ToothPair) -> PowerLaw:
-        """Hertz's law of the curvatures at the contact point, or of a slender contact over the face."""
-        contact, gears = tooth_pair.contact, tooth_pair.gears or self.pair
-        load, modulus = self.torque / contact.pinion_lever, self.pair.contact_modulus
-        curvature = relative_curvature(gears, contact)
-        if curvature.across >= curvature.along > 0.0:
-            ellipse = point_contact(load, (curvature.across, curvature.along), modulus)
-            if 2.0 * ellipse.semi_major < self.pair.face_width:
-                return PowerLaw(load, ellipse.approach)
-        return PowerLaw(load, SLENDER * load / (modulus * self.pair.face_width), LINE_EXPONENT)
 
     def steps(self) -> Steps[SharedLoad]:
         shared: SharedLoad | None = None
@@ -278,13 +270,13 @@ class _Balance:
             if capped and shared is not None and count > SWINGING and count % SWINGING != 1:
                 forces = yield from self._solve_at_common_rotation(shared)
             else:  # also now and then there, since pairs that are apart may come under load
-                before = forces
-                forces = balance(self.laws, self._first_rotations, self.levers, self.torque, self.compliance)
+                before, known = forces, None if shared is None else forces
+                forces = balance(self.laws, self._first_rotations, self.levers, self.torque, self.compliance, known)
                 if count > SWINGING and not capped:
                     forces = 0.5 * (before + forces)
                 for index in np.flatnonzero(forces).tolist():
                     yield from self._solve(index, forces)
-            self.compliance = self._corrected()
+            self.compliance = yield from self._corrected()
             shared = self._shared(forces, count)
             if shared.residual <= self.agreement and self._settled(forces, shared.rotation):
                 return shared
@@ -299,24 +291,34 @@ class _Balance:
 
     def _first_compliance(self, bending: BendingModel) -> Steps[Array]:
         """Compliance (k, k) [mm/N] of the pairs under line loads that fall to both ends, as of ellipses."""
-        numbers = [tooth_pair.pair for tooth_pair in self.tooth_pairs]
-        lines: list[tuple[int, Separation]] = []
+        lines: list[tuple[int, ContactGrid]] = []
         shares: list[Array] = []
-        for number, law, tooth_pair in zip(numbers, self.laws, self.tooth_pairs, strict=True):
-            separation: Separation = yield Gap(tooth_pair.contact, FIRST_CELLS, load=law.load, gears=tooth_pair.gears)
-            force = expected_pressure(separation).sum(axis=0)
-            lines.append((number, separation))
+        for index, tooth_pair in enumerate(self.tooth_pairs):
+            if self.on_grids:
+                grid = yield from self._grid_apart(index)
+                force = expected_pressure(grid).sum(axis=0)
+                lines.append((tooth_pair.pair, grid))
+            else:
+                line: ExpectedLine = yield Line(tooth_pair.contact, self.half_lengths[index], tooth_pair.gears)
+                force = line.force
+                lines.append((tooth_pair.pair, line))
             shares.append(force / force.sum())
-        self.first_grids = [separation for _, separation in lines]
         if self.given is not None:
             self.given_means = np.array(
-                [share @ self.given(separation) for share, (_, separation) in zip(shares, lines, strict=True)]
+                [own @ self.given(grid) for own, grid in zip(shares, self.grids_apart.values(), strict=True)]
             )
         compliance = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
         for (i, one), (j, other) in combinations(enumerate(lines), 2):
             if self._coupled(i, j):
                 compliance[i, j] = compliance[j, i] = shares[i] @ bending.deflection(one, other, shares[j])
         return compliance
+
+    def _grid_apart(self, index: int) -> Steps[Separation]:
+        """Grid of a pair that carried nothing yet, in the box that it would have under all of the torque."""
+        if index not in self.grids_apart:
+            contact, gears = self.tooth_pairs[index].contact, self.tooth_pairs[index].gears
+            self.grids_apart[index] = yield Gap(contact, FIRST_CELLS, load=self.laws[index].load, gears=gears)
+        return self.grids_apart[index]
 
     def _solve(self, index: int, forces: Array) -> Steps[None]:
         """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""
@@ -406,8 +408,7 @@ class _Balance:
         displaced = np.zeros(len(separation.y)) if given is None else given
         for n, other in self._loaded():
             if n != index and forces[n] > 0.0:
-                force = forces[n] * other.slice_shares
-                displaced += self._deflection((index, separation), (n, other.separation), force)
+                displaced += forces[n] * self._deflection(index, separation, n, other)
         return displaced
 
     def _coupled(self, index: int, other: int) -> bool:
@@ -415,13 +416,22 @@ class _Balance:
         apart = abs(self.tooth_pairs[index].pair - self.tooth_pairs[other].pair)
         return self.bending is not None and apart <= self.bending.neighbours
 
-    def _deflection(self, at: tuple[int, Separation], under: tuple[int, Separation], forces: Array) -> Array:
-        """Deflection (m,) [mm] of the slices of a pair's grid under forces (n,) [N] on those of another."""
-        assert self.bending is not None
-        here, there = ((self.tooth_pairs[index].pair, separation) for index, separation in (at, under))
-        return self.bending.deflection(here, there, forces)
+    def _deflection(self, index: int, separation: Separation, other: int, loaded: LoadedContact) -> Array:
+        """Deflection (m,) [mm/N] of the slices of a pair's grid by the force of another one, spread as in its solution.
 
-    def _corrected(self) -> Array:
+        Kept as long as grid and solution are the last ones that were asked for.
+        """
+        assert self.bending is not None
+        known = self.deflections.get((index, other))
+        if known is None or known[0] is not separation or known[1] is not loaded:
+            here, there = (
+                (self.tooth_pairs[n].pair, at) for n, at in ((index, separation), (other, loaded.separation))
+            )
+            known = separation, loaded, self.bending.deflection(here, there, loaded.slice_shares)
+            self.deflections[index, other] = known
+        return known[2]
+
+    def _corrected(self) -> Steps[Array]:
         """Compliance (k, k) [mm/N], that of the pairs solved so far the mean over the forces on their slices."""
         compliance = self.compliance.copy()
         if self.bending is None:
@@ -431,20 +441,31 @@ class _Balance:
             if self.given is not None:
                 self.given_means[index] = loaded.slice_shares @ self.given(loaded.separation)
         for (index, one), (other, two) in combinations(self._loaded(), 2):
-            displaced = self._deflection((index, one.separation), (other, two.separation), two.slice_shares)
+            displaced = self._deflection(index, one.separation, other, two)
             compliance[index, other] = compliance[other, index] = one.slice_shares @ displaced
         loaded_pairs = dict(self._loaded())
-        for index, separation in enumerate(self.first_grids):
-            if index not in loaded_pairs:
-                self._correct_apart(index, separation, loaded_pairs, compliance)
+        rotation = max(
+            self.separations[n] + one.solution.approach / self.levers[1, n] for n, one in loaded_pairs.items()
+        )
+        places: dict[int, int] = {}
+        for index in range(len(self.tooth_pairs)):
+            is_near = self.on_grids or self.separations[index] <= FAR * rotation
+            if index not in loaded_pairs and is_near:
+                grid = yield from self._grid_apart(index)
+                places[index] = self._correct_apart(index, grid, loaded_pairs, compliance)
+        if self.given is not None and places and np.linalg.eigvalsh(compliance)[0] < 0.0:
+            self._correct_between_apart(places, compliance)
         return compliance
 
     def _correct_apart(
         self, index: int, separation: Separation, loaded_pairs: dict[int, LoadedContact], compliance: Array
-    ) -> None:
-        """Correct the compliance (k, k) of a pair that carries nothing, where the others let it touch first."""
+    ) -> int:
+        """Correct the compliance (k, k) of a pair that carries nothing, where the others let it touch first.
+
+        Returns the slice of that place.
+        """
         bent = {
-            other: self._deflection((index, separation), (other, two.separation), two.slice_shares)
+            other: self._deflection(index, separation, other, two)
             for other, two in loaded_pairs.items()
             if self._coupled(index, other)
         }
@@ -459,6 +480,23 @@ class _Balance:
             compliance[index, other] = compliance[other, index] = displaced[place]
         if given is not None:
             self.given_means[index] = given[place]
+        return place
+
+    def _correct_between_apart(self, places: dict[int, int], compliance: Array) -> None:
+        """Take the compliance (k, k) between pairs that carry nothing at the places where they touch first, too.
+
+        That of line loads instead, beside places elsewhere on a gear whose support tilts, is of no body: two forces
+        could move each other further than themselves, and no balance would be found.
+        """
+        assert self.bending is not None
+        grids = {index: (self.tooth_pairs[index].pair, self.grids_apart[index]) for index in places}
+        for index, place in places.items():
+            compliance[index, index] = self.bending.within(*grids[index])[place, place]
+        for index, other in combinations(places, 2):
+            if self._coupled(index, other):
+                one_force = np.eye(len(grids[other][1].y))[places[other]]
+                displaced = self.bending.deflection(grids[index], grids[other], one_force)[places[index]]
+                compliance[index, other] = compliance[other, index] = displaced
 
     def _settled(self, forces: Array, rotation: float) -> bool:
         """Whether the rotation closes no pair that carries nothing, and all were solved as the others still bend them.

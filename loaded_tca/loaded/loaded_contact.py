@@ -3,8 +3,8 @@
 Work on many contacts at once: each asks for gaps and pressures, and what all ask for is found together.
 
 A contact, or the tooth pairs of a position that share a torque, is a generator. It yields what it needs next, a
-:class:`Gap`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its result. So it reads as if it
-were alone, and its numbers do not depend on what stands beside it.
+:class:`Gap`, :class:`Line`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its result. So it reads
+as if it were alone, and its numbers do not depend on what stands beside it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,9 @@ from loaded_tca.contact.patch import values_at_ends, widths
 from loaded_tca.contact.solution import ContactSolution, ContactStatus
 from loaded_tca.contact.solver import solve_problems
 from loaded_tca.errors import LoadedTCAError
+from loaded_tca.loaded.first_guess import ExpectedLine, expected_lines
 from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation
@@ -57,6 +59,14 @@ class Gap(NamedTuple):
     cells_at_ends: tuple[int, int] | None = None
 
 
+class Line(NamedTuple):
+    """The slices that a contact is expected to load; see :func:`loaded_tca.loaded.first_guess.expected_lines`."""
+
+    contact: ContactPoint
+    half_length: float
+    gears: GearPair | None = None
+
+
 class Task(NamedTuple):
     """A contact problem to solve to a tolerance, from a pressure to start from or none."""
 
@@ -72,7 +82,8 @@ class Ends(NamedTuple):
     gears: GearPair | None = None
 
 
-Steps = Generator[Gap | Ends | Task, Any, Result]
+Request = Gap | Line | Ends | Task
+Steps = Generator[Request, Any, Result]
 
 
 def found_together(
@@ -80,7 +91,7 @@ def found_together(
 ) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
 
-    In a round what most ask for is found: all gaps, or all free edges, or all problems on one grid.
+    In a round what most ask for is found: all gaps, or all lines, or all free edges, or all problems on one grid.
     Whenever one returns, another one begins: so many are under way that stacks are full, and no more, so that memory
     stays bounded and progress steady.
 
@@ -102,9 +113,9 @@ def found_together(
         The first one that a generator does not deal with.
     """
     results: dict[int, Result] = {}
-    asked: dict[int, Gap | Ends | Task] = {}
+    asked: dict[int, Request] = {}
 
-    def advance(index: int, step: Callable[[], Gap | Ends | Task]) -> None:
+    def advance(index: int, step: Callable[[], Request]) -> None:
         try:
             asked[index] = step()
         except StopIteration as end:
@@ -130,13 +141,13 @@ def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
 
 
 def _answers(
-    pair: GearPair, asked: dict[int, Gap | Ends | Task]
-) -> dict[int, Separation | Array | ContactSolution | LoadedTCAError | None]:
-    """Answer what most ask for, gaps, free edges or problems on one grid; errors are answers."""
+    pair: GearPair, asked: dict[int, Request]
+) -> dict[int, Separation | ExpectedLine | Array | ContactSolution | LoadedTCAError | None]:
+    """Answer what most ask for, gaps, lines, free edges or problems on one grid; errors are answers."""
     kinds = {index: one.problem.cells if isinstance(one, Task) else type(one) for index, one in asked.items()}
     (most, _), *_ = Counter(kinds.values()).most_common(1)
     chosen: Any = {index: asked[index] for index, kind in kinds.items() if kind == most}
-    if most in (Gap, Ends):
+    if most in (Gap, Line, Ends):
         by_gears: dict[int, dict[int, Any]] = {}
         for index, request in chosen.items():
             by_gears.setdefault(id(request.gears), {})[index] = request
@@ -148,12 +159,17 @@ def _answers(
     }
 
 
-def _of_flanks(pair: GearPair, asked: dict[int, Any]) -> dict[int, Separation | Array | LoadedTCAError | None]:
-    """Answer requests for gaps, or for free edges, of the same gears."""
+def _of_flanks(
+    pair: GearPair, asked: dict[int, Any]
+) -> dict[int, Separation | ExpectedLine | Array | LoadedTCAError | None]:
+    """Answer requests for gaps, for lines, or for free edges, of the same gears."""
     requests = list(asked.values())
     gears = requests[0].gears or pair
     if isinstance(requests[0], Ends):
         return dict(zip(asked, edge_compliances(gears, [one.separation for one in requests]), strict=True))
+    if isinstance(requests[0], Line):
+        contacts, half_lengths, _ = zip(*requests, strict=True)
+        return dict(zip(asked, expected_lines(gears, contacts, half_lengths), strict=True))
     contacts, cells, loads, boxes, _, polynomials, at_ends = zip(*requests, strict=True)
     gaps = sample_separations(
         gears, contacts, cells=cells, loads=loads, boxes=boxes, polynomials=polynomials, cells_at_ends=at_ends
@@ -186,6 +202,9 @@ EQUAL = 1e-3
 LARGEST_MISFIT = 0.3
 """Of a gap from its paraboloid, where Hertz's pressure is still told: it differs by up to a tenth then; where a relief
 begins in the ellipse the misfit is above 1."""
+LINE_KEPT = 1e-4
+"""Distance over the module by which forces of slices move, in the mean, before teeth bend at other places: a tenth of
+``load_sharing.LINE_ERROR``, less than 0.1 nm of transmission error."""
 BESIDE = 0.5 + 1e-6
 """Distance over a cell along both axes within which cells lie beside the contact point."""
 LEAST_ERROR_OF_SLICES = 3.0
@@ -213,9 +232,8 @@ class LoadedContact:
         Displacement of the slices under the load of other tooth pairs, if there are any.
     bending, ends : (ny, ny) array or None [mm/N]
         Slice compliance of the teeth, and of their free edges.
-    line_load_error : float
-        Estimated relative error of the pressure of slices by that of their line load, from the two finest grids; NaN
-        where there was one.
+    line_loads : tuple of callables
+        Return the line loads on the two finest grids, which few contacts are asked for; fewer where there was one grid.
     judged : (float, float) or None [MPa], [N]
         Largest pressure and load of the solution that the errors were estimated of: lines of forces and other pairs may
         have moved the pressure since. None: it is that.
@@ -230,7 +248,7 @@ class LoadedContact:
     coupling_deflection: Array | None = None
     bending: Array | None = None
     ends: Array | None = None
-    line_load_error: float = math.nan
+    line_loads: tuple[Callable[[], SliceLoads], ...] = ()
     judged: tuple[float, float] | None = None
 
     @property
@@ -260,6 +278,14 @@ class LoadedContact:
             return float(np.maximum(self.solution.error_estimate.peak_pressure, self.peak_change))
         least = LEAST_ERROR_OF_SLICES / min(self.solution.cells_across) ** 2
         return float(np.maximum(self.line_load_error, least))
+
+    @cached_property
+    def line_load_error(self) -> float:
+        """Estimated relative error of the pressure of slices by their line load; NaN where there was one grid."""
+        if len(self.line_loads) < 2:
+            return math.nan
+        coarse, fine = (line_load() for line_load in self.line_loads)
+        return fine.error_of_largest(coarse)
 
     @property
     def peak_change(self) -> float:
@@ -395,14 +421,22 @@ class LoadedContact:
         return float(deflection - self.coupling_deflection @ force / force.sum())
 
     def bent_by(self, bending: BendingModel, number: int, module: float) -> LoadedContact:
-        """Return the contact as it is, to be solved next with teeth that bend at the centres of its pressure."""
+        """Return the contact as it is, to be solved next with teeth that bend at the centres of its pressure.
+
+        Where they moved by less than ``LINE_KEPT``, it is returned as it is.
+        """
         separation = self.separation.loaded_by(self.solution.pressure, module)
+        if self.bending is not None and self._moved(separation) <= LINE_KEPT * module:
+            return self
         return replace(self, separation=separation, bending=bending.within(number, separation))
 
     def line_error(self, module: float) -> float:
         """How far the forces that bend the teeth are from the centres of the pressure, the mean over the force [mm]."""
-        force, centred = self.slice_force, self.separation.loaded_by(self.solution.pressure, module)
-        moved = np.abs(centred.force_line - self.separation.force_line)
+        return self._moved(self.separation.loaded_by(self.solution.pressure, module))
+
+    def _moved(self, other: Separation) -> float:
+        """Distance of the line of the forces of the same grid, the mean over the force [mm]."""
+        force, moved = self.slice_force, np.abs(other.force_line - self.separation.force_line)
         return float(force @ moved / force.sum()) if force.any() else 0.0
 
     def under(self, load: float, coupling: Array | None = None) -> Steps[LoadedContact]:

@@ -16,7 +16,8 @@ from scipy.interpolate import make_interp_spline
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, RoundedEdge, edge_pressures
+from loaded_tca.contact.pressed_arc import EdgePressure, RoundedEdge
+from loaded_tca.contact.rounded_edge import SURELY_LESS, edge_pressures
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import Carried, told_where
 from loaded_tca.loaded.free_edges import edge_compliances

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -178,7 +179,7 @@ class _InBox:
         self.displaced: Array | None = None
         self.bent: Array | None = None
         self.ends: Array | None = None
-        self.line_loads: list[SliceLoads] = []
+        self.line_loads: list[Callable[[], SliceLoads]] = []
 
     def steps(self, *, goes_on: bool) -> Steps[LoadedContact]:
         loaded = yield from self._refined()
@@ -221,7 +222,7 @@ class _InBox:
             coupling_deflection=self.displaced,
             bending=self.bent,
             ends=self.ends,
-            line_load_error=self._line_load_error(),
+            line_loads=tuple(self.line_loads[-2:]),
         )
 
     def _solved(self, cells: tuple[int, int], tolerance: float, start: Array | None = None) -> Steps[ContactSolution]:
@@ -238,15 +239,8 @@ class _InBox:
         problem = contact_problem(self.pair, separation, self.load, self.bent, self.ends, self.displaced)
         solution: ContactSolution = yield Task(problem, tolerance, start)
         if self.load > 0.0:
-            self.line_loads.append(SliceLoads(self.pair.module, separation, solution.pressure))
+            self.line_loads.append(partial(SliceLoads, self.pair.module, separation, solution.pressure))
         return solution
-
-    def _line_load_error(self) -> float:
-        """Error of the largest line load by the two finest grids; NaN where there was one."""
-        if len(self.line_loads) < 2:
-            return math.nan
-        coarse, fine = self.line_loads[-2:]
-        return fine.error_of_largest(coarse)
 
 
 def contact_problem(

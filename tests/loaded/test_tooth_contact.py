@@ -14,7 +14,7 @@ from loaded_tca.contact.patch import widths
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import found_alone
-from loaded_tca.loaded.tooth_contact import GridChoice, _InBox, solve_under_load
+from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.reference import hertz
@@ -388,10 +388,12 @@ def test_peak_error_is_that_of_the_peak_or_of_the_line_load():
     assert smooth.peak_error == smooth.solution.error_estimate.peak_pressure
     rough = solved(gear_pair(), 2700.0, grid=GridChoice(accuracy=1e-2))
     assert rough.is_rough
-    assert replace(rough, line_load_error=0.5).peak_error == 0.5
-    least = replace(rough, line_load_error=0.0).peak_error
-    assert 0.0 < least < 0.02
-    assert np.isnan(replace(rough, line_load_error=math.nan).peak_error)
+    assert rough.line_load_error > 0.0
+    off = replace(rough, line_loads=(lambda: None, lambda: SimpleNamespace(error_of_largest=lambda _: 0.5)))
+    assert off.peak_error == 0.5
+    even = SimpleNamespace(error_of_largest=lambda _: 0.0)
+    assert 0.0 < replace(rough, line_loads=(lambda: even, lambda: even)).peak_error < 0.02
+    assert np.isnan(replace(rough, line_loads=()).peak_error)
 
 
 def test_estimate_of_slices_sees_a_change_beside_the_largest_line_load():
@@ -402,7 +404,7 @@ def test_estimate_of_slices_sees_a_change_beside_the_largest_line_load():
         return SliceLoads(4.0, grid, np.array(line_load) * np.array([[0.0], [1.0], [0.0]]))  # averaged over a slice
 
     def error(coarse, fine):
-        return _InBox._line_load_error(SimpleNamespace(line_loads=[loads(coarse), loads(fine)]))
+        return loads(fine).error_of_largest(loads(coarse))
 
     assert error([5, 10, 5, 5, 5, 9.2, 5, 5], [5, 10, 5, 5, 5, 9.8, 5, 5]) == pytest.approx(0.01, abs=ROUNDING)
     assert error([5, 10, 5, 5, 5, 9.2, 5, 5], [5, 9.8, 5, 5, 5, 10, 5, 5]) == pytest.approx(0.04, abs=ROUNDING)
