@@ -11,9 +11,10 @@ KERNEL_TESTS := tests/contact tests/separation tests/loaded/test_balance.py test
 
 .PHONY: demo test tests test-kernel validate docs reference-fem lint lint-together clean
 
+# Modules are compiled when they are first imported: all of them at once take pip as long as the rest of its work.
 .venv/installed: pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[dev]'
 	touch $@
 
 demo: .venv/installed

@@ -14,7 +14,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, default_density, model_of, require_teeth, root_stress_model, way_out_told
-from loaded_tca.compliance.model import torsion_of_bodies
+from loaded_tca.compliance.model import torsion_of_bodies, with_enough_teeth
 from loaded_tca.contact.adaptive import MOST_CELLS
 from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, noted_accuracy_warnings, require
@@ -263,9 +263,7 @@ def _on_supports(
         supported = SupportedCycle(pair, bending, angles, grid, load_sharing=wanted.load_sharing)
         return supported.under(scene.torques, progress)
 
-    cycles = under(apart)
-    if (loaded := max(one.pitches_apart for one in cycles)) > max(apart, 1):  # as no estimate of the motions says
-        cycles = under(loaded)
+    cycles = with_enough_teeth(apart, under, lambda made: max(one.pitches_apart for one in made))
     at_edges: dict[tuple[int, int, int], PeakAtEdge] = {}
     for t, one in enumerate(cycles):
         peaks = pressures_at_rounded_edges(

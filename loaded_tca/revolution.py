@@ -15,7 +15,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.analysis import Effort, expected_effort, grid_of, roots_of
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, model_of
-from loaded_tca.compliance.model import SumOfParts, torsion_of_bodies
+from loaded_tca.compliance.model import SumOfParts, torsion_of_bodies, with_enough_teeth
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
@@ -28,6 +28,7 @@ from loaded_tca.loaded.supported import (
     loads_at,
     moved_bending,
     moved_by,
+    widest_apart,
 )
 from loaded_tca.loaded.supported import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.tooth_contact import GridChoice
@@ -177,27 +178,32 @@ def _on_supports(
     """Numbers of gears on supports, torque by torque, moved by the mean load of a pitch of teeth that are alike."""
     supports = support_compliance(scene, pair)
     assert supports is not None
-    roots, numbers = roots_of(scene, pair), list[_OnSupports]()
+    roots = roots_of(scene, pair)
     mesh = trace_teeth(at_rest(supports), pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1))
     apart = max(pitches_of_cycle(supports, scene.torques, mesh), pitches_apart(_trace(scene, pair, pitches)))
-    bending = model_of(scene, pair, apart)
-    assert bending is not None
-    cycle = SupportedCycle(pair, bending, mesh.pinion_angle, grid, load_sharing=True)
-    for t, held in enumerate(cycle.settled(scene.torques)):
-        near = supports.under(held)
 
-        def moved(gears: GearPair, near: SupportCompliance = near, held: Loads = held) -> GearPair:
-            return moved_by(replace(near, pair=gears), held)
+    def under(apart: int) -> list[_OnSupports]:
+        bending, numbers = model_of(scene, pair, apart), list[_OnSupports]()
+        assert bending is not None
+        cycle = SupportedCycle(pair, bending, mesh.pinion_angle, grid, load_sharing=True)
+        for t, held in enumerate(cycle.settled(scene.torques)):
+            near = supports.under(held)
 
-        there, given = moved_bending(bending, near, held)
-        assert there.supports is not None
-        path = _trace(scene, there.supports.pair, pitches, moved)
-        torque = np.array(scene.torques[t : t + 1])
-        one = _OnSupports(path.pair, path, torque, grid, roots, maps, bending=there, held=held)
-        report = None if progress is None else partial(_report, progress, t, len(scene.torques))
-        for part in carried_over_revolution(path, one.torques, grid, there, report, given):
-            one.add(part)
-        numbers.append(one)
+            def moved(gears: GearPair, near: SupportCompliance = near, held: Loads = held) -> GearPair:
+                return moved_by(replace(near, pair=gears), held)
+
+            there, given = moved_bending(bending, near, held)
+            assert there.supports is not None
+            path = _trace(scene, there.supports.pair, pitches, moved)
+            torque = np.array(scene.torques[t : t + 1])
+            one = _OnSupports(path.pair, path, torque, grid, roots, maps, bending=there, held=held)
+            report = None if progress is None else partial(_report, progress, t, len(scene.torques))
+            for part in carried_over_revolution(path, one.torques, grid, there, report, given):
+                one.add(part)
+            numbers.append(one)
+        return numbers
+
+    numbers = with_enough_teeth(apart, under, lambda made: max(one.pitches_apart for one in made))
     warn_of_motions(pair, numbers)
     return numbers
 
@@ -371,6 +377,11 @@ class _OnSupports(_Numbers):
         self.drive_rate = np.full(len(self.path), math.nan)
         pinion, wheel = (np.full((len(self.path), len(one)), math.nan) for one in self.held)
         self.loads = pinion, wheel
+
+    @property
+    def pitches_apart(self) -> int:
+        """How many pitches two tooth pairs that carry load at a position are apart at the most."""
+        return widest_apart(self.path.pairs, self.arrays["load_share"][0])
 
     def add(self, part: CarriedPart) -> None:
         """Take the loads of the supports, too."""

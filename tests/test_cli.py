@@ -56,8 +56,10 @@ def fail_with(monkeypatch, error):
 
 @pytest.mark.usefixtures("blank_pictures")
 def test_demo_needs_no_file_and_tells_what_to_try_next(run):
-    code, out, _ = run("demo")
-    assert code == 0
+    """And has nothing to warn of; with its pictures, too: tests/test_release.py."""
+    code, out, err = run("demo")
+    assert (code, err) == (0, [])
+    assert "note:" not in out
     assert set(os.listdir("loaded-tca-demo")) >= REPORT | PICTURES | {"scene.toml"}
     assert "peak pressure [MPa]" in out
     assert out.rstrip().endswith("loaded-tca run loaded-tca-demo/scene.toml --out my-pair")
@@ -70,14 +72,6 @@ def test_demo_goes_where_it_is_told(run):
     assert code == 0
     assert os.listdir() == ["else"]
     assert out.rstrip().endswith("loaded-tca run else/where/scene.toml --out my-pair")
-
-
-@pytest.mark.usefixtures("blank_pictures")
-def test_demo_has_nothing_to_warn_of(run):
-    """With its pictures, too: tests/test_release.py."""
-    _, out, err = run("demo")
-    assert err == []
-    assert "note:" not in out
 
 
 def test_demo_does_not_replace_a_changed_scene(refused):
@@ -516,18 +510,15 @@ def in_a_shell(redirected, *arguments):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
-@pytest.mark.parametrize("arguments", [["check", HELICAL], ["run", "quick.toml", "--out", "out"], ["--version"]])
+@pytest.mark.parametrize("arguments", [["check", HELICAL], ["--version"]])
 def test_full_standard_output_is_told(arguments):
-    scene()
     told = ["loaded-tca: standard output: cannot be written: No space left on device"]
     assert in_a_shell("> /dev/full", *arguments) == (2, told)
 
 
-@pytest.mark.parametrize("arguments", [["check", HELICAL], ["run", "quick.toml", "--out", "out"]])
-def test_closed_standard_output_is_no_failure(arguments):
-    scene()
-    assert in_a_shell(">&-", *arguments) == (0, [])
-    assert in_a_shell("2>&- > /dev/null", *arguments) == (0, [])
+@pytest.mark.parametrize("redirected", [">&-", "2>&- > /dev/null"])
+def test_closed_standard_output_or_error_is_no_failure(redirected):
+    assert in_a_shell(redirected, "check", HELICAL) == (0, [])
 
 
 @pytest.mark.parametrize("redirected", ["2>&-", "2> /dev/full"])
@@ -535,10 +526,10 @@ def test_standard_error_that_cannot_be_written_leaves_the_exit_code(redirected):
     assert in_a_shell(redirected, "check", "absent.toml") == (2, [])
 
 
-@pytest.mark.parametrize("arguments", [["check", HELICAL], ["run", "quick.toml", "--out", "out"]])
-def test_closed_pipe_is_no_fault(arguments):
-    scene()
-    with subprocess.Popen(command_of(*arguments), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+def test_closed_pipe_is_no_fault_of_a_command_that_draws_a_progress_bar():
+    with subprocess.Popen(
+        command_of("run", scene(), "--out", "out"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
         process.stdout.close()
         assert process.stderr.read() == ""
         assert process.wait() == 0

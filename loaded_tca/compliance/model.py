@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, Self
+from typing import Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from loaded_tca.compliance.compliance import tooth_compliance, way_out_told
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.supports import SupportCompliance, support_compliance
+
+Made = TypeVar("Made")
 
 
 class BendingModel(Protocol):
@@ -85,11 +87,13 @@ class SumOfParts(BendingModel):
 
     def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact under a unit force on each slice of another [mm/N]."""
-        return _sum([part.between(at, under) for part in self._parts_between(at[0], under[0])])
+        parts = self._parts_between(at[0], under[0])
+        return _sum([part.between(at, under) for part in parts]) if parts else np.zeros((len(at[1].y), len(under[1].y)))
 
     def deflection(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid], forces: Array) -> Array:
         """Deflection (m,) [mm] of the slices of one contact under forces (n,) [N] on those of another."""
-        return _sum([part.deflection(at, under, forces) for part in self._parts_between(at[0], under[0])])
+        parts = self._parts_between(at[0], under[0])
+        return _sum([part.deflection(at, under, forces) for part in parts]) if parts else np.zeros(len(at[1].y))
 
     def _parts_between(self, one: int, other: int) -> list[BendingPart]:
         """Parts in which a force on one tooth pair moves the other: teeth so far apart may be in no model of teeth."""
@@ -175,3 +179,30 @@ def model_of(scene: Scene, pair: GearPair, neighbours: int) -> SumOfParts | None
     """
     parts = [part for make in PARTS if (part := make(scene, pair, max(neighbours, 1))) is not None]
     return SumOfParts(tuple(parts)) if parts else None
+
+
+def with_enough_teeth(estimated: int, make: Callable[[int], Made], bearing: Callable[[Made], int]) -> Made:
+    """What is solved with a bending model, its teeth as many as those between tooth pairs that carry load together.
+
+    Where gears move under load, how far such pairs are apart is only an estimate before they have. Of pairs further
+    apart than the model of the teeth it has what supports couple alone, so that all is solved again with a larger one.
+
+    Parameters
+    ----------
+    estimated : int
+        How many pitches tooth pairs under load are apart at the most, before they are solved.
+    make : callable
+        Solves with a model of so many neighbours of a loaded tooth.
+    bearing : callable
+        How many pitches tooth pairs that carry load in what was solved are apart at the most.
+
+    Examples
+    --------
+    >>> with_enough_teeth(1, make=lambda modelled: 10 * modelled, bearing=lambda made: 3)
+    30
+    """
+    modelled = max(estimated, 1)
+    made = make(modelled)
+    while (apart := bearing(made)) > modelled:
+        modelled, made = apart, make(apart)
+    return made

@@ -233,6 +233,12 @@ class HeldContacts:
         """Derivatives (keys, nx, ny) [mm per unit of the key] of :meth:`gaps`."""
         return self._slopes_at(values) if self._slopes is None else self._slopes
 
+    @property
+    def pitches_apart(self) -> int:
+        """How many pitches two tooth pairs held at a position are apart at the most."""
+        numbers = ([self._held[contact].tooth_pair.pair for contact in at] for at in self.contacts if at)
+        return max((max(one) - min(one) for one in numbers), default=0)
+
     def __getitem__(self, contact: ContactPoint) -> HeldContact:
         return self._held[contact]
 

@@ -447,17 +447,23 @@ class _Balance:
         rotation = max(
             self.separations[n] + one.solution.approach / self.levers[1, n] for n, one in loaded_pairs.items()
         )
+        places: dict[int, int] = {}
         for index in range(len(self.tooth_pairs)):
             is_near = self.on_grids or self.separations[index] <= FAR * rotation
             if index not in loaded_pairs and is_near:
                 grid = yield from self._grid_apart(index)
-                self._correct_apart(index, grid, loaded_pairs, compliance)
+                places[index] = self._correct_apart(index, grid, loaded_pairs, compliance)
+        if self.given is not None and places and np.linalg.eigvalsh(compliance)[0] < 0.0:
+            self._correct_between_apart(places, compliance)
         return compliance
 
     def _correct_apart(
         self, index: int, separation: Separation, loaded_pairs: dict[int, LoadedContact], compliance: Array
-    ) -> None:
-        """Correct the compliance (k, k) of a pair that carries nothing, where the others let it touch first."""
+    ) -> int:
+        """Correct the compliance (k, k) of a pair that carries nothing, where the others let it touch first.
+
+        Returns the slice of that place.
+        """
         bent = {
             other: self._deflection(index, separation, other, two)
             for other, two in loaded_pairs.items()
@@ -474,6 +480,23 @@ class _Balance:
             compliance[index, other] = compliance[other, index] = displaced[place]
         if given is not None:
             self.given_means[index] = given[place]
+        return place
+
+    def _correct_between_apart(self, places: dict[int, int], compliance: Array) -> None:
+        """Take the compliance (k, k) between pairs that carry nothing at the places where they touch first, too.
+
+        That of line loads instead, beside places elsewhere on a gear whose support tilts, is of no body: two forces
+        could move each other further than themselves, and no balance would be found.
+        """
+        assert self.bending is not None
+        grids = {index: (self.tooth_pairs[index].pair, self.grids_apart[index]) for index in places}
+        for index, place in places.items():
+            compliance[index, index] = self.bending.within(*grids[index])[place, place]
+        for index, other in combinations(places, 2):
+            if self._coupled(index, other):
+                one_force = np.eye(len(grids[other][1].y))[places[other]]
+                displaced = self.bending.deflection(grids[index], grids[other], one_force)[places[index]]
+                compliance[index, other] = compliance[other, index] = displaced
 
     def _settled(self, forces: Array, rotation: float) -> bool:
         """Whether the rotation closes no pair that carries nothing, and all were solved as the others still bend them.

@@ -27,7 +27,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.errors import ConvergenceError, GeometryError, named
 from loaded_tca.loaded.cycle import (
@@ -121,8 +121,7 @@ class CarriedOnSupports:
     @property
     def pitches_apart(self) -> int:
         """How many pitches two tooth pairs that carry load at a position are apart at the most."""
-        spans = [int(np.ptp(self.carried.pairs[row > 0.0])) for row in self.carried.share[0] if (row > 0.0).any()]
-        return max(spans, default=0)
+        return widest_apart(self.carried.pairs, self.carried.share[0])
 
     @property
     def drive_rate(self) -> Array:
@@ -291,6 +290,11 @@ class SupportedCycle:
             else:
                 states = OnePairsCycle(pair, trace_contact(pair, angles), torques, grid, bending, given)
         return _MovedCycle(torque, loads, bending, states)
+
+
+def widest_apart(pairs: Indices, shares: Array) -> int:
+    """How many pitches two tooth pairs (k,) with shares (n, k) above 0 at the same position are apart at the most."""
+    return max((int(np.ptp(pairs[row > 0.0])) for row in shares if (row > 0.0).any()), default=0)
 
 
 def _halfway(one: Loads, other: Loads) -> Loads:

@@ -285,8 +285,15 @@ class Blank(Section):
             "clearance": self.clearance_factor,
             "thickness": self.thickness_factor,
         }
-        factors = {name: value for name, value in named.items() if value is not None}
-        return crown_gear_factors(**(usual_factors(teeth, shaft_angle) | factors))
+        factors = usual_factors(teeth, shaft_angle)
+        factors |= {name: value for name, value in named.items() if value is not None}
+        if (share := factors["addendum_share"]) > 1.0:  # the usual one; a given one is from 0 to 1
+            raise InputError(
+                f"mean_addendum_factor: missing; the usual one, 0.21 + 0.29/u_a², is {share:.4g} of a pinion of "
+                f"{teeth[0]} teeth and a wheel of {teeth[1]}: usual where the pinion is the smaller gear; allowed "
+                "a factor from 0 to 1, the wheel's share of the working depth"
+            )
+        return crown_gear_factors(**factors)
 
 
 def settings_table(gear: FaceMilledGear) -> dict[str, Any]:

@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike
 from loaded_tca.analysis import roots_of
 from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.compliance import model_of, require_teeth
+from loaded_tca.compliance.model import with_enough_teeth
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
@@ -286,17 +287,22 @@ class DesignModel:
         supports = support_compliance(scene, pair)
         assert supports is not None
         unmoved = trace_teeth(at_rest(supports), angles)
-        bending = model_of(scene, pair, pitches_apart(supports, self.torques.tolist(), unmoved))
-        assert bending is not None
         grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=scene.analysis.free_edges)
-        cycle, held = SupportedCycle(pair, bending, angles, grid, load_sharing=True), []
         torques = self.torques.tolist()
-        for torque, loads in zip(torques, cycle.settled(torques), strict=True):
-            there, given = moved_bending(bending, supports.under(loads), loads)
-            assert there.supports is not None
-            mesh = trace_teeth(there.supports.pair, angles)
-            held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, there, given))
-        return tuple(held)
+
+        def under(apart: int) -> tuple[HeldContacts, ...]:
+            bending, held = model_of(scene, pair, apart), []
+            assert bending is not None
+            cycle = SupportedCycle(pair, bending, angles, grid, load_sharing=True)
+            for torque, loads in zip(torques, cycle.settled(torques), strict=True):
+                there, given = moved_bending(bending, supports.under(loads), loads)
+                assert there.supports is not None
+                mesh = trace_teeth(there.supports.pair, angles)
+                held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, there, given))
+            return tuple(held)
+
+        apart = pitches_apart(supports, torques, unmoved)
+        return with_enough_teeth(apart, under, lambda made: max(one.pitches_apart for one in made))
 
     def _check(self) -> None:
         wanted, torques = self.scene.analysis, self.torques

@@ -6,6 +6,7 @@ differ in these cost milliseconds.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +30,8 @@ BALANCE_SECONDS = 2e-3
 """Of a balance of the planets at a position under a torque."""
 KEPT = 2
 """Stages whose mesh cycles a process keeps: a study of pins has one, one of pins within a factor goes through few."""
+NUMBERS_OF_PLANETS = {"stage.planets", "stage.planet_angles_deg"}
+"""Keys of which either says how many planets a stage has."""
 TORQUES = ("sun_torque_Nm", "pinion_torque_Nm")
 """Figures that say of which torque a row is: in studies of stages, and of scenes."""
 FIRST = (
@@ -116,6 +119,30 @@ def nominal_of(subject: Scene | Stage, path: str) -> Any:
         else:
             return None
     return value
+
+
+def problem_of_places(subject: Scene | Stage, path: str, varied: Collection[str] = ()) -> str:
+    """Why a key leads past the end of a list, of bearings or of planets; nothing if it does not.
+
+    Parameters
+    ----------
+    subject : Scene or Stage
+    path : str
+        A key that there is, with dots.
+    varied : collection of str
+        Keys that vary with it: a list that is one of them may be longer than that of the scene.
+    """
+    names = path.split(".")
+    for end, index in enumerate(names[1:], 1):
+        place = ".".join(names[:end])
+        given, lengths = nominal_of(subject, place), {place}
+        if isinstance(subject, Stage) and PLACE.fullmatch(path):
+            given, lengths = subject.stage.angles, {*NUMBERS_OF_PLANETS, place}
+        is_list = isinstance(given, tuple | list) and index.isdigit() and lengths.isdisjoint(varied)
+        if is_list and int(index) >= len(given):
+            allowed = "0" if len(given) == 1 else f"0 to {len(given) - 1}"
+            return f"{path}: {index} is past the end of a list of {len(given)}; allowed {allowed}"
+    return ""
 
 
 def subject_of(study: xarray.Dataset) -> Scene | Stage:

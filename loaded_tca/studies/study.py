@@ -22,7 +22,7 @@ from loaded_tca.scene.keys import Key, Number, Whole, shown
 from loaded_tca.scene.section import as_table
 from loaded_tca.separation.pair_change import value_at
 from loaded_tca.stages import Stage
-from loaded_tca.studies.stage import key_of
+from loaded_tca.studies.stage import key_of, problem_of_places
 
 NEVER = 1e-12
 """Probabilities nearer than this to 0 or 1 are moved there: a distribution without bounds has no value at its ends."""
@@ -118,6 +118,9 @@ class Study:
                 key_of(self.scene, key)
             except InputError as error:
                 yield from error.problems
+            else:
+                if problem := problem_of_places(self.scene, key, self.keys):
+                    yield problem
         several = self.scene.analysis.torques_Nm is not None or "analysis.torques_Nm" in self.keys
         torque = "load.sun_torque_Nm" if isinstance(self.scene, Stage) else "load.pinion_torque_Nm"
         if torque in self.keys and several:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import wraps
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -55,9 +56,34 @@ BASES = {
 others 1995 with a density of 0.915, as public code has it, and the X_L of polyalphaolefins."""
 
 
+OF_CALL = ("friction", "bulk_temperature_C", "scuffing_load_stage", "permissible_film_ratio", "supply")
+"""Keys of ``[lubricant]`` in scenes that are of the pair, or of what it is judged by: arguments of the call."""
+
+AnyOil = TypeVar("AnyOil")
+
+
+def _of_oil_alone(oil: type[AnyOil]) -> type[AnyOil]:
+    """Have a class say where the keys of ``OF_CALL`` belong."""
+    init: Callable[..., None] = oil.__init__
+
+    @wraps(init)
+    def checked(self: AnyOil, **given: Any) -> None:
+        place = "not of the oil but of how the pair runs; allowed in the call, as tribology({}=...), or in the scene"
+        require(*((name not in OF_CALL, f"{name}: {place.format(name)}") for name in given))
+        init(self, **given)
+
+    any_class: Any = oil  # type checkers take no other __init__ of a class
+    any_class.__init__ = checked
+    return oil
+
+
+@_of_oil_alone
 @dataclass(frozen=True, kw_only=True)
 class Lubricant:
     r"""A lubricating oil.
+
+    How it comes to the gears (``supply``), the coefficient of friction and what the pair is judged by are no properties
+    of the oil but arguments of :meth:`loaded_tca.MeshCycle.tribology`, though scenes have them in ``[lubricant]``, too.
 
     .. math::
         \lg \lg(\nu + 0.7) = A - B \lg T, \qquad
@@ -82,7 +108,7 @@ class Lubricant:
     Raises
     ------
     InputError
-        With every value outside its range.
+        With every value outside its range, and for arguments of the call.
 
     References
     ----------
@@ -311,9 +337,10 @@ def lubricant_of(section: LubricantSection) -> Lubricant:
 
 def _supply_factor(supply: str, problems: list[str]) -> float:
     """X_S of ISO/TS 6336-20 of how the oil comes to the mesh."""
-    if supply not in SUPPLY_FACTORS:
-        problems.append(f"supply: {supply!r:.60}; allowed {' or '.join(map(repr, SUPPLY_FACTORS))}")
-    return SUPPLY_FACTORS.get(supply, math.nan)
+    if isinstance(supply, str) and supply in SUPPLY_FACTORS:
+        return SUPPLY_FACTORS[supply]
+    problems.append(f"supply: {supply!r:.60}; allowed {' or '.join(map(repr, SUPPLY_FACTORS))}")
+    return math.nan
 
 
 def _speeds(speed: Any, problems: list[str]) -> tuple[Array, bool]:

@@ -158,6 +158,8 @@ SUMMARY = {
     "pressure_velocity": "largest pressure times sliding velocity",
 }
 """Names of the lines of the summary, and their labels."""
+WITH_PLACES = ("largest_contact_temperature", "least_film_thickness")
+"""Extremes under whose line the summary says where they lie; of the least film ratio it is the place of the film."""
 
 
 def place_of(name: str) -> tuple[str, str]:

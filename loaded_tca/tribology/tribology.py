@@ -28,6 +28,7 @@ from loaded_tca.tribology.quantities import (
     QUANTITIES,
     SCUFFING,
     SUMMARY,
+    WITH_PLACES,
     place_of,
 )
 from loaded_tca.tribology.slices import Slices, cells_of_flank, cylindrical_mesh, slices_of
@@ -35,6 +36,12 @@ from loaded_tca.tribology.slices import Slices, cells_of_flank, cylindrical_mesh
 if TYPE_CHECKING:
     import pandas
     import xarray
+
+
+def _shown(value: float) -> str:
+    """Return a number as the summary shows it; a dash for what is not known."""
+    return "-" if math.isnan(value) else f"{value:.4g}"
+
 
 CELLS = (24, 32)
 """Of the grid of a flank along the profile and lengthwise."""
@@ -425,14 +432,26 @@ class Tribology:
         return "\n".join([self.result.scene.title or "Tribology", self.conditions.in_words(speed), *table, *notes])
 
     def rows(self, speed: int = 0) -> list[tuple[str, ...]]:
-        """Lines of the summary: the torques, and each number that is known under them."""
+        """Lines of the summary: the torques, each number that is known under them, and where some extremes lie."""
         self.check(0, speed)
         rows = [("pinion torque [N m]", *(shown_torque(one).split()[0] for one in self.result.torque))]
         for name in (name for name in SUMMARY if not self.lacking(name)):
             values, unit = self.by_speed(name)[speed], QUANTITIES[name].unit
             label = SUMMARY[name] + (f" [{unit}]" if unit != "1" else "")
-            rows.append((label, *("-" if math.isnan(one) else f"{one:.4g}" for one in values)))
+            rows.append((label, *map(_shown, values)))
+            rows += self._places_in_words(name, speed) if name in WITH_PLACES else []
         return rows
+
+    def _places_in_words(self, name: str, speed: int) -> list[tuple[str, ...]]:
+        """Where an extreme lies, in the words of the summary of contacts."""
+        positions, radii, axials = (self.by_speed(f"{name}_{end}")[speed] for end in ("position", "radius", "axial"))
+        angles = np.append(np.degrees(self.result.pinion_angle), math.nan)
+        angle = angles[np.where(np.isnan(positions), -1, positions).astype(int)]
+        places = (f"{_shown(2.0 * radius)} | {_shown(axial)}" for radius, axial in zip(radii, axials, strict=True))
+        return [
+            ("  pinion angle [deg]", *map(_shown, angle)),
+            ("  pinion diameter | axial position [mm]", *places),
+        ]
 
     def save(self, path: FilePath) -> None:
         """Write the dataset to a NetCDF-3 file, whole or not at all.

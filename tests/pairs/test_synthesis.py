@@ -165,7 +165,8 @@ def test_uniform_depth_and_small_cutters_take_all_settings():
         assert pinion.machine.tilt != 0.0
 
 
-def test_settings_that_are_not_found_are_told():
+def test_settings_that_are_not_found_are_told(monkeypatch):
+    monkeypatch.setattr("loaded_tca.pairs.synthesis.MOST_TRIALS", 30)
     basic, wheel = start()
     with pytest.raises(GeometryError, match="no machine settings are found that give the contact asked for"):
         local_synthesis(basic, wheel, asked(path=90.0, length=1.0))

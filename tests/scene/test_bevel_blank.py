@@ -249,11 +249,22 @@ def test_equivalent_ratio_of_other_shaft_angles_is_that_of_the_pitch_cones():
             {"pair.blank.profile_shift": 0.5, "pair.blank.dedendum_factor": 0.9},
             "pair.blank: dedendum_factor: 0.9 is not above addendum_factor",
         ),
+        (
+            {"pair.blank.taper": "standard", "pinion.teeth": 39, "wheel.teeth": 15},
+            # 0.21 + 0.29 (39/15)^2, at 90 deg
+            r"pair.blank: mean_addendum_factor: missing; the usual one, .* is 2.17 of a pinion of 39 teeth",
+        ),
     ],
 )
 def test_what_does_not_fit_is_refused_by_its_key(changes, told):
     with pytest.raises(InputError, match=told):
         annex_f2(**changes).mesh()
+
+
+def test_pinion_larger_than_the_wheel_is_taken_with_a_mean_addendum_factor():
+    changes = {"pair.blank.taper": "standard", "pinion.teeth": 39, "wheel.teeth": 15}
+    blanks = annex_f2(**changes, **{"pair.blank.mean_addendum_factor": 0.5}).blanks()
+    assert blanks.profile_shift == 0.0  # half of the working depth to either gear
 
 
 def test_teeth_that_cannot_exist_are_refused():

@@ -13,7 +13,7 @@ FEW = {
     "analysis.compliance": "contact",
     "analysis.free_edges": False,
     "analysis.accuracy": 0.1,
-    "analysis.positions": 7,
+    "analysis.positions": 5,
     "analysis.torques_Nm": [200.0],
     "stage.planets": None,
     "stage.floating_sun": False,

@@ -12,6 +12,7 @@ from scipy import stats
 from loaded_tca.errors import InputError
 from loaded_tca.scene import read_scene
 from loaded_tca.studies import Study, figures
+from tests.samples.results import SCENES
 from tests.samples.studies import HELICAL, helical
 
 CROWNING, RELIEF = "pinion.modifications.lead_crowning_um", "wheel.modifications.profile_crowning_um"
@@ -135,6 +136,33 @@ def test_study_that_cannot_be_is_refused(given, told):
         Study(helical(), **given)
     assert len(caught.value.problems) == 1
     assert told in caught.value.problems[0]
+
+
+ON_SHAFTS = SCENES / "helical_on_shafts.toml"
+BEARING = "pinion.shaft.bearings.{}.radial_stiffness_N_per_um"
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"factors": {BEARING.format(2): [100.0]}},
+        {"distributions": {BEARING.format(2): stats.norm(100.0, 5.0)}, "samples": 2},
+        {"table": {BEARING.format(2): [100.0]}},
+    ],
+)
+def test_place_past_the_end_of_a_list_is_refused_before_variants_are_analysed(given):
+    scene = read_scene(ON_SHAFTS)
+    assert len(scene.pinion.shaft.bearings) == 2
+    with pytest.raises(InputError) as caught:
+        Study(scene, **given)
+    (problem,) = caught.value.problems
+    assert problem == f"{BEARING.format(2)}: 2 is past the end of a list of 2; allowed 0 to 1"
+
+
+def test_last_place_of_a_list_varies():
+    key = BEARING.format(1)
+    study = Study(read_scene(ON_SHAFTS), {key: [100.0]})
+    assert study.scene.with_changes(study.changes(0)).pinion.shaft.bearings[1].radial_stiffness_N_per_um == 100.0
 
 
 def test_every_problem_is_told_at_once():

@@ -1,12 +1,13 @@
 """What holds for loss, temperatures and films of any result: work, invariances, what each number needs."""
 
+import inspect
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import AccuracyWarning, InputError, NotAskedError
 from loaded_tca.reference import iso6336_22
@@ -145,6 +146,26 @@ def test_summary_tells_what_is_known_and_what_is_missing():
     assert "needs pinion_speed_rpm" in shared("mesh_cycle_spur").tribology().summary()
 
 
+def test_summary_says_where_the_hottest_and_the_thinnest_film_lie():
+    found = known(shared("mesh_cycle_bevel", analysis__torques_Nm=(0.0, 1.6)))
+    lines = found.summary().splitlines()
+    for label, column, worst in (
+        ("largest contact temperature [°C]", "contact_temperature", "idxmax"),
+        ("least film thickness [um]", "film_thickness", "idxmin"),
+    ):
+        table = found.slices(1)
+        row = table.loc[getattr(table[column], worst)()]
+        at = next(n for n, line in enumerate(lines) if line.startswith(label))
+        angle, place = (
+            line.replace("[deg]", "]").replace("[mm]", "]").split("]")[1] for line in lines[at + 1 : at + 3]
+        )
+        degrees = math.degrees(found.result.pinion_angle[int(row["position"])])
+        assert angle.split() == ["-", f"{degrees:.4g}"]  # without torque there is no place
+        diameter, axial = 2.0 * row["pinion_radius"], row["pinion_axial"]
+        assert place.split() == ["-", "|", "-", f"{diameter:.4g}", "|", f"{axial:.4g}"]
+    assert "pinion angle" not in shared("mesh_cycle_spur").tribology().summary()
+
+
 def test_every_number_says_what_it_lacks():
     bare = shared("mesh_cycle_bevel").tribology()
     for name, quantity in QUANTITIES.items():
@@ -271,6 +292,7 @@ test_bad_input_is_refused = refused_calls(
     *((call(scuffing_load_stage=bad), "scuffing_load_stage: ") for bad in (0, 15, math.inf)),
     (call(permissible_film_ratio=0.0), "permissible_film_ratio: 0"),
     (call(lubricant="oil"), "lubricant: 'oil'"),
+    *((call(supply=bad), "supply: .*; allowed 'dip' or 'spray' or 'submerged'") for bad in ("rain", 1.2, ["dip"])),
     (lambda: known(shared(SPUR)).slices(3), "torque: 3 is no index"),
     (lambda: known(shared(SPUR)).slices(speed=None), "speed: .* is no index"),
     (lambda: known(shared(SPUR)).over_flank("beauty"), "name: 'beauty'"),
@@ -310,6 +332,34 @@ def test_a_scene_gives_the_defaults():
     for name in QUANTITIES:
         assert_allclose(getattr(own, name), getattr(told, name), rtol=ROUNDING, err_msg=name)
     assert_allclose(known(scene, friction=0.1).mean_friction, 0.1)
+
+
+@pytest.mark.parametrize(("supply", "factor"), [("dip", 1.0), ("spray", 1.2), ("submerged", 0.2)])
+def test_supply_of_the_oil_scales_the_rise_of_the_bulk_temperature_alone(supply, factor):
+    """X_S of ISO/TS 6336-20; the loss, and the flash on top of the bulk, are those of any supply."""
+    plain, found = known(shared(SPUR)), known(shared(SPUR), supply=supply)
+    oil = OIL.oil_temperature
+    assert_allclose(found.bulk_temperature - oil, factor * (plain.bulk_temperature - oil), rtol=ROUNDING)
+    for name in ("mean_friction_power", "flash_temperature"):
+        assert_array_equal(getattr(found, name), getattr(plain, name), err_msg=name)
+    hotter = found.bulk_temperature - plain.bulk_temperature
+    assert_allclose(found.largest_contact_temperature - plain.largest_contact_temperature, hotter, atol=1e-9)
+    assert np.sign(plain.least_film_thickness - found.least_film_thickness) == np.sign(hotter)
+
+
+def test_supply_of_the_call_goes_before_that_of_the_scene():
+    spray = {"viscosity_40_mm2_s": 220.0, "viscosity_100_mm2_s": 19.0, "oil_temperature_C": 80.0, "supply": "spray"}
+    result = shared(SPUR)
+    of_scene = replace(result, scene=result.scene.with_changes({"lubricant": spray}))
+    spray, dip = (known(result, supply=supply).bulk_temperature for supply in ("spray", "dip"))
+    assert_allclose(known(of_scene).bulk_temperature, spray, rtol=ROUNDING)
+    assert_allclose(known(of_scene, supply="dip").bulk_temperature, dip, rtol=ROUNDING)
+
+
+def test_supply_changes_nothing_where_the_bulk_temperature_is_given():
+    given = {"bulk_temperature_C": 95.0}
+    one, other = (known(shared(SPUR), supply=supply, **given) for supply in ("dip", "submerged"))
+    assert_array_equal(one.contact_temperature, other.contact_temperature)
 
 
 def test_safeties_follow_from_the_extremes():
@@ -370,6 +420,17 @@ def test_columns_of_the_table_are_those_declared():
 def test_an_oil_without_a_formula_of_friction_is_told():
     with pytest.raises(InputError, match="base: 'water'"):
         Lubricant(viscosity_40=220.0, viscosity_100=19.0, oil_temperature=80.0, base="water")
+
+
+def test_what_is_of_the_call_is_not_of_the_oil():
+    """Scenes have it in [lubricant], so that it is looked for here."""
+    with pytest.raises(InputError) as caught:
+        Lubricant(viscosity_40=220.0, viscosity_100=19.0, oil_temperature=80.0, supply="spray", friction="local")
+    assert [problem.split(";")[0] for problem in caught.value.problems] == [
+        f"{name}: not of the oil but of how the pair runs" for name in ("supply", "friction")
+    ]
+    assert "tribology(supply=...)" in caught.value.problems[0]
+    assert "supply" not in inspect.signature(Lubricant).parameters
 
 
 def test_report_has_a_section_of_scenes_that_say_how_the_pair_runs(tmp_path):

@@ -211,8 +211,8 @@ def below_wave(depth: float, wave: float) -> float:
 
 
 def short_rows() -> list[Row]:
-    """Rows of one tooth form, of every other wave."""
-    return rows(TEETH[:1], WAVES[::2])
+    """Rows of one tooth form, of three waves."""
+    return rows(TEETH[:1], WAVES[:5:2])
 
 
 def rows(forms: Sequence[int] = TEETH, waves: Array = WAVES) -> list[Row]:

@@ -75,6 +75,11 @@ class RootCycle:
     stress: Cycle
     angle: Cycle
 
+    def every(self, step: int) -> RootCycle:
+        """The cycle at every so many positions."""
+        stress, angle = ({key: values[::step] for key, values in one.items()} for one in (self.stress, self.angle))
+        return RootCycle(self.pinion_angle[::step], stress, angle)
+
 
 def read_roots(path: Path = ROOTS_FILE) -> dict[str, RootCycle]:
     """Kept cycles by variant; none where the table is missing."""
@@ -166,7 +171,16 @@ def _extremes(gear: Gear, loads: Sequence[list[Load]]) -> dict[str, tuple[Array,
 
 def rows() -> list[Row]:
     """Rows of every kept cycle."""
+    return _rows_of_kept(read_roots())
+
+
+def short_rows() -> list[Row]:
+    """Rows of the one with tip relief, at every third position."""
     kept = read_roots()
+    return _rows_of_kept({"tip_relief": kept["tip_relief"].every(3)} if kept else {})
+
+
+def _rows_of_kept(kept: dict[str, RootCycle]) -> list[Row]:
     if not kept:
         return []
     ours = model(WIDE)
