@@ -269,6 +269,7 @@ def _cell(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
+DIFFERENCE = "largest difference of the transmission errors of both [um]"
 PEAK = "MPa", "peak pressure, largest over the positions"
 DESIGN_CAPTIONS = {
     "before_and_after": "Transmission error and peak pressure over a pitch, load factor and peak-to-peak over the "
@@ -300,6 +301,7 @@ def design_content(design: DesignResult) -> dict[str, Any]:
             (
                 ("by the full analysis", *(f"{one:.4g}" for one in design.objective)),
                 ("on held contacts", *(f"{one:.4g}" for one in design.held_objective)),
+                (DIFFERENCE, *("-" if math.isnan(one) else f"{one:.2g}" for one in design.held_difference)),
             ),
             ("", "start", "optimum"),
         ),

@@ -52,6 +52,8 @@ class GapGrowth:
         Of the grids, as of :class:`loaded_tca.separation.gap_change.MovedContacts`.
     turns : (keys, grids) array [rad per unit]
         Of the wheel back into contact, against the normal force of each pair.
+    tilts : (keys, grids, 2) array [rad per unit]
+        Of the normals at the contact points along x and y of the grids, also where these stay.
     """
 
     gaps: Array
@@ -59,14 +61,14 @@ class GapGrowth:
     lever_torques: Array
     motions: Array
     turns: Array
+    tilts: Array
 
     def of_grids(self, grids: Sequence[int]) -> GapGrowth:
         """The same of some of the grids, without gaps."""
         some = list(grids)
         none = np.zeros((len(self.turns), 0))
-        return GapGrowth(
-            none, self.kinks[:, some], self.lever_torques[:, some], self.motions[:, some], self.turns[:, some]
-        )
+        whole = {one.name: getattr(self, one.name) for one in fields(self)}
+        return GapGrowth(**{name: none if name == "gaps" else values[:, some] for name, values in whole.items()})
 
     def with_parts(self, parts: Array, others: GapGrowth) -> GapGrowth:
         """The same with parts (keys, m) of m others, of the same grids, added."""
@@ -110,7 +112,8 @@ def gap_growth(
     pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
     if not changes:
         none = np.zeros((0, pairs.size))
-        return GapGrowth(np.zeros((0, tangents.grid.size)), none, none, np.zeros((*none.shape, OF_GRIDS)), none)
+        motions, tilts = (np.zeros((*none.shape, count)) for count in (OF_GRIDS, 2))
+        return GapGrowth(np.zeros((0, tangents.grid.size)), none, none, motions, none, tilts)
     separations = [grid.separation for grid in grids]
     held = contact_changes(
         pair, [grid.contact for grid in grids], separations, [grid.active for grid in grids], changes
@@ -130,7 +133,8 @@ def gap_growth(
             kinks[:, i] = _shorter(grids[i], own)
     free_edges = result.scene.analysis.free_edges
     _add_moved_lines(pair, tangents, bending, changes, growth.motions, gaps, free_edges=free_edges)
-    return GapGrowth(gaps, kinks, result.normal_force[places] * points.levers[0], growth.motions, points.turns)
+    lever_torques = result.normal_force[places] * points.levers[0]
+    return GapGrowth(gaps, kinks, lever_torques, growth.motions, points.turns, points.tilts)
 
 
 def _released(grid: LoadedGrid, covers: Array) -> Array:

@@ -9,7 +9,10 @@ rigid one, with the displacement of the slices by stations and bodies,
 that of its own supports on lines that move with the grids. What is left is of second order in the motions and is as
 large as what a mounting error does beside the gap that it opens: the mean load changes by the key, the gears stand
 elsewhere by dq, and edges, lines of force and levers move with them. It enters as a mounting error of the pair, from
-which the displacement -r_i dq, which the coupling has already, is taken off.
+which the displacement -r_i dq, which the coupling has already, is taken off, and changes the mean load in its turn.
+
+The forces turn with the normals at the contact points, which run over curved flanks, by modifications as well, whose
+grids stay: on soft supports the gears go where the forces push them.
 """
 
 from __future__ import annotations
@@ -31,16 +34,21 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.gap_growth import GapGrowth, gap_growth, moved
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.scene import Scene
-from loaded_tca.separation.pair_change import PairChange, number_at, pair_changes
+from loaded_tca.separation.gap_change import OF_GRIDS
+from loaded_tca.separation.pair_change import MOTIONS, PairChange, number_at, pair_changes
 from loaded_tca.supports import Support, SupportCompliance, support_compliance, supports_of
 from loaded_tca.unloaded import trace_contact, trace_teeth
 
 STEP, SMALLEST = 1e-4, 1e-3
 """Step of a key of a support over its value, and the least one: of stiffnesses in N/um, lengths in mm."""
-STEP_OF_GEARS = 1e-6
-"""Motion [mm] either side of where a gear stands, of which differences are taken."""
+STEP_OF_GEARS = 1e-5
+"""Motion [mm] about where a gear stands, of which differences are taken: contact points are found to 1e-12 mm, which a
+tenth of it leaves in them as 1e-8 of line loads."""
 AS_NONE = 1e-3
 """Part of the motion of the gears by a key that is none: it is of second order."""
+ROUNDS = 4
+"""How often the motion by a key is asked for the motion that it makes itself, as long as that is one: once is the
+rule, twice where the gears move by a tenth of a millimetre."""
 SECTIONS = "support", "shaft"
 
 
@@ -264,18 +272,28 @@ def growth_on_supports(
         in_states = np.zeros((on_slices.states, 12))
         if key in changes:
             displaced, in_states = on_slices.growth(changes[key], growth.motions[n])
-            if not changes[key].pairs.of_modifications:  # what lines move by them is in the tangents
-                growth.gaps[n] += displaced
-        forces = tangents.force_change(growth.gaps[n], torques[n])
-        motions[n] = on_slices.mean(in_states + tangents.summed(on_slices.by_force * forces).T, places[1])
-    directions, parts = _directions(motions, 0.5 * result.face_width)
-    moving = [_moved_further(result, way) for way in directions]
-    by_motion = gap_growth(result, tangents, teeth, places, [change.pairs for change in moving])
-    for n, (change, way) in enumerate(zip(moving, directions, strict=True)):
-        displaced, _ = on_slices.growth(change, by_motion.motions[n])
-        by_motion.gaps[n] += displaced - on_slices.opened(way)
+            if changes[key].pairs.of_modifications:  # what lines move by them is in the tangents, grids do not tilt
+                displaced, turned = on_slices.growth(changes[key], _tilting(growth.tilts[n]))
+                in_states = in_states + turned
+            growth.gaps[n] += displaced
+        motions[n] = on_slices.answer(tangents, growth.gaps[n], torques[n], in_states, places[1])
+    lever, further = 0.5 * result.face_width, motions
+    for _ in range(ROUNDS):
+        directions, parts = _directions(further, motions, lever)
+        if not len(directions):
+            break
+        moving = [_moved_further(result, way) for way in directions]
+        by_motion = gap_growth(result, tangents, teeth, places, [change.pairs for change in moving])
+        lever_torques = np.add.reduceat(by_motion.lever_torques, on_slices.first_grids, axis=1)
+        answers = np.zeros((len(directions), 12))
+        for n, (change, way) in enumerate(zip(moving, directions, strict=True)):
+            displaced, in_states = on_slices.growth(change, by_motion.motions[n])
+            by_motion.gaps[n] += displaced - on_slices.opened(way)
+            answers[n] = on_slices.answer(tangents, by_motion.gaps[n], -lever_torques[n], in_states, places[1])
+        growth, further = growth.with_parts(parts, by_motion), parts @ answers
+        motions = motions + further
     whole = tuple(_whole_change(result, key, at_rest.get(key), way) for key, way in zip(keys, motions, strict=True))
-    return growth.with_parts(parts, by_motion), whole
+    return growth, whole
 
 
 class _OnSlices:
@@ -304,7 +322,12 @@ class _OnSlices:
         motions = way[:6], way[6:]
         return self._at_cells([self.supports.opened_rigidly(one.separation, motions) for one in self.grids])
 
-    def mean(self, motions: Array, positions: Array) -> Array:
+    def answer(self, tangents: Tangents, gaps: Array, torques: Array, in_states: Array, positions: Array) -> Array:
+        """Mean motions of both gears (12,) by the forces that gaps and torques change, beside those in states."""
+        forces = tangents.force_change(gaps, torques)
+        return self._mean(in_states + tangents.summed(self.by_force * forces).T, positions)
+
+    def _mean(self, motions: Array, positions: Array) -> Array:
         """Of motions (states, 12) over a pitch, whose last position is the first of the next one."""
         own = positions[self.first_grids]
         within = own < own.max() if self.states > 1 else np.ones(1, dtype=bool)
@@ -348,18 +371,26 @@ class _OnSlices:
         return np.concatenate(both)
 
 
+def _tilting(tilts: Array) -> Array:
+    """Motions (grids, 6) of grids that tilt alone, with the normals at their contact points (grids, 2)."""
+    motions = np.zeros((len(tilts), OF_GRIDS))
+    motions[:, MOTIONS:-1] = tilts
+    return motions
+
+
 def _to_middle(support: Support) -> Array:
     """Matrix (6, 6 m) of ``Support.at_middle``."""
     return np.kron(support.shares(np.array([support.middle])), np.eye(6))
 
 
-def _directions(motions: Array, lever: float) -> tuple[Array, Array]:
+def _directions(motions: Array, whole: Array, lever: float) -> tuple[Array, Array]:
     """Directions (r, 12) in which gears stand elsewhere by any key, and parts (keys, r) of their motions (keys, 12).
 
-    Each moves the gears by about 1 mm, turns counted at a lever [mm].
+    Each moves the gears by about 1 mm, turns counted at a lever [mm]; motions that are none beside the whole ones by a
+    key are left out.
     """
     scale = np.tile(np.repeat([1.0, lever], 3), 2)
-    sizes = np.linalg.norm(motions * scale, axis=1, keepdims=True)
+    sizes = np.linalg.norm(whole * scale, axis=1, keepdims=True)
     alike = np.divide(motions * scale, sizes, out=np.zeros(motions.shape), where=sizes > 0.0)
     left, spread, right = np.linalg.svd(alike, full_matrices=False)
     some = np.flatnonzero(spread > AS_NONE)

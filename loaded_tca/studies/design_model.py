@@ -192,11 +192,19 @@ class DesignModel:
         torques = {"analysis.torques_Nm": (1e-3 * self.torques).tolist()}
         return [self.scene.with_changes({**values, **self._at(one, values), **torques}) for one in self.deviations]
 
+    def based_at(self, x: Mapping[str, float] | ArrayLike) -> DesignModel:
+        """The same model made of the scene with a design: its contacts, levers and gears stand as that has them."""
+        make, (given, options) = self.__reduce__()
+        values = dict(zip(self.keys, self.values(x).tolist(), strict=True))
+        return make((self.scene.with_changes(values), *given[1:]), options)
+
     def evaluate(self, x: Mapping[str, float] | ArrayLike) -> Evaluation:
         """Solve all states of a design.
 
         Where a contact outgrows its grid, a larger one takes its place from then on: figures of designs before and
-        after differ by what two grids differ, some nanometres.
+        after differ by what two grids differ, some nanometres. Forces keep the levers and the directions that they have
+        at the contact points of the scene: far from it the transmission error is off by up to 3e-4 of all that gives
+        way, 15 nm of rigid helical gears and 40 nm on soft shafts. A model :meth:`based_at` a design has its own.
 
         Parameters
         ----------

@@ -51,6 +51,7 @@ PARTS: dict[str, Part] = {
         f"held_{name}": (ANALYSED[:3], figure.unit, f"{figure.text}, on held contacts")
         for name, figure in FIGURES.items()
     },
+    "held_difference_um": (ANALYSED[:3], "um", "largest difference of the transmission errors on held contacts"),
     "held_objective": (ANALYSED[:1], "", "what was minimised, on held contacts"),
     "history_x": (("evaluation", "key"), "1", "value of the key"),
     "history_objective": (("evaluation",), "", "objective on held contacts"),
@@ -115,6 +116,17 @@ class DesignResult:
     def held_objective(self) -> tuple[float, float]:
         """Objective of start and optimum on held contacts."""
         before, after = self.dataset["held_objective"].values.tolist()
+        return before, after
+
+    @property
+    def held_difference(self) -> tuple[float, float]:
+        """Largest difference of the transmission error of start and optimum between held contacts and analysis [um].
+
+        NaN of files before version 0.3.
+        """
+        if "held_difference_um" not in self.dataset:
+            return math.nan, math.nan
+        before, after = self.dataset["held_difference_um"].max(("sample", "torque")).values.tolist()
         return before, after
 
     @property

@@ -62,7 +62,6 @@ def test_more_work_is_a_larger_estimate(more):
     ("name", "face_width"),
     [
         ("mesh_cycle_helical", 6.0),
-        ("mesh_cycle_helical", 25.0),
         ("mesh_cycle_helical", 60.0),
         ("face_milled_19x62", None),
     ],

@@ -63,8 +63,13 @@ REAL = [
 ]
 
 
-@pytest.mark.parametrize("bends", [False, True], ids=["flanks alone", "bending"])
-@pytest.mark.parametrize(("name", "key", "step"), REAL)
+@pytest.mark.parametrize(
+    ("name", "key", "step", "bends"),
+    [
+        *((*one, False) for one in REAL),
+        *((*REAL[n], True) for n in (1, 2, 4)),
+    ],  # bending: each pair, both kinds of keys
+)
 def test_transmission_error_of_real_pairs_changes_as_whole_analyses_do(name, key, step, bends):
     expected = slope_through_analyses(name, bends, key, step)
     found = analysed(name, bends).sensitivities([key]).transmission_error[0, :, 0]

@@ -275,22 +275,27 @@ def test_numbers_of_every_pair_have_the_axes_torque_position_pair():
         assert [len(make().maps), len(make().maps[0]), len(make().maps[0][0])] == list(shape)
 
 
-@pytest.mark.parametrize("make", [cycle, helical])
-def test_every_picture_of_a_shared_load_is_drawn(make, tmp_path, request):
-    if make is helical:
-        request.getfixturevalue("blank_pictures")  # the tests of its report draw them
-    drawn = {path.stem for path in plot_all(make(), tmp_path, more=True)}
-    on_request = {name for name in PICTURES if name.startswith("root_stress")} | set(ON_SUPPORTS)
-    assert drawn >= set(PICTURES) - on_request - {"pressure_map_edge", "pressure_map_hertz"}
+ALWAYS = (
+    {name for name in PICTURES if not name.startswith("root_stress")}
+    - set(ON_SUPPORTS)
+    - {"pressure_map_edge", "pressure_map_hertz"}
+)
+
+
+def test_every_picture_of_a_shared_load_is_drawn_and_those_on_request_go_without(tmp_path, request):
+    drawn = {path.stem for path in plot_all(cycle(), tmp_path, more=True)}
+    assert drawn >= ALWAYS | set(MORE_PICTURES)
+    request.getfixturevalue("blank_pictures")
+    plot_all(cycle(), tmp_path)
+    assert not {path.stem for path in tmp_path.iterdir()} & set(MORE_PICTURES)
 
 
 @pytest.mark.usefixtures("blank_pictures")
-def test_more_pictures_are_drawn_on_request_and_go_without(tmp_path):
-    drawn = {path.stem for path in plot_all(cycle(), tmp_path, more=True)}
-    assert drawn >= set(MORE_PICTURES)
-    assert "contact_patterns" not in {path.stem for path in plot_all(helical(), tmp_path, more=True)}  # one torque
-    plot_all(cycle(), tmp_path)
-    assert not {path.stem for path in tmp_path.iterdir()} & set(MORE_PICTURES)
+def test_one_torque_has_every_picture_but_those_over_torques(tmp_path):
+    """The tests of its report draw them."""
+    drawn = {path.stem for path in plot_all(helical(), tmp_path, more=True)}
+    assert drawn >= ALWAYS
+    assert "contact_patterns" not in drawn
 
 
 @pytest.mark.usefixtures("blank_pictures")

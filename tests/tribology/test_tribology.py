@@ -433,9 +433,10 @@ def test_what_is_of_the_call_is_not_of_the_oil():
     assert "supply" not in inspect.signature(Lubricant).parameters
 
 
-def test_report_has_a_section_of_scenes_that_say_how_the_pair_runs(tmp_path):
+def test_report_has_a_section_of_scenes_that_say_how_the_pair_runs(tmp_path, monkeypatch):
     from loaded_tca.reports import write_html_report
 
+    monkeypatch.setattr("loaded_tca.reports.result_page.result_figures", lambda *_, **__: {})  # no matter here
     plain = write_html_report(shared(SPUR), tmp_path / "plain.html").read_text(encoding="utf-8")
     changes = {
         "operation": {"pinion_speed_rpm": 1500.0},

@@ -7,6 +7,7 @@ numbers say which. ``sign_table`` tells which statements hold together.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -242,6 +243,7 @@ def _pressure_along_the_path() -> list[Trend]:
     return found
 
 
+@cache
 def sign_table(errors: ErrorMap) -> dict[str, dict[tuple[float, float], bool]]:
     """Statements that depend on the signs of (Delta E, Delta H), and with which of them each holds."""
     both = [(e, h) for e in SIGNS for h in SIGNS]
