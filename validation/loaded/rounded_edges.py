@@ -27,7 +27,7 @@ import numpy as np
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.contact import edge_pressures, pressed_arc
+from loaded_tca.contact import edge_pressures, pressed_arc, rounded_edge
 from loaded_tca.loaded import rounded_edges as edges_of_gears
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.lines_of_edges import ReachedEdge, reached_edges
