@@ -40,8 +40,10 @@ from loaded_tca.loaded.cycle import (
     farthest_apart,
     in_gear_angles,
 )
-from loaded_tca.loaded.loaded_contact import LoadedContact, Result, Steps
-from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
+from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.sensitivity import LoadedStates, loaded_states
+from loaded_tca.loaded.together import Result, Steps
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.supports import SupportCompliance
