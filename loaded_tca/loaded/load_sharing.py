@@ -254,17 +254,10 @@ class _Balance:
                         before = before.bent_by(self.bending, tooth_pair.pair, self.pair.module)
                     loaded = yield from before.under(force, coupling(before.separation))
             if loaded is None or loaded.solution.reaches_border:
-                contact, number = tooth_pair.contact, tooth_pair.pair
+                contact, number, gears = tooth_pair.contact, tooth_pair.pair, tooth_pair.gears or self.pair
                 with named(f"tooth pair {number:+d}"):
                     steps = contact_under_load(
-                        tooth_pair.gears or self.pair,
-                        contact,
-                        force,
-                        self.grid,
-                        self.bending,
-                        number,
-                        coupling,
-                        goes_on=not self.lines_held,
+                        gears, contact, force, self.grid, self.bending, number, coupling, goes_on=not self.lines_held
                     )
                     loaded = yield from with_gears(tooth_pair.gears, steps)
         except ConvergenceError as error:
@@ -364,13 +357,11 @@ class _Balance:
             displaced = self._deflection(index, one.separation, other, two)
             compliance[index, other] = compliance[other, index] = one.slice_shares @ displaced
         loaded_pairs = dict(self._loaded())
-        rotation = max(
-            self.separations[n] + one.solution.approach / self.levers[1, n] for n, one in loaded_pairs.items()
-        )
+        turned = [self.separations[n] + one.solution.approach / self.levers[1, n] for n, one in loaded_pairs.items()]
+        near = self.on_grids | (self.separations <= FAR * max(turned))
         places: dict[int, int] = {}
-        for index in range(len(self.tooth_pairs)):
-            is_near = self.on_grids or self.separations[index] <= FAR * rotation
-            if index not in loaded_pairs and is_near:
+        for index in np.flatnonzero(near).tolist():
+            if index not in loaded_pairs:
                 grid = yield from self._grid_apart(index)
                 places[index] = self._correct_apart(index, grid, loaded_pairs, compliance)
         if self.given is not None and places and np.linalg.eigvalsh(compliance)[0] < 0.0:

@@ -20,8 +20,8 @@ from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.force_lines import bending_by_shift
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.moved_gears import given_motions
 from loaded_tca.loaded.sensitivity import LoadedStates, Tangents, loaded_states
-from loaded_tca.loaded.supported import given_motions
 from loaded_tca.loaded.tooth_contact import contact_problem
 from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
 from loaded_tca.pairs.gear_pair import GearPair
