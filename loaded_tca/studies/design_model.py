@@ -224,13 +224,8 @@ class DesignModel:
             If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
         """
         values = self.values(x)
-        grid = GridChoice(
-            self.cells,
-            tolerance=self.tolerance,
-            free_edges=self.scene.analysis.free_edges,
-            agreement=AGREEMENT * self.tolerance,
-            lines_held=True,
-        )
+        ends, agreement = self.scene.analysis.free_edges, AGREEMENT * self.tolerance
+        grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=ends, agreement=agreement, lines_held=True)
         states = list(np.ndindex(len(self.held), self.torques.size, self.positions))
         solved: dict[tuple[int, ...], tuple[float, SharedLoad]] = {}
         while states:
@@ -241,10 +236,8 @@ class DesignModel:
             solved |= zip(states, found_together(self.held[0][0].pair, steps), strict=True)
             # once more those on grids that another state has outgrown meanwhile
             states = [state for state, (_, one) in solved.items() if not self.held[state[0]][state[1]].holds(one)]
-        idle = {t for (_, t, _), (_, one) in solved.items() if one.torque == 0.0}
-        require(
-            *((False, f"torques: {self.torques[t]:g} N mm loads no tooth pair; allowed more") for t in sorted(idle))
-        )
+        idle = sorted({t for (_, t, _), (_, one) in solved.items() if one.torque == 0.0})
+        require(*((False, f"torques: {self.torques[t]:g} N mm loads no tooth pair; allowed more") for t in idle))
         return Evaluation(self, values, [*solved.values()])
 
     @property
@@ -280,9 +273,8 @@ class DesignModel:
         angles = pair.pitch * (np.arange(self.positions) / self.positions - 0.5)
         if without_bodies := scene.analysis.without_bodies:
             require_teeth(pair, without_bodies)
-        ranges = {
-            key: (low + by, high + by) for (key, (low, high)), by in zip(self.variables.items(), own, strict=True)
-        }
+        shifted = zip(self.variables.items(), own, strict=True)
+        ranges = {key: (low + by, high + by) for (key, (low, high)), by in shifted}
         if scene.is_supported:
             return self._sample_on_supports(scene, pair, angles, ranges)
         mesh = trace_teeth(pair, angles)
@@ -332,14 +324,6 @@ class DesignModel:
                 f"cells: found {self.cells!r:.60}; allowed two whole numbers from {FEWEST_CELLS} on",
             ),
             (
-                0.0 < real(self.smoothing) < math.inf,
-                f"smoothing: found {self.smoothing!r:.60}; allowed a finite length [um] above 0",
-            ),
-            (
-                0.0 < real(self.tolerance) < 1.0,
-                f"tolerance: found {self.tolerance!r:.60}; allowed a number between 0 and 1",
-            ),
-            (
                 0.0 <= real(self.multiple) < math.inf,
                 f"multiple: found {self.multiple!r:.60}; allowed a finite number from 0 on",
             ),
@@ -353,6 +337,13 @@ class DesignModel:
             ),
         )
         problems += [problem for holds, problem in checks if not holds]
+        below = {
+            "smoothing": (math.inf, "a finite length [um] above 0"),
+            "tolerance": (1.0, "a number between 0 and 1"),
+        }
+        for name, (end, allowed) in below.items():
+            if not 0.0 < real(given := getattr(self, name)) < end:
+                problems.append(f"{name}: found {given!r:.60}; allowed {allowed}")
         if problems:
             raise InputError(problems)
 

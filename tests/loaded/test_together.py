@@ -5,7 +5,7 @@ import pytest
 
 from loaded_tca.contact import ContactProblem
 from loaded_tca.errors import ConvergenceError, GeometryError
-from loaded_tca.loaded import loaded_contact
+from loaded_tca.loaded import together
 from loaded_tca.loaded.together import Gap, Task, found_alone, found_together
 from loaded_tca.unloaded import trace_contact
 from tests.samples.gear_pairs import sam_paper
@@ -49,7 +49,7 @@ def test_grids_of_several_sizes_are_all_solved():
 
 
 def test_every_end_is_told_and_no_more_are_under_way_than_allowed(monkeypatch):
-    monkeypatch.setattr(loaded_contact, "UNDER_WAY", 3)
+    monkeypatch.setattr(together, "UNDER_WAY", 3)
     running, most, told = set(), [], []
 
     def counted(name, times):
