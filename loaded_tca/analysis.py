@@ -19,8 +19,9 @@ from loaded_tca.contact.adaptive import MOST_CELLS
 from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Carried, Progress, carried_by_all, carried_by_one, farthest_apart
+from loaded_tca.loaded.moved_gears import at_rest, pitches_apart
 from loaded_tca.loaded.rounded_edges import PeakAtEdge, pressures_at_rounded_edges
-from loaded_tca.loaded.supported import CarriedOnSupports, SupportedCycle, all_torques, at_rest, pitches_apart
+from loaded_tca.loaded.supported import CarriedOnSupports, SupportedCycle, all_torques
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import mesh_cycle

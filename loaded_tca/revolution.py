@@ -19,18 +19,10 @@ from loaded_tca.compliance.model import SumOfParts, torsion_of_bodies, with_enou
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.moved_gears import Loads, at_rest, loads_at, moved_bending, moved_by
+from loaded_tca.loaded.moved_gears import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.revolution import STATES_AT_A_TIME, CarriedPart, carried_over_revolution, pitches_apart
-from loaded_tca.loaded.supported import (
-    POSITIONS,
-    Loads,
-    SupportedCycle,
-    at_rest,
-    loads_at,
-    moved_bending,
-    moved_by,
-    widest_apart,
-)
-from loaded_tca.loaded.supported import pitches_apart as pitches_of_cycle
+from loaded_tca.loaded.supported import POSITIONS, SupportedCycle, widest_apart
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import Place, numbers_and_maps

@@ -235,7 +235,7 @@ FAULTS = (
     ),
     Fault(
         "revolution: gaps of teeth with flanks of their own are those of the common flanks",
-        "loaded/loaded_contact.py",
+        "loaded/together.py",
         "gears = requests[0].gears or pair",
         "gears = pair",
         "test_revolution.py::test_all_teeth_with_flanks_of_their_own_are_a_gear_with_these_flanks",

@@ -15,10 +15,13 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, named
-from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair, tooth_pairs_at, torque_shared
-from loaded_tca.loaded.loaded_contact import LoadedContact, Steps, found_together, with_gears
-from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
+from loaded_tca.loaded.load_sharing import torque_shared
+from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.sensitivity import LoadedStates, loaded_states
+from loaded_tca.loaded.together import Steps, found_together, with_gears
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice, contact_under_load
+from loaded_tca.loaded.tooth_pairs import SharedLoad, ToothPair, tooth_pairs_at
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPath, MeshPath
 from loaded_tca.unloaded.curvature import relative_curvatures

@@ -19,7 +19,7 @@ from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.loaded.sensitivity import LoadedGrid, block_diagonal
+from loaded_tca.loaded.loaded_grid import LoadedGrid, block_diagonal
 from loaded_tca.pairs.gear_pair import ContactGrid
 from loaded_tca.separation import Separation
 

@@ -30,9 +30,10 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import AccuracyWarning, InputError, LoadedTCAError
 from loaded_tca.loaded.free_edges import edge_compliances
-from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair, tooth_pairs_at, torque_shared
-from loaded_tca.loaded.loaded_contact import Ends, Gap, Result, Steps
+from loaded_tca.loaded.load_sharing import torque_shared
+from loaded_tca.loaded.together import Ends, Gap, Result, Steps
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
+from loaded_tca.loaded.tooth_pairs import SharedLoad, ToothPair, tooth_pairs_at
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.separation import Separation

@@ -29,7 +29,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import combinations
 
@@ -41,11 +41,12 @@ from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, InputError, named
 from loaded_tca.loaded.balance import balance
 from loaded_tca.loaded.first_guess import ExpectedLine, first_law
-from loaded_tca.loaded.loaded_contact import Gap, Line, LoadedContact, Steps, found_alone, with_gears
+from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.together import Gap, Line, Steps, found_alone, with_gears
 from loaded_tca.loaded.tooth_contact import FIRST_CELLS, Coupling, GridChoice, contact_under_load, expected_pressure
+from loaded_tca.loaded.tooth_pairs import Share, SharedLoad, ToothPair
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.separation import Separation
-from loaded_tca.unloaded import ContactPoint, MeshPath
 
 SMALLEST_SHARED = 1e-12
 """Forces below this times E* m_n^2 are not shared, but taken for none: what the pairs deform then is near the rounding
@@ -69,87 +70,6 @@ SAME_BOX = (0.75, 1.25)
 """Loads over the one a box was made for, between which the contact still fills it well, if it does not reach it."""
 FAR = 2.0
 """Initial separation, over the rotation, of pairs that others do not bend into contact: by less than they close."""
-
-
-@dataclass(frozen=True, eq=False)
-class ToothPair:
-    """A tooth pair that may carry load at a position.
-
-    Attributes
-    ----------
-    pair : int
-        Its number.
-    contact : ContactPoint
-        Its first contact, unloaded, in the angles of its own tooth.
-    initial_separation : float [rad]
-        Rotation of the wheel that brings it into contact; zero for the leading pair.
-    gears : GearPair or None
-        With the flanks of its own teeth, where they differ from those of the others; None: the common ones.
-    """
-
-    pair: int
-    contact: ContactPoint
-    initial_separation: float
-    gears: GearPair | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Share:
-    """What one tooth pair carries.
-
-    Attributes
-    ----------
-    tooth_pair : ToothPair
-    loaded : LoadedContact
-        Its contact under its force.
-    tooth_deflection : float [mm]
-        Bending of the teeth under the forces of all pairs, on top of the contact deformation.
-    """
-
-    tooth_pair: ToothPair
-    loaded: LoadedContact
-    tooth_deflection: float
-
-    @property
-    def force(self) -> float:
-        """Normal force [N]."""
-        return self.loaded.solution.load
-
-    @property
-    def torque(self) -> float:
-        """Its part of the pinion torque [N mm]."""
-        return float(self.force * self.tooth_pair.contact.pinion_lever)
-
-    @property
-    def rotation(self) -> float:
-        """Rotation that its deflection asks for [rad]."""
-        deflection = self.loaded.contact_deformation + self.tooth_deflection
-        return float(self.tooth_pair.initial_separation + deflection / self.tooth_pair.contact.wheel_lever)
-
-
-@dataclass(frozen=True, eq=False)
-class SharedLoad:
-    """Equilibrium of the tooth pairs of one position under one torque.
-
-    Attributes
-    ----------
-    torque : float [N mm]
-        Of the pinion; zero where next to none is taken for none.
-    rotation : float [rad]
-        Of the wheel back by the load; zero without load.
-    shares : tuple of Share
-        Of the k pairs that carry load; without load the leading one.
-    residual : float
-        Largest difference of the rotation that a pair asks for from the common one, over the rotation.
-    balances : int
-        How often the forces were balanced.
-    """
-
-    torque: float
-    rotation: float
-    shares: tuple[Share, ...]
-    residual: float
-    balances: int
 
 
 def share_load(
@@ -193,6 +113,7 @@ def share_load(
     >>> from loaded_tca.flanks import FlankModifications
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
     >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
+    >>> from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
     >>> from loaded_tca.unloaded import trace_teeth
     >>> gear = CylindricalGear(teeth=30, normal_module=3.0, face_width=25.0)
     >>> crowned = (FlankModifications(lead_crowning=0.005), FlankModifications())
@@ -333,17 +254,10 @@ class _Balance:
                         before = before.bent_by(self.bending, tooth_pair.pair, self.pair.module)
                     loaded = yield from before.under(force, coupling(before.separation))
             if loaded is None or loaded.solution.reaches_border:
-                contact, number = tooth_pair.contact, tooth_pair.pair
+                contact, number, gears = tooth_pair.contact, tooth_pair.pair, tooth_pair.gears or self.pair
                 with named(f"tooth pair {number:+d}"):
                     steps = contact_under_load(
-                        tooth_pair.gears or self.pair,
-                        contact,
-                        force,
-                        self.grid,
-                        self.bending,
-                        number,
-                        coupling,
-                        goes_on=not self.lines_held,
+                        gears, contact, force, self.grid, self.bending, number, coupling, goes_on=not self.lines_held
                     )
                     loaded = yield from with_gears(tooth_pair.gears, steps)
         except ConvergenceError as error:
@@ -424,10 +338,9 @@ class _Balance:
         assert self.bending is not None
         known = self.deflections.get((index, other))
         if known is None or known[0] is not separation or known[1] is not loaded:
-            here, there = (
-                (self.tooth_pairs[n].pair, at) for n, at in ((index, separation), (other, loaded.separation))
-            )
-            known = separation, loaded, self.bending.deflection(here, there, loaded.slice_shares)
+            pair, other_pair = self.tooth_pairs[index].pair, self.tooth_pairs[other].pair
+            under = (other_pair, loaded.separation)
+            known = separation, loaded, self.bending.deflection((pair, separation), under, loaded.slice_shares)
             self.deflections[index, other] = known
         return known[2]
 
@@ -444,13 +357,11 @@ class _Balance:
             displaced = self._deflection(index, one.separation, other, two)
             compliance[index, other] = compliance[other, index] = one.slice_shares @ displaced
         loaded_pairs = dict(self._loaded())
-        rotation = max(
-            self.separations[n] + one.solution.approach / self.levers[1, n] for n, one in loaded_pairs.items()
-        )
+        turned = [self.separations[n] + one.solution.approach / self.levers[1, n] for n, one in loaded_pairs.items()]
+        near = self.on_grids | (self.separations <= FAR * max(turned))
         places: dict[int, int] = {}
-        for index in range(len(self.tooth_pairs)):
-            is_near = self.on_grids or self.separations[index] <= FAR * rotation
-            if index not in loaded_pairs and is_near:
+        for index in np.flatnonzero(near).tolist():
+            if index not in loaded_pairs:
                 grid = yield from self._grid_apart(index)
                 places[index] = self._correct_apart(index, grid, loaded_pairs, compliance)
         if self.given is not None and places and np.linalg.eigvalsh(compliance)[0] < 0.0:
@@ -536,18 +447,3 @@ class _Balance:
         rotation = float(asked @ forces[carrying] / forces[carrying].sum())
         residual = float(np.abs(asked - rotation).max()) / self._scale(rotation, forces)
         return SharedLoad(self.torque, rotation, tuple(shares), residual, count)
-
-
-def tooth_pairs_at(mesh: MeshPath, position: int) -> tuple[ToothPair, ...]:
-    """Tooth pairs that can be in contact at a position: those within reach, corner contacts included.
-
-    Parameters
-    ----------
-    mesh : MeshPath
-        Unloaded contact of all teeth, :func:`loaded_tca.unloaded.trace_teeth`.
-    position : int
-        Index of the pinion angle.
-    """
-    separations = mesh.initial_separation[:, position]
-    pairs = zip(mesh.pairs.tolist(), mesh.paths, separations.tolist(), strict=True)
-    return tuple(ToothPair(number, path[position], max(gap, 0.0)) for number, path, gap in pairs if math.isfinite(gap))

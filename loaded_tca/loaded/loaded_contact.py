@@ -1,199 +1,25 @@
-"""One tooth pair under a normal force: its pressure on its grid, and what is read off it.
-
-Work on many contacts at once: each asks for gaps and pressures, and what all ask for is found together.
-
-A contact, or the tooth pairs of a position that share a torque, is a generator. It yields what it needs next, a
-:class:`Gap`, :class:`Line`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its result. So it reads
-as if it were alone, and its numbers do not depend on what stands beside it.
-"""
+"""One tooth pair under a normal force: its pressure on its grid, and what is read off it."""
 
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
-from itertools import islice
-from typing import Any, NamedTuple, TypeVar
+from functools import cached_property
 
 import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.contact import ContactProblem, solve_problem
+from loaded_tca.contact import solve_problem
 from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.patch import values_at_ends, widths
-from loaded_tca.contact.solution import ContactSolution, ContactStatus
-from loaded_tca.contact.solver import solve_problems
-from loaded_tca.errors import LoadedTCAError
-from loaded_tca.loaded.first_guess import ExpectedLine, expected_lines
-from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.contact.solution import ContactSolution
 from loaded_tca.loaded.line_load import SliceLoads
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.loaded.together import Steps, Task
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation
-from loaded_tca.separation.box import Box
-from loaded_tca.separation.polynomials import GapPolynomials
-from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import ContactPoint
-
-UNDER_WAY = 128
-"""Generators under way at the same time: a cycle of 33 positions under three torques, whose stacks are full then."""
-Result = TypeVar("Result")
-
-
-class Gap(NamedTuple):
-    """A separation to sample, in the box that a load needs or in a given one; see :func:`sample_separation`.
-
-    ``gears`` are those of a tooth pair that has flanks of its own; None: the common ones. ``polynomials`` are those of
-    another grid of the contact; ``cells_at_ends`` are used instead of ``cells`` in estimated boxes in which flanks end.
-    """
-
-    contact: ContactPoint
-    cells: tuple[int, int]
-    load: float | None = None
-    box: Box | None = None
-    gears: GearPair | None = None
-    polynomials: GapPolynomials | None = None
-    cells_at_ends: tuple[int, int] | None = None
-
-
-class Line(NamedTuple):
-    """The slices that a contact is expected to load; see :func:`loaded_tca.loaded.first_guess.expected_lines`."""
-
-    contact: ContactPoint
-    half_length: float
-    gears: GearPair | None = None
-
-
-class Task(NamedTuple):
-    """A contact problem to solve to a tolerance, from a pressure to start from or none."""
-
-    problem: ContactProblem
-    tolerance: float
-    start: Array | None = None
-
-
-class Ends(NamedTuple):
-    """Compliance that free edges add to the slices of a grid; see :func:`loaded_tca.loaded.free_edges`."""
-
-    separation: Separation
-    gears: GearPair | None = None
-
-
-Request = Gap | Line | Ends | Task
-Steps = Generator[Request, Any, Result]
-
-
-def found_together(
-    pair: GearPair, all_steps: Sequence[Steps[Result]], progress: Callable[[int], None] | None = None
-) -> list[Result]:
-    """Answer what generators ask for, in rounds, until all have returned.
-
-    In a round what most ask for is found: all gaps, or all lines, or all free edges, or all problems on one grid.
-    Whenever one returns, another one begins: so many are under way that stacks are full, and no more, so that memory
-    stays bounded and progress steady.
-
-    Parameters
-    ----------
-    pair : GearPair
-    all_steps : sequence of generators
-    progress : callable, optional
-        Called with how many have returned, whenever one does.
-
-    Returns
-    -------
-    list
-        What they return, in their order.
-
-    Raises
-    ------
-    InputError, GeometryError, ConvergenceError
-        The first one that a generator does not deal with.
-    """
-    results: dict[int, Result] = {}
-    asked: dict[int, Request] = {}
-
-    def advance(index: int, step: Callable[[], Request]) -> None:
-        try:
-            asked[index] = step()
-        except StopIteration as end:
-            results[index] = end.value
-            if progress is not None:
-                progress(len(results))
-
-    waiting = iter(enumerate(all_steps))
-    while len(results) < len(all_steps):
-        for index, steps in islice(waiting, UNDER_WAY - len(asked)):
-            advance(index, partial(next, steps))
-        for index, answer in _answers(pair, asked).items() if asked else ():
-            del asked[index]
-            steps = all_steps[index]
-            failed = isinstance(answer, LoadedTCAError)
-            advance(index, partial(steps.throw, answer) if failed else partial(steps.send, answer))
-    return [results[index] for index in range(len(all_steps))]
-
-
-def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
-    """Answer what one generator asks for, until it returns."""
-    return found_together(pair, [steps])[0]
-
-
-def _answers(
-    pair: GearPair, asked: dict[int, Request]
-) -> dict[int, Separation | ExpectedLine | Array | ContactSolution | LoadedTCAError | None]:
-    """Answer what most ask for, gaps, lines, free edges or problems on one grid; errors are answers."""
-    kinds = {index: one.problem.cells if isinstance(one, Task) else type(one) for index, one in asked.items()}
-    (most, _), *_ = Counter(kinds.values()).most_common(1)
-    chosen: Any = {index: asked[index] for index, kind in kinds.items() if kind == most}
-    if most in (Gap, Line, Ends):
-        by_gears: dict[int, dict[int, Any]] = {}
-        for index, request in chosen.items():
-            by_gears.setdefault(id(request.gears), {})[index] = request
-        return {index: answer for some in by_gears.values() for index, answer in _of_flanks(pair, some).items()}
-    solutions = solve_problems(*zip(*chosen.values(), strict=True), on_failure="return")
-    return {
-        index: solution.not_converged(task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution
-        for (index, task), solution in zip(chosen.items(), solutions, strict=True)
-    }
-
-
-def _of_flanks(
-    pair: GearPair, asked: dict[int, Any]
-) -> dict[int, Separation | ExpectedLine | Array | LoadedTCAError | None]:
-    """Answer requests for gaps, for lines, or for free edges, of the same gears."""
-    requests = list(asked.values())
-    gears = requests[0].gears or pair
-    if isinstance(requests[0], Ends):
-        return dict(zip(asked, edge_compliances(gears, [one.separation for one in requests]), strict=True))
-    if isinstance(requests[0], Line):
-        contacts, half_lengths, _ = zip(*requests, strict=True)
-        return dict(zip(asked, expected_lines(gears, contacts, half_lengths), strict=True))
-    contacts, cells, loads, boxes, _, polynomials, at_ends = zip(*requests, strict=True)
-    gaps = sample_separations(
-        gears, contacts, cells=cells, loads=loads, boxes=boxes, polynomials=polynomials, cells_at_ends=at_ends
-    )
-    return dict(zip(asked, gaps, strict=True))
-
-
-def with_gears(gears: GearPair | None, steps: Steps[Result]) -> Steps[Result]:
-    """Steps whose gaps and free edges are those of the gears of one tooth pair; None: of the common ones."""
-    if gears is None:
-        return (yield from steps)
-    answer: Any = None
-    failure: BaseException | None = None
-    while True:
-        try:
-            request = steps.send(answer) if failure is None else steps.throw(failure)
-        except StopIteration as end:
-            return end.value
-        failure = None
-        try:
-            answer = yield (request if isinstance(request, Task) else request._replace(gears=gears))
-        except LoadedTCAError as error:
-            failure = error
-
 
 EXACT = 1e-9
 """Tolerance of the solver where the approach is given: forces then balance a torque to that."""

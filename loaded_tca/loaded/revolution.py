@@ -9,10 +9,11 @@ from functools import partial
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.loaded.cycle import Progress, torques_shared
-from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair
-from loaded_tca.loaded.sensitivity import LoadedGrid, loaded_states
+from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.sensitivity import loaded_states
 from loaded_tca.loaded.supported import on_rigid_supports
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
+from loaded_tca.loaded.tooth_pairs import SharedLoad, ToothPair
 from loaded_tca.unloaded.revolution import RevolutionPath
 
 STATES_AT_A_TIME = 128

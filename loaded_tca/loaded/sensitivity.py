@@ -37,15 +37,10 @@ from itertools import combinations, groupby
 import numpy as np
 from scipy.sparse import csr_array
 
-from loaded_tca.arrays import Array, Indices, Mask
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.contact import ContactProblem
-from loaded_tca.contact.convolution import Preconditioner
-from loaded_tca.contact.grid import Grids
 from loaded_tca.errors import ConvergenceError
-from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.separation import Separation
-from loaded_tca.unloaded import ContactPoint
+from loaded_tca.loaded.loaded_grid import Block, LoadedGrid, alike, block_diagonal
 
 TOLERANCE = 1e-10
 """Of the linear systems, relative: the derivatives are exact to 1e-8."""
@@ -56,48 +51,6 @@ MOST_STEPS = 100
 """The same where force lines follow the forces: all steps are kept. A dozen or two are the rule."""
 CELLS_TOGETHER = 2**15
 """Of the states whose answers :func:`loaded_states` finds together, about: more take more memory and save no time."""
-
-
-@dataclass(frozen=True, eq=False)
-class LoadedGrid:
-    """What the tangent of a state needs of one tooth pair under load.
-
-    Attributes
-    ----------
-    number : int
-        Of the tooth pair.
-    contact : ContactPoint
-    separation : Separation
-    problem : ContactProblem
-        Half-spaces, slice compliance and cover on that grid; its gap is of no account.
-    pressure : (nx, ny) array [MPa]
-        Its solution.
-    bending : (ny, ny) array or None [mm/N]
-        Compliance of its slices by the teeth, without that of free edges.
-    """
-
-    number: int
-    contact: ContactPoint
-    separation: Separation
-    problem: ContactProblem
-    pressure: Array
-    bending: Array | None = None
-
-    @classmethod
-    def of(cls, number: int, loaded: LoadedContact) -> LoadedGrid:
-        """Of a solved contact."""
-        solution = loaded.solution
-        return cls(number, loaded.contact, loaded.separation, solution.problem, solution.pressure, loaded.bending)
-
-    @property
-    def slice_force(self) -> Array:
-        """Force on every slice (ny,) [N]."""
-        return np.asarray(self.pressure.sum(axis=0) * math.prod(self.problem.spacing))
-
-    @cached_property
-    def active(self) -> Mask:
-        """Cells between the bounds, (nx, ny)."""
-        return np.asarray((self.pressure > 0.0) & (self.pressure < self.problem.cap))
 
 
 class Tangents:
@@ -156,7 +109,7 @@ class Tangents:
         slices = [grid.active.shape[1] for grid in self.grids]
         columns = np.concatenate([grid.active.nonzero()[1] for grid in self.grids])
         self._slice, self._slices = columns + (np.cumsum(slices) - slices)[self.grid], sum(slices)
-        self._blocks = [_Block.of(alike) for alike in _alike(self.grids, self.ends)]
+        self._blocks = [Block.of(alike) for alike in alike(self.grids, self.ends)]
         self._coupling = None if bending is None else _coupling(states, bending)
         levers = [(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in self.grids]
         self.pinion_levers, self.wheel_levers = np.array(levers).reshape(-1, 2).T[:, self.grid]
@@ -402,59 +355,3 @@ def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> 
             matrix[at, under], matrix[under, at] = between, between.T
         matrices.append(matrix)
     return block_diagonal(matrices)
-
-
-def block_diagonal(matrices: Sequence[Array]) -> csr_array:
-    """Square matrices of single states as one of all their places."""
-    sizes = np.array([len(matrix) for matrix in matrices])
-    ends = np.cumsum(sizes)
-    columns = [np.tile(np.arange(end - size, end), size) for end, size in zip(ends, sizes, strict=True)]
-    rows = np.concatenate([[0], np.cumsum(np.repeat(sizes, sizes))])
-    values = np.concatenate([matrix.ravel() for matrix in matrices])
-    return csr_array((values, np.concatenate(columns), rows), shape=(ends[-1], ends[-1]))
-
-
-def _alike(grids: Sequence[LoadedGrid], ends: Indices) -> list[list[tuple[LoadedGrid, Indices]]]:
-    """Grids of one shape, and with slices and cover or without, and the places of their cells in the row."""
-
-    def kind(place: int) -> tuple[object, ...]:
-        problem = grids[place].problem
-        return problem.cells, problem.slice_compliance is None, problem.cover is None
-
-    cells = np.split(np.arange(ends[-1]), ends[:-1])
-    groups = groupby(sorted(range(len(grids)), key=kind), kind)
-    return [[(grids[n], cells[n]) for n in group] for _, group in groups]
-
-
-class _Block:
-    """K of grids of one shape on their active cells: half-spaces, cut cells, own slices.
-
-    ``cells``: their places in the row.
-    """
-
-    def __init__(self, grids: Sequence[LoadedGrid], cells: Indices) -> None:
-        problems = [grid.problem for grid in grids]
-        stack, active = Grids.of(problems), np.stack([grid.active for grid in grids])
-        self.cells = cells
-        self._at, self._shape = np.flatnonzero(active), active.shape
-        unit = [problem.spacing[1] * problem.contact_modulus for problem in problems]  # N to the lengths of a stack
-        self._unit = np.repeat(unit, active.sum(axis=(1, 2)))
-        self._operator, self._inverse = stack.operator(threads=1), Preconditioner(stack.shape, stack.aspects, 1)
-        self._root = 1.0 if stack.cover is None else np.sqrt(stack.cover[active])
-
-    @classmethod
-    def of(cls, alike: Sequence[tuple[LoadedGrid, Indices]]) -> _Block:
-        grids, cells = zip(*alike, strict=True)
-        return cls(grids, np.concatenate(cells))
-
-    def displaced(self, forces: Array) -> Array:
-        """Displacement of the cells [mm] under forces [N] on them."""
-        pressure = np.zeros(self._shape)
-        pressure.ravel()[self._at] = forces / self._unit
-        return np.asarray(self._operator(pressure, np.empty(self._shape)).ravel()[self._at])
-
-    def preconditioned(self, residual: Array) -> Array:
-        given = np.zeros(self._shape, dtype=np.float32)
-        given.ravel()[self._at] = self._root * residual
-        pressure = self._inverse(given, np.empty(self._shape, dtype=np.float32)).ravel()[self._at]
-        return np.asarray(self._unit * self._root * pressure)

@@ -8,7 +8,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named
-from loaded_tca.loaded.supported import loads_at_first_contact, moved_by
+from loaded_tca.loaded.moved_gears import loads_at_first_contact, moved_by
 from loaded_tca.scene import Scene
 from loaded_tca.supports import Shaft, shafts_of, support_compliance
 

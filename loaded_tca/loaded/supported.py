@@ -22,7 +22,6 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -37,15 +36,25 @@ from loaded_tca.loaded.cycle import (
     OnePairsCycle,
     Progress,
     carried_together,
-    farthest_apart,
     in_gear_angles,
 )
-from loaded_tca.loaded.loaded_contact import LoadedContact, Result, Steps
-from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
-from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
+from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.moved_gears import (
+    Loads,
+    at_rest,
+    loads_at,
+    loads_at_first_contact,
+    moved_bending,
+    moved_too_far,
+    no_loads,
+)
+from loaded_tca.loaded.sensitivity import LoadedStates, loaded_states
+from loaded_tca.loaded.together import Result, Steps
+from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.supports import SupportCompliance
-from loaded_tca.unloaded import ContactPath, ContactPoint, MeshPath, trace_contact, trace_teeth
+from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
 
 POSITIONS = 2
 """Positions of a pitch whose mean load moves the geometry on the way: motions follow the load's place to a few 1e-3."""
@@ -66,9 +75,6 @@ SWINGING = 7
 the next step makes them swing."""
 MOST_STEPS = 12
 """Steps before giving up; two to four are the rule."""
-
-Loads = tuple[Array, Array]
-"""Of the stations of pinion and wheel, (6 m,) each [N, N mm], in the axes of each gear's own frame."""
 
 
 class OnSupports(Protocol):
@@ -216,10 +222,10 @@ class SupportedCycle:
         """
         loaded = sorted({torque for torque in torques if torque > 0.0})
         if not loaded:
-            return [_no_loads(self.supports) for _ in torques]
+            return [no_loads(self.supports) for _ in torques]
         if len(self.angles) <= ENOUGH:
             each = dict(zip(loaded, self._settled(loaded), strict=True))
-            return [each.get(torque) or _no_loads(self.supports) for torque in torques]
+            return [each.get(torque) or no_loads(self.supports) for torque in torques]
         low, high = loaded[0], loaded[-1]
         first, last = self._settled([low, high])
 
@@ -231,7 +237,7 @@ class SupportedCycle:
             )
             return pinion, wheel
 
-        return [between(torque) if torque > 0.0 else _no_loads(self.supports) for torque in torques]
+        return [between(torque) if torque > 0.0 else no_loads(self.supports) for torque in torques]
 
     def _settled(self, torques: Sequence[float]) -> list[Loads]:
         """The same, torques by themselves: from where the flanks touch first without load."""
@@ -261,7 +267,7 @@ class SupportedCycle:
     def _are_near(self, cycle: _MovedCycle, loads: Loads) -> bool:
         """Whether the motions by loads are those of a cycle, but for a small part of them."""
         part = SETTLED if cycle.supports.is_linear else NEARER
-        whole = self._distance(cycle.supports, loads, _no_loads(self.supports))
+        whole = self._distance(cycle.supports, loads, no_loads(self.supports))
         return self._distance(cycle.supports, loads, cycle.held) <= part * whole
 
     def _is_done(self, cycle: _MovedCycle, loads: Loads) -> bool:
@@ -316,7 +322,7 @@ def _told_of(torque: float) -> Iterator[None]:
         with named("supports"):
             yield
     except GeometryError as error:
-        raise _moved_too_far(error, torque) from None
+        raise moved_too_far(error, torque) from None
 
 
 def _told(steps: Steps[Result], torque: float) -> Steps[Result]:
@@ -325,123 +331,9 @@ def _told(steps: Steps[Result], torque: float) -> Steps[Result]:
         return (yield from steps)
 
 
-def _no_loads(supports: SupportCompliance) -> Loads:
-    pinion, wheel = (np.zeros(len(support.compliance)) for support in supports.supports)
-    return pinion, wheel
-
-
-def standing_under(supports: SupportCompliance, loads: Loads) -> SupportCompliance:
-    """Supports at rest in their pair moved as rigid bodies by what loads of the stations move."""
-    motions = supports.bodies(loads)
-    return supports.moved(motions) if any(one.any() for one in motions) else supports
-
-
-def moved_bending(bending: SumOfParts, near: SupportCompliance, loads: Loads) -> tuple[SumOfParts, Coupling]:
-    """Bending of the pair moved by loads of its supports, which are linear ``near`` these, and what opens its gaps.
-
-    Beside the motions by the forces: those of other loads on the shafts, less those that moved the pair.
-    """
-    there = standing_under(near, loads)
-    given = partial(there.opened, motions=given_motions(near, loads))
-    return bending.on_supports(there).mounted(there.pair), given
-
-
-def moved_by(supports: SupportCompliance, loads: Loads) -> GearPair:
-    """The pair of supports, at rest, moved as rigid bodies by what loads of the stations move."""
-    return standing_under(supports, loads).pair
-
-
-def at_rest(supports: SupportCompliance) -> GearPair:
-    """The pair of supports as other loads alone move it."""
-    return moved_by(supports, _no_loads(supports))
-
-
-def _moved_too_far(error: GeometryError, torque: float) -> GeometryError:
-    return GeometryError(f"{error}; under {1e-3 * torque:g} N m the supports let the gears move too far")
-
-
-def pitches_apart(supports: SupportCompliance, torques: Sequence[float], mesh: MeshPath) -> int:
-    """How many pitches tooth pairs within reach are apart, at rest and moved by each pinion torque [N mm].
-
-    The force of a torque acts where the flanks touch first without load; ``mesh``: contact of the pair at rest.
-
-    Raises
-    ------
-    GeometryError
-        If the moved flanks are not in contact.
-    """
-    apart = farthest_apart(mesh)
-    for torque in sorted(
-        (torque for torque in torques if torque > 0.0), reverse=True
-    ):  # what the largest one asks for is told first
-        try:
-            loads = loads_at_first_contact(supports, mesh.pair, torque)
-            moved = moved_by(supports.under(loads), loads)
-            apart = max(apart, farthest_apart(trace_teeth(moved, mesh.pinion_angle)))
-        except GeometryError as error:
-            raise _moved_too_far(error, torque) from None
-    return apart
-
-
-def loads_at_first_contact(supports: SupportCompliance, at_rest: GearPair, torque: float) -> Loads:
-    """Loads of the stations if the force of a pinion torque [N mm] acts where the pair at rest touches at phi1 = 0."""
-    contact = trace_contact(at_rest, [0.0], warn=False)[0]
-    if not contact.in_contact:
-        return _no_loads(supports)
-    unit = standing_under(supports, _no_loads(supports)).mounted(at_rest).loads(_OnePoint(contact))
-    pinion, wheel = (torque / contact.pinion_lever * load[0] for load in unit)
-    return pinion, wheel
-
-
-@dataclass(frozen=True, eq=False)
-class _OnePoint:
-    """A contact of one slice at a contact point."""
-
-    contact: ContactPoint
-
-    @property
-    def y(self) -> Array:
-        return np.zeros(1)
-
-    @property
-    def force_line(self) -> Array:
-        return np.zeros(1)
-
-    @property
-    def origin(self) -> Array:
-        return np.asarray(self.contact.point)
-
-    @property
-    def axes(self) -> Array:
-        return np.stack([np.zeros(3), np.zeros(3), self.contact.normal])
-
-
-def given_motions(supports: SupportCompliance, loads: Loads) -> list[Array]:
-    """Motions (6 m,) of the stations beside those by the forces, in the pair moved by loads: d = a . this."""
-    motions = []
-    for support, motion in zip(supports.supports, supports.bodies(loads), strict=True):
-        body = support.with_middle(motion)
-        motions.append(-body if support.motion is None else support.motion - body)
-    return motions
-
-
 def loads_of(supports: SupportCompliance, carried: Carried) -> tuple[Array, Array]:
     """Loads (n, 6 m) of pinion and wheel at the positions under the one torque; NaN where nothing is in contact."""
     return loads_at(supports, carried.contacts[0])
-
-
-def loads_at(supports: SupportCompliance, contacts: Sequence[Sequence[LoadedContact | None]]) -> tuple[Array, Array]:
-    """The same of contacts by position."""
-    at_positions: list[tuple[Array, Array]] = []
-    for at in contacts:
-        there = [one for one in at if one is not None]
-        pinion, wheel = (np.full(len(support.compliance), 0.0 if there else math.nan) for support in supports.supports)
-        for one in there:
-            on_pinion, on_wheel = supports.loads(one.separation)
-            pinion, wheel = pinion + one.slice_force @ on_pinion, wheel + one.slice_force @ on_wheel
-        at_positions.append((pinion, wheel))
-    pinions, wheels = zip(*at_positions, strict=True)
-    return np.stack(pinions), np.stack(wheels)
 
 
 def _rate_on_rigid_supports(carried: Carried, bending: SumOfParts) -> Array:

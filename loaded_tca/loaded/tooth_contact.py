@@ -20,7 +20,8 @@ from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.patch import ends_at_material, values_at_ends
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
-from loaded_tca.loaded.loaded_contact import Ends, Gap, LoadedContact, Steps, Task, found_alone
+from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.together import Ends, Gap, Steps, Task, found_alone
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.separation.strips import strip_pressure

@@ -19,10 +19,11 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.force_lines import bending_by_shift
 from loaded_tca.loaded.free_edges import edge_compliances
-from loaded_tca.loaded.load_sharing import tooth_pairs_at
-from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, Tangents, loaded_states
-from loaded_tca.loaded.supported import given_motions
+from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.moved_gears import given_motions
+from loaded_tca.loaded.sensitivity import LoadedStates, Tangents, loaded_states
 from loaded_tca.loaded.tooth_contact import contact_problem
+from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figure_slopes import (
     EXPONENT,

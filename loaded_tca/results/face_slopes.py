@@ -15,7 +15,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import give_accuracy_warning
-from loaded_tca.loaded.sensitivity import LoadedGrid
+from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figure_slopes import line_load_slopes
 from loaded_tca.results.load_factors import (

@@ -18,7 +18,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance import FlankLine, flank_lines, root_stress_model
 from loaded_tca.contact.patch import peak_weights, reaches_border, top_weights
 from loaded_tca.errors import require
-from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
+from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.gap_growth import moved
 from loaded_tca.results.root_stress import stress_at_extreme

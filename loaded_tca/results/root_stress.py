@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.compliance import FlankLine, RootStress, flank_lines
 from loaded_tca.contact.patch import top_weights
-from loaded_tca.loaded.sensitivity import LoadedGrid
+from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.iso6336_3 import THINNEST_RIM, face_load_factor, rim_thickness_factor

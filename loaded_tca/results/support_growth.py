@@ -28,8 +28,8 @@ from loaded_tca.compliance.model import SumOfParts
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import in_gear_angles
 from loaded_tca.loaded.force_lines import LoadedSlices
+from loaded_tca.loaded.moved_gears import Loads, standing_under
 from loaded_tca.loaded.sensitivity import Tangents
-from loaded_tca.loaded.supported import Loads, standing_under
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.gap_growth import GapGrowth, gap_growth, moved
 from loaded_tca.results.numbers import CycleNumbers

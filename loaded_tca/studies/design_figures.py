@@ -17,7 +17,7 @@ from loaded_tca.arrays import GEARS, Array, real
 from loaded_tca.compliance import RootStress
 from loaded_tca.errors import require
 from loaded_tca.loaded.held_contacts import HeldContacts
-from loaded_tca.loaded.sensitivity import LoadedGrid
+from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.pairs.kinematics import surface_motions
 from loaded_tca.results.face_slopes import face_load_factor_slopes
 from loaded_tca.results.figure_slopes import EXPONENT, pressure_norm

@@ -28,11 +28,13 @@ from loaded_tca.compliance.model import with_enough_teeth
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
-from loaded_tca.loaded.load_sharing import SharedLoad
-from loaded_tca.loaded.loaded_contact import found_together
-from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
-from loaded_tca.loaded.supported import SupportedCycle, at_rest, moved_bending, pitches_apart
+from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.moved_gears import at_rest, moved_bending, pitches_apart
+from loaded_tca.loaded.sensitivity import Tangents
+from loaded_tca.loaded.supported import SupportedCycle
+from loaded_tca.loaded.together import found_together
 from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.loaded.tooth_pairs import SharedLoad
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import value_at

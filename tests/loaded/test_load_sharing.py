@@ -12,8 +12,9 @@ from numpy.testing import assert_allclose
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.loaded.load_sharing import ToothPair, share_load, tooth_pairs_at
+from loaded_tca.loaded.load_sharing import share_load
 from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.loaded.tooth_pairs import ToothPair, tooth_pairs_at
 from loaded_tca.material import Material
 from loaded_tca.separation import sample_separation
 from loaded_tca.separation.sample import sample_separations

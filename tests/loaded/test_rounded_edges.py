@@ -15,9 +15,10 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.loaded import rounded_edges
 from loaded_tca.loaded.lines_of_edges import ReachedEdge, largest_pressure, reached_edges
-from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
+from loaded_tca.loaded.load_sharing import share_load
 from loaded_tca.loaded.rounded_edges import pressure_at_rounded_edge
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
+from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.reference.punch import RoundedPunch

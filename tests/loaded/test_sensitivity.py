@@ -13,9 +13,11 @@ from loaded_tca.contact import ContactProblem, contact_stiffness
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.loaded.cycle import carried_by_one
-from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
-from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents, loaded_states
+from loaded_tca.loaded.load_sharing import share_load
+from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.sensitivity import Tangents, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
 from loaded_tca.separation.gap_change import contact_changes
 from loaded_tca.separation.pair_change import pair_changes
 from loaded_tca.unloaded import trace_contact, trace_teeth

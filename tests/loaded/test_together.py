@@ -6,7 +6,7 @@ import pytest
 from loaded_tca.contact import ContactProblem
 from loaded_tca.errors import ConvergenceError, GeometryError
 from loaded_tca.loaded import loaded_contact
-from loaded_tca.loaded.loaded_contact import Gap, Task, found_alone, found_together
+from loaded_tca.loaded.together import Gap, Task, found_alone, found_together
 from loaded_tca.unloaded import trace_contact
 from tests.samples.gear_pairs import sam_paper
 

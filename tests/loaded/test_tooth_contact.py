@@ -13,7 +13,7 @@ from loaded_tca import AccuracyWarning, InputError, trace_contact
 from loaded_tca.contact.patch import widths
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.line_load import SliceLoads
-from loaded_tca.loaded.loaded_contact import found_alone
+from loaded_tca.loaded.together import found_alone
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair

@@ -1,6 +1,7 @@
 """Exact tangents of solved contacts."""
 
-from loaded_tca.loaded.sensitivity import LoadedGrid, loaded_states
+from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.sensitivity import loaded_states
 
 
 def torque_rate(shared, bending=None):

@@ -215,7 +215,7 @@ def test_motions_of_doubtful_size_are_warned_of() -> None:
         analyse(on(scene, np.diag([0.0] * 5 + [5e-7]), None))
 
 
-@pytest.mark.parametrize("tilt", [1e-9, 2e-8])
+@pytest.mark.parametrize("tilt", [1e-9, 1e-7])
 def test_wide_gear_on_a_soft_tilt_settles(tilt: float) -> None:
     """Rigid analyses repeated swing for ever here: misalignment of the mounting is undone by that of the support."""
     changes = {

@@ -19,9 +19,11 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
-from loaded_tca.loaded.sensitivity import LoadedGrid, loaded_states
+from loaded_tca.loaded.load_sharing import share_load
+from loaded_tca.loaded.loaded_grid import LoadedGrid
+from loaded_tca.loaded.sensitivity import loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import trace_teeth

@@ -19,9 +19,10 @@ import numpy as np
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.loaded.load_sharing import Share, SharedLoad, share_load, tooth_pairs_at
+from loaded_tca.loaded.load_sharing import share_load
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.loaded.tooth_pairs import Share, SharedLoad, tooth_pairs_at
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
