@@ -145,7 +145,7 @@ def test_zero_from_which_gaps_count_moves_no_force(raised, monkeypatch):
             by = raised if contact is first.contact else 0.0
             yield replace(grid, gap=grid.gap + by, cut_gap=grid.cut_gap + by)
 
-    at_once = "loaded_tca.loaded.loaded_contact.sample_separations"
+    at_once = "loaded_tca.loaded.together.sample_separations"
     monkeypatch.setattr(at_once, lambda *given, **options: list(sampled(*given, **options)))
     forces = [share.force for share in share_load(pair, [moved, *others], TORQUE, GRID).shares]
     assert len(forces) == 2
