@@ -61,7 +61,9 @@ SHORTER = {
             "analysis.torques_Nm": [40.0, 130.0],
         }
     },
-    "plot_drive_stage": {"CHANGES": lambda all_: {**all_, **ON_A_GRID, "analysis.positions": 3}},
+    "plot_drive_stage": {
+        "CHANGES": lambda all_: {**all_, **ON_A_GRID, "analysis.positions": 3, "analysis.torques_Nm": [250.0]}
+    },
     "plot_revolution": {"CHANGES": lambda all_: {**all_, **ON_A_GRID, **A_WHOLE_TURN, "analysis.torques_Nm": [120.0]}},
     "export_to_dynamics": {"SPEEDS": lambda _: np.linspace(0.3, 0.7, 33), "PHASES": lambda _: np.linspace(20, 24, 257)},
 }
@@ -120,7 +122,7 @@ def test_pages_of_pictures_have_every_kind(tmp_path, monkeypatch):
     coarse = {"analysis.cells": (8, 12)}
     example, studies = loaded(EXAMPLES / "plot_all_pictures.py"), loaded(EXAMPLES / "plot_all_study_pictures.py")
     monkeypatch.setattr(example, "HELICAL", example.HELICAL.with_changes(example.FEW | coarse))
-    monkeypatch.setattr(example, "BEVEL", example.BEVEL.with_changes(coarse))
+    monkeypatch.setattr(example, "BEVEL", example.BEVEL.with_changes(coarse | {"analysis.positions": 3}))
     monkeypatch.setattr(example, "FEW", example.FEW | coarse)
     monkeypatch.setattr(studies, "HELICAL", studies.HELICAL.with_changes(coarse))
     monkeypatch.setattr(studies, "DesignModel", partial(studies.DesignModel, cells=(8, 12)))

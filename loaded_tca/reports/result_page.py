@@ -28,6 +28,7 @@ from loaded_tca.results.summary import known_rows, limits_of, shown
 from loaded_tca.scene import Scene
 from loaded_tca.stages import Stage, StageResult
 from loaded_tca.stages.result import FILES
+from loaded_tca.tribology.summary import summary_rows
 from loaded_tca.warning_kinds import Kind, kind_of
 
 MOST_TORQUES = 5
@@ -68,7 +69,7 @@ def _lubrication(result: MeshCycle) -> dict[str, Any] | None:
     with noted_accuracy_warnings(given=False) as sentences:
         tribology = result.tribology()
     _, about, *lines = tribology.summary().split("\n")
-    rows, lacking = tribology.rows(), [line for line in lines if line.startswith("not known")]
+    rows, lacking = summary_rows(tribology), [line for line in lines if line.startswith("not known")]
     captions = {name: picture.caption for name, picture in TRIBOLOGY_PICTURES.items()}
     return {
         "about": about,

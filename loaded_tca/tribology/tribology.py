@@ -15,7 +15,6 @@ from loaded_tca.errors import NotAskedError, require
 from loaded_tca.reference.iso6336_20 import scuffing_safety, scuffing_temperature
 from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replace_file
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.summary import shown_torque
 from loaded_tca.tribology.conditions import Conditions
 from loaded_tca.tribology.evaluate import MILLI, Evaluation, pitch_weights
 from loaded_tca.tribology.quantities import (
@@ -27,21 +26,14 @@ from loaded_tca.tribology.quantities import (
     PLACES,
     QUANTITIES,
     SCUFFING,
-    SUMMARY,
-    WITH_PLACES,
     place_of,
 )
 from loaded_tca.tribology.slices import Slices, cells_of_flank, cylindrical_mesh, slices_of
+from loaded_tca.tribology.summary import summary_text
 
 if TYPE_CHECKING:
     import pandas
     import xarray
-
-
-def _shown(value: float) -> str:
-    """Return a number as the summary shows it; a dash for what is not known."""
-    return "-" if math.isnan(value) else f"{value:.4g}"
-
 
 CELLS = (24, 32)
 """Of the grid of a flank along the profile and lengthwise."""
@@ -420,38 +412,13 @@ class Tribology:
         ----------
         speed : int
             Index of the speed of a list.
+
+        Raises
+        ------
+        InputError
+            If there is no such speed.
         """
-        rows = self.rows(speed)
-        width, longest = max(len(cell) for _, *cells in rows for cell in cells) + 2, max(len(row[0]) for row in rows)
-        table = [f"{head:<{longest}}" + "".join(f"{cell:>{width}}" for cell in cells) for head, *cells in rows]
-        reasons: dict[str, list[str]] = {}
-        for name in SUMMARY:
-            if reason := self.lacking(name):
-                reasons.setdefault(reason, []).append(SUMMARY[name])
-        notes = [f"not known: {', '.join(names)}: {reason}" for reason, names in reasons.items()]
-        return "\n".join([self.result.scene.title or "Tribology", self.conditions.in_words(speed), *table, *notes])
-
-    def rows(self, speed: int = 0) -> list[tuple[str, ...]]:
-        """Lines of the summary: the torques, each number that is known under them, and where some extremes lie."""
-        self.check(0, speed)
-        rows = [("pinion torque [N m]", *(shown_torque(one).split()[0] for one in self.result.torque))]
-        for name in (name for name in SUMMARY if not self.lacking(name)):
-            values, unit = self.by_speed(name)[speed], QUANTITIES[name].unit
-            label = SUMMARY[name] + (f" [{unit}]" if unit != "1" else "")
-            rows.append((label, *map(_shown, values)))
-            rows += self._places_in_words(name, speed) if name in WITH_PLACES else []
-        return rows
-
-    def _places_in_words(self, name: str, speed: int) -> list[tuple[str, ...]]:
-        """Where an extreme lies, in the words of the summary of contacts."""
-        positions, radii, axials = (self.by_speed(f"{name}_{end}")[speed] for end in ("position", "radius", "axial"))
-        angles = np.append(np.degrees(self.result.pinion_angle), math.nan)
-        angle = angles[np.where(np.isnan(positions), -1, positions).astype(int)]
-        places = (f"{_shown(2.0 * radius)} | {_shown(axial)}" for radius, axial in zip(radii, axials, strict=True))
-        return [
-            ("  pinion angle [deg]", *map(_shown, angle)),
-            ("  pinion diameter | axial position [mm]", *places),
-        ]
+        return summary_text(self, speed)
 
     def save(self, path: FilePath) -> None:
         """Write the dataset to a NetCDF-3 file, whole or not at all.

@@ -225,7 +225,7 @@ def test_forces_on_supports_that_do_not_balance_the_torque_are_warned_of() -> No
     assert not any("more or less than its torque" in one for one in spiral.warnings)
 
 
-@pytest.mark.parametrize("tilt", [1e-9, 2e-8])
+@pytest.mark.parametrize("tilt", [1e-9, 1e-7])
 def test_wide_gear_on_a_soft_tilt_settles(tilt: float) -> None:
     """Rigid analyses repeated swing for ever here: misalignment of the mounting is undone by that of the support."""
     changes = {
