@@ -26,7 +26,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import mesh_cycle
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.supports import warn_of_motions
+from loaded_tca.results.supports import warn_of_supports
 from loaded_tca.results.warnings import warn_of_accuracy, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.supports import support_compliance
@@ -239,7 +239,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
             body_torsion=torsion,
         )
         if cycles:
-            warn_of_motions(pair, cycles)
+            warn_of_supports(pair, cycles, torques.tolist())
         date = datetime.now(UTC).isoformat(timespec="seconds")
         return mesh_cycle(scene, pair, carried, at_edges, roots, cycles, warnings=warned, date=date)
 

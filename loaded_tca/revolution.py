@@ -29,7 +29,7 @@ from loaded_tca.results.collect import Place, numbers_and_maps
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.revolution import OF_TEETH, Revolution, open_turns, revolution_dataset
 from loaded_tca.results.root_stress import root_stress_of_gear
-from loaded_tca.results.supports import support_arrays, warn_of_motions
+from loaded_tca.results.supports import support_arrays, warn_of_supports
 from loaded_tca.results.warnings import at_places, place_of, reasons_of, rotation_reasons, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
@@ -196,7 +196,7 @@ def _on_supports(
         return numbers
 
     numbers = with_enough_teeth(apart, under, lambda made: max(one.pitches_apart for one in made))
-    warn_of_motions(pair, numbers)
+    warn_of_supports(pair, numbers, scene.torques)
     return numbers
 
 

@@ -239,6 +239,12 @@ LARGE_MOTIONS = Kind(
     "motions of that size shift the contact by parts of the tooth; stiffnesses may have another unit than was meant",
     "stiffer supports, less torque, or the unit of compliance and stiffness: mm, rad, N, N mm",
 )
+SUPPORT_MOMENT = Kind(
+    "the forces on the supports of the pinion turn it by {part:.1%} more or less than its torque",
+    "forces have the direction of the normal at the contact point, all over the contact: on flanks that curve within "
+    "it, as those of hypoid pairs do, motions of the gears and forces on bearings are off by about that part",
+    "motions and forces on bearings to that part only; less torque, which makes the contact shorter",
+)
 EXTREME_AT_EDGE = Kind(
     "tribology: the {extreme} lies at an edge of a flank, where it is that of a line contact of the flank beside it or "
     "of its arc",

@@ -20,6 +20,10 @@ from loaded_tca.units import MICROMETRES
 LARGEST_WAY, LARGEST_TURN = 0.1, 5e-3
 """Motions over the module, and rotations [rad], above which supports are softer than those of gears that mesh."""
 
+LARGEST_MOMENT = 5e-3
+"""Part of the torque that the axial moment of the forces on a pinion's supports may lack; of cylindrical and straight
+bevel pairs it lacks 1e-4 and less, of a spiral bevel pair 1e-3, of a hypoid pair 1.5e-2."""
+
 
 def support_arrays(pair: GearPair, cycles: Sequence[OnSupports], *, pressure_angle: float) -> dict[str, Array]:
     """Arrays of ``SUPPORT_QUANTITIES``; of ``BEARING_QUANTITIES`` of gears with shafts, ``ROLLING_QUANTITIES`` of some.
@@ -109,6 +113,18 @@ def element_forces(result: CycleNumbers, gear: str, torque: int) -> dict[int, tu
         for k, bearing in enumerate(shaft.bearings)
         if isinstance(bearing, RollingBearing)
     }
+
+
+def warn_of_supports(pair: GearPair, cycles: Sequence[OnSupports], torques: Sequence[float]) -> None:
+    """Give an AccuracyWarning if gears on supports move far, or forces on these do not balance torques [N mm]."""
+    warn_of_motions(pair, cycles)
+    parts = [0.0]
+    for one, torque in zip(cycles, torques, strict=True):
+        moments = one.loads[0].reshape(len(one.loads[0]), -1, 6)[..., 5].sum(axis=-1)
+        if torque > 0.0 and np.isfinite(moments).any():
+            parts.append(abs(abs(float(np.nanmean(moments))) / torque - 1.0))
+    if max(parts) > LARGEST_MOMENT:
+        give_accuracy_warning(kinds.SUPPORT_MOMENT.sentence(part=max(parts)), stacklevel=3)
 
 
 def warn_of_motions(pair: GearPair, cycles: Sequence[OnSupports]) -> None:

@@ -215,6 +215,16 @@ def test_motions_of_doubtful_size_are_warned_of() -> None:
         analyse(on(scene, np.diag([0.0] * 5 + [5e-7]), None))
 
 
+@pytest.mark.filterwarnings("default::loaded_tca.AccuracyWarning")
+def test_forces_on_supports_that_do_not_balance_the_torque_are_warned_of() -> None:
+    """Normals turn within the contact of a hypoid pair; forces have that of the contact point."""
+    soft = np.diag([3e-6] * 3 + [1e-9] * 3)
+    with pytest.warns(AccuracyWarning, match=r"turn it by 1\.[0-9]% more or less than its torque"):
+        analyse(on(scene_of("hypoid_13x42", **{"analysis.free_edges": False}), soft, None))
+    spiral = analyse(on(scene_of("spiral_bevel", **{"analysis.torques_Nm": [0.8]}), soft, None))
+    assert not any("more or less than its torque" in one for one in spiral.warnings)
+
+
 @pytest.mark.parametrize("tilt", [1e-9, 1e-7])
 def test_wide_gear_on_a_soft_tilt_settles(tilt: float) -> None:
     """Rigid analyses repeated swing for ever here: misalignment of the mounting is undone by that of the support."""
