@@ -67,8 +67,8 @@ LINE_ERROR = 1e-3
 """Distance over the module from the centres of the pressure to where its forces bend the teeth, the mean over the
 force: 2 um on module 2, less than 1 nm of transmission error. Forces that swing keep their places."""
 SAME_BOX = (0.9, 1.1)
-"""Loads over the one a box was made for, between which it is kept, if the contact does not reach its border. With 0.75 to
-1.25 boxes keep what the first guess of the forces missed, and slopes of analyses on 64 cells scatter by 1 %."""
+"""Loads over the one a box was made for, between which it is kept, if the contact does not reach its border. With 0.75
+to 1.25 boxes keep what the first guess of the forces missed, and slopes of analyses on 64 cells scatter by 1 %."""
 FAR = 2.0
 """Initial separation, over the rotation, of pairs that others do not bend into contact: by less than they close."""
 
