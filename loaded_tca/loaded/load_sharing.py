@@ -66,9 +66,9 @@ SETTLED = 10.0
 LINE_ERROR = 1e-3
 """Distance over the module from the centres of the pressure to where its forces bend the teeth, the mean over the
 force: 2 um on module 2, less than 1 nm of transmission error. Forces that swing keep their places."""
-SAME_BOX = (0.9, 1.1)
-"""Loads over the one a box was made for, between which it is kept, if the contact does not reach its border. With 0.75
-to 1.25 boxes keep what the first guess of the forces missed, and slopes of analyses on 64 cells scatter by 1 %."""
+SAME_BOX, GUESSED_BOX = (0.75, 1.25), (0.9, 1.1)
+"""Loads over the one a box was made for, between which it is kept, if the contact does not reach its border; the second
+for forces by which teeth bend as guessed: kept, slopes of analyses on 64 cells scattered by 1 %."""
 FAR = 2.0
 """Initial separation, over the rotation, of pairs that others do not bend into contact: by less than they close."""
 
@@ -183,27 +183,26 @@ class _Balance:
 
     def steps(self) -> Steps[SharedLoad]:
         shared: SharedLoad | None = None
-        forces = np.zeros(len(self.laws))
+        forces, cap = np.zeros(len(self.laws)), self.pair.max_pressure
         if self.bending is not None:
             self.compliance = yield from self._first_compliance(self.bending)
         for count in range(1, MOST_BALANCES + 1):
             self.lines_held = self.lines_held or count > SWINGING
-            capped = self.pair.max_pressure is not None
-            if capped and shared is not None and count > SWINGING and count % SWINGING != 1:
+            if cap is not None and shared is not None and count > SWINGING and count % SWINGING != 1:
                 forces = yield from self._solve_at_common_rotation(shared)
             else:  # also now and then there, since pairs that are apart may come under load
                 before, known = forces, None if shared is None else forces
                 forces = balance(self.laws, self._first_rotations, self.levers, self.torque, self.compliance, known)
-                if count > SWINGING and not capped:
+                if count > SWINGING and cap is None:
                     forces = 0.5 * (before + forces)
+                box = GUESSED_BOX if count == 2 and self.bending is not None and not self.on_grids else SAME_BOX
                 for index in np.flatnonzero(forces).tolist():
-                    yield from self._solve(index, forces)
+                    yield from self._solve(index, forces, box)
             self.compliance = yield from self._corrected()
             shared = self._shared(forces, count)
             if shared.residual <= self.agreement and self._settled(forces, shared.rotation):
                 return shared
         assert shared is not None
-        cap = self.pair.max_pressure
         limit = "" if cap is None else f"; with max_pressure {cap:g} MPa contacts near their limit deform without end"
         raise ConvergenceError(
             f"load sharing not converged: the tooth pairs' rotations differ by {shared.residual:.1e} > "
@@ -242,14 +241,14 @@ class _Balance:
             self.grids_apart[index] = yield Gap(contact, FIRST_CELLS, load=self.laws[index].load, gears=gears)
         return self.grids_apart[index]
 
-    def _solve(self, index: int, forces: Array) -> Steps[None]:
+    def _solve(self, index: int, forces: Array, same_box: tuple[float, float]) -> Steps[None]:
         """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""
         force, before, law = float(forces[index]), self.solved[index], self.laws[index]
         tooth_pair, coupling = self.tooth_pairs[index], partial(self._coupling, index, forces)
         try:
             loaded: LoadedContact | None = None
             if before is not None and not before.solution.reaches_border:
-                least, most = (factor * before.solution.load for factor in SAME_BOX)
+                least, most = (factor * before.solution.load for factor in same_box)
                 if least <= force <= most:
                     if self.bending is not None and not self.lines_held:
                         before = before.bent_by(self.bending, tooth_pair.pair, self.pair.module)
@@ -300,7 +299,7 @@ class _Balance:
             self.solved[index], forces[index] = loaded, loaded.solution.load
         for index, loaded in self._loaded():
             if loaded.solution.reaches_border:
-                yield from self._solve(index, forces)  # in a larger box
+                yield from self._solve(index, forces, SAME_BOX)  # in a larger box
         return forces
 
     @property
