@@ -15,7 +15,7 @@ from math import nan
 from textwrap import shorten
 
 from loaded_tca.threads import one_thread
-from validation.table import Row
+from validation.table import Row, render
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def _failed(case: str, error: BaseException, seconds: float = 0.0) -> Outcome:
 
 
 def run_cases(cases: Sequence[str], processes: int = 1) -> dict[str, Outcome]:
-    """Outcomes of cases in their order; each is reported on the error output when it ends.
+    """Outcomes of cases in their order; each is reported on the error output when it ends, with rows that fail.
 
     Parameters
     ----------
@@ -67,9 +67,10 @@ def run_cases(cases: Sequence[str], processes: int = 1) -> dict[str, Outcome]:
     outcomes: dict[str, Outcome] = {}
     for case, outcome in _one_by_one(cases) if processes == 1 else _at_a_time(cases, processes):
         outcomes[case] = outcome
-        failed = sum(not row.holds for row in outcome.rows)
-        words = f"{len(outcome.rows)} rows, {failed} beyond the tolerance, {outcome.seconds:.1f} s"
-        print(f"{outcome.traceback}[{len(outcomes)}/{len(cases)}] {case}: {words}", file=sys.stderr, flush=True)
+        beyond = [row for row in outcome.rows if not row.holds]
+        words = f"{len(outcome.rows)} rows, {len(beyond)} beyond the tolerance, {outcome.seconds:.1f} s"
+        table = f"\n{render(beyond)}" if beyond else ""
+        print(f"{outcome.traceback}[{len(outcomes)}/{len(cases)}] {case}: {words}{table}", file=sys.stderr, flush=True)
     return {case: outcomes[case] for case in cases}
 
 

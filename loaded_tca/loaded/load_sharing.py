@@ -319,7 +319,7 @@ class _Balance:
         given = None if self.given is None else self.given(separation)
         if self.bending is None:
             return given
-        displaced = np.zeros(len(separation.y)) if given is None else given
+        displaced = np.zeros(len(separation.y)) if given is None else given.copy()
         for n, other in self._loaded():
             if n != index and forces[n] > 0.0:
                 displaced += forces[n] * self._deflection(index, separation, n, other)

@@ -88,6 +88,7 @@ def test_case_that_raises_is_a_row_that_fails_and_the_others_are_run(monkeypatch
     assert "4 rows, 2 beyond the tolerance" in table
     assert "Traceback" in told
     assert "/4] good: 1 rows, 0 beyond the tolerance" in told
+    assert "raised ValueError: f(a) and f(b) must have different signs" in told.splitlines()[-1]
     listed = [line.split()[1:] for line in table.splitlines() if line.endswith(("  good", "  raises"))]
     assert sorted(listed) == [["1", "good"], ["1", "raises"]]
 
