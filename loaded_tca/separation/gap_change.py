@@ -66,8 +66,9 @@ class ContactChanges:
     moves_edges : (keys,) bool array
         Whether a key moves the edges of flanks by more than it removes.
     on_arcs : (contacts,) bool array
-        Whether cells lie on the arc of a rounded edge, whose slopes are those of a few cells: their grids stay where
-        they are, since the motion of a grid times such a slope is as large as all that the key changes.
+        Whether cells, or cells beside them, lie on the arc of a rounded edge, whose slopes are those of a few cells:
+        their grids stay where they are, since the motion of a grid times such a slope is as large as all that the key
+        changes, and a contact that ends where an arc begins does not go with its grid.
     """
 
     gaps: Array
@@ -196,10 +197,10 @@ def contact_changes(
 
 
 def _on_arcs(pair: GearPair, grid: Separation, cells: Mask) -> bool:
-    """Whether some cells of a grid lie on the arc of a rounded edge of either flank."""
+    """Whether some cells of a grid, or cells beside them, lie on the arc of a rounded edge of either flank."""
     if pair.sharp is pair:
         return False
-    across, along = np.nonzero(cells)
+    across, along = np.nonzero(binary_dilation(cells, np.ones((3, 3), dtype=bool)))
     places = grid.origin + grid.x[across, None] * grid.axes[0] + grid.y[along, None] * grid.axes[1]
     return bool(arcs_at(pair, places).any())
 
