@@ -22,7 +22,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import dataset_of
 from loaded_tca.results.pressure_map import PressureMap, place_on_material, sharp_edge_cell
 from loaded_tca.results.root_stress import root_stress_arrays
-from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
+from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, rough_peaks
 from loaded_tca.results.supports import secant_on_rigid_supports, support_arrays
 from loaded_tca.results.warnings import warn_of_root_stress
 from loaded_tca.scene import Scene
@@ -148,11 +148,11 @@ def numbers_and_maps(
     maps: dict[Place, PressureMap | None] = dict.fromkeys(contacts)
     under_load = {place: one for place, one in contacts.items() if one is not None and one.solution.load > 0.0}
     rough = {place: loaded for place, loaded in under_load.items() if loaded.is_rough}
-    peaks: dict[Place, SlicePeak] = {}
+    peaks: dict[Place, SlicePeak | InnerPeak] = {}
     for pair in dict.fromkeys(pairs):
         there = {place: loaded for place, loaded in rough.items() if pairs[place[0]] is pair}
         under = [(one.contact, one.separation, one.solution.pressure) for one in there.values()]
-        peaks |= dict(zip(there, largest_slice_pressures(pair, under), strict=True)) if there else {}
+        peaks |= zip(there, rough_peaks(pair, under), strict=True)
     for place, loaded in contacts.items():
         if loaded is None:
             continue
@@ -172,13 +172,13 @@ def _pressure_map(loaded: LoadedContact) -> PressureMap:
 
 
 def _numbers(
-    pair: GearPair, loaded: LoadedContact, one: PressureMap, of_slices: SlicePeak | None
+    pair: GearPair, loaded: LoadedContact, one: PressureMap, rough: SlicePeak | InnerPeak | None
 ) -> dict[str, float | bool | int]:
-    """What a result has of one loaded contact, by the names of its dataset; the peak is ``of_slices`` if given."""
+    """What a result has of one loaded contact, by the names of its dataset; the peak is ``rough`` if given."""
     solution = loaded.solution
     width, length = loaded.extent
-    if of_slices is not None:
-        peak, (radius, axial) = of_slices.pressure, one.place(*of_slices.place)
+    if rough is not None:
+        peak, (radius, axial) = rough.pressure, one.place(*rough.place)
     else:
         peak, (radius, axial) = solution.peak_pressure, loaded.peak_place
     slope = abs(float(loaded.separation.axes[1] @ heelwards(pair, loaded.contact)))

@@ -27,7 +27,7 @@ from loaded_tca.results.load_factors import (
 )
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.slice_pressure import SlicePeak
+from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak
 from loaded_tca.separation.pair_change import PairChange
 from loaded_tca.unloaded import ContactPath
 
@@ -210,11 +210,11 @@ def largest_cut(grids: Sequence[LoadedGrid]) -> list[bool]:
     return [_cut(grid, np.asarray(line_load_slopes(grid.pressure, grid.problem.spacing).any(axis=0))) for grid in grids]
 
 
-def peak_cut(grids: Sequence[LoadedGrid], peaks: Sequence[SlicePeak | None]) -> list[bool]:
+def peak_cut(grids: Sequence[LoadedGrid], peaks: Sequence[SlicePeak | InnerPeak | None]) -> list[bool]:
     """Whether an edge cuts the slices over which the peak pressure of each grid is averaged, or those beside them."""
     marks = []
     for grid, peak in zip(grids, peaks, strict=True):
-        if cut := peak is not None:
+        if cut := isinstance(peak, SlicePeak):
             borders, reach = peak.slices.borders, 0.5 * peak.slices.length + peak.slices.step
             cut = _cut(grid, (borders[1:] > peak.place[1] - reach) & (borders[:-1] < peak.place[1] + reach))
         marks.append(cut)

@@ -23,7 +23,7 @@ from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.gap_growth import moved
 from loaded_tca.results.root_stress import stress_at_extreme
-from loaded_tca.results.slice_pressure import SlicePeak, UnderPressure
+from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, UnderPressure
 from loaded_tca.separation.pair_change import PairChange
 
 EXPONENT = 12.0
@@ -61,7 +61,7 @@ def line_load_slopes(pressure: Array, spacing: tuple[float, float]) -> Array:
 
 
 def peak_pressure_slopes(
-    pair: GearPair, contacts: Sequence[UnderPressure], peaks: Sequence[SlicePeak | None]
+    pair: GearPair, contacts: Sequence[UnderPressure], peaks: Sequence[SlicePeak | InnerPeak | None]
 ) -> list[Array]:
     """Derivatives of the peak pressures of several contacts by the forces of their cells.
 
@@ -70,24 +70,23 @@ def peak_pressure_slopes(
     pair : GearPair
     contacts : sequence of (ContactPoint, Separation, (nx, ny) array [MPa])
         Each under a load > 0.
-    peaks : sequence of SlicePeak or None
-        Largest slice pressures of those that reach an edge or a relief start (``on_edge`` or ``on_relief_start`` of the
-        result).
+    peaks : sequence of SlicePeak, InnerPeak or None
+        Of those that reach an edge or a relief start (``on_edge`` or ``on_relief_start`` of the result).
 
     Returns
     -------
     list of (nx, ny) arrays [1/mm^2]
-        Of a smooth contact that of the top of the quadratic, the cells that it is fitted to held; of the largest cell
-        where none fits, where the pair has a cap on the pressure or the contact reaches the end of its grid: as the
-        peak itself. Of the others that of their largest slice pressure, the place along the contact and the curvature
-        there held: p dq/2q. Zero at the cap.
+        Of a smooth contact, and of inner cells, that of the top of the quadratic, the cells that it is fitted to held;
+        of the largest cell where none fits, where the pair has a cap on the pressure or the contact reaches the end of
+        its grid: as the peak itself. Of the others that of their largest slice pressure, the place along the contact
+        and the curvature there held: p dq/2q. Zero at the cap.
     """
     of_contacts = []
     for (_, separation, pressure), peak in zip(contacts, peaks, strict=True):
-        if peak is not None:
+        if isinstance(peak, SlicePeak):
             of_contacts.append(np.broadcast_to(peak.slopes, pressure.shape).copy())
         else:
-            slopes = smooth_peak_slopes(pressure, pair.max_pressure)
+            slopes = smooth_peak_slopes(pressure if peak is None else peak.cells, pair.max_pressure)
             of_contacts.append(slopes / (separation.spacing[0] * separation.spacing[1]))
     return of_contacts
 

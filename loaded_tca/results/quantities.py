@@ -28,7 +28,8 @@ QUANTITIES: dict[str, Part] = {
     "peak_pressure": (
         PAIRS,
         "MPa",
-        "peak contact pressure; where the contact reaches a sharp edge or a relief start, the largest of its slices",
+        "peak contact pressure; where the contact reaches an edge or a relief start, the largest of its slices, or of "
+        "its cells in slices apart from there",
     ),
     "edge_pressure": (
         PAIRS,

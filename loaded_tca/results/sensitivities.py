@@ -32,7 +32,7 @@ from loaded_tca.results.figure_slopes import (
 )
 from loaded_tca.results.gap_growth import GapGrowth, curvature_growth
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
+from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, rough_peaks
 from loaded_tca.results.warnings import warn_of_contacts
 from loaded_tca.separation.pair_change import PairChange
 from loaded_tca.threads import one_blas_thread
@@ -179,7 +179,7 @@ class Sensitivities:
         Derivatives of peak pressures are less exact there: an AccuracyWarning says so where they are read.
         """
         just_loaded = (self.result.on_edge > 0) & (self.result.load_share < LITTLE)
-        return self._where(peak_cut(self.tangents.grids, self._slice_peaks)) | just_loaded
+        return self._where(peak_cut(self.tangents.grids, self._rough_peaks)) | just_loaded
 
     @cached_property
     def across_relief_starts(self) -> Mask:
@@ -211,13 +211,13 @@ class Sensitivities:
     def peak_pressure(self) -> Array:
         """Derivatives of the peak pressure of each contact, (torque, position, pair, key) [MPa per unit].
 
-        Of a contact at an edge or a relief start that of its largest slice pressure.
+        Of a contact at an edge or a relief start that of its largest slice pressure, or of its inner cells.
         """
         warn_of_contacts(self.result, kinds.PEAK_SLOPES.sentence(), self._of_changes(self.at_corners), stacklevel=3)
-        pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._slice_peaks
+        pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._rough_peaks
         slopes = peak_pressure_slopes(pair, [(one.contact, one.separation, one.pressure) for one in grids], peaks)
         by_pair = self._of_each_pair(self.tangents.gathered(slopes))
-        rough = {i: peak for i, peak in enumerate(peaks) if peak is not None}
+        rough = {i: peak for i, peak in enumerate(peaks) if isinstance(peak, SlicePeak)}
         if rough:
             at, tops = [*rough], [*rough.values()]
             grown = curvature_growth(pair, [grids[i] for i in at], tops, self.changes, self.growth.of_grids(at))
@@ -225,14 +225,14 @@ class Sensitivities:
         return self._by_pair(by_pair)
 
     @cached_property
-    def _slice_peaks(self) -> list[SlicePeak | None]:
-        """Largest slice pressure of each grid that reaches an edge or a relief start, whose peak it is; else None."""
+    def _rough_peaks(self) -> list[SlicePeak | InnerPeak | None]:
+        """Peak of each grid that reaches an edge or a relief start; else None."""
         result, grids = self.result, self.tangents.grids
         rough = ((result.on_edge > 0) | (result.on_relief_start > 0))[*self._grids].tolist()
         uneven = [
             (one.contact, one.separation, one.pressure) for one, is_rough in zip(grids, rough, strict=True) if is_rough
         ]
-        peaks = iter(largest_slice_pressures(result.gear_pair, uneven) if uneven else ())
+        peaks = iter(rough_peaks(result.gear_pair, uneven))
         return [next(peaks) if is_rough else None for is_rough in rough]
 
     def _of_changes(self, marks: Mask) -> Mask:

@@ -8,7 +8,9 @@ line contact of the curvature k of that slice carries with the pressure
 .. math:: p = \sqrt{q E^* k / \pi} .
 
 On smooth contacts that is less than the peak: 0.886 of it on a circle, 0.984 on an ellipse of an aspect of 5, 0.994 of
-10.
+10. So the peak is that of the cells where these have a larger one, in slices that stand no nearer than half of that
+length to one that reaches an edge or a relief start: a contact whose end comes to an edge keeps the peak that it has
+elsewhere.
 
 References
 ----------
@@ -22,14 +24,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import binary_dilation
 
-from loaded_tca.arrays import Array
-from loaded_tca.contact.patch import top_weights
+from loaded_tca.arrays import Array, Mask
+from loaded_tca.contact.patch import peak_pressure, reaches_border, top_weights
 from loaded_tca.loaded.line_load import SliceLoads, stretch_parts
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
+from loaded_tca.unloaded.scan import arcs_at, relief_start_distances
 
 ROUNDS, BETWEEN = 2, 17
 """How often places between those beside the largest pressure are tried, and how many."""
@@ -60,6 +64,73 @@ class SlicePeak:
     resolution: float
     slices: SliceLoads
     slopes: Array
+
+
+@dataclass(frozen=True, eq=False)
+class InnerPeak:
+    """Largest pressure in the slices of a contact that are apart from those that reach an edge or a relief start.
+
+    Attributes
+    ----------
+    pressure : float [MPa]
+    place : (float, float) [mm]
+        Across and along the contact, from the contact point.
+    cells : (nx, ny) array [MPa]
+        Pressure of these cells; zero in the others.
+    """
+
+    pressure: float
+    place: tuple[float, float]
+    cells: Array
+
+
+def rough_peaks(pair: GearPair, contacts: Sequence[UnderPressure]) -> list[SlicePeak | InnerPeak]:
+    """Peaks of several contacts that reach edges or relief starts: the larger one of their slices and inner cells.
+
+    Parameters
+    ----------
+    pair : GearPair
+    contacts : sequence of (ContactPoint, Separation, (nx, ny) array [MPa])
+        Each under a load > 0.
+    """
+    of_slices = largest_slice_pressures(pair, contacts) if contacts else []
+    return [
+        _inner_peak(pair, separation, pressure, peak) or peak
+        for (_, separation, pressure), peak in zip(contacts, of_slices, strict=True)
+    ]
+
+
+def _inner_peak(pair: GearPair, separation: Separation, pressure: Array, of_slices: SlicePeak) -> InnerPeak | None:
+    """Peak of the inner cells of a contact; None where that of its slices is as large."""
+    if pressure.max() <= of_slices.pressure:
+        return None
+    reach = 0.5 * (of_slices.slices.length + separation.spacing[1])
+    rough = separation.y[(_rough_cells(pair, separation) & (pressure > 0.0)).any(axis=0)]
+    away = np.abs(separation.y[:, None] - rough).min(axis=1, initial=math.inf)
+    cells = np.where(away > reach, pressure, 0.0)
+    if cells.max() <= of_slices.pressure:
+        return None
+    across, along = np.unravel_index(int(cells.argmax()), cells.shape)
+    of_cell = pair.max_pressure is not None or reaches_border(cells)
+    largest = float(cells.max()) if of_cell else peak_pressure(cells)
+    return InnerPeak(largest, (float(separation.x[across]), float(separation.y[along])), cells)
+
+
+def _rough_cells(pair: GearPair, separation: Separation) -> Mask:
+    """Cells (nx, ny) beside those that an edge cuts or an arc lies on, and on both sides of a relief start."""
+    points = separation.points
+    rough = _dilated(np.asarray(separation.cover < 1.0))
+    if pair.sharp is not pair:
+        rough |= _dilated(np.asarray(arcs_at(pair, points).any(axis=-1)))
+    beyond = np.moveaxis(relief_start_distances(pair, points) > 0.0, -1, 0)
+    for one in beyond:
+        rough |= _dilated(one) & _dilated(~one)
+    return rough
+
+
+def _dilated(cells: Mask) -> Mask:
+    """The cells and those beside them."""
+    return np.asarray(binary_dilation(cells, np.ones((3, 3), dtype=bool)))
 
 
 def largest_slice_pressures(pair: GearPair, contacts: Sequence[UnderPressure]) -> list[SlicePeak]:

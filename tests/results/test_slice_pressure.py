@@ -12,7 +12,8 @@ from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.loaded.line_load import SliceLoads, averaged_line_load
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.reference.hertz import point_contact
-from loaded_tca.results.slice_pressure import largest_slice_pressures
+from loaded_tca.results.sensitivities import TORQUE
+from loaded_tca.results.slice_pressure import largest_slice_pressures, rough_peaks
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import trace_contact
 from tests.samples.gear_pairs import sam_paper
@@ -232,3 +233,49 @@ def test_place_of_the_peak_is_that_of_its_slice():
     window = 0.25 * cycle.gear_pair.module
     end = 0.5 * cycle.face_width
     assert end - window - 0.1 <= abs(cycle.peak_axial.item()) <= end
+
+
+ROUND = {
+    **ONE_PAIR,
+    "pinion.face_width_mm": 3.0,
+    "wheel.face_width_mm": 3.0,
+    "pinion.modifications": {"lead_crowning_um": 37.5},
+    "wheel.modifications": {},
+    "analysis.positions": 1,
+    "analysis.accuracy": None,
+    "analysis.cells": (48, 48),
+}
+"""A contact twice as long as wide, of whose peak slices have a tenth less; its ends come to those of the face."""
+
+
+def under_torques(torques):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # it comes to the face ends
+        return analyse(
+            read_scene(SCENES / "mesh_cycle_spur.toml").with_changes({**ROUND, "analysis.torques_Nm": torques})
+        )
+
+
+def test_peak_goes_on_after_hertz_as_the_ends_of_a_round_contact_come_to_those_of_the_face():
+    """With the cube root of the force; what the face lacks of the ellipse moves it by less than a thousandth."""
+    torques = [350.0, 470.0, 550.0, 575.0]
+    result = under_torques(torques)
+    assert result.on_edge.ravel().tolist() == [0, 0, 1, 1]
+    hertz = result.hertz_pressure[0] * np.cbrt(np.array(torques) / torques[0])
+    assert_allclose(result.peak_pressure.ravel(), hertz.ravel(), rtol=1e-3)
+
+
+def test_derivative_of_the_peak_of_inner_cells_is_that_after_hertz():
+    """Shorter than its ellipse by 5 %, a contact has the exponent of a line, 1/2, to a part: 0.336 to 0.339."""
+    result = under_torques([575.0])
+    slope = result.sensitivities([TORQUE]).peak_pressure.item() * 575.0 / result.peak_pressure.item()
+    assert_allclose(slope, 1.0 / 3.0, rtol=0.02)
+
+
+def test_peak_where_an_edge_runs_along_the_contact_is_that_of_slices():
+    """A tip cuts all of them: none is apart from it."""
+    pair = read_scene(SCENES / "mesh_cycle_spur.toml").with_changes({**ROUND, "analysis.torques_Nm": [575.0]}).pair()
+    contact = loaded(pair, load=5e3, position=0.9 * pair.pitch)
+    assert contact.at_edge
+    of_slices, peak = (find(pair, [under_pressure(contact)])[0] for find in (largest_slice_pressures, rough_peaks))
+    assert peak.pressure == of_slices.pressure

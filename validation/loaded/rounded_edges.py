@@ -364,7 +364,10 @@ SURVEY_RADII = (0.02, 0.1, 0.5)
 
 @cache
 def survey(name: str) -> tuple[tuple[float, float, float], ...]:
-    """By contact: pressure over its bound, estimated error, and by what the default misses the largest pressure."""
+    """By contact: pressure over its bound, estimated error, and what the default misses of the largest pressure.
+
+    Beyond the estimated error of that: where edges cross on 24 x 24 cells, a rounding of 0.02 mm is known to 28 %.
+    """
     file, changes = SURVEY[name]
     found = []
     for radius in SURVEY_RADII:
@@ -381,7 +384,7 @@ def survey(name: str) -> tuple[tuple[float, float, float], ...]:
                 told = np.nanmax(
                     np.where(solved.cycle.edge_is_rounded[t], solved.cycle.edge_pressure[t], 0.0), initial=0.0
                 )
-                missed = float(told / largest.pressure - 1.0)
+                missed = max(1.0 - float(told) / largest.pressure - largest.error, 0.0)
                 for place, one in every.items():
                     if place[0] == t and not math.isnan(one.pressure):
                         bound = solved.reached[place][1][0].bound
@@ -395,7 +398,7 @@ def rows_of_survey() -> list[Row]:
     for name in SURVEY:
         numbers = np.array(survey(name)).reshape(-1, 3)
         ratio, told = float(numbers[:, 0].max()), f"of {len(numbers)} contacts"
-        less = float(np.abs(numbers[:, 2]).max())
+        less = float(numbers[:, 2].max())
         table += [
             Row(
                 f"{name}, found over bound",
