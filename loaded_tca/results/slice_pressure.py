@@ -8,9 +8,9 @@ line contact of the curvature k of that slice carries with the pressure
 .. math:: p = \sqrt{q E^* k / \pi} .
 
 On smooth contacts that is less than the peak: 0.886 of it on a circle, 0.984 on an ellipse of an aspect of 5, 0.994 of
-10. So the peak is that of the cells where these have a larger one, in slices that stand no nearer than half of that
-length to one that reaches an edge or a relief start: a contact whose end comes to an edge keeps the peak that it has
-elsewhere.
+10. So the peak is that of the cells where these have a top that is larger, in slices that stand no nearer than half of
+that length to one that reaches an edge or a relief start: a contact whose end comes to an edge keeps the peak that it
+has elsewhere.
 
 References
 ----------
@@ -101,7 +101,7 @@ def rough_peaks(pair: GearPair, contacts: Sequence[UnderPressure]) -> list[Slice
 
 
 def _inner_peak(pair: GearPair, separation: Separation, pressure: Array, of_slices: SlicePeak) -> InnerPeak | None:
-    """Peak of the inner cells of a contact; None where that of its slices is as large."""
+    """Top of the inner cells of a contact; None where that of its slices is as large, or they have none."""
     if pressure.max() <= of_slices.pressure:
         return None
     reach = 0.5 * (of_slices.slices.length + separation.spacing[1])
@@ -111,6 +111,9 @@ def _inner_peak(pair: GearPair, separation: Separation, pressure: Array, of_slic
     if cells.max() <= of_slices.pressure:
         return None
     across, along = np.unravel_index(int(cells.argmax()), cells.shape)
+    beside = pressure[max(across - 1, 0) : across + 2, max(along - 1, 0) : along + 2]
+    if beside.max() > cells[across, along]:  # it rises towards the edge
+        return None
     of_cell = pair.max_pressure is not None or reaches_border(cells)
     largest = float(cells.max()) if of_cell else peak_pressure(cells)
     return InnerPeak(largest, (float(separation.x[across]), float(separation.y[along])), cells)
