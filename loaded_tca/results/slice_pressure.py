@@ -24,11 +24,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import binary_dilation
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.patch import peak_pressure, reaches_border, top_weights
 from loaded_tca.loaded.line_load import SliceLoads, stretch_parts
+from loaded_tca.loaded.lines_of_edges import dilated
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.separation.normal_gap import NormalGap
@@ -122,18 +122,13 @@ def _inner_peak(pair: GearPair, separation: Separation, pressure: Array, of_slic
 def _rough_cells(pair: GearPair, separation: Separation) -> Mask:
     """Cells (nx, ny) beside those that an edge cuts or an arc lies on, and on both sides of a relief start."""
     points = separation.points
-    rough = _dilated(np.asarray(separation.cover < 1.0))
+    rough = dilated(separation.cover < 1.0, 1)
     if pair.sharp is not pair:
-        rough |= _dilated(np.asarray(arcs_at(pair, points).any(axis=-1)))
+        rough |= dilated(np.asarray(arcs_at(pair, points).any(axis=-1)), 1)
     beyond = np.moveaxis(relief_start_distances(pair, points) > 0.0, -1, 0)
     for one in beyond:
-        rough |= _dilated(one) & _dilated(~one)
+        rough |= dilated(one, 1) & dilated(~one, 1)
     return rough
-
-
-def _dilated(cells: Mask) -> Mask:
-    """The cells and those beside them."""
-    return np.asarray(binary_dilation(cells, np.ones((3, 3), dtype=bool)))
 
 
 def largest_slice_pressures(pair: GearPair, contacts: Sequence[UnderPressure]) -> list[SlicePeak]:

@@ -286,14 +286,15 @@ def steep(helix_angle):
 @pytest.mark.parametrize("helix_angle", [0.0, 0.5])
 def test_memory_that_is_told_is_what_the_arrays_take(helix_angle):
     """Of the process, to which allocator and huge pages add by chance, the validation of root stress tells."""
-    frame = ToothFrame(steep(helix_angle), gear_nodes(steep(helix_angle), SMALL))
+    gear = steep(helix_angle)
+    frame, told = ToothFrame(gear, gear_nodes(gear, SMALL)), told_memory(gear, SMALL)
     tracemalloc.start()
     try:
         root_influence(frame, single=False)
         taken = tracemalloc.get_traced_memory()[1] / 1024.0**3
     finally:
         tracemalloc.stop()
-    assert 0.8 * told_memory(steep(helix_angle), SMALL) < taken < 1.2 * told_memory(steep(helix_angle), SMALL)
+    assert 0.8 * told < taken < 1.2 * told
 
 
 def test_memory_that_is_told_is_below_1_gib_for_7_modules_and_2_gib_for_20():
