@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.convolution import ALL, Rows
-from loaded_tca.contact.grid import CELLS, Grids, total_of
+from loaded_tca.contact.grid import CELLS, Grids, Operator, total_of
 
 Single = NDArray[np.float32]
 
@@ -44,7 +44,8 @@ class Judgement(NamedTuple):
         Mean of u + h over the cells strictly between the bounds, or as prescribed.
     residual : array
         Largest of: mean excess where the pressure is between the bounds, weighted with it; deepest penetration
-        where the pressure is zero; widest gap where it is at the cap. All over the approach.
+        where the pressure is zero; widest gap where it is at the cap. All over the approach. And what the grids count
+        of single cells.
     free : (count, nx, ny) array of bool
         Cells between the bounds, and cells that the excess pushes off a bound.
     """
@@ -83,7 +84,8 @@ def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = Non
         free = np.where(capped, excess > 0.0, free)
         room *= inner
     weighted = dots(pressure, room) / grids.sums(pressure)
-    return Judgement(approach, np.maximum(worst, weighted) / np.maximum(approach, LEAST_APPROACH), free)
+    residual = np.maximum(worst, weighted) / np.maximum(approach, LEAST_APPROACH)
+    return Judgement(approach, np.maximum(residual, grids.residual_of_cells(pressure, excess)), free)
 
 
 class Descent:
@@ -106,6 +108,8 @@ class Descent:
     exact : bool
         Whether the displacement of the start is computed in double precision; else its errors, some 1e-7 of the
         approach, stay in it until the next refreshment.
+    preconditioner : Operator, optional
+        That of the problems, if known.
 
     Attributes
     ----------
@@ -128,6 +132,7 @@ class Descent:
         displacement: Array | None = None,
         threads: int = 2,
         exact: bool = True,
+        preconditioner: Operator | None = None,
     ) -> None:
         self.pressure = np.empty(pressure.shape)
         self.approach, self.residual = np.empty((2, len(grids)))
@@ -136,7 +141,7 @@ class Descent:
         self._grids, self._rows, self._threads = grids, np.arange(len(grids)), threads
         self._used = self.convolutions.copy()
         self._fast = grids.operator(dtype="float32", threads=threads)
-        self._precondition = grids.preconditioner(threads)
+        self._precondition = grids.preconditioner(threads) if preconditioner is None else preconditioner
         # Cut cells are about so much stiffer, the part being its square.
         self._root = None if grids.cover is None else np.sqrt(grids.cover).astype(np.float32)
         self._now, self._next, self._excess = pressure, np.empty(pressure.shape), np.empty(pressure.shape)

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,9 +33,9 @@ from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import ALL, Rows, Window, fast_length
 from loaded_tca.contact.descent import Descent, judge
 from loaded_tca.contact.edges import FreeEdge
-from loaded_tca.contact.grid import OUT_OF_REACH, Grids, Operator, each, with_cap
+from loaded_tca.contact.grid import CELLS, OUT_OF_REACH, Grids, Operator, each, with_cap
 from loaded_tca.contact.levels import coarsen, coarsening, merged, prolong
-from loaded_tca.contact.love import column_coefficients
+from loaded_tca.contact.love import FAR_FIELD, column_coefficients, far_from, own_coefficient
 from loaded_tca.contact.problem import GradedProblem
 from loaded_tca.contact.solution import (
     COARSE_FACTOR,
@@ -49,6 +49,10 @@ from loaded_tca.contact.solution import (
 )
 from loaded_tca.threads import one_blas_thread
 
+SHORT = 64
+"""Rows up to which a product with the matrix of the transform takes less time than a fast one."""
+OF_PRESSURE = 5e-3
+"""What an error of a pressure, over the largest, counts of the residual: at a tolerance of 1e-5 none is above 2e-3."""
 REACH_RESERVE = 1.1
 """Of the largest gap that may close, for the part of the coefficients that is not symmetric."""
 
@@ -103,16 +107,18 @@ def solve_graded(
 
 def guess(problem: GradedProblem) -> Array:
     """Pressure (nx, ny) [MPa] of a sphere of this load whose contact has as large an area as the gap lets close."""
-    return np.asarray(GradedGrids.of_problem(problem).guess()[0] * (problem.contact_modulus / problem.widths))
+    line, total = problem.contact_modulus / problem.widths, problem.load / (problem.spacing * problem.contact_modulus)
+    return _sphere(problem.gap - problem.first_contact, problem.spacing, problem.widths, total) * line
 
 
 def _solved(problem: GradedProblem, tolerance: float, start: Array | None) -> GradedSolution:
     """Solve from a start or from coarser columns, and check in double precision."""
-    grids, line = GradedGrids.of_problem(problem), problem.widths / problem.contact_modulus
+    grids, line = GradedGrids.of_problem(problem, far_from(tolerance)), problem.widths / problem.contact_modulus
     if start is None or not start.any():
         pressure = _start_from_coarser(grids, tolerance)
     else:
         pressure = grids.fitted((start * line)[None])
+    precondition = grids.preconditioner()
     iterations = convolutions = repeats = 0
     while True:
         displacement, rest = grids.displaced(pressure)
@@ -122,7 +128,7 @@ def _solved(problem: GradedProblem, tolerance: float, start: Array | None) -> Gr
         if residual <= tolerance or iterations >= MOST_ITERATIONS or repeats == MOST_CHECKS:
             break
         bent = replace(grids, gap=grids.gap + rest)
-        descent = Descent(bent, pressure, displacement - rest, 1)
+        descent = Descent(bent, pressure, displacement - rest, 1, preconditioner=precondition)
         descent.run(np.array([RESERVE * tolerance]), np.array([MOST_ITERATIONS - iterations]))
         pressure = bent.settled(descent.pressure)
         iterations += int(descent.iterations[0])
@@ -170,6 +176,8 @@ class Kernel:
         Of the columns.
     edges, reference
         As of the problem.
+    far : float
+        As of :func:`column_coefficients`.
     """
 
     rows: int
@@ -177,15 +185,16 @@ class Kernel:
     borders: Array
     edges: Sequence[FreeEdge] = ()
     reference: float | None = None
+    far: float = FAR_FIELD
 
     @cached_property
     def whole(self) -> Array:
         """Transform of the coefficients D, (wave numbers, ny, ny), displaced columns before pressed ones."""
         reach = fast_length(2 * self.rows) // 2
-        coefficients = column_coefficients(reach + 1, self.spacing, self.borders)
+        coefficients = column_coefficients(reach + 1, self.spacing, self.borders, far=self.far)
         for edge in self.edges:
             mirrored, nearest = self._mirrored(edge)
-            image = column_coefficients(reach + 1, self.spacing, self.borders, mirrored)
+            image = column_coefficients(reach + 1, self.spacing, self.borders, mirrored, far=self.far)
             coefficients += edge.factor * image[:, nearest[:, None], nearest]
         return np.asarray(dct(coefficients, type=1, axis=0, overwrite_x=True))
 
@@ -240,7 +249,7 @@ class GradedGrids(Grids):
     slice_axis: int = field(kw_only=True)
 
     @classmethod
-    def of_problem(cls, problem: GradedProblem) -> GradedGrids:
+    def of_problem(cls, problem: GradedProblem, far: float = FAR_FIELD) -> GradedGrids:
         """Return the columns given, gaps counted from first contact and cut where they cannot close."""
         modulus, widths, slices = problem.contact_modulus, problem.widths, problem.slice_compliance
         cap = np.inf if problem.max_pressure is None else problem.max_pressure
@@ -252,7 +261,9 @@ class GradedGrids(Grids):
             approach=each([np.nan]),
             cap=(cap * widths / modulus if near else np.full(widths.size, np.inf))[None, None],
             slices=None if slices is None else slices[None] * (modulus * problem.spacing),
-            kernel=Kernel(problem.cells[0], problem.spacing, problem.borders, problem.free_edges, problem.reference),
+            kernel=Kernel(
+                problem.cells[0], problem.spacing, problem.borders, problem.free_edges, problem.reference, far
+            ),
             slice_axis=problem.slice_axis,
         )
         return replace(grids, gap=np.minimum(grids.gap, OUT_OF_REACH * grids.reach))
@@ -278,10 +289,26 @@ class GradedGrids(Grids):
         """
         if self.capped:
             return super().reach
-        guess = self._sphere()
+        guess = self._spread()
         displaced = self.operator()(guess, np.empty(guess.shape))
         energy = float((guess * (0.5 * displaced + np.where(guess > 0.0, self.gap, 0.0))).sum())
         return REACH_RESERVE * 2.0 * energy / self.total
+
+    def residual_of_cells(self, pressure: Array, excess: Array) -> Array:
+        """A part of the pressure that would close the worst cell by itself, over the largest one.
+
+        Fine cells carry next to nothing: what is wrong with them is lost in a mean weighted with the load.
+        """
+        wrong = np.where(pressure > self.slack, np.abs(excess), np.maximum(-excess, 0.0))
+        if self.capped:
+            wrong = np.where(pressure >= self.limit - self.slack, np.maximum(excess, 0.0), wrong)
+        lacking, largest = (part.max(axis=CELLS, keepdims=True) for part in (wrong / self._own, pressure / self.widths))
+        return np.asarray(OF_PRESSURE * lacking / largest)
+
+    @cached_property
+    def _own(self) -> Array:
+        """Displacement [mm] of cells of the columns under a pressure E* on themselves alone, (ny,)."""
+        return np.asarray(self.kernel.spacing * own_coefficient(self.widths / self.kernel.spacing))
 
     def coarser(self, merge: tuple[int, int]) -> GradedGrids:
         """Return the same problem with so many cells merged along each axis."""
@@ -327,7 +354,7 @@ class GradedGrids(Grids):
         periodic, length = self.kernel.symmetric[::2].copy(), len(self.kernel.symmetric) - 1
         if self.slices is not None and self.slice_axis == 1:
             periodic[0] += length * self.slices[0]
-        inverse = np.linalg.inv(periodic).astype(np.float32)
+        inverse = np.linalg.inv(periodic.astype(np.float32))
 
         def apply(forces: Array, out: Array, _: Rows = ALL) -> Array:
             out[0] = _filtered(forces[0], inverse, length)
@@ -337,29 +364,48 @@ class GradedGrids(Grids):
 
     def guess(self) -> Array:
         """Forces to start from without others: those of a sphere, within the bounds."""
-        return self.fitted(self._sphere())
+        return self.fitted(self._spread())
 
-    def _sphere(self) -> Array:
-        """Forces of the right sum: where the gap is below a level, pressures as the root of what it lacks.
+    def _spread(self) -> Array:
+        """Forces of the right sum, as under a sphere."""
+        return _sphere(self.gap[0], self.kernel.spacing, self.widths, float(self.total[0, 0, 0]))[None]
 
-        The level is that of a sphere under this load whose contact has as large an area.
-        """
-        product = 0.375 * float(self.total[0, 0, 0]) * self.kernel.spacing  # of level and radius
-        gap, order = self.gap[0], np.argsort(self.gap, axis=None)
-        areas = np.cumsum(np.broadcast_to(self.widths * self.kernel.spacing, gap.shape).ravel()[order])
-        radii = np.sqrt(areas / np.pi)
-        closed = max(1, int(np.count_nonzero(gap.ravel()[order] < product / radii)))
-        level = max(product / float(radii[closed - 1]), float(gap.ravel()[order[0]]))
-        root = np.sqrt(np.maximum(level - gap, 0.0)) * self.widths
-        if not root.any():
-            root.ravel()[order[0]] = 1.0
-        return np.asarray(root * (self.total[0] / root.sum()))[None]
+
+def _sphere(gap: Array, spacing: float, widths: Array, total: float) -> Array:
+    """Forces (nx, ny) of a sum on columns: where the gap is below a level, pressures as the root of what it lacks.
+
+    The level is that of a sphere under this load whose contact has as large an area.
+    """
+    product, order = 0.375 * total * spacing, np.argsort(gap, axis=None)  # of level and radius
+    areas = np.cumsum(np.broadcast_to(widths * spacing, gap.shape).ravel()[order])
+    radii = np.sqrt(areas / np.pi)
+    closed = max(1, int(np.count_nonzero(gap.ravel()[order] < product / radii)))
+    level = max(product / float(radii[closed - 1]), float(gap.ravel()[order[0]]))
+    root = np.sqrt(np.maximum(level - gap, 0.0)) * widths
+    if not root.any():
+        root.ravel()[order[0]] = 1.0
+    return np.asarray(root * (total / root.sum()))
 
 
 def _filtered(values: Array, symbol: Array, length: int | None = None) -> Array:
     """Product (nx, ny) of values with a symbol (wave numbers, ny, ny) of transforms of a length along x."""
-    length = 2 * (len(symbol) - 1) if length is None else length
+    rows, length = len(values), 2 * (len(symbol) - 1) if length is None else length
+    if rows <= SHORT:
+        forward, backward = _waves(rows, length, symbol.dtype.str)
+        spectrum = (forward @ values).reshape(len(symbol), 2, -1)
+        return np.asarray(backward @ np.matmul(spectrum, symbol.swapaxes(1, 2)).reshape(2 * len(symbol), -1))
     spectrum = np.ascontiguousarray(rfft(values, length, axis=0))
     product = np.matmul(symbol, spectrum.view(symbol.dtype).reshape(*spectrum.shape, 2))
     moved = irfft(product.view(spectrum.dtype)[..., 0], length, axis=0, overwrite_x=True)
-    return np.asarray(moved[: len(values)])
+    return np.asarray(moved[:rows])
+
+
+@lru_cache(maxsize=64)
+def _waves(rows: int, length: int, dtype: str) -> tuple[Array, Array]:
+    """Transforms of some rows of a length as matrices: to cosine and sine of each wave number, and back."""
+    waves = np.arange(length // 2 + 1)
+    angles = (2.0 * np.pi / length) * (waves[:, None] * np.arange(rows) % length)
+    forward = np.stack([np.cos(angles), -np.sin(angles)], axis=1)
+    counted = np.where((waves == 0) | (2 * waves == length), 1.0, 2.0) / length
+    both = forward.reshape(2 * waves.size, rows), (counted[:, None, None] * forward).reshape(2 * waves.size, rows).T
+    return both[0].astype(dtype), both[1].astype(dtype)

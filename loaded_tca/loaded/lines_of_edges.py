@@ -127,8 +127,8 @@ class _SeenAlongNormal:
 
     def lengths(self, x: Array, y: Array) -> Array:
         """Lengths (..., 8) [mm] past the beginnings of the arcs, of the points of sharp flanks at places."""
-        pinion, wheel = self.flanks.flank_points(*(part[None] for part in np.broadcast_arrays(x, y)))
-        return lengths_past_tangents(self.pair, (pinion.rho[0], pinion.z[0]), (wheel.rho[0], wheel.z[0]))
+        places = self.flanks.places(*(part[None] for part in np.broadcast_arrays(x, y)))
+        return lengths_past_tangents(self.pair, *places)[0]
 
     def nearest(self, edge: int, place: Array) -> tuple[Array, Array]:
         """Place (2,) where an arc begins, the nearest to one within a cell or two, and how fast lengths grow there."""

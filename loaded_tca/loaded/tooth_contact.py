@@ -286,7 +286,9 @@ def _reaches_arc(pair: GearPair, separation: Separation, pressure: Array) -> boo
     """Whether cells on the arc of a rounded edge are under pressure, or the contact goes on to where one begins."""
     if pair.sharp is pair:
         return False
-    on_arc = np.asarray(arcs_at(pair, separation.points).any(axis=-1))
+    pressed = (np.flatnonzero(pressure.any(axis=axis)) for axis in (1, 0))
+    beside = tuple(slice(max(0, cells[0] - 1), cells[-1] + 2) if cells.size else slice(0) for cells in pressed)
+    on_arc, pressure = np.asarray(arcs_at(pair, separation.points[beside]).any(axis=-1)), pressure[beside]
     return bool(pressure[on_arc].any()) or ends_at_material(np.where(on_arc, 0.0, pressure), on_arc)
 
 

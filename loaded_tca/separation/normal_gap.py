@@ -177,6 +177,11 @@ class NormalGap:
             both.append(FlankPoints(*parts, gradient.reshape(*shape, 3), np.asarray(steep).reshape(shape)))
         return both[0], both[1]
 
+    def places(self, x: Array, y: Array) -> list[tuple[Array, Array]]:
+        """(rho, z) [mm] of the same points."""
+        shape, met = np.broadcast_shapes(x.shape, y.shape), self._meetings(self._rays(x, y))[0]
+        return [(one.rho.reshape(shape), one.z.reshape(shape)) for one in met]
+
     def curvature_across(self, x: Array, y: Array) -> Array:
         """Second derivative of the gap by x [1/mm] at points that broadcast: the relative curvature across.
 

@@ -9,7 +9,7 @@ from loaded_tca.contact.checks import BYTES_PER_PAIR, columns_memory_problem
 from loaded_tca.contact.columns import FineZone, column_borders
 from loaded_tca.contact.edges import extra_displacement
 from loaded_tca.contact.graded import GradedGrids
-from loaded_tca.contact.love import column_coefficients, influence_coefficients
+from loaded_tca.contact.love import column_coefficients, far_from, influence_coefficients
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.reference import hertz, wedge
 from loaded_tca.reference.punch import RoundedPunch
@@ -101,6 +101,17 @@ def test_coefficients_far_away_are_those_of_a_point_force():
     assert found.min() > 0.0
 
 
+def test_series_of_far_rows_is_as_close_as_it_says():
+    """Narrow and wide columns, rows longer and shorter than these; the error falls with the fourth power."""
+    for spacing, widths in ((0.38, np.geomspace(6e-4, 0.04, 40)), (0.02, np.linspace(0.02, 0.1, 30))):
+        borders = np.concatenate([[0.0], np.cumsum(widths)])
+        exact, errors = column_coefficients(60, spacing, borders, far=np.inf), []
+        for tolerance in (1e-4, 1e-5, 1e-6):
+            found = column_coefficients(60, spacing, borders, far=far_from(tolerance))
+            errors.append(np.abs(found / exact - 1.0).max() / tolerance)
+        assert 0.1 < max(errors) < 1.0
+
+
 @pytest.mark.parametrize(
     "options",
     [{}, {"max_pressure": 900.0}, {"max_pressure": 500.0}, {"slice_compliance": spread(X)}],
@@ -171,6 +182,22 @@ def test_iterations_are_some_tens_at_most_whatever_the_columns():
     for most in (20, 40, 80):
         borders = column_borders(-HALF, HALF, [FineZone(0.05, 0.02 / most, 0.01)], 0.05)
         assert graded(borders=borders, tolerance=1e-6).iterations <= 40
+
+
+@pytest.mark.parametrize(("rows", "finest", "start"), [(46, 1e-3, 0.05), (55, 3e-4, 0.02), (12, 1e-3, 1.0)])
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-5, 1e-6])
+def test_pressures_of_fine_cells_are_known_as_closely_as_those_that_carry_the_load(rows, finest, start, tolerance):
+    """A long contact that ends on two rounded edges: columns from 0.3 um to 2 mm. 200 tolerances of the largest."""
+    x, borders = (
+        (np.arange(rows) + 0.5) / rows * 0.5 - 0.25,
+        column_borders(-12.0, 10.1, [FineZone(10.0, finest, 8.0 * finest)], 2.0),
+    )
+    y = middles(borders)
+    gap = x[:, None] ** 2 / 20.0 + y**2 / 4e4 + np.maximum(y - 10.0, 0.0) ** 2 / 0.6
+    gap += np.maximum(x[:, None] - start, 0.0) ** 2 / 0.4
+    problem = GradedProblem(gap, 0.5 / rows, borders, E_STAR, 3000.0)
+    found, closely = (solve_graded(problem, tolerance=each).pressure for each in (tolerance, 1e-9))
+    assert np.abs(found - closely).max() < 200.0 * tolerance * closely.max()
 
 
 def test_start_from_a_solution_needs_no_iteration():
