@@ -207,6 +207,16 @@ def test_start_from_a_solution_needs_no_iteration():
     assert_allclose(again.pressure, found.pressure, rtol=1e-9)
 
 
+def test_start_that_leads_nowhere_is_given_up_for_coarser_columns(monkeypatch):
+    """As one carried over from unlike cells did, in 500 iterations."""
+    monkeypatch.setattr("loaded_tca.contact.graded.MOST_FROM_START", 2)
+    found = graded()
+    corner = np.where((X[:, None] < -0.2) & (middles(GRADED) < -0.2), 1.0, 0.0)
+    again = solve_graded(found.problem, tolerance=TOLERANCE, initial_pressure=corner)
+    assert again.iterations == 2 + found.iterations
+    assert_allclose(again.pressure, found.pressure, rtol=0.0, atol=200.0 * TOLERANCE * found.pressure.max())
+
+
 def test_single_lowest_cell_is_a_start():
     """One cell far below the others, which take over at the cap."""
     gap = np.full((16, 16), 0.5)
