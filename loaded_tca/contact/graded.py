@@ -117,8 +117,8 @@ def guess(problem: GradedProblem) -> Array:
 def _solved(problem: GradedProblem, tolerance: float, start: Array | None) -> GradedSolution:
     """Solve from a start or from coarser columns, and check in double precision."""
     grids, line = GradedGrids.of_problem(problem, far_from(tolerance)), problem.widths / problem.contact_modulus
-    given = start is not None and bool(start.any())
-    pressure = grids.fitted((start * line)[None]) if given else _start_from_coarser(grids, tolerance)
+    start = start if start is not None and start.any() else None
+    pressure = _start_from_coarser(grids, tolerance) if start is None else grids.fitted((start * line)[None])
     precondition = grids.preconditioner()
     iterations = convolutions = repeats = 0
     while True:
@@ -128,12 +128,12 @@ def _solved(problem: GradedProblem, tolerance: float, start: Array | None) -> Gr
         approach, residual = float(state.approach[0, 0, 0]), float(state.residual[0, 0, 0])
         if residual <= tolerance or iterations >= MOST_ITERATIONS or repeats == MOST_CHECKS:
             break
-        if given and iterations >= MOST_FROM_START:
-            pressure, given = _start_from_coarser(grids, tolerance), False
+        if start is not None and iterations >= MOST_FROM_START:
+            pressure, start = _start_from_coarser(grids, tolerance), None
             continue
         bent = replace(grids, gap=grids.gap + rest)
         descent = Descent(bent, pressure, displacement - rest, 1, preconditioner=precondition)
-        most = MOST_FROM_START if given else MOST_ITERATIONS
+        most = MOST_ITERATIONS if start is None else MOST_FROM_START
         descent.run(np.array([RESERVE * tolerance]), np.array([most - iterations]))
         pressure = bent.settled(descent.pressure)
         iterations += int(descent.iterations[0])
