@@ -35,8 +35,8 @@ MOST_ROUNDS = 6
 SURELY_LESS = 0.92
 """Part of a pressure below which coarser cells tell that finer ones will not reach it."""
 TOLERANCE = 1e-5
-"""Of the contact conditions: pressures are within 2e-3 of the largest one. With twice as much the top between three cells
-was 1.4 % off."""
+"""Of the contact conditions: pressures are within 2e-3 of the largest one. With twice as much the top between three
+cells was 1.4 % off."""
 
 
 def edge_pressures(
