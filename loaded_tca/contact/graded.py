@@ -110,8 +110,8 @@ def solve_graded(
 
 def guess(problem: GradedProblem) -> Array:
     """Pressure (nx, ny) [MPa] of a sphere of this load whose contact has as large an area as the gap lets close."""
-    line, total = problem.contact_modulus / problem.widths, problem.load / (problem.spacing * problem.contact_modulus)
-    return _sphere(problem.gap - problem.first_contact, problem.spacing, problem.widths, total) * line
+    line, total = problem.widths / problem.contact_modulus, problem.load / (problem.spacing * problem.contact_modulus)
+    return _sphere(problem.gap - problem.first_contact, problem.spacing, problem.widths, total) / line
 
 
 def _solved(problem: GradedProblem, tolerance: float, start: Array | None) -> GradedSolution:
@@ -294,7 +294,7 @@ class GradedGrids(Grids):
         """
         if self.capped:
             return super().reach
-        guess = self._spread()
+        guess = self._as_under_a_sphere()
         displaced = self.operator()(guess, np.empty(guess.shape))
         energy = float((guess * (0.5 * displaced + np.where(guess > 0.0, self.gap, 0.0))).sum())
         return REACH_RESERVE * 2.0 * energy / self.total
@@ -369,10 +369,10 @@ class GradedGrids(Grids):
 
     def guess(self) -> Array:
         """Forces to start from without others: those of a sphere, within the bounds."""
-        return self.fitted(self._spread())
+        return self.fitted(self._as_under_a_sphere())
 
-    def _spread(self) -> Array:
-        """Forces of the right sum, as under a sphere."""
+    def _as_under_a_sphere(self) -> Array:
+        """Forces of the right sum."""
         return _sphere(self.gap[0], self.kernel.spacing, self.widths, float(self.total[0, 0, 0]))[None]
 
 
