@@ -9,7 +9,7 @@ KERNEL_TESTS := tests/contact tests/separation tests/loaded/test_balance.py test
 	tests/results/test_figure_slopes.py tests/results/test_mesh_cycle.py tests/flanks/test_tensor_spline.py \
 	tests/unloaded/test_path.py --ignore=tests/contact/test_rounded_edge.py
 
-.PHONY: demo test tests test-kernel validate docs reference-fem lint lint-together clean
+.PHONY: demo quick test tests test-all test-kernel validate docs reference-fem lint lint-together clean
 
 # Modules are compiled when they are first imported: all of them at once take pip as long as the rest of its work.
 .venv/installed: pyproject.toml
@@ -19,6 +19,11 @@ KERNEL_TESTS := tests/contact tests/separation tests/loaded/test_balance.py test
 
 demo: .venv/installed
 	$(BIN)/loaded-tca demo
+
+# The tests that a change most likely breaks; BASE=REV counts from another revision than HEAD.
+BASE ?= HEAD
+quick: .venv/installed
+	$(BIN)/python -m tests.quick --base $(BASE) -n auto --dist worksteal
 
 lint: .venv/installed
 	$(BIN)/ruff check .
@@ -35,6 +40,10 @@ lint-together:
 
 tests: .venv/installed
 	$(BIN)/python -m pytest -n auto --dist worksteal
+
+# Every night, and before a release: the dear tests, too, and hypothesis looks for counterexamples forty times as long.
+test-all: .venv/installed
+	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest -n auto --dist worksteal -m ""
 
 # With a kernel of OpenBLAS that this machine does not take by itself: rounding differs.
 test-kernel: .venv/installed

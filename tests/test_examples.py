@@ -50,6 +50,23 @@ EXPECTED = {
     "plot_bidirectional_start": (1.0, 1e-7),  # five equations and ease-off find the same contact
 }
 
+QUICK = (
+    "plot_subsurface_stress",
+    "plot_contact_from_arrays",
+    "plot_convergence_of_methods",
+    "plot_contact_pattern",
+    "plot_bevel_pressure",
+    "plot_transmission_error",
+    "plot_planetary_stage",
+    "plot_bevel_blank",
+    "plot_tribology",
+    "plot_ease_off",
+    "plot_misalignment_sensitivity",
+    "plot_sensitivities",
+    "plot_bidirectional_start",
+)
+"""Of a second or two. The others are analyses and pictures that the tests of their folders have on fewer cells."""
+
 ON_A_GRID = {"analysis.compliance": "contact", "analysis.cells": [12, 16], "analysis.accuracy": None}
 A_WHOLE_TURN = {"revolution.positions_per_pitch": 4, "revolution.pitches": 24}
 SHORTER = {
@@ -97,7 +114,9 @@ def _coarse_roots():
 
 @pytest.mark.usefixtures("_coarse_roots")
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # some show contacts that reach an edge
-@pytest.mark.parametrize("name", EXPECTED)
+@pytest.mark.parametrize(
+    "name", [*QUICK, *(pytest.param(name, marks=pytest.mark.thorough) for name in EXPECTED if name not in QUICK)]
+)
 def test_example_gives_its_number_and_its_picture(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     number, tolerance = EXPECTED[name]
@@ -105,6 +124,7 @@ def test_example_gives_its_number_and_its_picture(name, tmp_path, monkeypatch):
     assert [path.name for path in tmp_path.iterdir()] == [f"{name.removeprefix('plot_')}.png"]
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
 def test_second_order_of_the_tooth_mesh_has_its_resonance_at_half_the_speed(tmp_path, monkeypatch):
     """Its frequency is twice that of the mesh; a thirtieth aside: the stiffness varies, and the speeds have steps."""
@@ -114,6 +134,7 @@ def test_second_order_of_the_tooth_mesh_has_its_resonance_at_half_the_speed(tmp_
     assert sorted(path.name for path in tmp_path.iterdir()) == names
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("_coarse_roots", "blank_pictures")
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
 def test_pages_of_pictures_have_every_kind(tmp_path, monkeypatch):
@@ -143,6 +164,7 @@ def test_study_on_a_cluster_follows_hertz(tmp_path, monkeypatch):
     assert (load_study("study_on_dask.nc")["status"] == "ok").all()
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
 @pytest.mark.parametrize(("name", "quieter"), [("design_helical", 0.76), ("design_bevel", 0.61)])
 def test_designed_pair_is_quieter(name, quieter, tmp_path, monkeypatch):
@@ -170,8 +192,9 @@ def test_designed_pair_is_quieter(name, quieter, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
-def test_example_is_short(path):
+def test_example_is_short_and_has_its_scenes(path):
     assert len(path.read_text(encoding="utf-8").splitlines()) < 60
+    assert callable(loaded(path).main)  # every name that it imports is there, every scene that it reads is sound
 
 
 @pytest.mark.parametrize("path", sorted((EXAMPLES / "scenes").glob("*.toml")), ids=lambda path: path.stem)

@@ -22,6 +22,8 @@ def test_fault_has_its_place_in_the_package_and_a_test(fault):
     assert fault.wrong != fault.text
     file, _, name = fault.test.partition("::")
     assert re.search(rf"^(def {name}\(|{name} = )", text_of(TESTS / file), re.MULTILINE)
+    marked = re.search(rf"^@pytest\.mark\.thorough\n(@.*\n)*def {name}\(", text_of(TESTS / file), re.MULTILINE)
+    assert not marked, "make test leaves this test out"
 
 
 def test_faults_are_told_apart():

@@ -64,6 +64,7 @@ def test_wheel_has_every_file_of_the_package_and_nothing_else(archives):
     assert f"loaded_tca-{VERSION}.dist-info/licenses/LICENSE" in found
 
 
+@pytest.mark.thorough
 def test_wheel_of_the_source_archive_is_that_of_the_working_copy(archives, tmp_path):
     build(tmp_path, "--wheel")
     (wheel,) = tmp_path.iterdir()
@@ -93,6 +94,7 @@ def test_metadata_are_complete(archives):
     assert (cited["cff-version"], cited["version"], cited["license"]) == ("1.2.0", VERSION, told["License-Expression"])
 
 
+@pytest.mark.thorough
 def test_installed_wheel_runs_the_demo_outside_of_the_repository(archives, tmp_path):
     """Installed by itself; what it depends on is lent by the running environment, read only after its own packages."""
     place = tmp_path / "installed"

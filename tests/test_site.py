@@ -7,6 +7,8 @@ import sys
 import zipfile
 from pathlib import Path
 
+import pytest
+
 from loaded_tca import plots
 
 ROOT = Path(__file__).parents[1]
@@ -23,6 +25,7 @@ os._exit(code)
 """
 
 
+@pytest.mark.thorough
 def test_site_builds_without_a_warning(tmp_path):
     """Beside the repository, since generated pages stand among the others; the gallery's scripts are not run."""
     shutil.copytree(ROOT / "docs", tmp_path / "docs", ignore=BUILT)

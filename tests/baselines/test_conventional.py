@@ -53,6 +53,7 @@ def test_equations_have_the_contact_of_the_reduced_solver_as_their_solution(pair
     assert_allclose(found.unknowns[inner], expected[inner], rtol=0, atol=SAME_POINT)
 
 
+@pytest.mark.thorough
 @given(pairs())
 @settings(max_examples=30)
 def test_equations_hold_at_every_smooth_interior_contact(pair):

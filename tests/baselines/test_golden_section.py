@@ -101,6 +101,7 @@ def test_smallest_gap_grows_with_the_wheel_angle_where_the_distance_without_sign
         assert gaps.min() < 0.0 < gaps.max()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("turns", [1, -2, 57])
 def test_contact_whole_turns_away_is_that_of_the_same_tooth(turns):
     angle = [0.01 + 2.0 * np.pi * turns]

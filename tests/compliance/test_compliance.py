@@ -123,6 +123,7 @@ def test_compliance_knows_which_tooth_comes_next(make):
     assert abs(compliance.between((1, first), (0, second)).mean() - forwards.mean()) > 1e-3 * forwards.mean()
 
 
+@pytest.mark.thorough
 def test_compliance_of_face_milled_gears_is_converged():
     """On a mesh of about half as many elements more in every direction of the section; its fillets are sharp."""
     densities = MeshDensity(lengthwise=6), MeshDensity(6, 8, 3, 5, 6, 6, 1)

@@ -124,6 +124,7 @@ def test_stress_per_force_is_what_one_more_newton_anywhere_on_the_line_does():
         assert_allclose(every @ found, change, atol=ROUNDING)
 
 
+@pytest.mark.thorough
 def test_stress_beside_the_ends_of_inclined_teeth_does_not_depend_on_the_layers():
     """It rises and falls there within two layers: splines between middles of layers alone were 2.5 % off."""
     gear = bevel_pair(bevel_mesh((20, 40), outer_module=4.0, face_width=12.0, spiral_angle=np.radians(35.0))).wheel
@@ -178,6 +179,7 @@ def test_largest_stress_lies_between_no_two_places():
     assert tension[station, along - 1 : along + 2].min() > (1.0 - 0.02) * tension.max()
 
 
+@pytest.mark.thorough
 def test_influence_does_not_depend_on_how_many_forces_are_solved_at_a_time(monkeypatch):
     frame = ToothFrame(pinion(), gear_nodes(pinion(), TINY))
     whole = root_influence(frame, single=False)
@@ -187,6 +189,7 @@ def test_influence_does_not_depend_on_how_many_forces_are_solved_at_a_time(monke
         assert_allclose(found, getattr(whole, name), atol=ROUNDING * np.abs(found).max())
 
 
+@pytest.mark.thorough
 def test_helical_gear_has_its_stress_along_the_face_where_its_load_is():
     mesh = CylindricalMesh(*(CylindricalGear(z, 3.0, 20.0, helix_angle=beta) for z, beta in ((25, 0.25), (37, -0.25))))
     helical = root_stress_model(cylindrical_pair(mesh).pinion, SMALL)
@@ -283,6 +286,7 @@ def steep(helix_angle):
     return cylindrical_pair(spur_mesh(helix_angle=helix_angle)).pinion
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("helix_angle", [0.0, 0.5])
 def test_memory_that_is_told_is_what_the_arrays_take(helix_angle):
     """Of the process, to which allocator and huge pages add by chance, the validation of root stress tells."""
@@ -297,6 +301,7 @@ def test_memory_that_is_told_is_what_the_arrays_take(helix_angle):
     assert 0.8 * told < taken < 1.2 * told
 
 
+@pytest.mark.thorough
 def test_memory_that_is_told_is_below_1_gib_for_7_modules_and_2_gib_for_20():
     """The interpreter and the tables take 0.15 GiB more: measured 0.72 and 1.4 to 1.7 GiB."""
     for width, most in ((20.0, 0.8), (60.0, 1.8)):

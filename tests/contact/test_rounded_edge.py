@@ -161,7 +161,7 @@ def test_slices_along_the_edge_have_the_rows():
     assert_allclose(x.mean(), 0.0, atol=1e-15)  # columns within 0.15 mm that cancel: 2e-18 seen
 
 
-@pytest.mark.parametrize("sine", [0.1, 0.5])
+@pytest.mark.parametrize("sine", [0.1, pytest.param(0.5, marks=pytest.mark.thorough)])
 def test_oblique_edge_has_an_estimate_that_covers_its_error(sine):
     normal = np.array([sine, math.sqrt(1.0 - sine**2)])
 
@@ -177,6 +177,7 @@ def test_oblique_edge_has_an_estimate_that_covers_its_error(sine):
     assert 0.0 < across < found.pressed_width
 
 
+@pytest.mark.thorough
 def test_edge_along_the_columns_is_met_by_fine_rows():
     """Without exchanging x and y: dearer, and with a larger estimate."""
     turned = peak(
@@ -187,6 +188,7 @@ def test_edge_along_the_columns_is_met_by_fine_rows():
     assert len(turned.solution.pressure) > 300
 
 
+@pytest.mark.thorough
 def test_few_cells_on_an_oblique_edge_are_told(monkeypatch):
     monkeypatch.setattr("loaded_tca.contact.pressed_arc.MOST_ROWS", 32)
 

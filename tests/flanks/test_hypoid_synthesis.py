@@ -66,7 +66,12 @@ def test_slopes_of_the_pinion_are_those_of_the_conjugate(flank, mating):
 
 
 @pytest.mark.parametrize(
-    "mismatch", [Mismatch(0.010, 0.030), Mismatch(0.005, 0.060, 0.010), Mismatch(0.020, 0.050, -0.015)]
+    "mismatch",
+    [
+        pytest.param(Mismatch(0.010, 0.030), marks=pytest.mark.thorough),
+        pytest.param(Mismatch(0.005, 0.060, 0.010), marks=pytest.mark.thorough),
+        Mismatch(0.020, 0.050, -0.015),
+    ],
 )
 def test_ease_off_about_p_is_the_mismatch(mismatch):
     """Over a hundredth of the tooth: third orders are a hundredth of a percent there."""
@@ -124,6 +129,7 @@ def test_transmission_error_is_a_parabola_of_a_few_arcsec(flank):
     assert (error[[0, -1]] < -5.0).all()
 
 
+@pytest.mark.thorough
 def test_more_lengthwise_crowning_shortens_the_contact():
     pairs = [
         face_milled_pair(*hypoid_gears("left", Mismatch(0.010, crowning)), offset=15.0) for crowning in (0.030, 0.090)
@@ -132,7 +138,7 @@ def test_more_lengthwise_crowning_shortens_the_contact():
     assert strong > 1.3 * weak  # the line of contact is inclined to the tooth: less than three times
 
 
-@pytest.mark.parametrize("flank", ["concave", "convex"])
+@pytest.mark.parametrize("flank", [pytest.param("concave", marks=pytest.mark.thorough), "convex"])
 def test_formate_wheel_is_cut_at_rest_and_mates_on_both_sides(flank):
     pinion, wheel = hypoid_gears(wheel="formate")
     assert (wheel.machine.generation, pinion.machine.generation) == ("formate", "generated")

@@ -58,6 +58,7 @@ def test_more_work_is_a_larger_estimate(more):
     assert effort_of(**more).seconds > 1.03 * effort_of().seconds
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "face_width"),
     [

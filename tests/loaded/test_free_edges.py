@@ -336,6 +336,7 @@ def test_tip_counts_by_the_angle_of_its_material(pitches, member):
     assert_allclose(added, expected, rtol=0, atol=NARROW * expected.max())
 
 
+@pytest.mark.thorough
 def test_tip_comes_into_reach_without_a_step():
     pair = gear_pair(FlankModifications(lead_crowning=0.03), width=60.0)
     found = [added_of(pair, pitches, box=(0.1, 9.0))[0] for pitches in np.linspace(0.35, 0.85, 101)]

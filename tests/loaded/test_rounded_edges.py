@@ -99,6 +99,7 @@ def test_both_ends_of_a_symmetric_contact_have_the_same_peak(free_edges):
     assert {math.copysign(1.0, peak.place[1]) for peak in peaks} == {-1.0, 1.0}
 
 
+@pytest.mark.thorough
 def test_peak_does_not_depend_on_the_order_of_the_edges():
     """Of the tip and the end of a misaligned helical pair, too, which cross each other."""
     for options in ({}, SKEW):
@@ -127,6 +128,7 @@ def test_mirror_image_has_the_same_peak():
     assert_allclose(peaks[1].pressure, peaks[0].pressure, rtol=MIRRORED)
 
 
+@pytest.mark.thorough
 def test_peak_does_not_depend_on_the_grid():
     peaks = [found(*loaded(cells=cells)) for cells in ((16, 16), (32, 48), (64, 96))]
     assert_allclose([one.pressure for one in peaks], peaks[-1].pressure, rtol=0.02)

@@ -157,6 +157,7 @@ def test_negative_sense_of_a_right_hand_pair_mirrors_the_left_hand_pair():
     assert_allclose(right.point, left.point * [1.0, -1.0, 1.0], atol=1e-8)
 
 
+@pytest.mark.thorough
 def test_golden_section_agrees_with_the_reduced_solver():
     pair = crowned(spiral=SPIRAL, teeth=(17, 17))
     path = trace_contact(pair, [0.1])

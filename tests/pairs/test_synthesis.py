@@ -157,6 +157,7 @@ def test_ellipse_shorter_than_the_path_allows_is_refused_with_the_least_length()
         local_synthesis(basic, wheel, asked(path=178.0, length=2.0))
 
 
+@pytest.mark.thorough
 def test_uniform_depth_and_small_cutters_take_all_settings():
     """Their basic settings are far off, and few settings find nothing."""
     for basic, wheel in (start(taper="uniform"), start(taper="modified", cutter=60.0)):

@@ -66,7 +66,12 @@ def texts(figure):
     return "\n".join(found)
 
 
-@pytest.mark.parametrize("case", CASES)
+QUICK = ("several torques", "positions without contact", "line contact", "no load")
+
+
+@pytest.mark.parametrize(
+    "case", [*QUICK, *(pytest.param(case, marks=pytest.mark.thorough) for case in CASES if case not in QUICK)]
+)
 def test_every_case_gives_every_picture(case, tmp_path):
     paths = plot_all(CASES[case](), tmp_path)
     always = {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}

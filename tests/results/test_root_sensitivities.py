@@ -29,7 +29,13 @@ def sensitivities(cycle, keys):
 
 
 @pytest.mark.parametrize(
-    ("key", "step", "bends"), [(CROWNING, 1.0, False), (SLOPE, 1.0, False), (SLOPE, 1.0, True)], ids=str
+    ("key", "step", "bends"),
+    [
+        pytest.param(CROWNING, 1.0, False, marks=pytest.mark.thorough),
+        (SLOPE, 1.0, False),
+        pytest.param(SLOPE, 1.0, True, marks=pytest.mark.thorough),
+    ],
+    ids=str,
 )
 def test_root_stress_follows_modifications_as_analyses_do(key, step, bends):
     changes = HELICAL | ({"analysis.compliance": "contact+tooth", "analysis.free_edges": True} if bends else {})

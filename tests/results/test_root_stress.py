@@ -186,6 +186,7 @@ def test_other_sense_of_rotation_is_the_mirror_image():
     assert_array_equal(other.root_tension_place[..., 0], -one.root_tension_place[..., 0])
 
 
+@pytest.mark.thorough
 def test_other_hand_of_the_helix_is_the_mirror_image():
     """In a transverse plane: along the axes all comes from the other end."""
     one, other = result("mesh_cycle_helical"), result("mesh_cycle_helical", **{"pinion.hand": "left"})
@@ -210,6 +211,7 @@ def test_other_numbers_of_a_result_are_what_they_are_without_root_stress():
     assert set(one.dataset.variables) - set(other.dataset.variables) == set(ROOT_PARTS)
 
 
+@pytest.mark.thorough
 def test_bending_teeth_have_root_stress_too():
     """Bending shares the load out more evenly."""
     cycle = result(**{"analysis.compliance": "contact+tooth"})

@@ -2,7 +2,6 @@
 
 import re
 import warnings
-from functools import cache
 
 import numpy as np
 import pytest
@@ -16,12 +15,13 @@ from loaded_tca.results.warnings import EDGES as EDGE_NAMES
 from loaded_tca.results.warnings import reached_edges
 from loaded_tca.scene import read_scene
 from tests.samples.results import FLANKS_ALONE, SCENES
+from tests.samples.shared import made_once
 
 EDGES = [f"{gear}.{edge}_rounding_mm" for gear in ("pinion", "wheel") for edge in ("tip", "side")]
 TOLD = "mesh-dependent"
 
 
-@cache
+@made_once
 def analysed(name, radii=(), **changes):
     scene = read_scene(SCENES / f"{name}.toml").with_changes(
         {**FLANKS_ALONE, "analysis.positions": 5, "analysis.accuracy": None, "analysis.cells": (24, 24)}
@@ -84,6 +84,7 @@ def test_edge_is_sharp_where_only_other_edges_have_a_radius():
     assert any(TOLD in one for one in told)
 
 
+@pytest.mark.thorough
 def test_pressure_at_a_rounded_edge_is_a_number_of_the_gear():
     """The same on grids of twice and four times as many cells, to 2 %; that of a sharp edge grows without end."""
     cells = ((24, 24), (48, 48), (96, 96))
@@ -108,6 +109,7 @@ def test_rounded_tip_between_sharp_face_ends_is_told_to_have_no_limit():
     assert not any("rounded edge" in one for one in told)
 
 
+@pytest.mark.thorough
 def test_contacts_of_mirrored_gears_reach_the_same_roundings():
     """Their pressure ends where cells are cut by the rounded edge; right hand and left hand are each other's mirror."""
     changes = {"positions": 2, "torques_Nm": (260.0,), "load_sharing": True, "free_edges": True}
@@ -129,6 +131,7 @@ def test_contact_that_ends_before_a_rounding_gives_no_warning_of_its_error():
     assert not any("estimated error" in one for one in told)
 
 
+@pytest.mark.thorough
 def test_the_largest_edge_pressure_is_the_same_whether_all_are_asked_for():
     changes = {"load_sharing": True, "torques_Nm": (260.0,)}
     largest, every = (
@@ -171,6 +174,7 @@ def test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are
     assert largest.edge_contact(0) == every.edge_contact(0)
 
 
+@pytest.mark.thorough
 def test_pressures_at_rounded_edges_are_the_same_a_pitch_later():
     """Pair 0 at the first position is in the place of pair 1 at the last one."""
     cycle, _ = softly("", "largest", 2, cells=(16, 16))
@@ -208,6 +212,7 @@ def test_spur_line_keeps_its_hertz_pressure():
     assert_allclose(blunt.hertz_pressure, sharp.hertz_pressure, rtol=0.05, err_msg="by the shorter loaded length")
 
 
+@pytest.mark.thorough
 def test_teeth_that_bend_bend_as_those_with_sharp_edges():
     """Of the same compliance, not of another model, with which the transmission error was off by 2 um."""
     changes = {"compliance": "contact+tooth", "free_edges": True, "positions": 3, "torques_Nm": (260.0,)}

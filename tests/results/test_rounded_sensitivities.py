@@ -3,6 +3,7 @@
 import warnings
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.analysis import analyse
@@ -59,6 +60,7 @@ def analysed(scene):
         return analyse(scene)
 
 
+@pytest.mark.thorough
 def test_transmission_error_follows_a_tilt_where_one_row_of_cells_lies_on_the_arc_of_a_face_end():
     """Grids that went with their contact point had -300 um/deg at the second position, 20 times as much as analyses.
 

@@ -1,7 +1,6 @@
 """Sensitivities of results: against slopes through whole analyses, closed forms, files, keys that cannot be varied."""
 
 import warnings
-from functools import cache
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from loaded_tca import analyse, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError
 from tests.refusals import refusals
 from tests.samples.results import FLANKS_ALONE, ONE_PAIR, SCENES, result
+from tests.samples.shared import made_once
 
 REAL_PAIRS = 0.03
 """Agreement asked for with analyses, of the largest slope, on 64 cells: they make boxes and grids anew."""
@@ -27,7 +27,7 @@ CROWNING, SLOPE = "pinion.modifications.lead_crowning_um", "pinion.modifications
 TORQUE = "load.pinion_torque_Nm"
 
 
-@cache
+@made_once
 def analysed(name, bends, changes=(), cells=64, positions=None):
     wanted = {"analysis.accuracy": None, "analysis.cells": (cells, cells), "analysis.torques_Nm": None}
     wanted["analysis.positions"] = positions or POSITIONS[name]
@@ -67,7 +67,7 @@ REAL = [
     ("name", "key", "step", "bends"),
     [
         *((*one, False) for one in REAL),
-        *((*REAL[n], True) for n in (1, 2, 4)),
+        *(pytest.param(*REAL[n], True, marks=pytest.mark.thorough) for n in (1, 2, 4)),
     ],  # bending: each pair, both kinds of keys
 )
 def test_transmission_error_of_real_pairs_changes_as_whole_analyses_do(name, key, step, bends):

@@ -18,6 +18,7 @@ from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.results.teeth import teeth_in_space
 from loaded_tca.unloaded.teeth import harmonic_coefficients
 from tests.samples.results import FLANKS_ALONE, ONE_PAIR, PER_PAIR, SCENES, assert_same
+from tests.samples.shared import made_once
 
 EQUILIBRIUM = 1e-8
 """Asked for: the torques of the pairs sum up to that of the pinion."""
@@ -27,7 +28,7 @@ PERIOD = 1e-3
 """Agreement of positions a pitch apart: the same contacts from other starts, on boxes that may differ."""
 
 
-@cache
+@made_once
 def cycle(name="spur", positions=5, torques=(40.0, 130.0)):
     scene = read_scene(SCENES / f"mesh_cycle_{name}.toml")
     changes = {
@@ -282,6 +283,7 @@ ALWAYS = (
 )
 
 
+@pytest.mark.thorough
 def test_every_picture_of_a_shared_load_is_drawn_and_those_on_request_go_without(tmp_path, request):
     drawn = {path.stem for path in plot_all(cycle(), tmp_path, more=True)}
     assert drawn >= ALWAYS | set(MORE_PICTURES)
@@ -317,7 +319,7 @@ def test_teeth_are_placed_where_the_pair_with_the_pressure_stands():
     assert np.linalg.norm(cells - one.origin, axis=1).min() < 1.0  # mm: the pressure lies on the tooth at its place
 
 
-@cache
+@made_once
 def bending(load_sharing):
     scene = read_scene(SCENES / "mesh_cycle_spur.toml")
     narrow = {"pinion.face_width_mm": 6.0, "wheel.face_width_mm": 6.0, "analysis.torques_Nm": (30.0,)}
@@ -337,7 +339,7 @@ def bending_face_milled(load_sharing, compliance="contact+tooth"):
 
 
 @pytest.mark.parametrize("load_sharing", [False, True])
-@pytest.mark.parametrize("make", [bending, bending_face_milled])
+@pytest.mark.parametrize("make", [bending, pytest.param(bending_face_milled, marks=pytest.mark.thorough)])
 def test_transmission_error_of_teeth_that_bend_is_their_deflection(make, load_sharing):
     result = make(load_sharing)
     added = result.path.transmission_error - result.transmission_error[0]

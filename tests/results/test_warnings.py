@@ -54,6 +54,7 @@ def test_warning_names_a_place_that_has_what_it_tells():
     assert result.on_edge[place]
 
 
+@pytest.mark.thorough
 def test_contacts_of_the_helical_mesh_cycle_do_not_reach_their_boxes():
     """Two of its contacts did, which had grown under a corrected force."""
     changes = {"analysis.accuracy": 1e-2, "analysis.cells": None, "analysis.positions": 33}
@@ -82,6 +83,7 @@ def test_twist_about_a_thin_bore_is_told():
     assert_allclose(turned, NET_FORCE * force * added, rtol=3e-3)
 
 
+@pytest.mark.thorough
 def test_pair_that_fills_its_grid_at_the_cap_gets_a_larger_one():
     """Beside a pair at its limit a light one takes several times the force that its first grid was made for."""
     capped = {"analysis.torques_Nm": (130.0,), "material.max_pressure_MPa": 50.0}

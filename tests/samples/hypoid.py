@@ -6,6 +6,7 @@ from functools import cache
 from loaded_tca.flanks import Mismatch, synthesised_gears
 from loaded_tca.gears import HypoidBlank, pitch_cones_by_method_1
 from loaded_tca.pairs.bevel import face_milled_pair
+from tests.samples.shared import made_once
 
 
 @cache
@@ -19,7 +20,7 @@ def hypoid_blank(**changes):
     return HypoidBlank((13, 42), annex_f3_cones(), 30.0, 63.5, **(values | changes))
 
 
-@cache
+@made_once
 def hypoid_gears(hand="left", mismatch=Mismatch(), wheel="generated"):
     return synthesised_gears(hypoid_blank(), hand, mismatch, wheel=wheel, edge_radii=(0.4, 0.5))
 

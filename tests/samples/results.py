@@ -13,6 +13,7 @@ from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.results.quantities import CYCLE, PAIRS, QUANTITIES
 from loaded_tca.scene import Scene, read_scene
+from tests.samples.shared import made_once
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 FLANKS_ALONE = {"analysis.compliance": "contact", "analysis.free_edges": False}
@@ -22,7 +23,7 @@ ONE_PAIR = {**FLANKS_ALONE, "analysis.load_sharing": False}
 PER_POSITION, PER_PAIR = ([name for name, (axes, *_) in QUANTITIES.items() if axes == one] for one in (CYCLE, PAIRS))
 
 
-@cache
+@made_once
 def result(name="helical", positions=5, torques=None, title=None):
     """Analysis of an example scene on a coarse grid, of half-spaces; the load is shared in mesh cycles alone."""
     changes = {

@@ -4,7 +4,6 @@ import math
 import warnings
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import cache
 from unittest.mock import patch
 
 from loaded_tca.analysis import analyse, roots_of
@@ -12,6 +11,7 @@ from loaded_tca.compliance.root_stress import DENSITY
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.scene import read_scene
 from tests.samples.results import SCENES
+from tests.samples.shared import made_once
 
 COARSE = replace(DENSITY, through=4, flank=3, fillet=3, land=3, rim=4, lengthwise=6, thin_ends=True)
 """Largest stresses are 3 % off, which is of no account for what tests ask."""
@@ -47,12 +47,12 @@ def analysed(scene, progress=None):
         return analyse(scene, progress)
 
 
-@cache
+@made_once
 def result(name="mesh_cycle_spur", **changes):
     return analysed(scene(name, **changes))
 
 
-@cache
+@made_once
 def models(name="mesh_cycle_spur"):
     """Of pinion and wheel of :func:`result`."""
     with coarsely():

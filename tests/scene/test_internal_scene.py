@@ -90,6 +90,7 @@ def test_load_is_shared_and_teeth_bend(scene):
     assert (abs(stiff.transmission_error) < abs(result.transmission_error)).all()
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
 def test_thicker_rim_held_outside_gives_way_more():
     thin, thick = (analyse(changed(wheel__outer_diameter_mm=d, analysis__positions=1)) for d in (205.0, 300.0))

@@ -39,6 +39,7 @@ def plain():
     return analysed(ANGLES, TANGENTIAL, RADIAL)
 
 
+@pytest.mark.thorough
 def test_other_hand_shares_alike(plain):
     other = analysed(ANGLES, TANGENTIAL, RADIAL, sun__hand="left")
     assert_allclose(other.planet_share, plain.planet_share, rtol=SOLVED_ANEW)

@@ -182,6 +182,7 @@ def test_table_and_summary_have_every_torque(result):
         _ = result.nothing
 
 
+@pytest.mark.thorough
 def test_root_stress_under_the_largest_share_is_known_where_it_is_asked_for(stage, result):
     assert "sun_root_tension" not in result.dataset
     with coarsely():

@@ -138,6 +138,7 @@ def test_keys_that_bend_the_gap_are_followed():
     assert_allclose(exact[0, 0, 0], ((above - below) / 0.01)[0, 0], rtol=1e-2)
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # the pinion is pointed, no matter here
 def test_machine_settings_shape_flanks_too():
     """Gradients as of differences, and errors within 20 nm of the analysis: spans are 500 nm."""
@@ -187,6 +188,7 @@ def test_gears_of_a_tolerance_class_deviate_from_the_slopes_of_the_design():
     assert_allclose(slopes, [4.0 + each[wheel] for each in one.deviations], rtol=1e-12)
 
 
+@pytest.mark.thorough
 def test_root_tension_is_designed_and_limited():
     """A helix slope takes the load off the end of the face to which the misalignment brings it."""
     scene, name = SCENE.with_changes({"analysis.root_stress": True}), "pinion_root_tension_norm_MPa"
@@ -263,6 +265,7 @@ def test_a_file_of_something_else_is_no_design(found, tmp_path):
         load_design(tmp_path / "other.nc")
 
 
+@pytest.mark.thorough
 def test_a_robust_design_does_not_lose_by_scatter(found):
     """At its own scatter it is better than the start, on grids that are made again as well."""
     result, _ = found
@@ -271,6 +274,7 @@ def test_a_robust_design_does_not_lose_by_scatter(found):
     assert curves[1, 1] < curves[0, 1]
 
 
+@pytest.mark.thorough
 def test_starts_and_analyses_on_an_executor(found):
     """Threads stand for any: the first start is that of the scene, so that more of them find no worse design.
 
@@ -453,6 +457,7 @@ def test_a_loss_factor_is_designed_as_the_analysis_has_it(monkeypatch):
     assert_allclose(result.objective, result.held_objective, rtol=0.02)
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts at edges are wanted
 def test_norms_of_pressures_at_sharp_edges_are_those_of_any_grid():
     """Little relief: corners of the tip carry on cells of a few um, where the largest pressure grows with the cells."""

@@ -45,16 +45,20 @@ ENGINES = {
 
 # Since Python 3.12 a fork of a process with threads is told, whether or not they matter; another test has used them.
 @pytest.mark.filterwarnings(r"ignore:This process .* is multi-threaded:DeprecationWarning")
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(
+    "engine", ["threads", "fork", *(pytest.param(name, marks=pytest.mark.thorough) for name in [*ENGINES][2:])]
+)
 def test_numbers_do_not_depend_on_the_engine(engine):
     with ENGINES[engine]() as executor:
         assert bits(run_study(unlike_variants(), executor)) == expected()
 
 
+@pytest.mark.thorough
 def test_numbers_do_not_depend_on_the_engine_on_a_cluster(cluster):
     assert bits(run_study(unlike_variants(), cluster.get_executor(pure=False))) == expected()
 
 
+@pytest.mark.thorough
 def test_numbers_do_not_depend_on_the_engine_under_mpi(tmp_path):
     out = tmp_path / "study.nc"
     launcher = Path(sys.executable).with_name("mpiexec")

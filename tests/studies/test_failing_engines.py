@@ -76,6 +76,7 @@ def test_killed_worker_ends_the_study_and_costs_no_row(tmp_path):
     assert len(calls_in(tmp_path)) == len(values) - len(kept)
 
 
+@pytest.mark.thorough
 def test_scheduler_hands_the_variants_of_a_killed_worker_to_another(cluster, tmp_path):
     found = run_study(in_folder(tmp_path, 1, 2, 3, 4), cluster.get_executor(), tmp_path / "study.nc", figures=killing)
     assert (tmp_path / "killed").exists()
@@ -114,7 +115,15 @@ def test_scheduler_that_goes_away_ends_the_study_and_costs_no_row(tmp_path):
     run_study(study, None, out, figures=asked)
 
 
-@pytest.mark.parametrize("how", ["interrupt", "interrupt of the group", "kill", "interrupt while workers start"])
+@pytest.mark.parametrize(
+    "how",
+    [
+        "interrupt",
+        "kill",
+        pytest.param("interrupt of the group", marks=pytest.mark.thorough),
+        pytest.param("interrupt while workers start", marks=pytest.mark.thorough),
+    ],
+)
 def test_ended_study_leaves_its_rows_and_no_process(tmp_path, how):
     command = [sys.executable, ROOT / "tests" / "studies" / "endless.py", tmp_path]
     surroundings = os.environ | {"PYTHONPATH": str(ROOT)}

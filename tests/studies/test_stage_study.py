@@ -94,6 +94,7 @@ def test_every_variant_has_the_warnings_of_its_meshes_up_to_its_own_largest_shar
     assert any(largest in line for line in lines[most])
 
 
+@pytest.mark.thorough
 def test_study_is_kept_drawn_and_told(study, found, tmp_path):
     kept = run_study(study, out=tmp_path / "study.nc")
     assert load_study(tmp_path / "study.nc")["mesh_load_factor"].equals(kept["mesh_load_factor"])

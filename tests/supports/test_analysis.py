@@ -57,10 +57,10 @@ def on(scene: Scene, pinion: Array | None, wheel: Array | None) -> Scene:
     ("name", "size"),
     [
         ("mesh_cycle_spur", (4e-6, 4e-9, 4e-9)),
-        ("helical", (4e-6, 3e-9, 1e-9)),
-        ("spiral_bevel", (3e-6, 1e-9, 1e-9)),
+        pytest.param("helical", (4e-6, 3e-9, 1e-9), marks=pytest.mark.thorough),
+        pytest.param("spiral_bevel", (3e-6, 1e-9, 1e-9), marks=pytest.mark.thorough),
         ("straight_bevel", (3e-6, 1e-9, 1e-9)),
-        ("face_milled_19x62_matched", (1e-6, 1e-10, 1e-10)),
+        pytest.param("face_milled_19x62_matched", (1e-6, 1e-10, 1e-10), marks=pytest.mark.thorough),
     ],
 )
 def test_coupled_analysis_equals_rigid_ones_with_moved_gears(name: str, size: tuple[float, float, float]) -> None:
@@ -160,6 +160,7 @@ def test_drive_stiffness_is_the_slope_of_the_torque(soft: MeshCycle) -> None:
     assert_allclose(soft.drive_stiffness[1], slope / lengths, rtol=5e-3)  # geometry moves with the torque, too
 
 
+@pytest.mark.thorough
 def test_geometry_stands_where_the_mean_load_of_the_pitch_moves_it() -> None:
     """Two coarse positions are 1 % off here; the mean of the cycle checks them."""
     scene = scene_of("spiral_bevel", **{"analysis.positions": 6, "analysis.torques_Nm": [300.0]})
@@ -225,7 +226,7 @@ def test_forces_on_supports_that_do_not_balance_the_torque_are_warned_of() -> No
     assert not any("more or less than its torque" in one for one in spiral.warnings)
 
 
-@pytest.mark.parametrize("tilt", [1e-9, 1e-7])
+@pytest.mark.parametrize("tilt", [1e-9, pytest.param(1e-7, marks=pytest.mark.thorough)])
 def test_wide_gear_on_a_soft_tilt_settles(tilt: float) -> None:
     """Rigid analyses repeated swing for ever here: misalignment of the mounting is undone by that of the support."""
     changes = {
@@ -245,6 +246,7 @@ def test_wide_gear_on_a_soft_tilt_settles(tilt: float) -> None:
     assert left < 8.0 * (1e-9 / tilt) ** 0.8  # what is left turns the gear against its stiffness
 
 
+@pytest.mark.thorough
 def test_wide_helical_gear_on_a_soft_tilt_swings_into_line() -> None:
     """Pairs out of contact touch elsewhere than under a line load: a gear that tilts has no one compliance of both."""
     changes = {f"{gear}.face_width_mm": 60.0 for gear in ("pinion", "wheel")}
@@ -259,6 +261,7 @@ def test_wide_helical_gear_on_a_soft_tilt_swings_into_line() -> None:
     assert (left[1] < 0.2 * left[0]).all()
 
 
+@pytest.mark.thorough
 def test_pair_mirrored_in_its_face_moves_mirrored() -> None:
     scene, mirror = scene_of("helical"), np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
     hands = {"pinion.hand": "left" if scene.hands[0] == "right" else "right", "wheel.hand": None}

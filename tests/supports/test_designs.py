@@ -53,6 +53,7 @@ def test_gradients_of_designs_on_supports_are_slopes(model: DesignModel) -> None
         assert_allclose(evaluation.gradient(name), expected, rtol=0.0, atol=agreement * np.abs(expected).max())
 
 
+@pytest.mark.thorough
 def test_optimum_on_supports_evens_the_load_out() -> None:
     """The helix slope turns the flank as the shaft turns the gear; the whole analysis of the optimum confirms it."""
     soft = {"pinion.shaft.bearings.0.radial_stiffness_N_per_um": 40.0, "analysis.positions": 5}
@@ -66,6 +67,7 @@ def test_optimum_on_supports_evens_the_load_out() -> None:
     assert max(result.held_difference) < BASED_um
 
 
+@pytest.mark.thorough
 def test_a_model_based_at_a_design_has_its_contact_points() -> None:
     """Levers of the contact points of the start turn the deflection of the shafts into another rotation."""
     scene = read_scene("examples/scenes/helical_on_shafts.toml").with_changes(
@@ -91,6 +93,7 @@ def test_a_model_based_at_a_design_has_its_contact_points() -> None:
     assert off[1].max() < BASED_um
 
 
+@pytest.mark.thorough
 def test_a_search_goes_on_where_its_optimum_has_other_contact_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """The optimum is that of a model which is made at it, as far as such models still differ."""
     made = []
@@ -117,10 +120,15 @@ def test_stiffness_of_a_bearing_is_varied_in_a_study() -> None:
     ("changes", "names"),
     [
         ({"analysis.free_edges": False}, ("transmission_error",)),
-        ({"pinion.tip_rounding_mm": 0.2, "wheel.tip_rounding_mm": 0.2}, ("transmission_error", "line_load")),
-        (
+        pytest.param(
+            {"pinion.tip_rounding_mm": 0.2, "wheel.tip_rounding_mm": 0.2},
+            ("transmission_error", "line_load"),
+            marks=pytest.mark.thorough,
+        ),
+        pytest.param(
             {"analysis.compliance": "contact+tooth", "analysis.root_stress": True} | NARROW,
             ("root_tension", "root_compression"),
+            marks=pytest.mark.thorough,
         ),
     ],
 )

@@ -50,6 +50,7 @@ def errors_um(result: MeshCycle) -> Array:
     return np.asarray(1e3 * result.wheel_base_radius * result.transmission_error[0])
 
 
+@pytest.mark.thorough
 def test_an_analysis_has_the_teeth_between_all_pairs_that_carry_load(monkeypatch: pytest.MonkeyPatch) -> None:
     loaded = [analysed().pair[shares > 0.0] for shares in analysed().load_share[0]]
     assert max(np.ptp(numbers) for numbers in loaded) == 4
@@ -58,6 +59,7 @@ def test_an_analysis_has_the_teeth_between_all_pairs_that_carry_load(monkeypatch
     assert_allclose(errors_um(analysed()), errors_um(analyse(far_out_of_line())), rtol=0.0, atol=SAME_um)
 
 
+@pytest.mark.thorough
 def test_a_revolution_has_them_too() -> None:
     turn = analyse_revolution(
         far_out_of_line().with_changes({"revolution.pitches": 1, "revolution.positions_per_pitch": 2})
@@ -67,6 +69,7 @@ def test_a_revolution_has_them_too() -> None:
     assert_allclose(found, errors_um(analysed())[places], rtol=0.0, atol=ONE_PITCH_um)
 
 
+@pytest.mark.thorough
 def test_a_design_has_them_too() -> None:
     scene = far_out_of_line()
     model = DesignModel(scene, {"pinion.modifications.lead_crowning_um": (0.0, 1.0)})
@@ -74,6 +77,7 @@ def test_a_design_has_them_too() -> None:
     assert_allclose(found, errors_um(analysed())[:-1], rtol=0.0, atol=HELD_um)
 
 
+@pytest.mark.thorough
 def test_teeth_alone_that_have_no_model_of_two_pairs_leave_no_deflection_between_them() -> None:
     scene = far_out_of_line()
     pair = scene.pair()

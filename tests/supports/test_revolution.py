@@ -34,7 +34,11 @@ def both(name: str, torques: tuple[float, ...], compliance: str) -> tuple[MeshCy
 
 @pytest.mark.parametrize(
     ("name", "torques", "compliance"),
-    [("spur", (60.0, 130.0), "contact+tooth"), ("helical", (0.0, 130.0), "contact"), ("bevel", (0.8,), "contact")],
+    [
+        pytest.param("spur", (60.0, 130.0), "contact+tooth", marks=pytest.mark.thorough),
+        ("helical", (0.0, 130.0), "contact"),
+        pytest.param("bevel", (0.8,), "contact", marks=pytest.mark.thorough),
+    ],
 )
 def test_revolution_of_alike_teeth_on_supports_is_the_analysis_of_one_pitch(
     name: str, torques: tuple[float, ...], compliance: str
@@ -77,6 +81,7 @@ def test_revolution_on_supports_is_saved_and_read(tmp_path: Any) -> None:
     assert back.key_figures() == turn.key_figures()
 
 
+@pytest.mark.thorough
 def test_flanks_of_one_tooth_move_with_its_gear() -> None:
     """A tooth whose flanks are those of the others in all but name changes nothing."""
     scene = small("helical", (130.0,))

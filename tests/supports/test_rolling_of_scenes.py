@@ -50,7 +50,7 @@ def exact(support: Support, load: Array) -> Array:
     return support.at_middle(support.under(load).moved(load))
 
 
-@pytest.mark.parametrize(("torque", "position"), [(0, 1), (1, 0), (1, 1)])
+@pytest.mark.parametrize(("torque", "position"), [(1, 1)])
 def test_coupled_analysis_equals_rigid_ones_with_gears_moved_by_their_shafts(
     scene: Scene, result: MeshCycle, torque: int, position: int
 ) -> None:
@@ -71,6 +71,7 @@ def test_teeth_along_a_shaft_on_rolling_bearings_move_about_as_a_rigid_gear(scen
     assert_allclose(along.pinion_motion[0, :, :3], result.pinion_motion[1, :, :3], rtol=0.05)
 
 
+@pytest.mark.thorough
 def test_bevel_gears_on_rolling_bearings_equal_rigid_ones_moved() -> None:
     fixed = {"analysis.positions": 1, "analysis.cells": (CELLS, CELLS), "analysis.compliance": "contact"}
     bevel = read_scene("examples/scenes/straight_bevel.toml").with_changes(fixed)
@@ -166,6 +167,7 @@ def test_gears_without_load_stay_in_the_middle(scene: Scene) -> None:
     assert (idle.pinion_bearing_life == math.inf).all()
 
 
+@pytest.mark.thorough
 def test_designs_have_the_stiffness_of_rolling_bearings_under_each_torque(scene: Scene) -> None:
     crowning = {"pinion.modifications.lead_crowning_um": (0.0, 10.0)}
     wanted = scene.with_changes({"analysis.positions": 5, "analysis.torques_Nm": [40.0, 130.0]})
@@ -179,10 +181,10 @@ def test_designs_have_the_stiffness_of_rolling_bearings_under_each_torque(scene:
 @pytest.mark.parametrize(
     ("key", "step"),
     [
-        ("load.pinion_torque_Nm", 1.0),
-        ("pinion.shaft.bearings.0.at_mm", 0.5),
+        pytest.param("load.pinion_torque_Nm", 1.0, marks=pytest.mark.thorough),
+        pytest.param("pinion.shaft.bearings.0.at_mm", 0.5, marks=pytest.mark.thorough),
         ("pinion.shaft.bearings.0.radial_clearance_um", 1.0),
-        ("mounting.centre_distance_error_mm", 5e-3),
+        pytest.param("mounting.centre_distance_error_mm", 5e-3, marks=pytest.mark.thorough),
     ],
 )
 def test_derivatives_on_rolling_bearings_are_slopes_of_analyses(scene: Scene, key: str, step: float) -> None:
@@ -324,6 +326,7 @@ def test_overview_refuses_bearings_that_do_not_hold(tmp_path: Path, capsys: pyte
     assert "pinion.shaft: bearings: 1 bearing leaves the shaft free about" in capsys.readouterr().err
 
 
+@pytest.mark.thorough
 def test_pictures_of_supports_are_among_those_of_the_result(result: MeshCycle) -> None:
     figures = result_figures(result)
     assert {"misalignment", "bearing_loads", "shaft"} <= set(figures)

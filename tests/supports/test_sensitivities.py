@@ -16,6 +16,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import number_at
 from tests.refusals import refusals
+from tests.samples.shared import made_once
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # contacts at edges: not the matter here
 
@@ -78,7 +79,7 @@ def scene_of(name: str, compliance: str = "contact") -> Scene:
     return read_scene(f"examples/scenes/{file}.toml").with_changes(fixed | changes)
 
 
-@cache
+@made_once
 def analysed(name: str, compliance: str = "contact", changes: tuple[tuple[str, float], ...] = ()) -> MeshCycle:
     scene, wanted = scene_of(name, compliance), dict[str, Any](changes)
     if TORQUE in wanted:
@@ -105,19 +106,19 @@ BENDING = {
 @pytest.mark.parametrize(
     ("name", "key", "step", "agreement"),
     [
-        ("spur", "wheel.modifications.tip_relief_um", 1.0, AGREES),
-        ("spur", TORQUE, 2.0, SMOOTH),
-        ("spur", "pinion.shaft.bearings.0.at_mm", 1.0, SMOOTH),
+        pytest.param("spur", "wheel.modifications.tip_relief_um", 1.0, AGREES, marks=pytest.mark.thorough),
+        pytest.param("spur", TORQUE, 2.0, SMOOTH, marks=pytest.mark.thorough),
+        pytest.param("spur", "pinion.shaft.bearings.0.at_mm", 1.0, SMOOTH, marks=pytest.mark.thorough),
         ("spur", "pinion.shaft.torque_at_mm", 1.0, SMOOTH),
-        ("spur", "pinion.shaft.sections.0.outer_diameter_mm", 0.25, SMOOTH),
+        pytest.param("spur", "pinion.shaft.sections.0.outer_diameter_mm", 0.25, SMOOTH, marks=pytest.mark.thorough),
         ("spur", "pinion.shaft.bearings.0.radial_stiffness_N_per_um", 10.0, AGREES),  # 0.03 um in all: grids count
         ("spur", "pinion.shaft.loads.0.at_mm", 2.0, AGREES),
-        ("helical", "pinion.modifications.lead_crowning_um", 1.0, AGREES),
-        ("helical", "mounting.misalignment_um", 1.0, AGREES),
+        pytest.param("helical", "pinion.modifications.lead_crowning_um", 1.0, AGREES, marks=pytest.mark.thorough),
+        pytest.param("helical", "mounting.misalignment_um", 1.0, AGREES, marks=pytest.mark.thorough),
         ("helical", "mounting.centre_distance_error_mm", 0.01, SMOOTH),
-        ("bevel", "pinion.modifications.helix_slope_um", 0.5, AGREES),
+        pytest.param("bevel", "pinion.modifications.helix_slope_um", 0.5, AGREES, marks=pytest.mark.thorough),
         ("bevel", "mounting.offset_mm", 1e-3, SMOOTH),
-        ("bevel", TORQUE, 0.02, SMOOTH),
+        pytest.param("bevel", TORQUE, 0.02, SMOOTH, marks=pytest.mark.thorough),
     ],
 )
 def test_transmission_error_changes_as_whole_analyses_do(name: str, key: str, step: float, agreement: float) -> None:
