@@ -63,7 +63,9 @@ def _between(one, start, end):
     return np.divide(reached / one.spacing[0], force, out=np.zeros_like(force), where=carrying)
 
 
-@pytest.mark.parametrize(("name", "rtol"), [("mesh_cycle_spur", 1e-4), ("mesh_cycle_helical", 1e-2)])
+@pytest.mark.parametrize(
+    ("name", "rtol"), [("mesh_cycle_spur", 1e-4), pytest.param("mesh_cycle_helical", 1e-2, marks=pytest.mark.thorough)]
+)
 def test_loss_of_an_even_line_load_is_that_of_lines_on_the_plane_of_action(name, rtol):
     """Position by position, and in the mean over a pitch; under little torque contacts keep to the path."""
     plain = {"pinion__modifications": None, "wheel__modifications": None}

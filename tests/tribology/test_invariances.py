@@ -42,6 +42,7 @@ def test_a_mirrored_pair_has_the_same_tribology(name):
     compared(own, shared(name, **changes))
 
 
+@pytest.mark.thorough
 def test_loss_needs_few_positions_of_crowned_pairs():
     """1e-3 from 9 positions on, for pairs whose contacts keep off the edges; the spur pair's relief starts suddenly."""
     for name in ("mesh_cycle_bevel", "face_milled_19x62_matched"):
@@ -49,6 +50,7 @@ def test_loss_needs_few_positions_of_crowned_pairs():
         assert_allclose(few, many, rtol=1e-3)
 
 
+@pytest.mark.thorough
 def test_extremes_need_17_positions():
     for name in ("mesh_cycle_helical", "mesh_cycle_spur", "face_milled_19x62_matched"):
         few, many = (known(shared(name, positions)) for positions in (17, 33))

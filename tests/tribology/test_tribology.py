@@ -433,6 +433,7 @@ def test_what_is_of_the_call_is_not_of_the_oil():
     assert "supply" not in inspect.signature(Lubricant).parameters
 
 
+@pytest.mark.thorough
 def test_report_has_a_section_of_scenes_that_say_how_the_pair_runs(tmp_path, monkeypatch):
     from loaded_tca.reports import write_html_report
 

@@ -214,6 +214,7 @@ def test_negative_sense_is_the_mirror_image_of_the_positive_one(data, mesh, driv
     assert_allclose(np.abs(second.residual), np.abs(first.residual), atol=1e-9)
 
 
+@pytest.mark.thorough
 @given(pairs())
 @settings(max_examples=20)
 def test_turning_back_with_the_wheel_driving_passes_through_the_same_contacts(pair):
@@ -273,7 +274,9 @@ def edges(pair, path):
     return np.stack([jet.value for jet in (*own, *other)], axis=-1)
 
 
-@pytest.mark.parametrize(("helix_deg", "driving"), [(15.0, "pinion"), (0.0, "wheel")])
+@pytest.mark.parametrize(
+    ("helix_deg", "driving"), [pytest.param(15.0, "pinion", marks=pytest.mark.thorough), (0.0, "wheel")]
+)
 def test_edge_contact_of_a_growing_misalignment_is_found_and_continuous(helix_deg, driving):
     tilts = np.radians(np.linspace(0.0, 1.0, 101))
     contacts = []

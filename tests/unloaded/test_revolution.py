@@ -49,9 +49,9 @@ def deviations_of(pair, seed, eccentricity=(0.0, 0.0)):
         ("spur", "pinion", "positive"),
         ("helical", "pinion", "positive"),
         ("helical", "wheel", "positive"),
-        ("helical", "pinion", "negative"),
-        ("bevel", "pinion", "positive"),
-        ("face-milled", "pinion", "positive"),
+        pytest.param("helical", "pinion", "negative", marks=pytest.mark.thorough),
+        pytest.param("bevel", "pinion", "positive", marks=pytest.mark.thorough),
+        pytest.param("face-milled", "pinion", "positive", marks=pytest.mark.thorough),
     ],
 )
 def test_rigid_transmission_error_is_that_of_flanks_really_turned(kind, driving, sense):

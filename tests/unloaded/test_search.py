@@ -27,6 +27,7 @@ def lead_over_grid(pair, path, row):
     return pair.driving * (path.transmission_error[row] - best)
 
 
+@pytest.mark.thorough
 @given(pairs(), st.floats(-0.5, 0.5))
 @settings(max_examples=60)
 def test_no_point_of_both_flanks_touches_before_the_contact_point(pair, turn):
@@ -238,6 +239,7 @@ def test_basin_on_a_edge_of_the_wheel_is_found(pair, share):
     assert lead_over_grid(pair, path, 0) >= -ROUNDING
 
 
+@pytest.mark.thorough
 def test_long_bent_ridge_is_climbed_to_its_end(monkeypatch):
     """Unmodified, turned by a microradian, wider than is allowed: a ridge that is level to 1e-4 mm and winds."""
     monkeypatch.setattr("loaded_tca.pairs.cylindrical.LARGEST_TURN", math.inf)
