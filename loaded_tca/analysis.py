@@ -24,6 +24,7 @@ from loaded_tca.loaded.rounded_edges import PeakAtEdge, pressures_at_rounded_edg
 from loaded_tca.loaded.supported import CarriedOnSupports, SupportedCycle, all_torques
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.results.collect import mesh_cycle
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.supports import warn_of_supports
@@ -93,19 +94,8 @@ class Effort:
 
     def __str__(self) -> str:
         contacts = f"{self.contacts} contact" + "s" * (self.contacts > 1)
-        text = f"{contacts} of {self.cells} cells: roughly {rounded(self.seconds)} s, {rounded(self.gibibytes)} GiB"
-        return text if self.fits else f"{text}; the machine has {rounded(machine_memory() / 2**30)} GiB"
-
-
-def rounded(value: float) -> str:
-    """Two digits, without an exponent up to a million.
-
-    Examples
-    --------
-    >>> rounded(1234.5), rounded(0.0123)
-    ('1200', '0.012')
-    """
-    return f"{float(f'{value:.2g}'):g}"
+        text = f"{contacts} of {self.cells} cells: roughly {plain(self.seconds, 2)} s, {plain(self.gibibytes, 2)} GiB"
+        return text if self.fits else f"{text}; the machine has {plain(machine_memory() / 2**30, 2)} GiB"
 
 
 def expected_effort(scene: Scene) -> Effort:

@@ -50,7 +50,7 @@ def read_bytes(path: str | os.PathLike[str], largest: float, kind: str) -> bytes
             content = file.read(size) if size <= largest else b""
     except (OSError, ValueError) as error:
         raise InputError(f"{name}: cannot be read: {reason_of(error)}") from None
-    require((size <= largest, f"{name}: more than {largest:.0f} bytes; no {kind} is so long"))
+    require((size <= largest, f"{name}: more than {largest:z.0f} bytes; no {kind} is so long"))
     return content
 
 

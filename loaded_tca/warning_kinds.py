@@ -10,6 +10,8 @@ import re
 from dataclasses import dataclass
 from functools import cached_property
 
+from loaded_tca.plain import Sentence
+
 
 @dataclass(frozen=True)
 class Kind:
@@ -28,7 +30,7 @@ class Kind:
 
     def sentence(self, **values: object) -> str:
         """The sentence with the values of its fields."""
-        return self.template.format(**values)
+        return Sentence().format(self.template, **values)
 
     @cached_property
     def words(self) -> str:
@@ -211,7 +213,8 @@ CLEARANCE = Kind(
     "a smaller tip diameter of the mating gear, or a deeper dedendum",
 )
 BEYOND_YIELD = Kind(
-    "4/pi of the mean pressure of a contact is above {most:g} MPa, which no gear steel carries without yielding",
+    "4/pi of the mean pressure of a contact is above {most:.4g} MPa, which no gear material with a Young's modulus of "
+    "{modulus:.6g} MPa carries without yielding",
     "4/pi of its mean is the peak of a line contact; load on cells beside edges, which `peak_pressure` leaves out, "
     "counts, too. The contact is elastic: real flanks yield below their surface, and carry the load on a wider contact",
     "`max_pressure_MPa`, less torque, or another unit of what was given",

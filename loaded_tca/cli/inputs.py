@@ -91,6 +91,7 @@ def require_result(directory: Path, path: Path, command: str) -> None:
     """Refuse a directory without a result that holds something else, in words that say what to give instead."""
     from loaded_tca.output.other_results import REVOLUTION_FILES, TRIBOLOGY_FILES
     from loaded_tca.output.result_files import RESULT
+    from loaded_tca.output.tables import COMPARISON, COMPARISON_DATA
 
     if path.exists():
         return
@@ -103,6 +104,11 @@ def require_result(directory: Path, path: Path, command: str) -> None:
     if parts:
         these = " or ".join(f"'{command} {directory / name}'" for name in parts)
         raise InputError(f"{directory}: holds results in {', '.join(parts)}; give one of them: {these}")
+    if (directory / COMPARISON_DATA).is_file():
+        raise InputError(
+            f"{directory}: holds a comparison of results, of which '{command}' takes none: its numbers are in "
+            f"{COMPARISON} and {COMPARISON_DATA}; give the directory of one of the results"
+        )
     if any((directory / name).is_file() for name in TRIBOLOGY_FILES):
         raise InputError(
             f"{directory}: holds tribology alone, without the result that it is of; give the directory of "

@@ -276,16 +276,16 @@ def bearings_text(lines: Sequence[ShaftLine]) -> str:
     for line in lines:
         text.append(f"{line.gear} under {1e-3 * line.torque:g} N m")
         for n, force in enumerate(line.bearing_forces):
-            parts = " | ".join(f"{one:.1f}" for one in force[:3])
+            parts = " | ".join(f"{one:z.1f}" for one in force[:3])
             text.append(f"  bearing {n} at {line.shaft.bearings[n].at:g} mm: force x | y | z {parts} N")
             if inside := rolling_figures(line, n):
                 largest, pressure, life = inside.values()
                 lasting = "no load" if math.isinf(life) else f"life {life:.4g} million revolutions"
-                text.append(f"    largest element force {largest:.1f} N, pressure {pressure:.0f} MPa, {lasting}")
+                text.append(f"    largest element force {largest:z.1f} N, pressure {pressure:z.0f} MPa, {lasting}")
         at = abs(line.places - line.middle).argmin()
         x, y, z, about_x, about_y, about_z = line.motions[at].tolist()
-        text.append(f"  middle of the face: x | y | z {1e3 * x:.2f} | {1e3 * y:.2f} | {1e3 * z:.2f} um")
-        turns = " | ".join(f"{1e6 * one:.1f}" for one in (about_x, about_y, about_z))
+        text.append(f"  middle of the face: x | y | z {1e3 * x:z.2f} | {1e3 * y:z.2f} | {1e3 * z:z.2f} um")
+        turns = " | ".join(f"{1e6 * one:z.1f}" for one in (about_x, about_y, about_z))
         text.append(f"    about x | y | z {turns} urad")
     return "\n".join(text)
 

@@ -11,13 +11,14 @@ from itertools import chain
 
 import numpy as np
 
-from loaded_tca.analysis import expected_effort, rounded
+from loaded_tca.analysis import expected_effort
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
 from loaded_tca.output.other_results import rolling_figures
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.results.figures import RIM_LABEL
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
 from loaded_tca.results.root_stress import rim_factor
@@ -52,7 +53,7 @@ def describe_scene(scene: Scene) -> str:
         for sentence in questions(scene):
             give_accuracy_warning(sentence)
     effort = expected_effort(scene)
-    spent = ("analysis, roughly: time [s], memory [GiB]", rounded(effort.seconds), rounded(effort.gibibytes))
+    spent = ("analysis, roughly: time [s], memory [GiB]", plain(effort.seconds, 2), plain(effort.gibibytes, 2))
     rows = [*chain.from_iterable(sections.values()), spent]
     lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
     beside = [f"ISO 6336: {reason}" for reason in reasons_beside(iso_figures(scene, max(scene.torques)))]
@@ -89,7 +90,7 @@ def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
             if letter in points:
                 length = points[letter]
                 roll, diameter = length / pair.base_radii[0], 2.0 * math.hypot(length, pair.base_radii[0])
-                yield f"  {letter}, {whose}", f"{length:.4f}", f"{math.degrees(roll):.4f}", f"{diameter:.4f}"
+                yield f"  {letter}, {whose}", f"{length:z.4f}", f"{math.degrees(roll):z.4f}", f"{diameter:z.4f}"
 
 
 def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
@@ -111,7 +112,7 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
         held = (
             "bore and outside of the ring held rigid [mm]" if scene.wheel.teeth < 0 else "bores or journals held rigid"
         )
-        yield held, *(f"{bore:.4f}" for bore in pair.rigid_bores)
+        yield held, *(f"{bore:z.4f}" for bore in pair.rigid_bores)
 
 
 def _bearing_rows(scene: Scene) -> Iterator[Row]:
@@ -126,10 +127,10 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
     for gear, lines in by_gear.items():
         for n, bearing in enumerate(lines[0].shaft.bearings if lines else ()):
             forces = (float(np.linalg.norm(line.bearing_forces[n, :3])) for line in lines)
-            yield f"{gear}, bearing {n} at {bearing.at:g} mm: force [N]", *(f"{force:.1f}" for force in forces)
+            yield f"{gear}, bearing {n} at {bearing.at:g} mm: force [N]", *(f"{force:z.1f}" for force in forces)
             inside = [rolling_figures(line, n) for line in lines]
             if any(inside):
-                yield "  largest element force [N]", *(f"{one['element_force_N']:.1f}" for one in inside)
+                yield "  largest element force [N]", *(f"{one['element_force_N']:z.1f}" for one in inside)
                 yield "  life [million revolutions]", *(f"{one['life_Mrev']:.4g}" for one in inside)
 
 
@@ -178,8 +179,8 @@ def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
             excess = 1e3 * flank.distance_to(flank.nominal, rho, z)
             yield f"{name}: measured points", " x ".join(map(str, gear.flank.measurement.shape))
             at_points = 1e3 * flank.distance_to(flank.nominal, *gear.flank.measurement.places)
-            yield f"{name}: deviations at points, from, to [um]", f"{at_points.min():.2f}", f"{at_points.max():.2f}"
-            yield f"{name}: deviations of flank, from, to [um]", f"{excess.min():.2f}", f"{excess.max():.2f}"
+            yield f"{name}: deviations at points, from, to [um]", f"{at_points.min():z.2f}", f"{at_points.max():z.2f}"
+            yield f"{name}: deviations of flank, from, to [um]", f"{excess.min():z.2f}", f"{excess.max():z.2f}"
         errors = {"at points": flank.fit_error, "between them": flank.check_error}
         for where, error in errors.items():
             if error is not None:
@@ -213,7 +214,7 @@ def describe_stage(stage: Stage) -> str:
     for name, rows, sentences in geometry_of_meshes(stage):
         lines += ["", name, *(_line(*row) for row in rows)]
         warned += [f"warning: {name}: {sentence}" for sentence in sentences]
-    lines += ["", _line("analysis, roughly: time [s]", rounded(expected_stage_effort(stage).seconds)), HELD, *warned]
+    lines += ["", _line("analysis, roughly: time [s]", plain(expected_stage_effort(stage).seconds, 2)), HELD, *warned]
     return "\n".join(lines)
 
 
@@ -244,15 +245,15 @@ def _stage_rows(stage: Stage) -> list[Row]:
     pins = ("tangentially", asked.pin_tangential_um), ("outwards", asked.pin_radial_um)
     rows: list[Row] = [
         ("teeth of sun, planet and ring", f"{z_s}", f"{z_p}", f"{z_r}"),
-        ("ratio of sun to carrier, the ring held", f"{1.0 + z_r / z_s:.4f}"),
+        ("ratio of sun to carrier, the ring held", f"{1.0 + z_r / z_s:z.4f}"),
         ("driving", asked.driving),
-        ("planets at [deg]", *(f"{math.degrees(angle):.4f}" for angle in asked.angles)),
-        ("they can be put in every [deg]", f"{360.0 / (z_s + z_r):.4f}"),
-        ("centre distance of both meshes [mm]", f"{stage.centre_distance:.4f}"),
+        ("planets at [deg]", *(f"{math.degrees(angle):z.4f}" for angle in asked.angles)),
+        ("they can be put in every [deg]", f"{360.0 / (z_s + z_r):z.4f}"),
+        ("centre distance of both meshes [mm]", f"{stage.centre_distance:z.4f}"),
     ]
     if len(asked.angles) > 1:
         room = neighbours_apart(asked.angles, stage.centre_distance) - 2.0 * planet.tip_radius
-        rows.append(("neighbouring planets apart [mm]", f"{room:.4f}"))
+        rows.append(("neighbouring planets apart [mm]", f"{room:z.4f}"))
     rows.append(("support of the sun", _support(stage)))
     rows += [(f"pins displaced {how} [um]", *(f"{pin:g}" for pin in given)) for how, given in pins if given]
     return rows
@@ -277,7 +278,10 @@ def _torque_rows(stage: Stage) -> list[Row]:
         ("sun torque [N m]", *(f"{1e-3 * torque:g}" for torque in shown)),
         ("carrier torque [N m]", *(f"{1e-3 * torque * (1.0 + z_r / z_s):g}" for torque in shown)),
         ("ring torque [N m]", *(f"{1e-3 * torque * z_r / z_s:g}" for torque in shown)),
-        ("force of an even share at the base circles [N]", *(f"{_even(stage, torque) / base:.1f}" for torque in shown)),
+        (
+            "force of an even share at the base circles [N]",
+            *(f"{_even(stage, torque) / base:z.1f}" for torque in shown),
+        ),
     ]
 
 
@@ -294,7 +298,7 @@ def phase_rows(stage: Stage) -> list[Row]:
     return [
         ("phases of the meshes, in mesh cycles", "sun's", "ring's"),
         *(
-            (f"  planet {planet}", f"{sun:.4f}", f"{ring:.4f}")
+            (f"  planet {planet}", f"{sun:z.4f}", f"{ring:z.4f}")
             for planet, (sun, ring) in enumerate(zip(*(one.tolist() for one in phases), strict=True))
         ),
         ("orders of the mesh that equal planets cancel", f"rotation: {orders[0]}", f"forces on the sun: {orders[1]}"),

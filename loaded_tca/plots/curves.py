@@ -109,7 +109,7 @@ def _draw_sharp_edges(axes: Axes, result: MeshCycle, angle: Array, peak: Array) 
     if within.any():
         axes.plot([], [], "x", color="black", label=label)
     if beyond.any():
-        span = " to ".join(dict.fromkeys(f"{value:.0f}" for value in (peak[beyond].min(), peak[beyond].max())))
+        span = " to ".join(dict.fromkeys(f"{value:z.0f}" for value in (peak[beyond].min(), peak[beyond].max())))
         name = "the same" if within.any() else label
         axes.plot([], [], "^", color="black", label=f"{name} above the axis: {span} MPa")
         high = 1.03 * edge

@@ -108,7 +108,7 @@ def plot_pressure_map(
     draw_map(axes, result, torque, at, highest, scale)
     if one.pressure.any():
         peak = float(one.pressure.max())
-        label = PRESSURE + (f"\n(single cells: up to {peak:.0f})" if highest < peak else "")
+        label = PRESSURE + (f"\n(single cells: up to {peak:z.0f})" if highest < peak else "")
         colours = ScalarMappable(Normalize(0.0, highest), COLOURS)
         figure.colorbar(colours, ax=axes, label=label, extend="max" if highest < peak else "neither")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")

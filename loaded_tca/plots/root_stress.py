@@ -76,7 +76,7 @@ def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
         panels[-1, column].set_xticks(range(-60, 61, 30))  # 30 deg: the critical section of ISO 6336-3
         panels[-1, column].set_xlabel("tangent angle [deg]: back of the tooth | side in contact")
     figure.colorbar(ScalarMappable(scale, DIVERGING), ax=panels, label="root stress [MPa], tension positive")
-    bands = f"white bands beside the tooth: not evaluated, the flank or less than {math.degrees(LEAST_ANGLE):.0f} deg"
+    bands = f"white bands beside the tooth: not evaluated, the flank or less than {math.degrees(LEAST_ANGLE):z.0f} deg"
     style.set_title(figure, result, f"root stress, {load(result, torque)}", range_of_positions(result), bands)
     return figure
 
@@ -102,7 +102,7 @@ def _mark_extremes(axes: Axes, one: RootStressMap, stress: Array, signs: tuple[f
             x = (1.0, -1.0)[side] * math.degrees(one.tangent_angle[side, station, along])
             place = x, one.point[side, station, along, 2]
             axes.plot(*place, "o", color="black", markeredgecolor="white", markersize=5.0)
-            number = f"{stress[side, station, along]:.0f}"
+            number = f"{stress[side, station, along]:z.0f}"
             above = place[1] > np.nanmean(one.point[..., 2])
             offset, side_of_text = ((0.0, -6.0), "top") if above else ((0.0, 6.0), "bottom")
             text = axes.annotate(number, place, offset, textcoords="offset points", ha="center", va=side_of_text)

@@ -378,7 +378,7 @@ def _draw_table(
     }
     cells = [
         [
-            f"{f'{of(points[name]):.3f}' if name in points else '-'} ({of(length):.3f})"
+            f"{f'{of(points[name]):z.3f}' if name in points else '-'} ({of(length):z.3f})"
             for name, length in nominal.items()
         ]
         for of in quantities.values()

@@ -270,7 +270,7 @@ def plot_study_ranking(
     what = f"{len(cells)} best of {len(ranked)} {kind}" if len(cells) < len(ranked) else kind
     worst = "least" if largest_is_best else "largest"
     lucky = 100.0 * (1.0 - QUANTILE if largest_is_best else QUANTILE)
-    quantile = [f"of each figure the {lucky:.0f} % quantile over the samples"] if design_keys(study) else []
+    quantile = [f"of each figure the {lucky:z.0f} % quantile over the samples"] if design_keys(study) else []
     of = [f"of each figure the {worst} over the torques"] if torque is None and values.shape[1] > 1 else []
     order = "largest" if largest_is_best else "least"
     what = f"{what}, {order} {without_unit(label_of(by or main_figures(study)[0]))} first"

@@ -243,7 +243,7 @@ def _draw_percentiles(axes: Axes, values: Array) -> str:
     places = dict(zip(PERCENTILES, percentiles_of(values).tolist(), strict=True))
     for part, at in places.items():
         axes.axvline(at, color=ACCENT, linestyle="-" if part == 0.5 else "--")
-    return "lines: " + ", ".join(f"{100.0 * part:.0f} % at {at:.4g}" for part, at in places.items())
+    return "lines: " + ", ".join(f"{100.0 * part:z.0f} % at {at:.4g}" for part, at in places.items())
 
 
 def _strongest(study: xarray.Dataset, values: Array) -> list[str]:

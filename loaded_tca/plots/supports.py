@@ -23,6 +23,7 @@ from loaded_tca.plots.style import (
     set_title,
     widen,
 )
+from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.summary import shown
@@ -63,7 +64,8 @@ def plot_misalignment(result: MeshCycle) -> Figure:
     axes.fill_between(
         torque, np.nanmin(values, axis=1), np.nanmax(values, axis=1), color=colour, alpha=0.25, label="all positions"
     )
-    axes.plot(torque, np.nanmean(values, axis=1), "o-", color=colour, label="mean over the pitch")
+    means = [mean_over_a_pitch(over_pitch) for over_pitch in values]
+    axes.plot(torque, means, "o-", color=colour, label="mean over the pitch")
     axes.axhline(0.0, color="0.6", linewidth=0.8)
     axes.set(xlabel="pinion torque [N m]", ylabel="misalignment F$_β$ of the supports [µm]")
     axes.set_xlim(left=0.0, right=1.05 * float(torque.max()) if torque.max() > 0.0 else None)

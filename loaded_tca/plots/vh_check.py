@@ -262,7 +262,7 @@ def _write_corners(axes: Axes, place: tuple[Array, Array], corners: Array) -> No
     for i, j in np.ndindex(2, 2):
         at = float(x[-i, -j]), float(y[-i, -j])
         axes.annotate(
-            f"{corners[i, j] + 0.0:.1f}",
+            f"{corners[i, j]:z.1f}",
             at,
             xytext=(-6.0 if j else 6.0, -6.0 if i else 6.0),
             textcoords="offset points",

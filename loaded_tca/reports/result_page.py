@@ -253,7 +253,7 @@ def _shares(result: StageResult) -> Table:
     """Least, mean and largest share of each planet, under the largest torque."""
     shares = 100.0 * result.planet_share[index_or_largest(result.torque)]
     rows = (
-        (f"planet {planet}", *(f"{value:.2f}" for value in (own.min(), own.mean(), own.max())))
+        (f"planet {planet}", *(f"{value:z.2f}" for value in (own.min(), own.mean(), own.max())))
         for planet, own in enumerate(shares.T)
     )
     return Table(tuple(rows), ("share of the torque [%], largest torque", "least", "mean", "largest"))
@@ -264,8 +264,8 @@ def _orders(result: StageResult) -> Table:
     rows = (
         (
             f"order {one.order}",
-            f"{one.stage:.4f}",
-            f"{one.one_path:.4f}",
+            f"{one.stage:z.4f}",
+            f"{one.one_path:z.4f}",
             "cancelled" if one.torsion_cancels else "kept",
             "cancelled" if one.translation_cancels else "kept",
         )

@@ -213,11 +213,11 @@ class StressBelow:
         lines = [self.result.scene.title or "Stresses below the surface", *self.where]
         for quantity, name in NAMES.items():
             largest = self.largest(quantity)
-            relative = f"{largest.value / peak:.3f} of the pressure at {largest.depth / self.half_width:.2f} b"
+            relative = f"{largest.value / peak:z.3f} of the pressure at {largest.depth / self.half_width:z.2f} b"
             lines.append(f"{name:<34}{largest.value:>8.4g} MPa at {largest.depth:.4g} mm: {relative}")
             lines.append(f"  on the pinion at {frame.place(largest.radius, largest.axial)}")
         if (hertz := self.hertz_shear) is not None:
-            relative = f"{hertz.value / hertz.pressure:.3f} of p0 at {hertz.depth / hertz.half_width:.2f} b"
+            relative = f"{hertz.value / hertz.pressure:z.3f} of p0 at {hertz.depth / hertz.half_width:z.2f} b"
             own = f"p0 {hertz.pressure:.4g} MPa, b {hertz.half_width:.4g} mm"
             what = "greatest shear stress after Hertz"
             lines.append(f"{what:<34}{hertz.value:>8.4g} MPa at {hertz.depth:.4g} mm: {relative} of its own, {own}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+from loaded_tca.plain import plain
 from loaded_tca.results.figure import Figures
 from loaded_tca.results.figures import FIGURES, SUMMARY
 from loaded_tca.results.key_figures import WHERE_REASONS_ARE, reasons_beside
@@ -102,8 +103,8 @@ def shown(value: float, name: str) -> str:
     if "residual" in name:
         return f"{value:.1e}"
     if name in FIGURES and FIGURES[name].is_part:
-        return f"{100.0 * value:.2g}"
-    return f"{value:.0f}" if abs(value) >= FOUR_DIGITS else f"{value:.4g}"
+        return plain(100.0 * value, 2)
+    return f"{value:z.0f}" if abs(value) >= FOUR_DIGITS else plain(value)
 
 
 def shown_torque(torque: float) -> str:
@@ -152,7 +153,7 @@ def _for_torques(figures: Sequence[Figures], holds: Sequence[bool]) -> str:
         return ""
     if all(holds):
         return " (all torques)"
-    torques = [f"{entry['pinion_torque_Nm']:.4g}" for entry, one in zip(figures, holds, strict=True) if one]
+    torques = [plain(entry["pinion_torque_Nm"]) for entry, one in zip(figures, holds, strict=True) if one]
     if len(torques) > MOST_TORQUES:
         return f" ({len(torques)} torques, {torques[0]} to {torques[-1]} N m)"
     return f" ({', '.join(torques)} N m)"

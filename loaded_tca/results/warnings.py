@@ -23,6 +23,7 @@ from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.rounded_edges import PeakAtEdge
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import arc_cells, mean_pressure_of
@@ -39,13 +40,17 @@ ROUNDING = 1e-9
 """Relative, of an estimated error: four cells beside a crossing leave 3 % exactly."""
 SMALLEST_um = 0.1
 """Amount of a modification or an error below which a question is asked; grinding holds a micrometre."""
-SOFTEST_METAL, STIFFEST, LARGEST_TORQUE_Nm = 1e4, 1e6, 1e6
-"""Moduli [MPa] of gear materials, plastics left out, and a torque [N m] beyond which a question is asked."""
+SOFTEST, STIFFEST, LARGEST_TORQUE_Nm = 500.0, 1e6, 1e6
+"""Moduli [MPa] of gear materials, from polyethylene to hard metal, and a torque [N m] beyond which a question is asked.
+A modulus of metals in GPa is below the first."""
 LEAST_CLEARANCE = 0.1
 """Tip clearance over the module below which a warning says so: basic racks have 0.17 to 0.4 (ISO 53)."""
 HARDEST_MPa, OVER_MEAN = 4000.0, 4.0 / math.pi
 """Contact pressure that no gear steel carries (endurance limits of ISO 6336-5 end at 1650 MPa), and the largest one
 of a line contact over the mean, which sharp edges do not move."""
+STEEL_MPa, SOFTEST_METAL_MPa, HARDEST_PLASTIC = 206000.0, 1e4, 0.06
+"""Moduli of steel and of the softest metal; the pressure that no plastic carries over its modulus: yield begins at 1.67
+yield stresses (Johnson 1985, section 6.2), which are 3.5 % of the modulus at the most."""
 HARDEST_ROOT_MPa = 1500.0
 """Root stress that no gear steel carries: nominal strengths sigma_FE of ISO 6336-5 end at 1050 MPa."""
 MOST_TORSION = 0.5
@@ -158,7 +163,7 @@ def rotation_reasons(
     turned = np.where(rotation > 0.0, rotation, math.inf)
     twist = body_torsion * torques[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
     if (share := float(twist.max())) > MOST_TORSION:
-        bores = " and ".join(f"{bore:.4g}" for bore in pair.rigid_bores)
+        bores = " and ".join(plain(bore) for bore in pair.rigid_bores)
         sentences.append(kinds.BODY_TWIST.sentence(bores=bores, share=min(share, 1.0)))
     deflection = float(np.nanmax(rotation, initial=0.0)) * pair.base_radii[1]
     if load_sharing and deflection > REACH * pair.module:
@@ -178,7 +183,7 @@ def warn_of_contacts(result: CycleNumbers, reason: str, where: Mask, stacklevel:
 def place_of(torque: float, angle: float, number: int) -> str:
     """Torque [N mm], pinion angle [rad] and tooth pair of a contact in words."""
     turned = round(math.degrees(angle), 6) + 0.0  # what is left of a sum to 0 is none
-    return f"{1e-3 * torque:g} N m, pinion angle {turned:.4g} deg, tooth pair {number:+d}"
+    return f"{plain(1e-3 * torque, 6)} N m, pinion angle {plain(turned)} deg, tooth pair {number:+d}"
 
 
 def at_places(reason: str, places: Sequence[str], count: int) -> str:
@@ -227,12 +232,21 @@ def _short_path(scene: Scene) -> list[str]:
     return []
 
 
+def hardest_pressure(*moduli: float) -> float:
+    """Contact pressure [MPa] that no material with the least of some Young's moduli carries without yielding.
+
+    That of metals is in proportion to their moduli, 4000 MPa of steel.
+    """
+    softest = min(moduli)
+    return softest * (HARDEST_PLASTIC if softest < SOFTEST_METAL_MPa else HARDEST_MPa / STEEL_MPa)
+
+
 def _odd_inputs(scene: Scene) -> list[str]:
     """Questions about numbers that look like those of another unit."""
     sentences = []
     for modulus in dict.fromkeys(material.youngs_modulus_MPa for material in scene.materials):
-        what = "less than that of any metal" if modulus < SOFTEST_METAL else "more than that of any material of gears"
-        if not SOFTEST_METAL <= modulus <= STIFFEST:
+        what = f"{'less' if modulus < SOFTEST else 'more'} than that of any material of gears"
+        if not SOFTEST <= modulus <= STIFFEST:
             key = "material.youngs_modulus_MPa"
             sentences.append(kinds.ODD_INPUT.sentence(key=key, value=modulus, unit="MPa", what=what))
     largest = 1e-3 * max(scene.torques)
@@ -257,9 +271,10 @@ def questions(scene: Scene) -> list[str]:
     torque = max(scene.torques)
     contact = scene.contact_standard.stress_per_root_torque * math.sqrt(torque)
     root = torque * max(scene.nominal_root_stress)
-    for stress, most, name in ((contact, HARDEST_MPa, "sigma_H0"), (root, HARDEST_ROOT_MPa, "sigma_F0")):
+    hardest = hardest_pressure(*(material.youngs_modulus_MPa for material in scene.materials))
+    for stress, most, name in ((contact, hardest, "sigma_H0"), (root, HARDEST_ROOT_MPa, "sigma_F0")):
         if stress > most:
-            what = f"a {name} of {stress:.4g} MPa, above {most:g}, which no gear steel carries"
+            what = f"a {name} of {plain(stress)} MPa, above {plain(most)}, which no material of gears carries"
             sentences.append(
                 kinds.ODD_INPUT.sentence(key="load.pinion_torque_Nm", value=1e-3 * torque, unit="N m", what=what)
             )
@@ -315,8 +330,9 @@ def reasons_of(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[
         reasons.append(kinds.BOX.sentence())
     if solution.load > 0.0 and solution.cells_across[0] < 8:
         reasons.append(kinds.FEW_CELLS.sentence())
-    if pair.max_pressure is None and OVER_MEAN * mean_pressure_of(solution.pressure) > HARDEST_MPa:
-        reasons.append(kinds.BEYOND_YIELD.sentence(most=HARDEST_MPa))
+    moduli = [gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel)]
+    if pair.max_pressure is None and OVER_MEAN * mean_pressure_of(solution.pressure) > hardest_pressure(*moduli):
+        reasons.append(kinds.BEYOND_YIELD.sentence(most=hardest_pressure(*moduli), modulus=min(moduli)))
     if 0.5 * loaded.extent[0] > THICKEST_CONTACT * pair.module:
         reasons.append(kinds.WIDE.sentence())
     return reasons
@@ -376,10 +392,10 @@ def _edge_finding(result: CycleNumbers, torque: int) -> str:
     """The largest pressure at an edge of pairs that carry a thousandth of the torque: where, and what would remove it.
 
     An edge carries no load where the flank lacks as much there as the pair deflects: its contact deformation and the
-    deflection of its teeth along the normal.
+    deflection of its teeth along the normal. An edge pressure that the peak pressure exceeds is none.
     """
     pressures = np.where(result.load_share[torque] >= LEAST_SHARE, result.edge_pressure[torque], math.nan)
-    if not np.isfinite(pressures).any():
+    if not np.nanmax(pressures, initial=-math.inf) > np.nanmax(result.peak_pressure[torque], initial=0.0):
         return ""
     n, k = (int(index) for index in np.unravel_index(int(np.nanargmax(pressures)), pressures.shape))
     at = torque, n, k
@@ -391,22 +407,28 @@ def _edge_finding(result: CycleNumbers, torque: int) -> str:
         accuracy = (
             known if math.isfinite(error) else "without a limit: a sharp edge or a relief start meets the rounding"
         )
-    elastic = "elastic" if math.isnan(cap) else f"with the cap of {cap:.6g} MPa"
+    elastic = "elastic" if math.isnan(cap) else f"with the cap of {plain(cap, 6)} MPa"
     remedies = [
         f"{relief} on the {' or '.join(dict.fromkeys(name.split()[0] for name in edges if where in name))}"
         for relief, where in (("end relief", "side"), ("tip relief", "tip"))
         if any(where in name for name in edges)
     ]
     deflection = 1e3 * float(np.nansum([result.contact_deformation[at], result.tooth_deflection[at]]))
-    amount = f"{deflection:.2g} um, by which the pair deflects"
+    amount = f"{plain(deflection, 2)} um, by which the pair deflects"
     if result.paths[k].edges[n].any():
         amount = f"more than {amount}, since it touches there without load, too"
     remedy = f"{' or '.join(remedies) or 'a relief'} of {amount}, takes the load off it"
+    share = f"{plain(100.0 * result.load_share[at], 3)} % of the torque"
+    largest = float(np.nanmax(result.edge_pressure[torque]))
+    beyond = (
+        f"; the largest one, {plain(largest)} MPa, is that of a pair with less than {LEAST_SHARE:.1%} of the torque"
+        if largest > result.edge_pressure[at]
+        else ""
+    )
     return (
-        f"edge pressure {result.edge_pressure[at]:.4g} MPa at {1e-3 * result.torque[torque]:g} N m on "
-        f"{' + '.join(edges)} (pinion diameter {2.0 * result.edge_radius[at]:.4g} mm, axial "
-        f"{result.edge_axial[at]:.4g} mm), where the pair carries {100.0 * result.load_share[at]:.3g} % of the torque; "
-        f"{elastic}, {accuracy}; {remedy}"
+        f"edge pressure {plain(result.edge_pressure[at])} MPa at {plain(1e-3 * result.torque[torque], 6)} N m on "
+        f"{' + '.join(edges)} (pinion diameter {plain(2.0 * result.edge_radius[at])} mm, axial "
+        f"{plain(result.edge_axial[at])} mm), where the pair carries {share}; {elastic}, {accuracy}; {remedy}{beyond}"
     )
 
 
@@ -416,9 +438,11 @@ def _peak_finding(result: CycleNumbers, torque: int) -> str:
     if place is None or not result.on_edge[torque][place] or result.load_share[torque][place] >= SMALL_SHARE:
         return ""
     others = np.where(result.load_share[torque] >= SMALL_SHARE, result.peak_pressure[torque], math.nan)
-    beside = f"; of pairs that carry a tenth and more it is {np.nanmax(others):.4g} MPa" if (others > 0.0).any() else ""
+    most = (
+        f"; of pairs that carry a tenth and more it is {plain(np.nanmax(others))} MPa" if (others > 0.0).any() else ""
+    )
+    pressure, applied = result.peak_pressure[torque][place], plain(1e-3 * result.torque[torque], 6)
     return (
-        f"the peak pressure {result.peak_pressure[torque][place]:.4g} MPa at {1e-3 * result.torque[torque]:g} N m is "
-        f"that of slices at an edge, in a pair that carries {100.0 * result.load_share[torque][place]:.3g} % of the "
-        f"torque{beside}"
+        f"the peak pressure {plain(pressure)} MPa at {applied} N m is that of slices at an edge, in a pair that "
+        f"carries {plain(100.0 * result.load_share[torque][place], 3)} % of the torque{most}"
     )

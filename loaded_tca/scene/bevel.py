@@ -55,7 +55,7 @@ def too_steep(normal: float | None, spiral: float | None) -> str | None:
     if normal is None or normal <= largest:
         return None
     most = f"{degrees(LARGEST_PRESSURE_ANGLE):g} deg of transverse pressure angle"
-    return f"found {normal:g}; with spiral_angle_deg = {spiral:g} allowed up to {largest:.4f}, which is {most}"
+    return f"found {normal:g}; with spiral_angle_deg = {spiral:g} allowed up to {largest:z.4f}, which is {most}"
 
 
 SIZES = "outer_module_mm", "mean_normal_module_mm", "wheel_outer_diameter_mm"
@@ -393,18 +393,18 @@ class BevelScene(SpiralScene, BlankScene):
         pressures = (gear.pressure_angle, atan(tan(gear.pressure_angle) * cos(gear.spiral_angle)))
         widths = (gear.face_width,) if blanks is None or not blanks.has_own_faces else blanks.face_widths
         return [
-            ("shaft angle Sigma [deg]", f"{degrees(mesh.shaft_angle):.4f}"),
-            ("cone distances R_e, R_m, R_i [mm]", *(f"{distance:.4f}" for distance in distances)),
-            ("transverse modules m_et, m_mt [mm]", *(f"{module:.4f}" for module in modules)),
-            ("mean normal module m_mn [mm]", f"{gear.mean_normal_module:.4f}"),
-            ("mean spiral angle beta_m [deg]", f"{degrees(abs(gear.spiral_angle)):.4f}"),
-            ("pressure angles alpha_t, alpha_n [deg]", *(f"{degrees(angle):.4f}" for angle in pressures)),
+            ("shaft angle Sigma [deg]", f"{degrees(mesh.shaft_angle):z.4f}"),
+            ("cone distances R_e, R_m, R_i [mm]", *(f"{distance:z.4f}" for distance in distances)),
+            ("transverse modules m_et, m_mt [mm]", *(f"{module:z.4f}" for module in modules)),
+            ("mean normal module m_mn [mm]", f"{gear.mean_normal_module:z.4f}"),
+            ("mean spiral angle beta_m [deg]", f"{degrees(abs(gear.spiral_angle)):z.4f}"),
+            ("pressure angles alpha_t, alpha_n [deg]", *(f"{degrees(angle):z.4f}" for angle in pressures)),
             ("pressure angle that the scene states", "transverse" if stated is None else "normal"),
-            ("backlash j_mt at the mean pitch circles [mm]", f"{round(mesh.backlash, 4) + 0.0:.4f}"),
-            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
-            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
-            ("total contact ratio eps_gamma", f"{mesh.transverse_contact_ratio + mesh.overlap_ratio:.4f}"),
-            ("face width b [mm]", *(f"{width:.4f}" for width in widths)),
+            ("backlash j_mt at the mean pitch circles [mm]", f"{round(mesh.backlash, 4):z.4f}"),
+            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:z.4f}"),
+            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:z.4f}"),
+            ("total contact ratio eps_gamma", f"{mesh.transverse_contact_ratio + mesh.overlap_ratio:z.4f}"),
+            ("face width b [mm]", *(f"{width:z.4f}" for width in widths)),
             *(() if blanks is None else common_blank_rows(blanks, self.geometry.blank, self.data_type)),
             ("", "pinion", "wheel"),
             ("teeth z", str(mesh.pinion.teeth), str(mesh.wheel.teeth)),

@@ -63,8 +63,8 @@ def _pair_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFlan
     misses = (abs(pinion.spiral) - abs(wheel.spiral), pinion.pressure - wheel.pressure)
     return [
         ("shaft angle Sigma [deg]", _deg(mesh.shaft_angle)),
-        ("cone distances R_e, R_m, R_i [mm]", *(f"{part:.4f}" for part in (heel, blank.mean_cone_distance, toe))),
-        ("face width b [mm]", f"{blank.face_width:.4f}"),
+        ("cone distances R_e, R_m, R_i [mm]", *(f"{part:z.4f}" for part in (heel, blank.mean_cone_distance, toe))),
+        ("face width b [mm]", f"{blank.face_width:z.4f}"),
         ("pinion less wheel: spiral, pressure [deg]", *(_deg(miss) for miss in misses)),
     ]
 
@@ -78,27 +78,27 @@ def _hypoid_rows(mesh: HypoidMesh, pinion: FlankAngles, wheel: FlankAngles) -> l
     ends = [(blank.outer_cone_distance, blank.mean_cone_distance, blank.cone_distances[0]) for blank in blanks]
     return [
         ("shaft angle Sigma [deg]", _deg(mesh.shaft_angle)),
-        ("hypoid offset a [mm]", f"{mesh.offset:.4f}"),
+        ("hypoid offset a [mm]", f"{mesh.offset:z.4f}"),
         ("offset angles zeta_m, zeta_mp [deg]", _deg(cones.axial_offset_angle), _deg(cones.offset_angle)),
         ("limit pressure angle alpha_lim [deg]", _deg(limit)),
         ("spiral angles that roll on each other [deg]", *(_deg(angle) for angle in spirals)),
-        ("crossing point to P, t_zm [mm]", *(f"{part:.4f}" for part in cones.crossing_distances)),
-        ("pitch apex beyond crossing point, t_z [mm]", *(f"{part:.4f}" for part in cones.apexes)),
-        ("pinion: R_e, R_m, R_i [mm]", *(f"{part:.4f}" for part in ends[0])),
-        ("wheel: R_e, R_m, R_i [mm]", *(f"{part:.4f}" for part in ends[1])),
-        ("face widths b [mm]", *(f"{blank.face_width:.4f}" for blank in blanks)),
-        ("smallest clearance at the roots [mm]", *(f"{part:.4f}" for part in mesh.tip_clearances)),
+        ("crossing point to P, t_zm [mm]", *(f"{part:z.4f}" for part in cones.crossing_distances)),
+        ("pitch apex beyond crossing point, t_z [mm]", *(f"{part:z.4f}" for part in cones.apexes)),
+        ("pinion: R_e, R_m, R_i [mm]", *(f"{part:z.4f}" for part in ends[0])),
+        ("wheel: R_e, R_m, R_i [mm]", *(f"{part:z.4f}" for part in ends[1])),
+        ("face widths b [mm]", *(f"{blank.face_width:z.4f}" for blank in blanks)),
+        ("smallest clearance at the roots [mm]", *(f"{part:z.4f}" for part in mesh.tip_clearances)),
         ("pinion less wheel: spiral - zeta_mp, pressure", *(_deg(miss) for miss in misses)),
     ]
 
 
 def _blank_rows(mesh: FaceMilledMesh, points: tuple[Point, Point]) -> list[Row]:
     def both(value: Callable[[FaceMilledGear], float]) -> tuple[str, ...]:
-        return tuple(f"{value(gear):.4f}" for gear in mesh.gears)
+        return tuple(f"{value(gear):z.4f}" for gear in mesh.gears)
 
     def shown(beyond: Iterable[float]) -> tuple[str, ...]:
         """Apexes from the crossing points of the axes."""
-        return tuple(f"{part + apex:.4f}" for part, apex in zip(beyond, _pitch_apexes(mesh), strict=True))
+        return tuple(f"{part + apex:z.4f}" for part, apex in zip(beyond, _pitch_apexes(mesh), strict=True))
 
     return [
         ("pitch angle delta [deg]", *both(lambda gear: degrees(gear.blank.pitch_angle))),
@@ -110,8 +110,8 @@ def _blank_rows(mesh: FaceMilledMesh, points: tuple[Point, Point]) -> list[Row]:
         ("outer transverse module m_et [mm]", *both(lambda gear: _outer_diameter(gear) / gear.teeth)),
         (MEAN_DEPTHS[0], *both(lambda gear: gear.blank.tip_height(gear.blank.mean_cone_distance))),
         (MEAN_DEPTHS[1], *both(lambda gear: -gear.blank.root_height(gear.blank.mean_cone_distance))),
-        ("mean point, radius rho [mm]", *(f"{rho:.4f}" for rho, _ in points)),
-        ("mean point, from the apex z [mm]", *(f"{z:.4f}" for _, z in points)),
+        ("mean point, radius rho [mm]", *(f"{rho:z.4f}" for rho, _ in points)),
+        ("mean point, from the apex z [mm]", *(f"{z:z.4f}" for _, z in points)),
     ]
 
 
@@ -133,7 +133,7 @@ def _flank_rows(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
     return [
         ("spiral angle beta_m of this flank [deg]", *(_deg(abs(flank.angles.spiral)) for flank in flanks)),
         ("pressure angle alpha_n of this flank [deg]", *(_deg(flank.angles.pressure) for flank in flanks)),
-        ("flank below the pitch cone, mid-face [mm]", *(f"{depth:.4f}" for depth in depths)),
+        ("flank below the pitch cone, mid-face [mm]", *(f"{depth:z.4f}" for depth in depths)),
         ("normal tooth thickness s_mn as cut [mm]", *(_shown(_thickness(flank.gear)) for flank in flanks)),
         ("normal pitch at R_m less both s_mn [mm]", _shown(mean_backlash(flanks))),
     ]
@@ -172,7 +172,7 @@ def _normal_arc(gear: FaceMilledGear, angle: float) -> float:
 
 
 def _shown(length: float) -> str:
-    return ONE_FLANK if isnan(length) else f"{length:.4f}"
+    return ONE_FLANK if isnan(length) else f"{length:z.4f}"
 
 
 def _machine_rows(mesh: FaceMilledMesh) -> list[Row]:
@@ -194,7 +194,7 @@ def _machine_rows(mesh: FaceMilledMesh) -> list[Row]:
         ("modified roll 6D", first.modified_roll_6d, second.modified_roll_6d),
         ("helical motion [mm/rad]", first.helical_motion, second.helical_motion),
     )
-    shown = [(label, *(f"{value:.6f}" for value in values)) for label, *values in settings if any(values)]
+    shown = [(label, *(f"{value:z.6f}" for value in values)) for label, *values in settings if any(values)]
     return [("generation", first.generation, second.generation), *shown]
 
 
@@ -203,18 +203,18 @@ def _blade_rows(mesh: FaceMilledMesh, sides: Sides) -> list[Row]:
     blades = [gear.cutter.blade(side) for gear, side in zip(mesh.gears, sides, strict=True)]
     return [
         ("cutter number", *(f"{gear.cutter.number:g}" for gear in mesh.gears)),
-        ("point radius r_p [mm]", *(f"{blade.point_radius:.6f}" for blade in blades)),
+        ("point radius r_p [mm]", *(f"{blade.point_radius:z.6f}" for blade in blades)),
         ("blade angle [deg]", *(_deg(blade.blade_angle) for blade in blades)),
         (
             "radius of a hollow blade [mm]",
             *("straight" if blade.blade_radius is None else f"{blade.blade_radius:g}" for blade in blades),
         ),
-        ("edge radius [mm]", *(f"{blade.edge_radius:.4f}" for blade in blades)),
+        ("edge radius [mm]", *(f"{blade.edge_radius:z.4f}" for blade in blades)),
     ]
 
 
 def _deg(angle: float) -> str:
-    return f"{round(degrees(angle), 4) + 0.0:.4f}"  # no minus before a zero
+    return f"{round(degrees(angle), 4):z.4f}"
 
 
 def common_blank_rows(blanks: BevelBlank, section: Any, data_type: str) -> list[Row]:
@@ -230,7 +230,7 @@ def common_blank_rows(blanks: BevelBlank, section: Any, data_type: str) -> list[
         ("slots along the face", "constant" if blanks.has_constant_slots else "as the pitch"),
         ("mean working depth h_mw, whole depth h_m [mm]", *_numbers(blanks.working_depth, blanks.whole_depth)),
         ("clearance c, normal to the cones [mm]", *_numbers(blanks.clearance)),
-        ("cutter radius r_c0 [mm]", f"{blanks.cutter_radius:.4f}" if blanks.cutter_radius else "none"),
+        ("cutter radius r_c0 [mm]", f"{blanks.cutter_radius:z.4f}" if blanks.cutter_radius else "none"),
         ("flanks along the face", section.lengthwise_curve.replace("_", " ") if blanks.spiral_angle else "straight"),
         ("cutter's spiral angle at heel, mean, toe [deg]", *_numbers(*map(degrees, spirals[::-1]))),
         (
@@ -289,7 +289,7 @@ def blank_rows(blanks: BevelBlank) -> list[Row]:
 
 
 def _numbers(*values: float) -> tuple[str, ...]:
-    return tuple(f"{round(value, 4) + 0.0:.4f}" for value in values)
+    return tuple(f"{value:z.4f}" for value in values)
 
 
 def cone_rows(mesh: BevelMesh, *, seen: bool) -> list[Row]:
@@ -323,8 +323,8 @@ def cone_rows(mesh: BevelMesh, *, seen: bool) -> list[Row]:
     )
     interference = [start - gear.form_angle < ROUNDING for start, gear in zip(starts, gears, strict=True)]
     return [
-        *((label, *(f"{degrees(value):.4f}" for value in values)) for label, values in angles),
-        *((label, *(f"{value:.4f}" for value in values)) for label, values in lengths),
+        *((label, *(f"{degrees(value):z.4f}" for value in values)) for label, values in angles),
+        *((label, *(f"{value:z.4f}" for value in values)) for label, values in lengths),
         ("mating tip reaches below the form cone", *("yes" if below else "no" for below in interference)),
     ]
 
@@ -333,7 +333,7 @@ def depth_rows(mesh: BevelMesh) -> list[Row]:
     """Depth of teeth without a blank beside that of ISO 23509, 2 m_mn."""
     depth = _height(mesh.pinion, mesh.pinion.tip_angle) + _height(mesh.wheel, mesh.wheel.tip_angle)
     standard = 2.0 * mesh.pinion.mean_normal_module
-    return [("working depth at mid-face h_mw; after ISO 23509 [mm]", f"{depth:.4f}", f"{standard:.4f}")]
+    return [("working depth at mid-face h_mw; after ISO 23509 [mm]", f"{depth:z.4f}", f"{standard:z.4f}")]
 
 
 def _height(gear: BevelGear, cone_angle: float) -> float:

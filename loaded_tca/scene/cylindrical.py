@@ -238,9 +238,13 @@ class CylindricalScene(BlankScene):
 
     @property
     def path_points(self) -> Mapping[str, float]:
-        """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion: from T1 on [mm]."""
+        """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion: from T1 on [mm].
+
+        In the order of the path: with a contact ratio above 2 D comes before C and B behind it.
+        """
         path = self.mesh().path_of_contact
-        return {letter: getattr(path, letter) for letter in "ABCDE"}
+        lengths = {letter: getattr(path, letter) for letter in "ABCDE"}
+        return dict(sorted(lengths.items(), key=lambda point: point[1]))
 
     @property
     def mean_contact_length(self) -> float:
@@ -295,31 +299,31 @@ class CylindricalScene(BlankScene):
         mesh = self.mesh()
         path = mesh.path_of_contact
         return [
-            ("working centre distance a_w [mm]", f"{mesh.working_centre_distance:.4f}"),
-            ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
-            ("base helix angle beta_b [deg]", f"{abs(math.degrees(mesh.pinion.base_helix_angle)):.4f}"),
-            ("profile shift sum: given, without backlash", *(f"{value:.4f}" for value in _profile_shift_sums(mesh))),
+            ("working centre distance a_w [mm]", f"{mesh.working_centre_distance:z.4f}"),
+            ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):z.4f}"),
+            ("base helix angle beta_b [deg]", f"{abs(math.degrees(mesh.pinion.base_helix_angle)):z.4f}"),
+            ("profile shift sum: given, without backlash", *(f"{value:z.4f}" for value in _profile_shift_sums(mesh))),
             *backlash_rows(mesh),
-            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
-            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
-            ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
-            ("path of contact: length AE, approach AC [mm]", f"{path.AE:.4f}", f"{path.AC:.4f}"),
-            ("common face width b [mm]", f"{common_face_width(mesh, self.mounting.axial_offset_mm):.4f}"),
+            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:z.4f}"),
+            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:z.4f}"),
+            ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:z.4f}"),
+            ("path of contact: length AE, approach AC [mm]", f"{path.AE:z.4f}", f"{path.AC:z.4f}"),
+            ("common face width b [mm]", f"{common_face_width(mesh, self.mounting.axial_offset_mm):z.4f}"),
             ("", "pinion", "wheel"),
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
-            ("profile shift x", f"{mesh.pinion.profile_shift:.4f}", f"{mesh.wheel.profile_shift:.4f}"),
+            ("profile shift x", f"{mesh.pinion.profile_shift:z.4f}", f"{mesh.wheel.profile_shift:z.4f}"),
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
             *_diameter_rows(mesh),
             *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
-            ("tip clearance of the mating gear c [mm]", *(f"{clearance:.4f}" for clearance in mesh.tip_clearances)),
+            ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),
         ]
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""
         mesh = self.mesh()
         return [
-            ("base tangential force F_bt [N]", *(f"{mesh.base_tangential_force(torque):.1f}" for torque in torques)),
-            ("normal force F_bn [N]", *(f"{mesh.normal_force(torque):.1f}" for torque in torques)),
+            ("base tangential force F_bt [N]", *(f"{mesh.base_tangential_force(torque):z.1f}" for torque in torques)),
+            ("normal force F_bn [N]", *(f"{mesh.normal_force(torque):z.1f}" for torque in torques)),
         ]
 
     def interferences(self) -> Sequence[str]:
@@ -330,7 +334,7 @@ class CylindricalScene(BlankScene):
         """
         mesh, error = self.mesh(), self.mounting.centre_distance_error_mm
         distance = mesh.working_centre_distance + error
-        place = f"at the {'mounted ' if error else ''}centre distance of {distance:.4f} mm"
+        place = f"at the {'mounted ' if error else ''}centre distance of {distance:z.4f} mm"
         module = mesh.pinion.normal_module
         nominal = abs(mesh.backlash) <= ROUNDING * module
         try:
@@ -369,8 +373,8 @@ def backlash_rows(mesh: InvoluteMesh) -> tuple[Row, Row]:
     rounding = abs(mesh.backlash) <= 1e-9 * mesh.pinion.normal_module
     along, normal = (0.0, 0.0) if rounding else (mesh.backlash, mesh.normal_backlash)
     return (
-        ("backlash j_wt at the working circles [mm]", f"{along:.4f}"),
-        ("normal backlash j_bn [mm]", f"{normal:.4f}"),
+        ("backlash j_wt at the working circles [mm]", f"{along:z.4f}"),
+        ("normal backlash j_bn [mm]", f"{normal:z.4f}"),
     )
 
 
@@ -404,5 +408,5 @@ def _diameter_rows(mesh: CylindricalMesh) -> list[Row]:
         "root diameter d_f [mm]": [gear.root_radius for gear in gears],
     }
     interference = ("yes" if profile.fillet_interference else "no" for profile in active)
-    rows = [(label, *(f"{2.0 * radius:.4f}" for radius in both)) for label, both in radii.items()]
+    rows = [(label, *(f"{2.0 * radius:z.4f}" for radius in both)) for label, both in radii.items()]
     return [*rows, ("mating tip reaches below d_Ff", *interference)]

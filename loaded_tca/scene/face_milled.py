@@ -229,7 +229,7 @@ def _pitch_cone(member: int, name: str) -> Rule:
             return None
         return (
             f"found {angle:g}; with {pinion_teeth}/{wheel_teeth} teeth and pair.shaft_angle_deg = {shaft_angle:g} the "
-            f"pitch cones roll on each other at {rolls:.6f}, allowed within {ROUNDED_deg:g} of it"
+            f"pitch cones roll on each other at {rolls:z.6f}, allowed within {ROUNDED_deg:g} of it"
         )
 
     return Rule((f"{name}.blank.pitch_angle_deg", "pinion.teeth", "wheel.teeth", "pair.shaft_angle_deg"), complain)

@@ -59,7 +59,7 @@ def _closes(offset: float, shaft_angle: float, *cones: float) -> str | None:
         return None
     return (
         f"found {offset:g}; with pair.shaft_angle_deg = {shaft_angle:g} and these pitch cones the axes close with "
-        f"pinion.blank.pitch_angle_deg = {needed:.4f}, found {first:g}, allowed within {ROUNDED_deg:g} of it"
+        f"pinion.blank.pitch_angle_deg = {needed:z.4f}, found {first:g}, allowed within {ROUNDED_deg:g} of it"
     )
 
 

@@ -225,17 +225,17 @@ class InternalScene(CylindricalScene):
         assembly = mesh.radial_assembly_clearance
         shifts = pinion.profile_shift + ring.profile_shift, mesh.profile_shift_sum_without_backlash
         return [
-            ("working centre distance |a_w| [mm]", f"{mesh.working_centre_distance:.4f}"),
-            ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
-            ("base helix angle beta_b [deg]", f"{abs(math.degrees(pinion.base_helix_angle)):.4f}"),
-            ("profile shift sum: given, without backlash", *(f"{round(value, 4) + 0.0:.4f}" for value in shifts)),
+            ("working centre distance |a_w| [mm]", f"{mesh.working_centre_distance:z.4f}"),
+            ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):z.4f}"),
+            ("base helix angle beta_b [deg]", f"{abs(math.degrees(pinion.base_helix_angle)):z.4f}"),
+            ("profile shift sum: given, without backlash", *(f"{value:z.4f}" for value in shifts)),
             *backlash_rows(mesh),
-            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
-            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
-            ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
-            ("path of contact: length AE, approach AC [mm]", f"{path.AE:.4f}", f"{path.AC:.4f}"),
-            ("common face width b [mm]", f"{common_face_width(mesh, self.mounting.axial_offset_mm):.4f}"),
-            ("involute interference: ring's tip to T1 [mm]", f"{ring_tip:.4f} free"),
+            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:z.4f}"),
+            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:z.4f}"),
+            ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:z.4f}"),
+            ("path of contact: length AE, approach AC [mm]", f"{path.AE:z.4f}", f"{path.AC:z.4f}"),
+            ("common face width b [mm]", f"{common_face_width(mesh, self.mounting.axial_offset_mm):z.4f}"),
+            ("involute interference: ring's tip to T1 [mm]", f"{ring_tip:z.4f} free"),
             ("overlap interference at the tips [mm]", _room_cell(mesh.overlap_clearance)),
             (
                 "radial assembly [mm]",
@@ -245,7 +245,7 @@ class InternalScene(CylindricalScene):
             ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
             ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
             *_diameter_rows(mesh),
-            ("tip clearance of the mating gear c [mm]", *(f"{clearance:.4f}" for clearance in mesh.tip_clearances)),
+            ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),
         ]
 
     def interferences(self) -> Sequence[str]:
@@ -255,7 +255,7 @@ class InternalScene(CylindricalScene):
         """
         mesh, error = self.mesh(), self.mounting.centre_distance_error_mm
         distance = mesh.working_centre_distance - error
-        place = f"at the {'mounted ' if error else ''}centre distance of {distance:.4f} mm"
+        place = f"at the {'mounted ' if error else ''}centre distance of {distance:z.4f} mm"
         nominal = abs(mesh.backlash) <= ROUNDING * mesh.pinion.normal_module
         require((distance > 0.0, f"mounting.centre_distance_error_mm: found {error:g}; it leaves no centre distance"))
         try:
@@ -267,14 +267,14 @@ class InternalScene(CylindricalScene):
 
 def _room_cell(clearance: float) -> str:
     """A clearance in words."""
-    return "free" if math.isinf(clearance) else f"{clearance:.4f} free"
+    return "free" if math.isinf(clearance) else f"{clearance:z.4f} free"
 
 
 def _assembly_cell(clearance: float) -> str:
     """Clearance of a pinion that is pushed radially into its place, in words."""
     if clearance == 0.0:
         return "0.0000 free: teeth touch in mesh alone"
-    return _room_cell(clearance) if clearance > 0.0 else f"{-clearance:.4f} overlap: along the axis only"
+    return _room_cell(clearance) if clearance > 0.0 else f"{-clearance:z.4f} overlap: along the axis only"
 
 
 def _diameter_rows(mesh: InternalMesh) -> list[Row]:
@@ -300,9 +300,9 @@ def _diameter_rows(mesh: InternalMesh) -> list[Row]:
         "root diameter d_f [mm]": (pinion.root_radius, ring.root_radius),
     }
     interference = ("yes" if profile.fillet_interference else "no" for profile in active)
-    rows = [(label, *(f"{2.0 * radius:.4f}" for radius in both)) for label, both in radii.items()]
+    rows = [(label, *(f"{2.0 * radius:z.4f}" for radius in both)) for label, both in radii.items()]
     return [
         *rows,
-        ("outer diameter of the ring [mm]", "", f"{2.0 * ring.outer_radius:.4f}"),
+        ("outer diameter of the ring [mm]", "", f"{2.0 * ring.outer_radius:z.4f}"),
         ("mating tip reaches beyond d_Ff", *interference),
     ]

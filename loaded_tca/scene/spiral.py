@@ -149,4 +149,4 @@ def force_rows(flanks: tuple[Flank, Flank], points: tuple[Point, Point], torques
         ("radial force on the wheel, to its axis [N]", wheel[0]),
     )
     normal_forces = [torque / (points[0][0] * tangential) for torque in torques]
-    return [(label, *(f"{part * force:.1f}" for force in normal_forces)) for label, part in rows]
+    return [(label, *(f"{part * force:z.1f}" for force in normal_forces)) for label, part in rows]

@@ -63,17 +63,17 @@ def thickness_rows(mesh: CylindricalMesh, balls: Sequence[float | None]) -> list
     gears = mesh.pinion, mesh.wheel
     alterations = (round(gear.tip_alteration / gear.normal_module, 4) for gear in gears)
     rows = [
-        ("tip alteration coefficient k", *(f"{one + 0.0:.4f}" for one in alterations)),  # no minus before a zero
-        ("tooth thickness s_n [mm]", *(f"{gear.normal_tooth_thickness:.4f}" for gear in gears)),
+        ("tip alteration coefficient k", *(f"{one:z.4f}" for one in alterations)),
+        ("tooth thickness s_n [mm]", *(f"{gear.normal_tooth_thickness:z.4f}" for gear in gears)),
         ("span W_k over k teeth [mm]", *map(_span, gears)),
     ]
     if any(gear.thickness_allowance for gear in gears):
         rows[1:1] = [
-            ("thickness allowance A_sn [um]", *(f"{1e3 * gear.thickness_allowance + 0.0:.1f}" for gear in gears)),
-            ("generating profile shift x_E", *(f"{gear.generating_profile_shift:.4f}" for gear in gears)),
+            ("thickness allowance A_sn [um]", *(f"{1e3 * gear.thickness_allowance:z.1f}" for gear in gears)),
+            ("generating profile shift x_E", *(f"{gear.generating_profile_shift:z.4f}" for gear in gears)),
         ]
     if any(balls):
-        measures = (f"{g.ball_measurement(size):.4f}" if size else "-" for g, size in zip(gears, balls, strict=True))
+        measures = (f"{g.ball_measurement(size):z.4f}" if size else "-" for g, size in zip(gears, balls, strict=True))
         rows.append(("measure over balls M_dK [mm]", *measures))
     return rows
 
@@ -82,6 +82,6 @@ def _span(gear: CylindricalGear) -> str:
     """Span over the usual number of teeth, and that number."""
     teeth = gear.span_teeth
     try:
-        return f"{gear.span_measurement(teeth):.4f} ({teeth})"
+        return f"{gear.span_measurement(teeth):z.4f} ({teeth})"
     except InputError:
         return "-"

@@ -242,8 +242,8 @@ class StageResult:
             *([self.stage.title] if self.stage.title else []),
             f"sun {z_s}, planets {z_p} at {degrees} deg, ring {z_r}; the {self.stage.stage.driving} drives; "
             f"{self.dataset.sizes['position']} positions of a pitch",
-            _line("phases of the sun's meshes", *(f"{phase:.4f}" for phase in self.sun_mesh_phase)),
-            _line("phases of the ring's meshes", *(f"{phase:.4f}" for phase in self.ring_mesh_phase)),
+            _line("phases of the sun's meshes", *(f"{phase:z.4f}" for phase in self.sun_mesh_phase)),
+            _line("phases of the ring's meshes", *(f"{phase:z.4f}" for phase in self.ring_mesh_phase)),
             _line("orders that equal planets cancel", ", ".join(map(str, self.neutralised_orders)) or "none"),
         ]
         lines += [

@@ -10,7 +10,7 @@ from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.result_files import summary_json
 from loaded_tca.reports.result_page import result_content
-from loaded_tca.results.warnings import warn_of_gears
+from loaded_tca.results.warnings import hardest_pressure, warn_of_gears
 from loaded_tca.studies import Study, run_study, study_summary
 from loaded_tca.warning_kinds import kind_of
 from tests.samples.results import SCENES
@@ -153,9 +153,12 @@ def test_rim_is_what_a_bore_leaves_of_the_body_and_none_of_a_solid_gear(name):
 @pytest.mark.parametrize(
     ("changes", "question"),
     [
-        ({"material.youngs_modulus_MPa": 206.0}, "material.youngs_modulus_MPa: 206 MPa is less than that of any metal"),
-        ({"material.youngs_modulus_MPa": 206e4}, "material.youngs_modulus_MPa: 2.06e+06 MPa is more than"),
-        ({"analysis.torques_Nm": (2e6,)}, "load.pinion_torque_Nm: 2e+06 N m is more than that of any pinion on land"),
+        (
+            {"material.youngs_modulus_MPa": 206.0},
+            "material.youngs_modulus_MPa: 206 MPa is less than that of any material",
+        ),
+        ({"material.youngs_modulus_MPa": 206e4}, "material.youngs_modulus_MPa: 2060000 MPa is more than"),
+        ({"analysis.torques_Nm": (2e6,)}, "load.pinion_torque_Nm: 2000000 N m is more than that of any pinion on land"),
     ],
 )
 def test_numbers_of_another_unit_are_asked_about(changes, question):
@@ -175,13 +178,26 @@ def test_tip_that_comes_near_to_a_root_is_warned_of():
     assert any("0.1500" in line for line in describe_scene(near).splitlines() if "tip clearance" in line)
 
 
+def test_gears_of_plastic_are_no_slip_of_a_unit():
+    assert sentences(spur(**{"wheel.material.youngs_modulus_MPa": 2800.0, "wheel.material.poisson_ratio": 0.38})) == []
+
+
+@pytest.mark.parametrize(
+    ("moduli", "pressure"),
+    [((206000.0, 206000.0), 4000.0), ((206000.0, 103000.0), 2000.0), ((206000.0, 2800.0), 168.0)],
+)
+def test_pressure_that_a_material_carries_goes_with_the_softer_modulus(moduli, pressure):
+    """Steel; half as stiff; polyoxymethylene, whose yield stress is 70 MPa: 1.67 of it are 117 MPa."""
+    assert hardest_pressure(*moduli) == pytest.approx(pressure)
+
+
 def test_pressure_that_no_steel_carries_is_warned_of_unless_it_is_capped():
     def found(**changes):
         with noted_accuracy_warnings(given=False) as warned:
             result = analyse(spur(**{"analysis.load_sharing": False}, **changes))
         maps = [one for rows in result.maps for row in rows for one in row if one is not None]
         over = sum(4.0 / math.pi * one.mean_pressure > 4000.0 for one in maps)
-        return over, [sentence for sentence in warned if "no gear steel carries" in sentence]
+        return over, [sentence for sentence in warned if "carries without yielding" in sentence]
 
     assert found(**{"analysis.torques_Nm": (100.0,)}) == (0, [])
     over, (sentence,) = found(**{"analysis.torques_Nm": (100.0, 20e3)})

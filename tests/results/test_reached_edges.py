@@ -34,6 +34,25 @@ def test_finding_names_the_edges_of_the_largest_edge_pressure_and_the_relief_tha
     assert f"{deflection:.2g} um, by which the pair deflects, since it touches there without load" in sentences[0]
 
 
+def test_edge_pressure_below_the_peak_pressure_is_no_finding():
+    cycle = result("misaligned", positions=2)
+    higher = np.where(np.isnan(cycle.peak_pressure), np.nan, 1.01 * np.nanmax(cycle.edge_pressure))
+    smooth = changed(cycle, peak_pressure=higher, load_share=np.ones_like(cycle.load_share)).findings()
+    assert not [sentence for sentence in smooth if sentence.startswith("edge pressure")]
+
+
+def test_finding_and_summary_have_the_same_largest_edge_pressure():
+    """That of a pair with next to no load is beside the finding, of a pair that carries."""
+    cycle = result("mesh_cycle_spur", positions=3)
+    place, light = (0, 1, int(cycle.load_share[0, 1].argmax())), (0, 0, int(cycle.load_share[0, 0].argmin()))
+    shares, edges = cycle.load_share.copy(), np.full_like(cycle.edge_pressure, np.nan)
+    shares[light], edges[place], edges[light] = 5e-4, 1868.0, 5181.0
+    pressed = changed(cycle, load_share=shares, edge_pressure=edges)
+    (sentence,) = [one for one in pressed.findings() if one.startswith("edge pressure 1868 MPa")]
+    assert sentence.endswith("; the largest one, 5181 MPa, is that of a pair with less than 0.1% of the torque")
+    assert pressed.key_figures()[0]["edge_pressure_MPa"] == 5181.0
+
+
 def test_edge_pressure_of_pairs_that_carry_next_to_nothing_is_no_finding():
     cycle = result("misaligned", positions=2)
     light = changed(cycle, load_share=np.full_like(cycle.load_share, 1e-4)).findings()
@@ -58,7 +77,7 @@ def test_peak_at_an_edge_of_a_pair_that_carries_little_is_a_finding_beside_that_
 def test_relief_of_the_deflection_takes_the_load_off_the_edge():
     changes = {"analysis.positions": 2, "analysis.accuracy": None, "analysis.cells": (24, 32)}
     scene = read_scene(SCENES / "spur.toml").with_changes(changes | FLANKS_ALONE)
-    pressed = analysed(scene.with_changes({"pinion.modifications.lead_crowning_um": 2.0}))
+    pressed = analysed(scene.with_changes({"pinion.modifications.lead_crowning_um": 1.0}))
     (sentence,) = pressed.findings()
     deflection = float(re.search(r"end relief on the pinion or wheel of (\S+) um", sentence).group(1))
     relief = {"pinion.modifications.end_relief_um": 1.3 * deflection, "pinion.modifications.end_relief_length_mm": 5.0}

@@ -1,0 +1,45 @@
+"""Numbers in sentences, as a person writes them."""
+
+from __future__ import annotations
+
+import math
+import string
+from typing import Any
+
+LEAST, MOST = 1e-6, 1e9
+"""Sizes between which no number has an exponent."""
+
+
+def plain(value: float, digits: int = 4, sign: str = "") -> str:
+    """Number with some significant digits: no exponent for what a person reads without one, no minus before a zero.
+
+    Parameters
+    ----------
+    value : float
+    digits : int
+        Significant ones.
+    sign : {"", "+"}
+        Whether positive numbers have a plus.
+
+    Examples
+    --------
+    >>> plain(128.0, 2), plain(0.00002, 2), plain(-0.0), plain(118204.0, 2), plain(3.0, 2, "+")
+    ('130', '0.00002', '0', '120000', '+3')
+    """
+    rounded = float(f"{value:.{digits}g}") + 0.0  # no minus before a zero
+    if rounded and math.isfinite(rounded) and LEAST <= abs(rounded) < MOST:
+        places = max(digits - 1 - math.floor(math.log10(abs(rounded))), 0)
+        text = f"{rounded:{sign}.{places}f}"
+        return text.rstrip("0").rstrip(".") if places else text
+    return f"{rounded:{sign}.{digits}g}"
+
+
+class Sentence(string.Formatter):
+    """Formatter of sentences: numbers in general format (``g``) are plain."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        """Field of a sentence; format specifications are those of Python."""
+        if not format_spec.endswith("g") or isinstance(value, str):
+            return super().format_field(value, format_spec)
+        sign, _, digits = format_spec.removesuffix("g").partition(".")
+        return plain(float(value), int(digits or 6), sign)
