@@ -874,6 +874,48 @@ FAULTS = (
         "B=end + self.pinion.base_pitch",
         "gears/test_internal_mesh.py::test_points_of_the_path_lie_on_both_gears",
     ),
+    Fault(
+        "tribology: mean friction with the radius of the transverse section",
+        "tribology/evaluate.py",
+        "radius = path.C * (path.T2 - path.C) / path.T2 / math.cos(mesh.pinion.base_helix_angle)",
+        "radius = path.C * (path.T2 - path.C) / path.T2",
+        "tribology/test_tribology.py::test_mean_friction_is_that_of_the_standard",
+    ),
+    Fault(
+        "tribology: arithmetic mean roughness where the root mean square is asked for",
+        "tribology/evaluate.py",
+        "rough = RMS_OF_MEAN * math.hypot(*self.conditions.roughness)",
+        "rough = math.hypot(*self.conditions.roughness)",
+        "tribology/test_tribology.py::test_roughness_of_xu_and_kahraman_is_the_root_mean_square_of_both_flanks",
+    ),
+    Fault(
+        "tribology: each gear takes heat at the velocity of the other",
+        "tribology/evaluate.py",
+        "            self.rolling[0],\n            self.rolling[1],\n",
+        "            self.rolling[1],\n            self.rolling[0],\n",
+        "tribology/test_tribology.py::test_flash_temperature_is_bloks_with_each_gears_own_coefficient",
+    ),
+    Fault(
+        "tribology: reduced modulus 2 % too small",
+        "tribology/evaluate.py",
+        "return 2.0 * self.result.gear_pair.contact_modulus",
+        "return 1.96 * self.result.gear_pair.contact_modulus",
+        "tribology/test_tribology.py::test_flash_temperature_is_bloks_with_each_gears_own_coefficient",
+    ),
+    Fault(
+        "tribology: sliding along the contact is left out",
+        "tribology/slices.py",
+        '"sliding": np.hypot(across, between.along(number, x)),',
+        '"sliding": np.abs(across),',
+        "tribology/test_slices.py::test_teeth_on_axes_that_cross_at_a_distance_slide_along_their_contacts_too",
+    ),
+    Fault(
+        "tribology: wear of the wheel by the sliding of the pinion",
+        "tribology/tribology.py",
+        '"wheel_wear": lambda: parts.line_load * np.abs(parts.specific_sliding[1])',
+        '"wheel_wear": lambda: parts.line_load * np.abs(parts.specific_sliding[0])',
+        "tribology/test_tribology.py::test_wear_of_both_gears_is_as_their_ways",
+    ),
 )
 
 
