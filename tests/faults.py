@@ -916,6 +916,27 @@ FAULTS = (
         '"wheel_wear": lambda: parts.line_load * np.abs(parts.specific_sliding[0])',
         "tribology/test_tribology.py::test_wear_of_both_gears_is_as_their_ways",
     ),
+    Fault(
+        "revolutions: eccentricity begins at the first teeth whichever come first",
+        "unloaded/revolution.py",
+        "2.0 * np.pi * first / count",
+        "0.0 * np.pi * first / count",
+        "unloaded/test_revolution.py::test_revolution_that_begins_with_later_teeth_finds_the_gears_turned_as_far",
+    ),
+    Fault(
+        "revolutions: teeth with the largest root stress are counted backwards",
+        "revolution.py",
+        'counted = tooth + steps * stresses["root_tension_place"][..., 0]',
+        'counted = tooth - steps * stresses["root_tension_place"][..., 0]',
+        "test_revolution.py::test_root_stress_is_that_of_one_pitch_and_names_its_teeth",
+    ),
+    Fault(
+        "revolutions: warnings name the column of a tooth pair",
+        "revolution.py",
+        "place = place_of(float(self.torques[t]), angle, int(self.path.pairs[k]))",
+        "place = place_of(float(self.torques[t]), angle, k)",
+        "test_revolution.py::test_warnings_of_contacts_name_their_tooth_pairs",
+    ),
 )
 
 
