@@ -421,8 +421,6 @@ def test_loaded_length_is_that_of_an_even_load_with_the_same_scatter():
     assert_allclose(loaded_length_slopes(force, borders), slopes, rtol=1e-6)  # of differences
 
 
-
-
 def test_estimate_of_slices_beside_a_sharp_end_grows_with_their_length():
     """Two equal line loads: a contact that ends with a third of its line load there has no such error."""
 
