@@ -1028,6 +1028,20 @@ FAULTS = (
         "self.beside_end | (away < 2.0 * distance)",
         "results/test_stress_below.py::test_flank_of_a_map_ends_where_its_last_cell_with_material_does",
     ),
+    Fault(
+        "mesh cycles: wheel angles of other tooth pairs are turned backwards",
+        "loaded/cycle.py",
+        "wheel_angle=path.wheel_angle + turned",
+        "wheel_angle=path.wheel_angle - turned",
+        "loaded/test_load_sharing.py::test_paths_of_all_pairs_are_told_in_the_angles_of_the_gears",
+    ),
+    Fault(
+        "mesh cycles: deflection of a single pair without what displaces its slices",
+        "loaded/cycle.py",
+        "deflection[t, n] += loaded.slice_shares @ loaded.coupling_deflection",
+        "deflection[t, n] += 0.0",
+        "loaded/test_load_sharing.py::test_deflection_of_a_single_pair_has_what_displaces_its_slices",
+    ),
 )
 
 
