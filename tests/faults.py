@@ -1042,6 +1042,34 @@ FAULTS = (
         "deflection[t, n] += 0.0",
         "loaded/test_load_sharing.py::test_deflection_of_a_single_pair_has_what_displaces_its_slices",
     ),
+    Fault(
+        "line loads: the least error of slices falls with the cube of the cells",
+        "loaded/loaded_contact.py",
+        "least = LEAST_ERROR_OF_SLICES / min(self.solution.cells_across) ** 2",
+        "least = LEAST_ERROR_OF_SLICES / min(self.solution.cells_across) ** 3",
+        "loaded/test_tooth_contact.py::test_error_of_slices_that_agree_by_chance_falls_with_the_square_of_the_cells",
+    ),
+    Fault(
+        "sensitivities: other positions are told where derivatives turn by half",
+        "results/extremes.py",
+        "nearer = (size > TOLD)",
+        "nearer = (size > 10.0 * TOLD)",
+        "results/test_extremes.py::test_derivatives_that_turn_by_a_twentieth_or_more_are_told",
+    ),
+    Fault(
+        "sensitivities: kinks are told by their part of the largest derivative",
+        "results/face_slopes.py",
+        "scale = np.where(over_positions > LEVEL * largest, over_positions, largest)",
+        "scale = largest",
+        "results/test_sensitivities_at_edges.py::test_kinks_are_told_by_their_part_of_what_changes_over_the_positions",
+    ),
+    Fault(
+        "sensitivities: rival strips are those that carry the same to 0.05 %",
+        "results/face_slopes.py",
+        "(lacking <= AS_LARGE))",
+        "(lacking <= BESIDE))",
+        "results/test_sensitivities_at_edges.py::test_a_strip_counts_as_a_rival_where_it_carries_as_much",
+    ),
 )
 
 

@@ -13,6 +13,7 @@ from loaded_tca import AccuracyWarning, InputError, trace_contact
 from loaded_tca.contact.patch import widths
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.line_load import SliceLoads, loaded_length, loaded_length_slopes
+from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.together import found_alone
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
@@ -394,6 +395,16 @@ def test_peak_error_is_that_of_the_peak_or_of_the_line_load():
     even = SimpleNamespace(error_of_largest=lambda _: 0.0)
     assert 0.0 < replace(rough, line_loads=(lambda: even, lambda: even)).peak_error < 0.02
     assert np.isnan(replace(rough, line_loads=()).peak_error)
+
+
+def test_error_of_slices_that_agree_by_chance_falls_with_the_square_of_the_cells():
+    errors = [
+        LoadedContact.peak_error.fget(
+            SimpleNamespace(is_rough=True, line_load_error=0.0, solution=SimpleNamespace(cells_across=cells))
+        )
+        for cells in ((10, 90), (90, 20))
+    ]
+    assert_allclose(errors[0] / errors[1], 4.0)
 
 
 def test_estimate_of_slices_sees_a_change_beside_the_largest_line_load():
