@@ -1091,6 +1091,20 @@ FAULTS = (
         "ends = np.where(reached, ends, ends)",
         "separation/test_box.py::test_box_that_its_contact_does_not_fill_is_as_long_either_way",
     ),
+    Fault(
+        "line loads: their ratio counts the face instead of the line across it",
+        "results/collect.py",
+        "loaded.line_load * longest / solution.load",
+        "loaded.line_load * pair.face_width / solution.load",
+        "results/test_key_figures.py::test_line_load_and_its_ratio_are_of_the_most_loaded_pair",
+    ),
+    Fault(
+        "load factors: strips move with the other end of the common face",
+        "results/load_factors.py",
+        "own[6:] = 1.0 - share, share",
+        "own[6:] = share, 1.0 - share",
+        "results/test_load_factors.py::test_strips_of_an_even_load_grow_as_the_ends_of_the_common_face_move_apart",
+    ),
 )
 
 
