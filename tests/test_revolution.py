@@ -2,13 +2,14 @@
 
 import math
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import InputError, Revolution, analyse, analyse_revolution, load_result, read_scene
-from loaded_tca.revolution import expected_revolution_effort
+from loaded_tca.revolution import _Numbers, expected_revolution_effort
 from loaded_tca.studies import Study, revolution_figures, run_study
 from tests.refusals import refused_calls
 from tests.samples.root_stress import coarsely
@@ -344,6 +345,11 @@ def test_root_stress_is_that_of_one_pitch_and_names_its_teeth(tmp_path):
     teeth = turn.dataset.root_tension_tooth.values[0]
     assert teeth[0].tolist() == [3, 5]  # at the pitch point, where its pair carries the most
     assert teeth[4].tolist() == [4, 6]
+    loaded = turn.dataset.load_share.values[0] > 0.0
+    for gear, name in enumerate(("pinion", "wheel")):  # those that carry, of whichever pair
+        carrying = np.where(loaded, turn.dataset[f"{name}_tooth"].values, -1)
+        assert (carrying == teeth[:, gear, None]).any(axis=1).all()
+        assert (turn.dataset[f"{name}_tooth"].sel(pair=0).values != teeth[:, gear]).any()
     figures = turn.key_figures()[0]
     assert figures["pinion_root_tension_MPa"] == np.nanmax(turn.dataset.root_tension.values[0, :, 0])
     turn.save(tmp_path / "turn.nc")
@@ -351,6 +357,15 @@ def test_root_stress_is_that_of_one_pitch_and_names_its_teeth(tmp_path):
     columns = turn.to_table()
     assert_allclose(columns["wheel_root_tension_MPa"], turn.dataset.root_tension.values[0, :, 1])
     assert columns["wheel_root_tension_tooth"].tolist() == teeth[:, 1].tolist()
+
+
+def test_warnings_of_contacts_name_their_tooth_pairs(monkeypatch):
+    monkeypatch.setattr("loaded_tca.revolution.reasons_of", lambda *_: ["reason"])
+    path = SimpleNamespace(pinion_angle=np.radians([2.0, 5.0]), pairs=np.array([-1, 0, 2]))
+    numbers = SimpleNamespace(torques=np.array([6e4]), path=path, pair=None, grid=None, places={}, solved=0)
+    _Numbers._note(numbers, {(0, 0, 0): object(), (0, 0, 1): None, (0, 0, 2): object()}, 1)
+    where = "60 N m, pinion angle 5 deg, tooth pair"
+    assert numbers.places == {"reason": [f"{where} -1", f"{where} +2"]}
 
 
 test_refusals_of_teeth = refused_calls(

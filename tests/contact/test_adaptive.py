@@ -1,7 +1,7 @@
 """The choice of the grid: errors kept, no finer than needed, borders, and every refusal."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -81,11 +81,32 @@ def test_edge_of_the_material_asks_for_the_approach_and_stops_at_64_cells():
     assert solution.approach > contact.approach
 
 
+def test_bodies_that_stand_apart_have_the_estimate_of_those_that_touch():
+    """The approach counts from first contact."""
+    sample, _ = paraboloid((0.1, 0.1), edge=0.3)
+
+    def apart(cells):
+        return replace(sample(cells), gap=sample(cells).gap + 0.5)
+
+    near, far = (solve_to_accuracy(one, accuracy=0.02, warn=False) for one in (sample, apart))
+    assert near.pressure.shape == far.pressure.shape
+    assert_allclose(far.error_estimate.approach, near.error_estimate.approach, rtol=1e-3)  # differences of approaches
+
+
 def test_accuracy_warnings_are_given_unless_left_to_the_caller():
     sample, _ = paraboloid((0.1, 0.1), box=0.8)
     with pytest.warns(AccuracyWarning, match="reaches the box"):
         solve_to_accuracy(sample, accuracy=1e-2)
     assert solve_to_accuracy(sample, accuracy=1e-2, warn=False).reaches_border
+
+
+def test_accuracy_that_the_finest_grid_misses_by_little_is_told(monkeypatch):
+    """On 32 cells, 21 of them across, no error is told to be below 0.6/21^2 = 1.4e-3."""
+    monkeypatch.setattr("loaded_tca.contact.adaptive.MOST_CELLS", 32)
+    sample, _ = paraboloid((0.1, 0.1))
+    solve_to_accuracy(sample, accuracy=2e-3)
+    with pytest.warns(AccuracyWarning, match=r"estimated error 1\..e-03 is above the accuracy 8\.0e-04"):
+        solve_to_accuracy(sample, accuracy=8e-4)
 
 
 def test_no_load_needs_no_grid():

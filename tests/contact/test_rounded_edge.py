@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.contact import RoundedEdge, edge_pressures, solve_contact
 from loaded_tca.contact.pressed_arc import EdgePressure
+from loaded_tca.contact.rounded_edge import _Wedges
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.reference.punch import RoundedPunch
 from tests.refusals import refusals
@@ -238,6 +239,13 @@ def test_faces_of_a_wedge_meet_where_they_would_without_the_rounding():
     # Hetenyi in plane strain: the side returns 2/pi of a load, and twice that falls on the top again.
     assert_allclose(5.0 * ends[0].factor, 2.0 / (1.0 - (2.0 / math.pi) ** 2) - 1.0, rtol=ROUNDING)
     assert RoundedEdge((0.0, 2.0), (0.0, 1.0), 0.2, 1.4).free_edge(0.0).factor == 0.6  # as far as it converges
+
+
+def test_load_beyond_the_rounding_of_a_wedge_is_one_where_that_begins():
+    """The tilt is counted from the middle of the load, which lies before both roundings at the most."""
+    ends = [RoundedEdge((0.0, place), (0.0, place), 0.2, 2.0) for place in (-2.0, 3.0)]
+    wedges = _Wedges.of(ends, -5.0)
+    assert [wedges.reference(centre) for centre in (-2.5, 1.0, 3.5)] == [-2.0, 1.0, 3.0]
 
 
 def test_the_sharper_the_wedge_the_more_it_tilts_off_its_edge():

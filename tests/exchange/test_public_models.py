@@ -73,6 +73,12 @@ def test_sew_faces_lie_beside_each_other_as_in_space() -> None:
         assert_allclose(scene.pair().face_width, widths[stage], rtol=HAND)
 
 
+def test_sew_stage_before_loads_its_wheel_in_the_middle_of_the_common_face() -> None:
+    """Faces of stage 6 end at 146 and 162, 151 and 162 mm along the gear unit; gear 38 has its middle at 175 mm."""
+    load = import_stage(sew(), "37").scene.pinion.shaft.loads[0]
+    assert_allclose(abs(load.at_mm), 175.0 - 156.5, atol=HAND)
+
+
 def test_sew_shafts_have_their_sections_and_bearings() -> None:
     scene = import_stage(sew(), "6").scene
     shaft = scene.pinion.shaft

@@ -97,10 +97,12 @@ def test_two_rows_are_two_bearings_beside_each_other() -> None:
         ({**ROW, "pressure_angle": (25.0, "deg"), "axial_force_absorption_of_row": side}, BALL)
         for side in ("positive", "negative")
     ]
-    double = model(rows, "angular_contact_ball_bearing", on=5, at=200.0, distance_between_bearing_rows=(16.0, "mm"))
+    whole = {"distance_between_bearing_rows": (16.0, "mm"), "radial_dynamic_load_rating": (60.0, "kN")}
+    double = model(rows, "angular_contact_ball_bearing", on=5, at=200.0, **whole)
     first, second = import_stage(double, "11").table["wheel"]["shaft"]["bearings"][:2]
     assert (first["at_mm"], first["side"]) == (110.0 - 208.0, 1)
     assert (second["at_mm"], second["side"]) == (110.0 - 192.0, -1)
+    assert not {"dynamic_load_rating_N"} & {*first, *second}  # that of the file is of both rows together
 
 
 def test_elements_are_counted_where_the_row_does_not_say() -> None:

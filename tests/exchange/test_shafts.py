@@ -81,14 +81,14 @@ FORCES, MOTIONS = ("f_u", "f_v", "f_w", "m_v", "m_w"), ("d_u", "d_v", "d_w", "ro
 OLD = {"d_u": "d_u", "d_v": "d_v", "d_w": "d_w", "rot_v": "d_v_rot", "rot_w": "d_w_rot"}
 
 
-def operating_point(matrix, old=False):
-    """Attributes of the stiffness of bearing 91 [N/m, N/rad, N, N mm/rad]."""
+def operating_point(matrix, old=False, bearing=91):
+    """Attributes of the stiffness of a bearing [N/m, N/rad, N, N mm/rad]."""
     attributes = {}
     for n, force in enumerate(FORCES):
         for m, motion in enumerate(MOTIONS):
             name = f"{'dF' if n < 3 else 'dM'}_{force[-1]}_{OLD[motion]}" if old else f"{force}_{motion}"
             unit = [["N / m", "N / rad"], ["N", "N mm / rad"]][n >= 3][m >= 3]
-            attributes[f"91.operating_point_stiffness_{name}"] = (float(matrix[n][m]), unit)
+            attributes[f"{bearing}.operating_point_stiffness_{name}"] = (float(matrix[n][m]), unit)
     return attributes
 
 
@@ -103,6 +103,13 @@ def test_operating_points_are_turned_into_the_frame_of_the_gear(old: bool) -> No
     expected[1, 3] = expected[3, 1] = -6e5  # F_y = -F_v by the rotation about x = w
     expected[0, 4] = expected[4, 0] = 7e5  # F_x = F_w by that about y = -v
     assert_allclose(rows, expected, rtol=1e-12)
+
+
+def test_operating_points_are_turned_the_way_of_the_axes() -> None:
+    """The wheel of stage 11 is at +v of its pinion: x = v, y = w, z = u, a turn that is not its own inverse."""
+    stiffness = operating_point(np.diag([3e8, 1e8, 2e8, 4e7, 5e7]), bearing=93)
+    rows = np.array(bearings(changed(attributes=stiffness), stage="11")[0].stiffness)
+    assert_allclose(rows, np.diag([1e5, 2e5, 3e5, 4e7, 5e7]), rtol=1e-12, atol=1e-6)
 
 
 def test_half_an_operating_point_is_none() -> None:

@@ -55,6 +55,8 @@ def test_points_of_the_path_lie_on_both_gears():
     assert_allclose(pitch, [mesh.pinion_working_radius, 0.0], atol=1e-9)
     assert_allclose(path.T2, -distance * math.sin(angle), rtol=ROUNDING)
     assert_allclose(mesh.transverse_contact_ratio, (path.E - path.A) / mesh.pinion.base_pitch)
+    assert path.A < path.B < path.D < path.E  # between B and D one pair alone touches
+    assert_allclose([path.E - path.B, path.D - path.A], mesh.pinion.base_pitch)  # as another one begins or ends
 
 
 def test_active_profile_of_the_ring_starts_at_the_larger_diameter():
@@ -94,6 +96,26 @@ def test_radial_assembly(teeth, possible):
     mesh = spur(teeth, 0.8)
     assert (mesh.radial_assembly_clearance >= 0.0) is possible
     assert mesh.overlap_clearance > 0.0
+
+
+@pytest.mark.parametrize(("turn", "clear"), [(0.0, False), (0.5, True)])
+def test_radial_assembly_of_a_pinion_that_fits_in_one_of_two_places(turn, clear):
+    """Points of all flanks of 20 teeth, in the spaces of 32: with a space towards the ring alone they stay within."""
+    mesh = spur((20, 32), 0.8)
+    pinion, ring = mesh.pinion, mesh.ring
+    radius = np.linspace(pinion.form_radius, pinion.tip_radius, 40)
+    half = np.array([0.5 * pinion.tooth_thickness_at(one) / one for one in radius])
+    angle = 2.0 * np.pi / 20 * (np.arange(20)[:, None] + turn) + half
+    pitch, worst = 2.0 * np.pi / 32, math.inf
+    for distance in np.linspace(0.0, mesh.working_centre_distance, 120):
+        x, y = distance + radius * np.cos(angle), radius * np.sin(angle)
+        reach, place = np.hypot(x, y), np.arctan2(y, x) / pitch - turn
+        within = (reach > ring.tip_radius) & (reach < ring.form_radius)
+        beside = pitch * (place - np.round(place))[within]
+        room = [ring.space_angle_at(one) for one in reach[within]]
+        worst = min(worst, np.min(reach[within] * (room - np.abs(beside)), initial=math.inf))
+    assert bool(worst > -1e-9) is clear  # in mesh the flanks touch
+    assert mesh.radial_assembly_clearance >= 0.0
 
 
 def test_helical_overlap_ratio_counts_the_common_face():

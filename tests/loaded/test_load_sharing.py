@@ -12,13 +12,14 @@ from numpy.testing import assert_allclose
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
+from loaded_tca.loaded.cycle import OnePairsCycle, in_gear_angles
 from loaded_tca.loaded.load_sharing import share_load
-from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.loaded.tooth_pairs import ToothPair, tooth_pairs_at
 from loaded_tca.material import Material
 from loaded_tca.separation import sample_separation
 from loaded_tca.separation.sample import sample_separations
-from loaded_tca.unloaded import trace_teeth
+from loaded_tca.unloaded import trace_contact, trace_teeth
 from tests.refusals import refused_calls
 from tests.samples.gear_pairs import NONE, gear_pair, sam_paper
 from tests.samples.tangents import torque_rate
@@ -382,3 +383,25 @@ def test_candidates_are_those_within_reach():
             for tooth_pair in found
         )
         assert len(found) == np.isfinite(mesh.initial_separation[:, position]).sum()
+
+
+def test_paths_of_all_pairs_are_told_in_the_angles_of_the_gears():
+    """Teeth of involutes without modifications touch wherever they are: every pair with the wheel in the same place."""
+    pair = gear_pair(NONE, NONE)
+    angles = np.array([0.4, 0.5]) * pair.pitch
+    leading, paths = in_gear_angles(trace_teeth(pair, angles))
+    touching = [path for path in paths.values() if not path.on_edge.any()]
+    assert len(touching) > 1
+    for path in (leading, *touching):
+        assert_allclose(path.pinion_angle, angles, rtol=1e-12)
+        assert_allclose(path.wheel_angle, pair.ratio * angles, atol=1e-9)
+
+
+def test_deflection_of_a_single_pair_has_what_displaces_its_slices():
+    """As supports do: the same for all slices is the mean of any force over them."""
+    pair = uncrowned_spur()
+    path = trace_contact(pair, [0.0])
+    loaded = solve_under_load(pair, path[0], 2000.0, GridChoice(cells=(16, 16)))
+    displaced = replace(loaded, coupling_deflection=np.full(loaded.separation.y.size, 0.003))
+    carried = OnePairsCycle(pair, path, np.array([TORQUE]), GRID).carried([displaced])
+    assert_allclose(carried.tooth_deflection, 0.003)

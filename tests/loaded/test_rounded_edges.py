@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.loaded import rounded_edges
 from loaded_tca.loaded.lines_of_edges import ReachedEdge, largest_pressure, reached_edges
 from loaded_tca.loaded.load_sharing import share_load
-from loaded_tca.loaded.rounded_edges import pressure_at_rounded_edge
+from loaded_tca.loaded.rounded_edges import _ContactAlongEdge, pressure_at_rounded_edge
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
 from loaded_tca.material import Material
@@ -117,6 +118,25 @@ def test_peak_beside_a_crossing_has_the_error_of_both_edges(solutions):
     assert len(together) > 1
     assert peak.error == max(each.error for each in together)
     assert peak.error > next(each.error for each in together if each.pressure == peak.pressure)
+
+
+def test_peak_whose_grids_agree_by_chance_has_the_error_of_its_cells():
+    contact = SimpleNamespace(turn=np.eye(2))
+    for cells in (5.0, 20.0):
+        peak = SimpleNamespace(pressure=900.0, place=(0.0, 0.0), error=0.0, cells_on_arc=cells, ends_sharp=False)
+        assert_allclose(_ContactAlongEdge.turned_back(contact, peak, 0.07).error, 0.07 / cells)
+
+
+def test_teeth_bend_under_the_forces_where_they_act():
+    """Slices along an edge that crosses the contact at 53 degrees: the force line is that of the contact below them."""
+    y = np.linspace(-4.0, 4.0, 9)
+    grid = SimpleNamespace(y=y, force_line=0.2 * y, origin=np.zeros(3), axes=np.eye(3))
+    bending = SimpleNamespace(within=lambda _, slices: np.diag(slices.force_line))
+    contact = SimpleNamespace(
+        loaded=SimpleNamespace(separation=grid), along=0.8, bending=bending, number=0, pair=None, free_edges=False
+    )
+    compliance = _ContactAlongEdge.slice_compliance(contact, np.array([-2.0, 0.4]), np.array([0.1, 0.1]))
+    assert_allclose(compliance, np.diag([-0.5, 0.1]))
 
 
 def test_mirror_image_has_the_same_peak():

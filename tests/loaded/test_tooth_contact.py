@@ -12,7 +12,8 @@ from numpy.testing import assert_allclose
 from loaded_tca import AccuracyWarning, InputError, trace_contact
 from loaded_tca.contact.patch import widths
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.loaded.line_load import SliceLoads
+from loaded_tca.loaded.line_load import SliceLoads, loaded_length, loaded_length_slopes
+from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.together import found_alone
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
@@ -396,6 +397,16 @@ def test_peak_error_is_that_of_the_peak_or_of_the_line_load():
     assert np.isnan(replace(rough, line_loads=()).peak_error)
 
 
+def test_error_of_slices_that_agree_by_chance_falls_with_the_square_of_the_cells():
+    errors = [
+        LoadedContact.peak_error.fget(
+            SimpleNamespace(is_rough=True, line_load_error=0.0, solution=SimpleNamespace(cells_across=cells))
+        )
+        for cells in ((10, 90), (90, 20))
+    ]
+    assert_allclose(errors[0] / errors[1], 4.0)
+
+
 def test_estimate_of_slices_sees_a_change_beside_the_largest_line_load():
     """Where two maxima compete the largest one of two grids may stay, and the other one move."""
 
@@ -409,6 +420,16 @@ def test_estimate_of_slices_sees_a_change_beside_the_largest_line_load():
     assert error([5, 10, 5, 5, 5, 9.2, 5, 5], [5, 10, 5, 5, 5, 9.8, 5, 5]) == pytest.approx(0.01, abs=ROUNDING)
     assert error([5, 10, 5, 5, 5, 9.2, 5, 5], [5, 9.8, 5, 5, 5, 10, 5, 5]) == pytest.approx(0.04, abs=ROUNDING)
     assert error([3, 10, 5, 5, 5, 9.2, 5, 5], [5, 10, 5, 5, 5, 9.2, 5, 5]) == 0.0, "where it is small"
+    assert error([5, 9, 5, 5, 5, 5, 5, 5], [5, 10, 5, 5, 5, 5, 5, 5]) == pytest.approx(0.1), "all of its own change"
+
+
+def test_loaded_length_is_that_of_an_even_load_with_the_same_scatter():
+    """Slices 1, 2, 1 N: the integral of y^2 over their widths, 7/12 mm^2, is that of an even load on sqrt(7) mm."""
+    force, borders, step = np.array([1.0, 2.0, 1.0]), np.array([-1.5, -0.5, 0.5, 1.5]), 1e-5
+    assert loaded_length(force, borders) == pytest.approx(math.sqrt(7.0))
+    sides = [[loaded_length(force + sign * step * own, borders) for own in np.eye(3)] for sign in (1.0, -1.0)]
+    slopes = np.subtract(*sides) / (2.0 * step)
+    assert_allclose(loaded_length_slopes(force, borders), slopes, rtol=1e-6)  # of differences
 
 
 def test_estimate_of_slices_beside_a_sharp_end_grows_with_their_length():

@@ -54,6 +54,11 @@ def test_peak_to_peak_that_turns_within_the_tolerance_is_told():
     assert ANOTHER_POSITION.words in sentence
 
 
+def test_derivatives_that_turn_by_a_twentieth_or_more_are_told():
+    assert len(told([3.0, 2.9, 0.0], [-10.0, -8.0, 0.0], 0.1)) == 1  # by a fifth, from +0.05 on
+    assert not told([3.0, 2.95, 0.0], [-10.0, -9.7, 0.0], 0.25)  # by 3 %, from +0.17 on
+
+
 def test_the_lowest_position_counts_too():
     (sentence,) = told([3.0, 0.1, 0.0], [0.0, 10.0, 0.0], 0.02)
     assert "by -0.01 another position" in sentence

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, analyse, read_scene
-from loaded_tca.results.load_factors import load_factors, strip_forces
+from loaded_tca.results.load_factors import load_factors, strip_borders, strip_forces, strip_motions
 from tests.samples.results import SCENES, result
 
 ROUNDING = 1e-12
@@ -124,6 +124,15 @@ def test_axial_offset_of_the_wheel_moves_the_common_face():
     shared = replace(even, origin=cycle.maps[0][0][0].origin)
     face, _ = load_factors(cycle.gear_pair, cycle.path, (((shared,),) * 2,), 14.0)
     assert_allclose(face, 1.0, rtol=1e-6)
+
+
+def test_strips_of_an_even_load_grow_as_the_ends_of_the_common_face_move_apart():
+    """Each is a thirtieth of the face, wherever it lies: 200 N/mm over 30 for each end."""
+    cycle, even = evenly_loaded()
+    borders = strip_borders(cycle.gear_pair, cycle.path)
+    for strip in (3, 26):
+        growth = strip_motions(cycle.gear_pair, even, borders, strip)
+        assert_allclose(growth[6:], [-200.0 / 30.0, 200.0 / 30.0], rtol=1e-6)
 
 
 def test_lines_of_contact_are_as_long_as_the_faces_in_common():

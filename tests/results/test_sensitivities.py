@@ -1,6 +1,7 @@
 """Sensitivities of results: against slopes through whole analyses, closed forms, files, keys that cannot be varied."""
 
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.results.sensitivities import Sensitivities
 from tests.refusals import refusals
 from tests.samples.results import FLANKS_ALONE, ONE_PAIR, SCENES, result
 from tests.samples.shared import made_once
@@ -158,6 +160,31 @@ def test_load_factor_changes_as_whole_analyses_do():
     expected = slope_through_analyses("mesh_cycle_spur", False, key, 1.0, "face_load_factor")
     found = analysed("mesh_cycle_spur", False).sensitivities([key]).face_load_factor[0]
     assert_allclose(found, expected, rtol=REAL_PAIRS)
+
+
+@pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
+def test_pressure_at_edges_grows_with_the_root_of_the_relative_curvature(monkeypatch):
+    """That of line contacts: 1 % more of line load times curvature is 1/2 % of pressure, beside what forces change."""
+    one, slopes = result("mesh_cycle_helical"), []
+    for growth in (0.0, 0.01):
+        fixed = np.array([[growth]])
+        monkeypatch.setattr("loaded_tca.results.sensitivities.curvature_growth", lambda *_, fixed=fixed: fixed)
+        slopes.append(one.sensitivities([CROWNING]).peak_pressure[..., 0])
+    grown = (slopes[1] - slopes[0]) / one.peak_pressure
+    rough = (one.on_edge > 0) & (np.abs(grown) > 0.0)
+    assert rough.any()
+    assert_allclose(grown[rough], 0.005, rtol=1e-6)
+
+
+def test_pressures_of_pairs_that_only_just_carry_at_an_edge_are_marked():
+    share, on_edge = np.array([[[0.02, 0.02, 0.4]]]), np.array([[[1, 0, 1]]])
+    one = SimpleNamespace(
+        result=SimpleNamespace(load_share=share, on_edge=on_edge),
+        tangents=SimpleNamespace(grids=[]),
+        _rough_peaks=[],
+        _where=lambda _: np.zeros(share.shape, dtype=bool),
+    )
+    assert Sensitivities.at_corners.func(one).tolist() == [[[True, False, False]]]
 
 
 def test_pressure_norm_of_a_position_is_near_its_peak_and_changes_with_it():

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import analyse, read_scene
 from loaded_tca.errors import AccuracyWarning, noted_accuracy_warnings
-from loaded_tca.results.face_slopes import rival_strip
+from loaded_tca.results.face_slopes import rival_strip, warn_of_edges
 from loaded_tca.results.load_factors import STRIPS, face_forces
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.separation.pair_change import value_at
@@ -177,6 +177,28 @@ def test_a_strip_that_carries_as_much_is_a_kink_of_the_face_load_factor():
     forces = [face_forces(one.gear_pair, one.path, one.maps[0])[1] for one in (low, high)]
     factors = [force[strip] / force.mean() for force in forces]
     assert_allclose(abs(slope), abs(factors[1] - factors[0]) / 8.0, rtol=0.05)  # over 4 um
+
+
+@pytest.mark.parametrize(
+    ("place", "force", "rival"), [(20, 0.995, 20), (20, 0.98, None), (6, 0.9996, 6), (6, 0.995, None)]
+)
+def test_a_strip_counts_as_a_rival_where_it_carries_as_much(place, force, rival, monkeypatch):
+    """Within 1 % if it is a maximum of its own, but for 0.05 % where it lies beside the largest one."""
+    forces = 0.5 * np.exp(-np.abs(np.arange(STRIPS) - 5.0))
+    forces[[5, place]] = 1.0, force
+    monkeypatch.setattr("loaded_tca.results.face_slopes.face_forces", lambda *_: (None, forces))
+    found = rival_strip(None, None, None)
+    assert (found and found[0]) == rival
+    assert rival is None or found[1] == pytest.approx(1.0 - force)
+
+
+@pytest.mark.parametrize(("spread", "count"), [(1.0, 1), (0.0, 0)])
+def test_kinks_are_told_by_their_part_of_what_changes_over_the_positions(spread, count):
+    """Derivatives of 100 at both positions: a kink of 0.2 matters to the peak to peak where they differ by 1."""
+    slopes, kinks = np.array([[[100.0], [100.0 + spread]]]), np.array([[[0.2], [0.0]]])
+    with noted_accuracy_warnings(given=False) as sentences:
+        warn_of_edges([OFFSET], slopes, kinks, 1.0, 1)
+    assert len(sentences) == count
 
 
 def test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error():

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.output.tables import STRESSES, subsurface_csv, write_subsurface
 from loaded_tca.plots import plot_stress_below
 from loaded_tca.results.files import read_dataset
+from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.stress_below import NAMES, depth_of_largest, stress_below
 from tests.refusals import refusals, refused_calls
 from tests.samples.pictures import told
@@ -159,6 +160,17 @@ def test_picture_and_table_show_the_plane_beside_a_spike():
     assert label.startswith(f"{below.largest('max_shear').value:.4g} MPa")
     first = next(csv.DictReader(subsurface_csv(below).splitlines()))
     assert float(first["sigma_z_MPa"]) == pytest.approx(-below.pressure_map.pressure[below.highest_pressure], rel=1e-8)
+
+
+def test_flank_of_a_map_ends_where_its_last_cell_with_material_does():
+    """Cells of 0.1 mm from -0.45 to 0.45 mm, the last two without material: it ends 0.3 mm from the contact point."""
+    gap = np.zeros((10, 1))
+    gap[8:] = np.inf
+    x, none = np.linspace(-0.45, 0.45, 10), np.zeros(1)
+    one = PressureMap(x, none, (0.1, 0.1), np.ones((10, 1)), gap, np.zeros(3), np.eye(3), none)
+    assert [one.flank_ends_within(distance) for distance in (0.29, 0.31)] == [False, True]
+    wide = replace(one, gap=np.repeat(gap, 9, 1), pressure=np.ones((10, 9)), y=np.linspace(-4.0, 4.0, 9))
+    assert wide.near_end(0.35)[:, 4].nonzero()[0].tolist() == [0, 5, 6, 7, 8, 9]  # the box ends at the first cell
 
 
 def test_contact_without_a_spike_has_no_other_plane():

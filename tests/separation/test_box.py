@@ -100,6 +100,16 @@ def test_box_ends_a_cell_beyond_the_tip():
     assert cover[:, cover.any(axis=0)].min() > 0.85
 
 
+def test_box_that_its_contact_does_not_fill_is_as_long_either_way():
+    """Though the flank ends in it on one side alone: that the contact stops before takes no part in its cells."""
+    pair = sam_paper(helix_deg=15.0)
+    grid = sample_separation(pair, trace_contact(pair, [0.65 * pair.pitch])[0], cells=(16, 32), load=400.0)
+    missing = np.isinf(grid.gap).sum(axis=0)
+    assert missing[16:].any()
+    assert not missing[:16].any()
+    assert_allclose(grid.box.middle, 0.0, atol=1e-9)
+
+
 def test_grown_box_keeps_the_ends_that_do_not_grow():
     grown = BOX.grown(((False, True), (True, False)), 1.5)
     for axis, moved, kept in ((0, 1.0, -1.0), (1, -1.0, 1.0)):

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import read_scene, sample_separation, trace_contact
 from loaded_tca.separation.gap_change import contact_changes
 from loaded_tca.separation.normal_gap import NormalGap
-from loaded_tca.separation.pair_change import pair_changes
+from loaded_tca.separation.pair_change import PairChange, Places, pair_changes
 from tests.refusals import refusals
 from tests.samples.results import SCENES
 
@@ -233,3 +233,30 @@ test_keys_that_cannot_be_varied_are_refused_by_name = refusals(
     (["wheel.modifications.tip_relief_um"], "wheel.modifications.tip_relief_um: .*tip_relief_start_mm"),
     (["one", "mounting.two_mm"], ("^one: unknown key", "^mounting.two_mm: unknown key")),
 )
+
+
+@pytest.mark.parametrize(
+    ("key", "edges", "lines"),
+    [
+        ("pinion.modifications.lead_crowning_um", True, True),
+        ("wheel.modifications.tip_relief_start_mm", False, False),
+        ("mounting.offset_mm", True, False),
+        ("pinion.machine.sliding_base_mm", False, False),
+    ],
+)
+def test_keys_move_edges_and_lines_of_force_or_hold_them(key, edges, lines):
+    """Amounts of modifications move neither; mounting errors leave the flanks as they are, but move the contacts."""
+    change = PairChange(key, None, None, 1.0)
+    assert (change.holds_edges, change.holds_lines) == (edges, lines)
+
+
+def test_grid_that_tilts_on_flanks_alike_opens_no_gap():
+    """Heights and slopes of both flanks at two places: a grid that turns sees the difference of what both rise."""
+    heights, slopes = np.array([0.3, -0.2]), np.array([[0.1, 0.4], [-0.3, 0.2]])
+    none = np.zeros((2, 2, 2))
+    alike, flat = (
+        Places(None, none, none, np.stack([low, heights]), none, np.stack([low_slopes, slopes]), none)
+        for low, low_slopes in ((heights, slopes), (heights, 0.0 * slopes))
+    )
+    assert not alike.tilt_slopes.any()
+    assert_allclose(flat.tilt_slopes, heights[:, None] * slopes)

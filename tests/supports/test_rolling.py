@@ -146,11 +146,32 @@ def test_force_of_a_roller_is_that_of_the_standard_without_its_profile() -> None
     assert 0.9 * whole < largest < whole
 
 
+def test_tilted_balls_have_the_centre_of_the_inner_groove_for_their_lever() -> None:
+    """A ball alone presses through the centre of its inner groove, D_pw/2 + r_i - D_w/2 off the axis."""
+    bearing = replace(SMALL, elements=4, clearance=0.02)
+    motion = np.array([0.0, 0.02, 0.02, 0.0, 0.0, 0.0])
+    assert np.flatnonzero(bearing.element_forces(motion)).tolist() == [1]  # that on the y axis
+    force = bearing.reaction(motion).force
+    assert_allclose(force[3] / force[2], 0.5 * 43.5 + (0.52 - 0.5) * 11.5, rtol=1e-9)
+
+
+def test_profile_of_long_rollers_takes_off_their_ends_alike() -> None:
+    """ISO/TS 16281: it begins 1.25 diameters from either end, however long the roller is."""
+    short, long = (replace(BEARINGS["long roller"], length=length) for length in (16.0, 48.0))
+    assert_allclose(long.profile[0], short.profile[1], rtol=1e-9)  # both 0.8 mm from the end
+    assert not long.profile[4:-4].any()  # farther than 5 mm from both
+
+
 def test_pressure_is_hertz_at_the_inner_ring() -> None:
     ball, deflection = SMALL, np.array([0.0, 0.0, 0.1335381, 0.0, 0.0, 0.0])
     grown = ball.largest_pressure(2.0 * deflection) / ball.largest_pressure(deflection)
     force = ball.element_forces(2.0 * deflection).max() / ball.element_forces(deflection).max()
     assert_allclose(grown, force ** (1.0 / 3.0), rtol=1e-9)
+    wide = replace(ball, outer_groove=0.6)  # the outer ring counts for nothing but the force
+    force = wide.element_forces(deflection).max() / ball.element_forces(deflection).max()
+    assert_allclose(
+        wide.largest_pressure(deflection), force ** (1.0 / 3.0) * ball.largest_pressure(deflection), rtol=1e-9
+    )
     roller = BEARINGS["long roller"]
     line = roller.slice_forces(MOTIONS[0]).max() * 30.0 / 16.0
     steel = 210000.0 / (2.0 * 0.91)
@@ -170,6 +191,8 @@ def test_factors_are_those_of_the_tables_of_iso_281(gamma: float, balls: float, 
 def test_large_balls_and_wide_grooves_have_lower_ratings() -> None:
     small, large = (ball_rating(9, size, 5.0 * size, 0.0, 0.52, 0.53) for size in (25.4, 25.5))
     assert_allclose(large, small, rtol=0.01)
+    twice = ball_rating(9, 50.8, 5.0 * 50.8, 0.0, 0.52, 0.53)
+    assert_allclose(twice / small, 2.0**1.4, rtol=1e-3)  # 3.647 of ISO 281 is 25.4^0.4 to its last digit
     assert ball_rating(9, 12.0, 60.0, 0.0, 0.53, 0.56) < 0.9 * ball_rating(9, 12.0, 60.0, 0.0, 0.52, 0.53)
 
 

@@ -53,6 +53,10 @@ def test_units_of_bearings_are_those_of_their_names(scene: Scene) -> None:
     assert_allclose(pinion.bearings[0].stiffness.diagonal(), [2.5e5, 2.5e5, 1.5e5, 0.0, 0.0, 0.0])
     assert_allclose(pinion.bearings[1].stiffness.diagonal(), [4e5, 4e5, 0.0, 2e6, 2e6, 0.0])
     assert (pinion.start, pinion.end, wheel.sections[0].inner_diameter) == (-180.0, 20.0, 20.0)
+    other = {"at_mm": -90.0, "force_N": [10.0, 20.0, 30.0], "moment_Nm": [1.0, 2.0, 3.0]}
+    loaded, _ = shafts_of(scene.with_changes({"pinion.shaft.loads": [other]}))
+    assert loaded is not None
+    assert_allclose(loaded.loads[0].load, [10.0, 20.0, 30.0, 1e3, 2e3, 3e3])
 
 
 def test_forces_on_bearings_are_those_of_the_teeth(result: MeshCycle) -> None:

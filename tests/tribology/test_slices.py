@@ -1,12 +1,16 @@
 """What slices have of the contacts: radii, velocities, forces; what does not depend on the grid."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
 from loaded_tca.material import Material
+from loaded_tca.pairs.kinematics import surface_motions
 from loaded_tca.reference.hertz import line_contact
-from loaded_tca.tribology.slices import slices_of
+from loaded_tca.tribology.slices import _of_map, slices_of
 from tests.samples.tribology import FAMILIES, known, shared
 
 
@@ -91,6 +95,22 @@ def test_a_material_that_conducts_better_stays_cooler():
     better = shared("mesh_cycle_spur", material__conductivity_W_mK=200.0)
     ratio = known(better, friction=0.05).flash_temperature / known(plain, friction=0.05).flash_temperature
     assert_allclose(ratio[np.isfinite(ratio)], 0.5, rtol=1e-9)
+
+
+def test_teeth_on_axes_that_cross_at_a_distance_slide_along_their_contacts_too():
+    """As those of hypoids: the velocity between both bodies in the tangent plane, each turning about its own axis."""
+    wheel = SimpleNamespace(axes=Rotation.from_euler("x", 90.0, degrees=True).as_matrix(), origin=[5.0, 40.0, -8.0])
+    pair = SimpleNamespace(sense=1, ratio=0.3, module=2.0, wheel_axes=wheel.axes, wheel_origin=np.array(wheel.origin))
+    origin, axes = np.array([20.0, 6.0, 30.0]), Rotation.from_euler("xyz", [0.4, 1.1, 0.3]).as_matrix()
+    first, second = surface_motions(pair, origin[None], axes[None])
+    x, y = np.array([-0.1, 0.0, 0.1]), np.array([-2.0, 0.0, 2.0])
+    one = SimpleNamespace(x=x, y=y, spacing=(0.1, 2.0), pressure=np.ones((3, 3)), slice_force=np.ones(3))
+    slices = _of_map(pair, one, (first, second, first.less(second, 0.3)), 0, rough=False, edge=False)
+    points = origin + y[:, None] * axes[1]
+    between = np.cross([0.0, 0.0, 1.0], points) - 0.3 * np.cross(-wheel.axes[2], points - wheel.origin)
+    along = between @ axes[1]
+    assert_allclose(slices["sliding"], np.hypot(between @ axes[0], along), rtol=1e-9)
+    assert (np.abs(along) > 0.1 * slices["sliding"]).all()
 
 
 def test_flanks_of_a_ring_gear_roll_the_same_way():

@@ -117,6 +117,19 @@ def test_eccentric_wheel_has_the_closed_form():
     assert_allclose(path.transmission_error * pair.base_radii[1], expected, atol=1e-12)
 
 
+@pytest.mark.parametrize("gear", [0, 1])
+def test_revolution_that_begins_with_later_teeth_finds_the_gears_turned_as_far(gear):
+    """As the fourth pitch of a revolution from the first teeth on: eccentricity turns with its gear."""
+    pair = gear_pair(teeth=(17, 24))
+    deviations = [none(17), none(24)]
+    deviations[gear] = ToothDeviations(np.zeros(pair.teeth[gear]), 0.006, 0.3)
+    whole = trace_revolution(pair, tuple(deviations), pitches=5, per_pitch=2)
+    later = trace_revolution(pair, tuple(deviations), pitches=2, per_pitch=2, first_teeth=(3, 3))
+    scale = pair.base_radii[1]
+    assert_allclose(later.transmission_error * scale, whole.transmission_error[6:] * scale, atol=ROUNDING)
+    assert np.ptp(whole.transmission_error[::2]) * scale > 1e-3
+
+
 def test_deviations_that_bring_a_farther_pair_into_reach_are_seen():
     """All but one tooth of the wheel are set back by nearly as much as allowed: its edges go on touching long after."""
     pair = gear_pair(teeth=(17, 24))
