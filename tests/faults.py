@@ -804,6 +804,13 @@ FAULTS = (
         "return float(used.sum() ** -0.9)",
         "supports/test_rolling.py::test_lives_fall_with_powers_of_the_load",
     ),
+    Fault(
+        "overlap ratio without the axial offset",
+        "gears/involute.py",
+        "return self.common_face_width * sin(abs(self.pinion.helix_angle))",
+        "return min(self.pinion.face_width, self.wheel.face_width) * sin(abs(self.pinion.helix_angle))",
+        "results/test_load_factors.py::test_overlap_counts_the_face_that_an_axial_offset_leaves_in_common",
+    ),
 )
 
 

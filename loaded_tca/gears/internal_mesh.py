@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, degrees, inf, isclose, pi, tan
+from math import acos, degrees, inf, isclose, isfinite, pi, tan
 
 import numpy as np
 
@@ -36,6 +36,8 @@ class InternalMesh(InvoluteMesh):
         Of the normal module, normal pressure angle and **same** hand of the pinion, with more teeth.
     centre_distance : float [mm], optional
         abs(a); None: the one without backlash. Never refused for its backlash.
+    axial_offset : float [mm]
+        Mid-face of the ring from that of the pinion, towards +z: it shortens the common face.
 
     Raises
     ------
@@ -63,6 +65,7 @@ class InternalMesh(InvoluteMesh):
     pinion: CylindricalGear
     ring: RingGear
     centre_distance: float | None = None
+    axial_offset: float = 0.0
 
     def __post_init__(self) -> None:
         pinion, ring, distance = self.pinion, self.ring, self.centre_distance
@@ -85,6 +88,7 @@ class InternalMesh(InvoluteMesh):
                 f"teeth: {pinion.teeth} of the pinion is not below {ring.tooth_count}, the teeth of the ring",
             ),
             (distance is None or 0.0 < distance < inf, f"centre_distance: {distance} mm is not positive and finite"),
+            (isfinite(self.axial_offset), f"axial_offset: {self.axial_offset} mm is not finite"),
         )
         self._check_centre_distance()
         self._check_flanks()

@@ -11,7 +11,7 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears import CylindricalGear, InternalMesh, PinionCutter, RingGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING
 from loaded_tca.gears.internal_mesh import internal_interferences, internal_profile_shift_sum
-from loaded_tca.pairs.cylindrical import common_face_width, internal_pair
+from loaded_tca.pairs.cylindrical import internal_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
@@ -177,7 +177,7 @@ class InternalScene(CylindricalScene):
         if distance is not None and shifts.count(None) == 1:
             rest = internal_profile_shift_sum(pinion, ring, distance) - sum(x for x in shifts if x is not None)
             pinion, ring = gears([rest if shift is None else shift for shift in shifts])
-        return InternalMesh(pinion, ring, centre_distance=distance)
+        return InternalMesh(pinion, ring, distance, self.mounting.axial_offset_mm)
 
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two involute flanks in space."""
@@ -234,7 +234,7 @@ class InternalScene(CylindricalScene):
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
             ("path of contact: length AE, approach AC [mm]", f"{path.AE:.4f}", f"{path.AC:.4f}"),
-            ("common face width b [mm]", f"{common_face_width(mesh, self.mounting.axial_offset_mm):.4f}"),
+            ("common face width b [mm]", f"{mesh.common_face_width:.4f}"),
             ("involute interference: ring's tip to T1 [mm]", f"{ring_tip:.4f} free"),
             ("overlap interference at the tips [mm]", _room_cell(mesh.overlap_clearance)),
             (

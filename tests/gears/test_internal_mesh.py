@@ -1,6 +1,7 @@
 """A pinion inside a ring: working circles, path of contact, the three interferences against brute force."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -101,6 +102,8 @@ def test_helical_overlap_ratio_counts_the_common_face():
     expected = 25.0 * math.sin(math.radians(15)) / (3.0 * math.pi)
     assert_allclose(mesh.overlap_ratio, expected)
     assert_allclose(mesh.total_contact_ratio, mesh.transverse_contact_ratio + expected)
+    moved = replace(mesh, axial_offset=-5.0)  # 20 of 25 mm are left
+    assert_allclose(moved.overlap_ratio, 0.8 * expected)
 
 
 def test_forces_are_those_of_the_base_circle():
