@@ -811,6 +811,13 @@ FAULTS = (
         "return min(self.pinion.face_width, self.wheel.face_width) * sin(abs(self.pinion.helix_angle))",
         "results/test_load_factors.py::test_overlap_counts_the_face_that_an_axial_offset_leaves_in_common",
     ),
+    Fault(
+        "a tip clearance of zero gives no warning",
+        "results/warnings.py",
+        "if clearance < LEAST_CLEARANCE",
+        "if 0.0 < clearance < LEAST_CLEARANCE",
+        "results/test_gear_warnings.py::test_tip_that_comes_near_to_a_root_is_warned_of",
+    ),
 )
 
 
