@@ -832,6 +832,14 @@ FAULTS = (
         "pass",
         "stages/test_kinematics.py::test_places_of_planets_that_stand_opposite_are_opposite",
     ),
+    Fault(
+        "radial assembly: tip corners pass each other between the points of the way",
+        "gears/internal_mesh.py",
+        "np.maximum(ring.tip_radius, one) for one in ends",
+        "np.maximum(ring.tip_radius + 0.05, one) for one in ends",
+        "gears/test_internal_mesh.py::"
+        "test_radial_assembly_has_the_room_of_the_ring_s_shadow_and_at_worst_that_of_trimming_interference",
+    ),
 )
 
 

@@ -222,7 +222,6 @@ class InternalScene(CylindricalScene):
         mesh = self.mesh()
         pinion, ring, path = mesh.pinion, mesh.ring, mesh.path_of_contact
         ring_tip = ring.roll_length(ring.tip_radius) - (path.T1 - path.T2)
-        assembly = mesh.radial_assembly_clearance
         shifts = pinion.profile_shift + ring.profile_shift, mesh.profile_shift_sum_without_backlash
         return [
             ("working centre distance |a_w| [mm]", f"{mesh.working_centre_distance:.4f}"),
@@ -237,10 +236,7 @@ class InternalScene(CylindricalScene):
             ("common face width b [mm]", f"{mesh.common_face_width:.4f}"),
             ("involute interference: ring's tip to T1 [mm]", f"{ring_tip:.4f} free"),
             ("overlap interference at the tips [mm]", _room_cell(mesh.overlap_clearance)),
-            (
-                "radial assembly [mm]",
-                _assembly_cell(assembly),
-            ),
+            ("radial assembly [mm]", _assembly_cell(mesh)),
             ("", "pinion", "wheel (ring)"),
             ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
             ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
@@ -270,11 +266,16 @@ def _room_cell(clearance: float) -> str:
     return "free" if math.isinf(clearance) else f"{clearance:.4f} free"
 
 
-def _assembly_cell(clearance: float) -> str:
-    """Clearance of a pinion that is pushed radially into its place, in words."""
-    if clearance == 0.0:
-        return "0.0000 free: teeth touch in mesh alone"
-    return _room_cell(clearance) if clearance > 0.0 else f"{-clearance:.4f} overlap: along the axis only"
+def _assembly_cell(mesh: InternalMesh) -> str:
+    """Clearance of a pinion that is pushed radially into its place, and where it has to stand for that, in words."""
+    clearance, (tooth, space, worst) = mesh.radial_assembly_clearance, mesh.radial_assembly_clearances
+    if clearance < 0.0:
+        return f"{-clearance:.4f} overlap: along the axis only"
+    text = "0.0000 free: teeth touch in mesh alone" if clearance == 0.0 else _room_cell(clearance)
+    if worst >= 0.0:
+        return text
+    free = " or ".join(name for name, room in (("a tooth", tooth), ("a space", space)) if room >= 0.0)
+    return f"{text}, with {free} of the pinion towards the ring; turned, up to {-worst:.4f} overlap"
 
 
 def _diameter_rows(mesh: InternalMesh) -> list[Row]:
