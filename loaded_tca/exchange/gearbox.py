@@ -186,19 +186,23 @@ class Gearbox:
         Raises
         ------
         InputError
-            If there is none, with those that there are; if it has no two gears.
+            If there is none, with those that there are; if it is of another kind, or has no two gears.
         """
-        ids = ", ".join(self.stages) or "none"
+        ids = ", ".join(self.stages) or "none, the model has no cylindrical stage of two gears"
         component = self.model.components.get(wanted)
         if component is None or not component.type.endswith("stage"):
             raise InputError(f"stage {wanted}: not found; allowed {ids}")
         if wanted in self._faults:
             raise self._faults[wanted]
         if wanted not in self.stages:
+            kind = component.type.removesuffix("_stage")
             reason = (
-                "its relation has no gear_1 and gear_2" if component.type == "cylindrical_stage" else component.type
+                "its relation has no gear_1 and gear_2" if kind == "cylindrical" else f"{kind} stages are not covered"
             )
-            raise InputError(f"stage {wanted}: {reason}; scenes are made of cylindrical stages of two gears: {ids}")
+            raise InputError(
+                f"stage {wanted}: {reason}; import makes scenes of cylindrical stages (spur and helical gears, also a "
+                f"planet in its sun or ring) of two gears: {ids}"
+            )
         return self.stages[wanted]
 
     def _stage(self, component: Component, gears: tuple[Component, Component]) -> Stage:

@@ -7,7 +7,7 @@ ISO 23509:2016, table 4, annex C.
 
 from __future__ import annotations
 
-from math import cos, pi, sqrt, tan
+from math import cos, inf, pi, sqrt, tan
 
 from loaded_tca.errors import InputError
 from loaded_tca.gears.bevel import pitch_angles
@@ -54,39 +54,81 @@ def crown_gear_factors(
     }
 
 
-def usual_factors(teeth: tuple[int, int], shaft_angle: float = 0.5 * pi) -> dict[str, float]:
-    r"""Mean addendum and thickness factor of data type II where a drawing has none.
+def equivalent_ratio(teeth: tuple[int, int], shaft_angle: float) -> float:
+    r"""Ratio u_a of the pair with a shaft angle of 90 deg that has teeth like these.
 
-    .. math:: c_{ham} = 0.21 + 0.29/u_a^2, \quad
-              k_t = -0.088 + 0.092 u_a - 0.004 u_a^2 + 0.0016 (z_1 - 30)(u_a - 1), \quad
-              u_a = \sqrt{u \cos\delta_1 / \cos\delta_2}
+    .. math:: u_a = \sqrt{u \cos\delta_1 / \cos\delta_2}
+
+    inf from a crown wheel on (:math:`\delta_2 \ge 90^\circ`), 0 from a crown pinion on; u = z2/z1 where the shaft angle
+    is 90 deg.
 
     Parameters
     ----------
     teeth : (int, int)
     shaft_angle : float [rad]
-        Sigma; the equivalent ratio u_a is u = z2/z1 where it is 90 deg.
+
+    References
+    ----------
+    ISO 23509:2016, annex C.
+
+    Examples
+    --------
+    >>> round(equivalent_ratio((14, 39), 0.5 * pi), 4), equivalent_ratio((18, 36), 2.2)
+    (2.7857, inf)
+    """
+    pinion, wheel = (cos(angle) for angle in pitch_angles(teeth, shaft_angle))
+    if wheel <= 0.0:
+        return inf
+    return sqrt(teeth[1] / teeth[0] * max(pinion, 0.0) / wheel)
+
+
+def largest_ratio(teeth: tuple[int, int]) -> float:
+    """Equivalent ratio from which on the usual thickness factor stays what it is, at least the ratio of the teeth.
+
+    The formula rises to 11.5 + 0.2 (z1 - 30) and falls beyond without bound, for pinions ever thinner.
+
+    Parameters
+    ----------
+    teeth : (int, int)
+    """
+    return max(teeth[1] / teeth[0], (0.092 + 0.0016 * (teeth[0] - 30)) / 0.008)
+
+
+def usual_factors(teeth: tuple[int, int], shaft_angle: float = 0.5 * pi) -> dict[str, float]:
+    r"""Mean addendum and thickness factor of data type II where a drawing has none.
+
+    .. math:: c_{ham} = 0.21 + 0.29/u_a^2, \quad
+              k_t = -0.088 + 0.092 u_a - 0.004 u_a^2 + 0.0016 (z_1 - 30)(u_a - 1)
+
+    with u_a of :func:`equivalent_ratio`, in k_t up to :func:`largest_ratio`: near a crown wheel, where u_a has no
+    limit, both factors pass on without a jump.
+
+    Parameters
+    ----------
+    teeth : (int, int)
+    shaft_angle : float [rad]
+        Sigma.
 
     Returns
     -------
     dict
-        ``addendum_share`` and ``thickness``, as :func:`crown_gear_factors` takes them.
+        ``addendum_share`` and ``thickness``, as :func:`crown_gear_factors` takes them; ``addendum_share`` is inf from a
+        crown pinion on.
 
     References
     ----------
-    ISO 23509:2016, annex C; the numbers of annex F.2 follow from them.
+    ISO 23509:2016, annex C; the numbers of annex F.2 follow from them. The bound of u_a in k_t is of this package.
 
     Examples
     --------
     >>> {key: round(value, 4) for key, value in usual_factors((14, 39)).items()}
     {'addendum_share': 0.2474, 'thickness': 0.0915}
     """
-    first, second = pitch_angles(teeth, shaft_angle)
-    ratio = teeth[1] / teeth[0]
-    if cos(first) > 0.0 < cos(second):
-        ratio = sqrt(ratio * cos(first) / cos(second))
+    ratio = equivalent_ratio(teeth, shaft_angle)
+    share = 0.21 + 0.29 / ratio**2 if ratio > 0.0 else inf
+    ratio = min(ratio, largest_ratio(teeth))
     thickness = -0.088 + 0.092 * ratio - 0.004 * ratio**2 + 0.0016 * (teeth[0] - 30) * (ratio - 1.0)
-    return {"addendum_share": 0.21 + 0.29 / ratio**2, "thickness": thickness}
+    return {"addendum_share": share, "thickness": thickness}
 
 
 Both = tuple[float, float]

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil, inf, pi, tan
+from math import ceil, inf, isfinite, pi, tan
 from typing import NamedTuple
 
 import loaded_tca.warning_kinds as kinds
@@ -96,6 +96,8 @@ class CylindricalMesh(InvoluteMesh):
         Of one normal module and normal pressure angle, with opposite hands.
     centre_distance : float [mm], optional
         a; None: the one without backlash (:attr:`working_centre_distance`). Never refused for its backlash.
+    axial_offset : float [mm]
+        Mid-face of the wheel from that of the pinion, towards +z: it shortens the common face.
 
     Raises
     ------
@@ -121,12 +123,14 @@ class CylindricalMesh(InvoluteMesh):
     pinion: CylindricalGear
     wheel: CylindricalGear
     centre_distance: float | None = None
+    axial_offset: float = 0.0
 
     def __post_init__(self) -> None:
         first, second, distance = self.pinion, self.wheel, self.centre_distance
         require(
             *pair_checks(first, second, ("normal_module",), "helix_angle"),
             (distance is None or 0.0 < distance < inf, f"centre_distance: {distance} mm is not positive and finite"),
+            (isfinite(self.axial_offset), f"axial_offset: {self.axial_offset} mm is not finite"),
         )
         self._check_centre_distance()
         self._check_undercut(first, second)

@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, degrees, inf, isclose, pi, tan
+from math import acos, asin, cos, degrees, inf, isclose, isfinite, pi, sin, sqrt, tan
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, ActiveProfile, PathOfContact, Room, interferences
@@ -36,6 +37,8 @@ class InternalMesh(InvoluteMesh):
         Of the normal module, normal pressure angle and **same** hand of the pinion, with more teeth.
     centre_distance : float [mm], optional
         abs(a); None: the one without backlash. Never refused for its backlash.
+    axial_offset : float [mm]
+        Mid-face of the ring from that of the pinion, towards +z: it shortens the common face.
 
     Raises
     ------
@@ -63,6 +66,7 @@ class InternalMesh(InvoluteMesh):
     pinion: CylindricalGear
     ring: RingGear
     centre_distance: float | None = None
+    axial_offset: float = 0.0
 
     def __post_init__(self) -> None:
         pinion, ring, distance = self.pinion, self.ring, self.centre_distance
@@ -85,6 +89,7 @@ class InternalMesh(InvoluteMesh):
                 f"teeth: {pinion.teeth} of the pinion is not below {ring.tooth_count}, the teeth of the ring",
             ),
             (distance is None or 0.0 < distance < inf, f"centre_distance: {distance} mm is not positive and finite"),
+            (isfinite(self.axial_offset), f"axial_offset: {self.axial_offset} mm is not finite"),
         )
         self._check_centre_distance()
         self._check_flanks()
@@ -238,44 +243,81 @@ class InternalMesh(InvoluteMesh):
         of_ring = acos(cosines[1]) + ring.involute_at(second) - working
         return second * (of_pinion / self.gear_ratio - of_ring)
 
-    @cached_property
+    @property
     def radial_assembly_clearance(self) -> float:
         """Least clearance across the teeth while the pinion is pushed radially into its place [mm].
 
         Negative: the gears go together along the axis alone. The pinion does not turn on its way; of the two places in
-        which it stands symmetrically, a tooth or a space towards the ring, the better one counts. Along circles about
-        the axis of the ring, for one flank of a tooth that stands in the middle of its space; zero, but for rounding,
-        where the teeth touch in mesh alone. inf where no teeth reach between each other.
+        which it stands symmetrically, a tooth or a space towards the ring, the better one counts: no other is free
+        where neither is. Along circles about the axis of the ring, for one flank of a tooth that stands in the middle
+        of its space; zero, but for rounding, where the teeth touch in mesh alone. inf where no teeth reach between each
+        other.
         """
-        clearance = max(self._assembly_clearance(turn) for turn in (0.0, 0.5))
-        return 0.0 if abs(clearance) < ROUNDING * self.pinion.normal_module else clearance
+        return max(self.radial_assembly_clearances)
+
+    @cached_property
+    def radial_assembly_clearances(self) -> tuple[float, float, float]:
+        r"""Radial assembly clearances with a tooth and with a space towards the ring, and at the worst turn [mm].
+
+        At the worst turn the tip corner of a tooth, on its way parallel to the line of centres, passes the tip corner
+        of the ring as closely as at any, at the angles :math:`\theta_1`, :math:`\theta_2` from the axes with
+
+        .. math:: \sin^2\theta_1 = \frac{1 - (z_1 r_{a2}/(z_2 r_{a1}))^2}{1 - (z_1/z_2)^2}, \qquad
+                  r_{a1} \sin\theta_1 = r_{a2} \sin\theta_2
+
+        (trimming interference, which the cutter of a ring must not have: it is fed in while it turns).
+
+        References
+        ----------
+        Stock Drive Products, Elements of Metric Gear Technology, section 5.2, eqs. 5-9 and 5-10.
+        """
+        least = ROUNDING * self.pinion.normal_module
+        tooth, space = (self._assembly_clearance(turn) for turn in (0.0, 0.5))
+        worst = min(tooth, space, self._trimming_clearance())
+        tooth, space, worst = (0.0 if abs(one) < least else one for one in (tooth, space, worst))
+        return tooth, space, worst
+
+    def _trimming_clearance(self) -> float:
+        """Clearance of the tip corners at the worst turn; inf where none passes the other [mm]."""
+        pinion, ring, ratio = self.pinion, self.ring, 1.0 / self.gear_ratio
+        first, second, distance = pinion.tip_radius, ring.tip_radius, self.working_centre_distance
+        square = (1.0 - (ratio * second / first) ** 2) / (1.0 - ratio**2)
+        if not 0.0 < square < 1.0 or first >= second:
+            return inf
+        angle = asin(sqrt(square))
+        if distance + first * cos(angle) <= second * cos(asin(first * sin(angle) / second)):
+            return inf  # the corner of the pinion ends its way before that of the ring
+        corners = (one.half_thickness_angle_at_base for one in (pinion, ring))
+        thickness = next(corners) - pinion.involute_at(first), next(corners) + ring.involute_at(second)
+        of_ring = ratio * (angle - thickness[0]) + pi / ring.tooth_count - thickness[1]
+        return second * (of_ring - asin(first * sin(angle) / second))
 
     def _assembly_clearance(self, turn: float) -> float:
-        """The same of a pinion that stands so many pitches off a tooth towards the ring."""
+        """Clearance of a pinion that stands so many pitches off a tooth towards the ring [mm]."""
         pinion, ring = self.pinion, self.ring
         final = self.working_centre_distance
-        tip = pinion.tip_radius
-        start = max(0.0, ring.tip_radius - tip)
+        start = max(0.0, ring.tip_radius - pinion.tip_radius)
         if start >= final:
             return inf
-        radius = np.linspace(max(pinion.form_radius, pinion.base_radius), tip, PROFILE_POINTS)
-        roll = np.sqrt(np.maximum(radius**2 - pinion.base_radius**2, 0.0)) / pinion.base_radius
-        half = pinion.half_thickness_angle_at_base - (roll - np.arctan(roll))
+        radius = np.linspace(max(pinion.form_radius, pinion.base_radius), pinion.tip_radius, PROFILE_POINTS)
+        half = pinion.half_thickness_angle_at_base - _involute(radius / pinion.base_radius)
         quarter = pinion.teeth // 4 + 1
         tooth = 2.0 * pi / pinion.teeth * (np.arange(-quarter, quarter + 1) + turn)
         across = tooth[:, None] + half  # flanks away from the middle of the gear, by symmetry both
-        distance = np.linspace(start, final, PROFILE_POINTS)[1:, None, None]
-        x, y = distance + radius * np.cos(across), radius * np.sin(across)
-        reach, azimuth = np.hypot(x, y), np.arctan2(y, x)
-        inside = (reach > ring.tip_radius) & (azimuth > 0.0) & (x > 0.0)
-        reach = np.clip(reach, ring.tip_radius, ring.form_radius)
-        roll = np.sqrt(np.maximum(reach**2 - ring.base_radius**2, 0.0)) / ring.base_radius
-        thickness = ring.half_thickness_angle_at_base + roll - np.arctan(roll)
+        x, y = radius * np.cos(across), radius * np.sin(across)
+        ends = (np.hypot(np.maximum(place + x, 0.0), y) for place in (start, final))
+        first, last = (np.maximum(ring.tip_radius, one) for one in ends)  # of the way between the teeth of the ring
+        inside = (last > first) & (y > 0.0)
+        if not inside.any():
+            return inf
         # A tooth of the ring stands half a pitch beside the tooth of the pinion that points to it.
-        pitch = 2.0 * pi / ring.tooth_count
-        middle = pitch * (np.arange(-quarter, quarter + 1) + turn + 0.5)
+        middle = 2.0 * pi / ring.tooth_count * (np.arange(-quarter, quarter + 1) + turn + 0.5)
+        reach = np.linspace(first, last, PROFILE_POINTS)
+        azimuth = np.arcsin(np.clip(y / reach, -1.0, 1.0))
+        reach = np.clip(reach, ring.tip_radius, ring.form_radius)
+        thickness = ring.half_thickness_angle_at_base + _involute(reach / ring.base_radius)
         clearance = reach * (middle[:, None] - thickness - azimuth)
-        return float(clearance[inside].min()) if inside.any() else inf
+        return float(clearance[:, inside].min())
 
     @property
     def pinion_active_profile(self) -> ActiveProfile:
@@ -319,6 +361,12 @@ class InternalMesh(InvoluteMesh):
             E=end,
             T2=-line,
         )
+
+
+def _involute(ratio: Array) -> Array:
+    """inv(alpha) [rad] at radii over that of the base circle."""
+    roll = np.sqrt(np.maximum(ratio**2 - 1.0, 0.0))
+    return np.asarray(roll - np.arctan(roll))
 
 
 def internal_profile_shift_sum(pinion: CylindricalGear, ring: RingGear, centre_distance: float) -> float:

@@ -141,6 +141,7 @@ class InvoluteMesh:
 
     pinion: CylindricalGear
     centre_distance: float | None
+    axial_offset: float
 
     if TYPE_CHECKING:  # a field or a property of each mesh
 
@@ -199,8 +200,10 @@ class InvoluteMesh:
 
     @property
     def common_face_width(self) -> float:
-        """Face width that both gears cover, mid-faces together [mm]."""
-        return min(self.pinion.face_width, self.wheel.face_width)
+        """Face width that both gears cover [mm]; that of the narrower one where their faces lie apart."""
+        widths = self.pinion.face_width, self.wheel.face_width
+        covered = 0.5 * sum(widths) - abs(self.axial_offset)
+        return min(*widths, covered) if covered > 0.0 else min(widths)
 
     @property
     def transverse_contact_ratio(self) -> float:

@@ -8,7 +8,8 @@ about +z, which is -z of its own frame: so all that holds for the wheel of an ex
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -23,6 +24,8 @@ from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
 from loaded_tca.tooth.families import CylindricalTooth, InvoluteTooth
 from loaded_tca.tooth.ring import RingTooth
+
+Mesh = TypeVar("Mesh", CylindricalMesh, InternalMesh)
 
 LARGEST_ANGLE = math.radians(45.0)
 """Angular errors stay below this [rad]: the axes are those of parallel gears, which still face each other."""
@@ -101,7 +104,7 @@ def cylindrical_pair(
     modifications : (FlankModifications, FlankModifications)
         Of pinion and wheel.
     mounting : Mounting
-        Errors of the wheel's position.
+        Errors of the wheel's position, the axial offset beside that of the mesh.
     materials : (Material, Material)
         Of pinion and wheel.
     driving : {"pinion", "wheel"}
@@ -123,6 +126,7 @@ def cylindrical_pair(
     >>> cylindrical_pair(CylindricalMesh(*gears))
     GearPair(34/57, module 3 mm, face 25 mm)
     """
+    mesh, mounting = _as_mounted(mesh, mounting)
     wheel = CylindricalTooth(mesh.wheel, mesh.wheel_working_radius, mesh.wheel_active_profile, modifications[1])
     return involute_pair(
         mesh,
@@ -130,7 +134,6 @@ def cylindrical_pair(
         mesh.wheel.bore_diameter,
         mounting.place_parallel(mesh.working_centre_distance),
         modifications=modifications[0],
-        axial_offset=mounting.axial_offset,
         materials=materials,
         driving=driving,
         sense=sense,
@@ -144,7 +147,6 @@ def involute_pair(
     place: tuple[Array, Array],
     *,
     modifications: FlankModifications,
-    axial_offset: float,
     materials: tuple[Material, Material],
     driving: Driving,
     sense: Sense,
@@ -154,6 +156,7 @@ def involute_pair(
     Parameters
     ----------
     mesh : InvoluteMesh
+        With the whole axial offset of the mating gear.
     wheel : InvoluteTooth
         Teeth of the mating gear, with their modifications.
     held : float, optional [mm]
@@ -162,8 +165,6 @@ def involute_pair(
         Origin and axes of the mating gear in the fixed frame.
     modifications : FlankModifications
         Of the pinion.
-    axial_offset : float [mm]
-        Of the mating gear.
     materials : (Material, Material)
     driving : {"pinion", "wheel"}
     sense : {"positive", "negative"}
@@ -174,7 +175,7 @@ def involute_pair(
         As :func:`cylindrical_pair`.
     """
     turning, drive = signs_of(driving, sense)
-    require_common_face(mesh, axial_offset)
+    require_common_face(mesh)
     for gear in (mesh.pinion, mesh.wheel):
         require_short_turn(gear)
     pinion = CylindricalTooth(mesh.pinion, mesh.pinion_working_radius, mesh.pinion_active_profile, modifications)
@@ -190,7 +191,7 @@ def involute_pair(
         driving=drive,
         module=mesh.pinion.normal_module,
         base_radii=(mesh.pinion.base_radius, mesh.wheel.base_radius),
-        face_width=common_face_width(mesh, axial_offset),
+        face_width=mesh.common_face_width,
     )
 
 
@@ -204,19 +205,19 @@ def require_short_turn(gear: InvoluteGear) -> None:
         )
 
 
-def common_face_width(mesh: InvoluteMesh, axial_offset: float) -> float:
-    """Face width that both gears cover, the wheel moved along its axis [mm]; of faces apart the narrower one."""
-    covered = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(axial_offset)
-    return min(mesh.common_face_width, covered) if covered > 0.0 else mesh.common_face_width
+def _as_mounted(mesh: Mesh, mounting: Mounting) -> tuple[Mesh, Mounting]:
+    """Mesh and mounting, both with the sum of their axial offsets."""
+    offset = mesh.axial_offset + mounting.axial_offset
+    return replace(mesh, axial_offset=offset), replace(mounting, axial_offset=offset)
 
 
-def require_common_face(mesh: InvoluteMesh, offset: float) -> None:
-    """Refuse faces that the offset [mm] of the wheel leaves next to nothing in common; apart, they never touch."""
-    common = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(offset)
+def require_common_face(mesh: InvoluteMesh) -> None:
+    """Refuse faces that the offset of the wheel leaves next to nothing in common; apart, they never touch."""
+    common = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(mesh.axial_offset)
     least = LEAST_FACE * mesh.pinion.normal_module
     if abs(common) < least:
         raise GeometryError(
-            f"axial_offset: {offset:.6g} mm leaves no common flank: the faces of pinion and wheel have "
+            f"axial_offset: {mesh.axial_offset:.6g} mm leaves no common flank: the faces of pinion and wheel have "
             f"{max(common, 0.0):.4g} mm in common; at least {least:.4g} mm, {LEAST_FACE:g} normal modules, are needed"
         )
 
@@ -262,6 +263,7 @@ def internal_pair(
     >>> internal_pair(InternalMesh(pinion, RingGear(teeth=-60, normal_module=3.0, face_width=25.0)))
     GearPair(25/60, module 3 mm, face 25 mm)
     """
+    mesh, mounting = _as_mounted(mesh, mounting)
     wheel = RingTooth(mesh.ring, mesh.wheel_working_radius, mesh.wheel_active_profile, modifications[1])
     origin = np.array([mounting.centre_distance_error - mesh.working_centre_distance, 0.0, mounting.axial_offset])
     return involute_pair(
@@ -270,7 +272,6 @@ def internal_pair(
         mesh.ring.outer_diameter,
         (origin, np.diag([1.0, -1.0, -1.0]) @ mounting.turn.T),
         modifications=modifications[0],
-        axial_offset=mounting.axial_offset,
         materials=materials,
         driving=driving,
         sense=sense,

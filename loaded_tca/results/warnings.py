@@ -282,11 +282,11 @@ def questions(scene: Scene) -> list[str]:
 
 
 def _small_clearances(scene: Scene, pair: GearPair) -> list[str]:
-    """Sentences on tips that come near to roots without reaching them: where they do, whole gears jam."""
+    """Sentences on tips that come near to roots, or touch them; where they reach into them, nothing can turn."""
     return [
-        kinds.CLEARANCE.sentence(clearance=clearance, gear=gear, least=LEAST_CLEARANCE)
+        kinds.CLEARANCE.sentence(clearance=max(0.0, round(clearance, 4)), gear=gear, least=LEAST_CLEARANCE)
         for gear, clearance in zip(GEARS, scene.tip_clearances, strict=False)
-        if 0.0 < clearance < LEAST_CLEARANCE * pair.module * (1.0 - ROUNDING)
+        if clearance < LEAST_CLEARANCE * pair.module * (1.0 - ROUNDING)
     ]
 
 

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from math import cos, degrees, pi, radians, sin, tan
+from dataclasses import dataclass
+from math import cos, degrees, inf, pi, radians, sin, tan
 from typing import Any, ClassVar, Literal
 
 from loaded_tca.arrays import GEARS
-from loaded_tca.errors import InputError
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.gears.bevel_blank import BacklashKind, BevelBlank, Cones, Taper
-from loaded_tca.gears.blank_factors import crown_gear_factors, measured_depths, measured_thicknesses, usual_factors
+from loaded_tca.gears.blank_factors import (
+    crown_gear_factors,
+    equivalent_ratio,
+    largest_ratio,
+    measured_depths,
+    measured_thicknesses,
+    usual_factors,
+)
 from loaded_tca.gears.face_milled import FaceMilledGear
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.section import Rule, Section, rule
@@ -251,12 +258,15 @@ class Blank(Section):
             # theta_f1 = theta_a2: what BevelBlank takes are the dedendum angles of pinion and wheel
             about["wheel_angles"] = (radians(angles[0]), radians(angles[1]))
         backlashes = {kind: getattr(self, name) for name, kind in BACKLASHES.items()}
+        outer = 0.5 * teeth[0] * outer_module / sin(pitch_angles(teeth, shaft_angle)[0])
+        module = outer_module * cos(spiral_angle) * (1.0 - self.outer_face_share * face_widths[1] / outer)
         try:
             if measured.addenda is None or measured.dedenda is None:
                 about |= self._factors(teeth, shaft_angle)
+                if self.wheel_slot_width_mm is not None and module > 0.0:
+                    slot = self.wheel_slot_width_mm / (2.0 * module) + about["dedendum_factor"] * tan(pressure_angle)
+                    about["thickness_modification"] = slot - 0.25 * pi
             else:
-                outer = 0.5 * teeth[0] * outer_module / sin(pitch_angles(teeth, shaft_angle)[0])
-                module = outer_module * cos(spiral_angle) * (1.0 - self.outer_face_share * face_widths[1] / outer)
                 about |= measured_depths(measured.addenda, measured.dedenda, module)
                 if measured.thicknesses is not None:
                     shift = about["profile_shift"]
@@ -264,16 +274,27 @@ class Blank(Section):
                         measured.thicknesses, shift, module, pressure_angle
                     )
             blank = BevelBlank(teeth, outer_module, face_widths[1], **about)
-            if self.wheel_slot_width_mm is not None:
-                slot = self.wheel_slot_width_mm / (2.0 * blank.mean_normal_module)
-                slot += blank.dedendum_factor * tan(pressure_angle)
-                blank = replace(blank, thickness_modification=slot - 0.25 * pi)
             for kind, backlash in backlashes.items():
                 if backlash is not None:
                     blank = blank.with_backlash(backlash, kind)
         except InputError as error:
             raise InputError(f"pair.blank: {problem}" for problem in error.problems) from None
+        except GeometryError as error:
+            raise self._with_way_out(error, teeth, shaft_angle, measured) from None
         return blank
+
+    def _with_way_out(
+        self, error: GeometryError, teeth: tuple[int, int], shaft_angle: float, measured: Measured
+    ) -> GeometryError:
+        """Error that names `thickness_factor` where the usual one is no more than the bound of its formula."""
+        usual = self.data_type == "II" and self.thickness_factor is None and self.wheel_slot_width_mm is None
+        if measured.addenda or not usual or equivalent_ratio(teeth, shaft_angle) <= largest_ratio(teeth):
+            return error
+        return GeometryError(
+            f"{error}; pair.blank.thickness_factor: missing, and near a crown wheel the usual one is "
+            f"{usual_factors(teeth, shaft_angle)['thickness']:.4g}, the bound of its formula: give a smaller one, or "
+            "pair.blank.wheel_slot_width_mm"
+        )
 
     def _factors(self, teeth: tuple[int, int], shaft_angle: float) -> dict[str, float]:
         """Parameters of data type I, as given or from type II."""
@@ -289,9 +310,10 @@ class Blank(Section):
         factors |= {name: value for name, value in named.items() if value is not None}
         if (share := factors["addendum_share"]) > 1.0:  # the usual one; a given one is from 0 to 1
             raise InputError(
-                f"mean_addendum_factor: missing; the usual one, 0.21 + 0.29/u_a², is {share:.4g} of a pinion of "
-                f"{teeth[0]} teeth and a wheel of {teeth[1]}: usual where the pinion is the smaller gear; allowed "
-                "a factor from 0 to 1, the wheel's share of the working depth"
+                f"mean_addendum_factor: missing; the usual one, 0.21 + 0.29/u_a², is "
+                f"{share if share < 100.0 else inf:.4g} of a pinion of {teeth[0]} teeth and a wheel of {teeth[1]}: "
+                "usual where the pinion is the smaller gear; allowed a factor from 0 to 1, the wheel's share of the "
+                "working depth"
             )
         return crown_gear_factors(**factors)
 

@@ -12,7 +12,7 @@ from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
 from loaded_tca.gears.involute import InvoluteMesh
-from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
+from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
 from loaded_tca.reference.iso1328 import flank_tolerances
@@ -177,7 +177,7 @@ class CylindricalScene(BlankScene):
                     "the other gear"
                 )
                 raise
-        return CylindricalMesh(pinion, wheel, centre_distance=distance)
+        return CylindricalMesh(pinion, wheel, distance, self.mounting.axial_offset_mm)
 
     @property
     def sense(self) -> Sense:
@@ -197,16 +197,18 @@ class CylindricalScene(BlankScene):
         )
 
     def _mounting(self, mesh: InvoluteMesh) -> Mounting:
-        """Mounting errors, the misalignment in the plane of action as the axis error that makes it."""
+        """Mounting errors beside those in the mesh, the misalignment in the plane of action as its axis error."""
         errors = in_base_units(self.mounting)
-        width = common_face_width(mesh, self.mounting.axial_offset_mm)
-        errors["out_of_plane"] += errors.pop("misalignment") / (width * math.cos(mesh.working_pressure_angle))
+        del errors["axial_offset"]
+        errors["out_of_plane"] += errors.pop("misalignment") / (
+            mesh.common_face_width * math.cos(mesh.working_pressure_angle)
+        )
         require(
             (
                 abs(errors["out_of_plane"]) < LARGEST_ANGLE,
                 f"mounting.misalignment_um: found {self.mounting.misalignment_um:g}; over the common face width of "
-                f"{width:g} mm it makes out_of_plane_deg {math.degrees(errors['out_of_plane']):.4g}, allowed up to "
-                f"{math.degrees(LARGEST_ANGLE):g}",
+                f"{mesh.common_face_width:g} mm it makes out_of_plane_deg {math.degrees(errors['out_of_plane']):.4g}, "
+                f"allowed up to {math.degrees(LARGEST_ANGLE):g}",
             )
         )
         return Mounting(**errors)
@@ -250,8 +252,7 @@ class CylindricalScene(BlankScene):
     def mean_contact_length(self) -> float:
         """Mean length of all contact lines over a pitch, eps_alpha b/cos(beta_b) [mm]."""
         mesh = self.mesh()
-        width = common_face_width(mesh, self.mounting.axial_offset_mm)
-        return mesh.transverse_contact_ratio * width / math.cos(mesh.pinion.base_helix_angle)
+        return mesh.transverse_contact_ratio * mesh.common_face_width / math.cos(mesh.pinion.base_helix_angle)
 
     @property
     def transverse_angles(self) -> tuple[float, float]:
@@ -262,9 +263,7 @@ class CylindricalScene(BlankScene):
     @property
     def contact_standard(self) -> ContactStandard:
         """Contact factors and stiffnesses of ISO 6336-1 and -2 over the common face."""
-        mesh = self.mesh()
-        width = common_face_width(mesh, self.mounting.axial_offset_mm)
-        return contact_standard(mesh, width, build_materials(self.materials))
+        return contact_standard(self.mesh(), build_materials(self.materials))
 
     def slope_tolerances(self, tolerance_class: int) -> Mapping[str, float]:
         """Return the tolerances of the helix and profile slopes of both gears after ISO 1328-1 [um]."""
@@ -277,7 +276,7 @@ class CylindricalScene(BlankScene):
         NaN where the standard has no critical section of the tooth.
         """
         mesh = self.mesh()
-        area = common_face_width(mesh, self.mounting.axial_offset_mm) * mesh.pinion.normal_module
+        area = mesh.common_face_width * mesh.pinion.normal_module
         pinion, wheel = (math.prod(factors) / (area * mesh.pinion.reference_radius) for factors in self.root_factors)
         return pinion, wheel
 
@@ -291,8 +290,7 @@ class CylindricalScene(BlankScene):
     def tooth_height_over_width(self) -> float:
         """Height of the higher teeth over the common face width, h/b of ISO 6336-1."""
         mesh = self.mesh()
-        width = common_face_width(mesh, self.mounting.axial_offset_mm)
-        return max(gear.tip_radius - gear.root_radius for gear in (mesh.pinion, mesh.wheel)) / width
+        return max(gear.tip_radius - gear.root_radius for gear in (mesh.pinion, mesh.wheel)) / mesh.common_face_width
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios and diameters."""
@@ -308,7 +306,7 @@ class CylindricalScene(BlankScene):
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:z.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:z.4f}"),
             ("path of contact: length AE, approach AC [mm]", f"{path.AE:z.4f}", f"{path.AC:z.4f}"),
-            ("common face width b [mm]", f"{common_face_width(mesh, self.mounting.axial_offset_mm):z.4f}"),
+            ("common face width b [mm]", f"{mesh.common_face_width:z.4f}"),
             ("", "pinion", "wheel"),
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
             ("profile shift x", f"{mesh.pinion.profile_shift:z.4f}", f"{mesh.wheel.profile_shift:z.4f}"),

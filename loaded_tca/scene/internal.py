@@ -11,7 +11,7 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears import CylindricalGear, InternalMesh, PinionCutter, RingGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING
 from loaded_tca.gears.internal_mesh import internal_interferences, internal_profile_shift_sum
-from loaded_tca.pairs.cylindrical import common_face_width, internal_pair
+from loaded_tca.pairs.cylindrical import internal_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
@@ -177,7 +177,7 @@ class InternalScene(CylindricalScene):
         if distance is not None and shifts.count(None) == 1:
             rest = internal_profile_shift_sum(pinion, ring, distance) - sum(x for x in shifts if x is not None)
             pinion, ring = gears([rest if shift is None else shift for shift in shifts])
-        return InternalMesh(pinion, ring, centre_distance=distance)
+        return InternalMesh(pinion, ring, distance, self.mounting.axial_offset_mm)
 
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two involute flanks in space."""
@@ -222,7 +222,6 @@ class InternalScene(CylindricalScene):
         mesh = self.mesh()
         pinion, ring, path = mesh.pinion, mesh.ring, mesh.path_of_contact
         ring_tip = ring.roll_length(ring.tip_radius) - (path.T1 - path.T2)
-        assembly = mesh.radial_assembly_clearance
         shifts = pinion.profile_shift + ring.profile_shift, mesh.profile_shift_sum_without_backlash
         return [
             ("working centre distance |a_w| [mm]", f"{mesh.working_centre_distance:z.4f}"),
@@ -234,13 +233,10 @@ class InternalScene(CylindricalScene):
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:z.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:z.4f}"),
             ("path of contact: length AE, approach AC [mm]", f"{path.AE:z.4f}", f"{path.AC:z.4f}"),
-            ("common face width b [mm]", f"{common_face_width(mesh, self.mounting.axial_offset_mm):z.4f}"),
+            ("common face width b [mm]", f"{mesh.common_face_width:z.4f}"),
             ("involute interference: ring's tip to T1 [mm]", f"{ring_tip:z.4f} free"),
             ("overlap interference at the tips [mm]", _room_cell(mesh.overlap_clearance)),
-            (
-                "radial assembly [mm]",
-                _assembly_cell(assembly),
-            ),
+            ("radial assembly [mm]", _assembly_cell(mesh)),
             ("", "pinion", "wheel (ring)"),
             ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
             ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
@@ -270,11 +266,16 @@ def _room_cell(clearance: float) -> str:
     return "free" if math.isinf(clearance) else f"{clearance:z.4f} free"
 
 
-def _assembly_cell(clearance: float) -> str:
-    """Clearance of a pinion that is pushed radially into its place, in words."""
-    if clearance == 0.0:
-        return "0.0000 free: teeth touch in mesh alone"
-    return _room_cell(clearance) if clearance > 0.0 else f"{-clearance:z.4f} overlap: along the axis only"
+def _assembly_cell(mesh: InternalMesh) -> str:
+    """Clearance of a pinion that is pushed radially into its place, and where it has to stand for that, in words."""
+    clearance, (tooth, space, worst) = mesh.radial_assembly_clearance, mesh.radial_assembly_clearances
+    if clearance < 0.0:
+        return f"{-clearance:z.4f} overlap: along the axis only"
+    text = "0.0000 free: teeth touch in mesh alone" if clearance == 0.0 else _room_cell(clearance)
+    if worst >= 0.0:
+        return text
+    free = " or ".join(name for name, room in (("a tooth", tooth), ("a space", space)) if room >= 0.0)
+    return f"{text}, with {free} of the pinion towards the ring; turned, up to {-worst:z.4f} overlap"
 
 
 def _diameter_rows(mesh: InternalMesh) -> list[Row]:

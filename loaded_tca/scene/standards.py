@@ -51,9 +51,9 @@ class ContactStandard:
     largest_transverse_load_factor: float = nan
 
 
-def contact_standard(mesh: CylindricalMesh, width: float, materials: tuple[Material, Material]) -> ContactStandard:
-    """Values of the standard for a pair with a common face width [mm]."""
-    gear, alpha, beta = mesh.pinion, mesh.transverse_contact_ratio, mesh.overlap_ratio * width / mesh.common_face_width
+def contact_standard(mesh: CylindricalMesh, materials: tuple[Material, Material]) -> ContactStandard:
+    """Values of the standard for a pair over its common face."""
+    gear, alpha, beta = mesh.pinion, mesh.transverse_contact_ratio, mesh.overlap_ratio
     try:
         by_ratio = iso6336.contact_ratio_factor(alpha, beta)
         single_contact = _single_contact(mesh, beta)
@@ -66,7 +66,7 @@ def contact_standard(mesh: CylindricalMesh, width: float, materials: tuple[Mater
     single = _single_stiffness(mesh, materials)
     return ContactStandard(
         stress_per_root_torque=iso6336.nominal_contact_stress(
-            2.0 / diameter, diameter, width, mesh.gear_ratio, factors
+            2.0 / diameter, diameter, mesh.common_face_width, mesh.gear_ratio, factors
         ),
         single_contact=single_contact,
         contact_ratio=by_ratio,

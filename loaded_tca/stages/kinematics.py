@@ -52,6 +52,35 @@ def nearest_angle(angle: float, teeth: tuple[int, int, int]) -> float:
     return step * round(angle / step)
 
 
+def possible_angles(angles: Sequence[float], teeth: tuple[int, int, int]) -> tuple[float, ...]:
+    """Angles [rad] nearest to others at which planets can be put in, multiples of 2 pi/(z_s + z_r) from the first.
+
+    Planets that stand opposite stay so where z_s + z_r is even: of two places that are equally near, the second planet
+    has the one opposite to that of the first. Their forces on sun and carrier cancel only there.
+
+    Parameters
+    ----------
+    angles : sequence of float [rad]
+    teeth : (int, int, int)
+        Of sun, planet and ring.
+
+    Examples
+    --------
+    >>> [round(math.degrees(one), 4) for one in possible_angles(tuple(math.pi / 2 * n for n in range(4)), (18, 37, 92))]
+    [0.0, 91.6364, 180.0, 271.6364]
+    """
+    places: list[float] = []
+    for angle in angles:
+        place = angles[0] + nearest_angle(angle - angles[0], teeth)
+        for other, its_place in zip(angles, places, strict=False):
+            half_turns = round((angle - other) / math.pi)
+            opposite = half_turns % 2 == 1 and abs(angle - other - half_turns * math.pi) <= MISPLACED
+            if opposite and (teeth[0] + teeth[2]) % 2 == 0:
+                place = its_place + half_turns * math.pi
+        places.append(place)
+    return tuple(places)
+
+
 def spacing_problems(
     angles: Sequence[float], teeth: tuple[int, int, int], centre_distance: float, tip_diameter: float
 ) -> list[str]:
@@ -72,10 +101,10 @@ def spacing_problems(
     """
     problems = []
     whole = teeth[0] + teeth[2]
-    off = [angle for angle in angles if abs(angle - angles[0] - nearest_angle(angle - angles[0], teeth)) > MISPLACED]
+    places = possible_angles(angles, teeth)
+    off = [(angle, place) for angle, place in zip(angles, places, strict=True) if abs(angle - place) > MISPLACED]
     if off:
-        near = ", ".join(f"{math.degrees(angles[0] + nearest_angle(angle - angles[0], teeth)):.4f}" for angle in off)
-        wrong = ", ".join(f"{math.degrees(angle):.4f}" for angle in off)
+        wrong, near = (", ".join(f"{math.degrees(angle):.4f}" for angle in row) for row in zip(*off, strict=True))
         problems.append(
             f"planet_angles_deg: planets cannot be put in at {wrong} deg, where teeth and spaces of sun and ring do "
             f"not meet; the nearest that are possible are {near} deg, multiples of 360/(z_s + z_r) = "

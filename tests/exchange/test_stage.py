@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 
 import pytest
 from numpy.testing import assert_allclose
@@ -238,6 +239,17 @@ REFUSED = {
 }
 
 
+@pytest.mark.parametrize("kind", ["worm", "bevel"])
+@pytest.mark.parametrize("beside", ["10, 11", "none, the model has no cylindrical stage of two gears"])
+def test_stages_of_other_kinds_are_named_with_what_is_covered(kind: str, beside: str) -> None:
+    model = changed(more=[part(90, f"{kind}_stage")])
+    if beside.startswith("none"):
+        model = replace(model, components={"90": model.components["90"]}, relations=())
+    message = rf"^stage 90: {kind} stages are not covered; .* of cylindrical stages .* of two gears: {beside}$"
+    with pytest.raises(InputError, match=message):
+        import_stage(model, "90")
+
+
 @pytest.mark.parametrize(("attributes", "stage", "message"), REFUSED.values(), ids=REFUSED)
 def test_what_no_scene_can_be_is_refused(attributes: dict, stage: str, message: str) -> None:
     with pytest.raises(InputError, match=message):
@@ -253,11 +265,6 @@ def test_stages_without_gears_are_refused() -> None:
     bare = part(12, "cylindrical_stage")
     with pytest.raises(InputError, match=r"stage 12: its relation has no gear_1 and gear_2; .*: 10, 11"):
         import_stage(changed(more=[bare]), "12")
-
-
-def test_bevel_stages_are_refused() -> None:
-    with pytest.raises(InputError, match="stage 12: bevel_stage; scenes are made of cylindrical stages"):
-        import_stage(changed(more=[part(12, "bevel_stage")]), "12")
 
 
 def test_a_bevel_gear_on_a_shaft_leaves_its_torque_open() -> None:

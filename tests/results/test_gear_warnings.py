@@ -167,15 +167,19 @@ def test_numbers_of_another_unit_are_asked_about(changes, question):
     assert sentence.endswith("; is its unit right?")
 
 
-def test_tip_that_comes_near_to_a_root_is_warned_of():
-    """Tips of the wheel 0.6 mm higher leave 0.75 - 0.6 mm of the clearance of the basic rack, 0.25 modules."""
+@pytest.mark.parametrize("clearance", [0.15, 0.0, -1e-4])
+def test_tip_that_comes_near_to_a_root_is_warned_of(clearance):
+    """Higher tips of the wheel leave so much of 0.75 mm, the clearance of the basic rack."""
     scene = spur(**PLAIN)
-    height = 2.0 * (scene.mesh().wheel.tip_radius + 0.6)
+    height = 2.0 * (scene.mesh().wheel.tip_radius + 0.75 - clearance)
     near = scene.with_changes({"wheel.tip_diameter_mm": height})
-    assert near.tip_clearances[0] == pytest.approx(0.15)
+    assert near.tip_clearances[0] == pytest.approx(clearance, abs=1e-12)
     found = [sentence for sentence in sentences(near) if "of the root of the pinion" in sentence]
-    assert found == ["the tip of the mating gear comes within 0.15 mm of the root of the pinion, less than 0.1 modules"]
-    assert any("0.1500" in line for line in describe_scene(near).splitlines() if "tip clearance" in line)
+    least = f"{max(clearance, 0.0):g}"
+    assert found == [
+        f"the tip of the mating gear comes within {least} mm of the root of the pinion, less than 0.1 modules"
+    ]
+    assert any(f"{clearance:.4f}" in line for line in describe_scene(near).splitlines() if "tip clearance" in line)
 
 
 def test_gears_of_plastic_are_no_slip_of_a_unit():

@@ -1,5 +1,6 @@
 """Load factors: forces in strips of the face, against even loads and against integrals known beforehand."""
 
+import math
 import warnings
 from dataclasses import replace
 from functools import cache
@@ -8,8 +9,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca import AccuracyWarning, analyse, read_scene
+from loaded_tca import AccuracyWarning, analyse, parse_scene, read_scene
 from loaded_tca.results.load_factors import load_factors, strip_borders, strip_forces, strip_motions
+from tests.samples.internal_pairs import SCENE
 from tests.samples.results import SCENES, result
 
 ROUNDING = 1e-12
@@ -133,6 +135,19 @@ def test_strips_of_an_even_load_grow_as_the_ends_of_the_common_face_move_apart()
     for strip in (3, 26):
         growth = strip_motions(cycle.gear_pair, even, borders, strip)
         assert_allclose(growth[6:], [-200.0 / 30.0, 200.0 / 30.0], rtol=1e-6)
+
+
+@pytest.mark.parametrize("scene", [read_scene(SCENES / "helical.toml"), parse_scene(SCENE)], ids=("external", "ring"))
+def test_overlap_counts_the_face_that_an_axial_offset_leaves_in_common(scene):
+    """eps_beta = b sin(beta)/(pi m_n), eps_gamma and Y_beta of ISO 6336-3 with it, over the common face b."""
+    module, offset = scene.geometry.normal_module_mm, 0.25 * scene.pinion.face_width_mm
+    moved = scene.with_changes({"mounting.axial_offset_mm": offset})
+    overlap = 3.0 * offset * math.sin(math.radians(15.0)) / (math.pi * module)
+    assert_allclose(moved.mesh().overlap_ratio, overlap, rtol=ROUNDING)
+    assert_allclose(moved.pairs_in_contact - moved.mesh().transverse_contact_ratio, overlap, rtol=ROUNDING)
+    helix_factors = [factors[2] for factors in moved.root_factors]
+    assert_allclose(helix_factors, 1.0 - overlap * 15.0 / 120.0 if scene.wheel.teeth > 0 else math.nan, rtol=ROUNDING)
+    assert_allclose(moved.pair().wheel_origin[2], offset, rtol=ROUNDING)
 
 
 def test_lines_of_contact_are_as_long_as_the_faces_in_common():

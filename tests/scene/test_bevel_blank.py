@@ -1,6 +1,7 @@
 """Blanks of ISO 23509 in scenes; the numbers of annex F.2 are the printed ones."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -217,6 +218,84 @@ def test_backlash_of_every_kind_takes_as_much_from_both_teeth(kind, formula):
 def test_equivalent_ratio_of_other_shaft_angles_is_that_of_the_pitch_cones():
     """A miter pair is one at any shaft angle."""
     assert_allclose(usual_factors((20, 20), math.radians(60.0))["addendum_share"], 0.5, rtol=1e-12)
+
+
+KINDS = {
+    "straight_bevel": {
+        "pair.spiral_angle_deg": None,
+        "pair.blank.cutter_radius_mm": None,
+        "pair.blank.taper": "standard",
+    },
+    "spiral_bevel": {},
+    "face_milled": {"pair.blank.taper": "standard"},
+}
+
+
+def crown(kind, teeth, shaft_angle_deg, **changes):
+    """Pair with a crown wheel at a shaft angle of 120 deg, where the wheel has twice the teeth of the pinion."""
+    sizes = {"pair.wheel_outer_diameter_mm": 2.12 * teeth[1], "pair.shaft_angle_deg": shaft_angle_deg}
+    sizes |= {
+        "pinion.teeth": teeth[0],
+        "wheel.teeth": teeth[1],
+        "pinion.face_width_mm": 8.0,
+        "wheel.face_width_mm": 8.0,
+    }
+    sizes |= {"pair.type": kind, "pair.blank.cutter_radius_mm": 40.0, **KINDS[kind], **changes}
+    if kind == "straight_bevel":
+        sizes["pinion.hand"] = None
+    return annex_f2(**sizes)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_blanks_pass_the_crown_wheel_without_a_jump(kind):
+    """Steps of tips and lands over 41 shaft angles halve with the step of the angle: a jump would stay what it is."""
+
+    scene = crown(kind, (18, 36), 120.0)
+
+    def largest_steps(width):
+        rows = []
+        for angle in 120.0 + width * np.linspace(-1.0, 1.0, 41):
+            blanks = replace(scene, geometry=replace(scene.geometry, shaft_angle_deg=float(angle))).blanks()
+            rows.append(
+                np.concatenate([(*gear.tip_diameters, *gear.tip_thicknesses) for gear in (blanks.pinion, blanks.wheel)])
+            )
+        return np.abs(np.diff(rows, axis=0)).max(axis=0)
+
+    wide, narrow = largest_steps(0.4), largest_steps(0.2)
+    assert np.all(narrow < 0.7 * wide + 1e-9)  # mm; a curve that is straight halves them, to rounding of 60 mm
+    assert wide.max() < 0.02
+
+
+def test_usual_factors_of_a_crown_wheel_are_bounded():
+    """c_ham ends at 0.21; k_t at the top of its parabola, by its derivative, or at the ratio of the teeth if larger."""
+    for teeth in ((18, 36), (12, 40), (9, 90)):
+        z1, ratios = teeth[0], np.linspace(1.0, 20.0, 1901)
+        thickness = -0.088 + 0.092 * ratios - 0.004 * ratios**2 + 0.0016 * (z1 - 30) * (ratios - 1.0)
+        expected = thickness[max(thickness.argmax(), round(100 * (teeth[1] / teeth[0] - 1.0)))]
+        wheel_at_90 = math.acos(-teeth[0] / teeth[1])
+        for beyond in (0.0, 1e-6, 0.05):
+            factors = usual_factors(teeth, wheel_at_90 + beyond)
+            assert_allclose([factors["addendum_share"], factors["thickness"]], [0.21, expected], atol=1e-9)
+
+
+WIDE = (50, 100)
+"""Teeth whose usual factors leave no slot of the pinion beside a crown wheel."""
+
+
+def test_refusal_of_a_crown_wheel_names_the_thickness_factor():
+    with pytest.raises(GeometryError, match=r"slot closes .*; pair\.blank\.thickness_factor: missing, .* 0\.841, "):
+        crown("straight_bevel", WIDE, 120.0).blanks()
+
+
+def test_factors_and_slot_widths_that_are_given_do_not_meet_the_usual_ones():
+    by_factor = crown("straight_bevel", WIDE, 120.0, **{"pair.blank.thickness_factor": 0.1}).blanks()
+    module, dedendum, pressure = by_factor.mean_normal_module, by_factor.dedendum_factor, by_factor.pressure_angle
+    width = 2.0 * module * (0.05 + 0.25 * math.pi - dedendum * math.tan(pressure))  # of the wheel, at R_m
+    by_slot = crown("straight_bevel", WIDE, 120.0, **{"pair.blank.wheel_slot_width_mm": width}).blanks()
+    assert_allclose(by_slot.thickness_modification, 0.05, rtol=1e-12)
+    assert (
+        crown("straight_bevel", WIDE, 120.0, **{"pair.blank.profile_shift": 0.3}).blanks().thickness_modification == 0.0
+    )
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Scenes of internal pairs: which class a file becomes, its geometry, its refusals."""
 
+import re
+
 import pytest
 from numpy.testing import assert_allclose
 
@@ -63,6 +65,17 @@ def test_radial_assembly_that_is_not_possible_is_a_note():
         for row in changed(wheel__teeth=-35, wheel__tip_diameter_mm=104.5, pinion__profile_shift=0.0).geometry_rows()
     }
     assert rows["radial assembly [mm]"][0].endswith("overlap: along the axis only")
+
+
+def test_radial_assembly_says_how_the_pinion_has_to_stand():
+    pair = {"pair.helix_angle_deg": 0.0, "pinion.profile_shift": 0.0, "pinion.teeth": 30, "wheel.tip_diameter_mm": None}
+    for teeth, words in (
+        (-46, "free.*, with a space of the pinion towards.* 0.0100 overlap"),
+        (-47, "free.*mesh alone$"),
+    ):
+        scene = parse_scene(SCENE).with_changes({**pair, "wheel.teeth": teeth})
+        rows = {row[0]: row[1:] for row in scene.geometry_rows()}
+        assert re.search(words, rows["radial assembly [mm]"][0])
 
 
 def test_cutter_shapes_the_fillet():

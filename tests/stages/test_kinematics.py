@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
-from loaded_tca.stages.kinematics import mesh_phases, nearest_angle, neutralised, spacing_problems
+from loaded_tca.stages.kinematics import mesh_phases, nearest_angle, neutralised, possible_angles, spacing_problems
 
 THREE = tuple(2.0 * math.pi * np.arange(3) / 3)
 
@@ -73,6 +73,19 @@ def test_planets_that_cannot_be_put_in_are_told_the_nearest_angles():
     assert "nearest that are possible are 120.0000 deg" in problem
     assert_allclose(nearest_angle(math.radians(119.0), (18, 36, 93)), math.radians(120.0))
     assert not spacing_problems(THREE, (18, 36, 93), 584.0, 100.0)
+
+
+@pytest.mark.parametrize(("turned", "order"), [(0.0, (0, 1, 2, 3)), (0.3, (0, 3, 2, 1)), (-2.0, (2, 1, 0, 3))])
+def test_places_of_planets_that_stand_opposite_are_opposite(turned, order):
+    """18 + 92 teeth: a quarter turn is 27.5 places, so that 27 and 28 are equally near for both planets beside."""
+    wanted = [turned + 0.5 * math.pi * n for n in order]
+    places = np.array(possible_angles(wanted, (18, 37, 92)))
+    assert_allclose(
+        np.abs(places - wanted), [0.0 if n % 2 == order[0] % 2 else math.pi / 110 for n in order], atol=1e-12
+    )
+    assert_allclose(np.exp(1j * places).sum(), 0.0, atol=1e-12)  # a turn of 1e-15 a planet
+    (problem,) = spacing_problems(wanted, (18, 37, 92), 584.0, 100.0)
+    assert f"{math.degrees(places[1]):.4f}, {math.degrees(places[3]):.4f} deg, multiples" in problem
 
 
 def test_neighbours_that_touch_are_refused():
