@@ -168,7 +168,8 @@ def numbers_and_maps(
 def _pressure_map(loaded: LoadedContact) -> PressureMap:
     grid, solution = loaded.separation, loaded.solution
     gap = np.where(np.isfinite(grid.gap), solution.gap, np.inf)
-    return PressureMap(grid.x, grid.y, grid.spacing, solution.pressure, gap, grid.origin, grid.axes, grid.force_line)
+    place = grid.origin, grid.axes, grid.force_line
+    return PressureMap(grid.x, grid.y, grid.spacing, solution.pressure, gap, grid.cover, *place)
 
 
 def _numbers(

@@ -39,12 +39,11 @@ from loaded_tca.results.support_growth import (
     under_one_torque,
 )
 from loaded_tca.results.warnings import warn_of_contacts
-from loaded_tca.separation.box import Box
 from loaded_tca.separation.pair_change import PairChange, pair_changes
-from loaded_tca.separation.sample import Separation, sample_separations
+from loaded_tca.separation.sample import Separation
 from loaded_tca.supports import SupportCompliance
 from loaded_tca.threads import one_blas_thread
-from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
+from loaded_tca.unloaded import ContactPoint, RelativeCurvature, trace_contact, trace_teeth
 from loaded_tca.unloaded.curvature import relative_curvatures
 
 SAME = 1e-6
@@ -81,7 +80,8 @@ def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = No
         for one, contact in zip(maps, contacts, strict=True)
     ):
         raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
-    separations = _separations(pair, contacts, maps)
+    curvatures = relative_curvatures(pair, contacts)
+    separations = [_separation(*one) for one in zip(maps, curvatures, strict=True)]
     ends = edge_compliances(pair, separations) if wanted.free_edges else [None] * len(maps)
     positions = len(result.path)
     states: list[list[LoadedGrid]] = [[] for _ in range(len(result.torque) * positions)]
@@ -104,29 +104,11 @@ def _unloaded_contacts(pair: GearPair, angles: Array, *, alone: bool) -> tuple[l
     return contacts, max(farthest_apart(mesh), 1)
 
 
-def _separations(pair: GearPair, contacts: Sequence[ContactPoint], maps: Sequence[PressureMap]) -> list[Separation]:
-    """Grids of maps; where the flanks do not end the gap is that under load, which is of no account here."""
-    bends = relative_curvatures(pair, contacts)
-    ends = [bool(np.isinf(one.gap).any()) for one in maps]
-    cut_maps = [one for one, cut in zip(maps, ends, strict=True) if cut]
-    sampled = iter(
-        sample_separations(
-            pair,
-            [contact for contact, cut in zip(contacts, ends, strict=True) if cut],
-            cells=[one.pressure.shape for one in cut_maps],
-            loads=[None] * len(cut_maps),
-            boxes=[Box.of(one) for one in cut_maps],
-        )
-    )
-    separations = []
-    for one, bend, cut in zip(maps, bends, ends, strict=True):
-        whole = np.ones(one.gap.shape)
-        place = one.x, one.y, one.spacing, one.origin, one.axes, bend.along_axes(one.axes)
-        made = next(sampled) if cut else Separation(one.gap, *place, whole, one.gap, one.force_line)
-        if not isinstance(made, Separation):
-            raise made
-        separations.append(replace(made, force_line=one.force_line))
-    return separations
+def _separation(one: PressureMap, curvature: RelativeCurvature) -> Separation:
+    """Grid of a map, with the gap under load, which is of no account here."""
+    cut_gap = np.where(one.cover > 0.0, 0.0, np.inf)
+    place = one.x, one.y, one.spacing, one.origin, one.axes, curvature.along_axes(one.axes)
+    return Separation(one.gap, *place, one.cover, cut_gap, one.force_line)
 
 
 def _by_torque(name: str) -> cached_property[Any]:

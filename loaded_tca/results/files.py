@@ -23,7 +23,7 @@ if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes
 FORMAT = "loaded_tca"
 REVOLUTION, STAGE, STUDY, DESIGN = "revolution", "stage", "study", "design"
 """Attribute ``kind`` of files that hold something else than the result of a mesh cycle."""
-FORMAT_VERSION = 7
+FORMAT_VERSION = 8
 """Raised whenever the code of one version cannot read the files of another."""
 DIGITS = 64
 DIGEST = b"\0\0\0\x06digest\0\0\0\0\0\x02" + DIGITS.to_bytes(4, "big")

@@ -35,6 +35,8 @@ class PressureMap:
         The mean over the whole cell where an edge of a flank cuts it: force = pressure.sum() dx dy.
     gap : (nx, ny) array [mm]
         Deformed gap in the middles of the cells; +inf where a flank ends before it.
+    cover : (nx, ny) array
+        Part of every cell that has material, from 0 to 1.
     origin : (3,) array [mm]
         The contact point in the fixed frame.
     axes : (3, 3) array
@@ -48,6 +50,7 @@ class PressureMap:
     spacing: tuple[float, float]
     pressure: Array
     gap: Array
+    cover: Array
     origin: Array
     axes: Array
     force_line: Array

@@ -234,6 +234,7 @@ MAP_PARTS: dict[str, Part] = {
         "mm",
         "deformed gap, infinite where a flank ends before the middle of the cell",
     ),
+    "cover": (("across", "along"), "1", "part of the cell that has material"),
     "origin": (("vector",), "mm", "contact point in the fixed frame"),
     "force_line": (("along",), "mm", "place of the force of each slice across the contact, from the contact point"),
     "axes": (("row", "vector"), "1", "directions across, along and normal out of the pinion, in rows"),

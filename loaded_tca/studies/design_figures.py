@@ -118,7 +118,8 @@ def root_tension_norm(tension: Array) -> float:
 
 def _map_of(grid: LoadedGrid) -> PressureMap:
     one = grid.separation
-    return PressureMap(one.x, one.y, one.spacing, grid.pressure, one.gap, one.origin, one.axes, one.force_line)
+    place = one.origin, one.axes, one.force_line
+    return PressureMap(one.x, one.y, one.spacing, grid.pressure, one.gap, one.cover, *place)
 
 
 def mean_pressure_norm(
