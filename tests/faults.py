@@ -1104,6 +1104,8 @@ FAULTS = (
         "own[6:] = 1.0 - share, share",
         "own[6:] = share, 1.0 - share",
         "results/test_load_factors.py::test_strips_of_an_even_load_grow_as_the_ends_of_the_common_face_move_apart",
+    ),
+    Fault(
         "overlap ratio without the axial offset",
         "gears/involute.py",
         "return self.common_face_width * sin(abs(self.pinion.helix_angle))",
@@ -1152,6 +1154,13 @@ FAULTS = (
         'about["thickness_modification"] = slot - 0.25 * pi',
         "pass",
         "scene/test_bevel_blank.py::test_factors_and_slot_widths_that_are_given_do_not_meet_the_usual_ones",
+    ),
+    Fault(
+        "a gear on a shaft without a bore is held by the default one",
+        "scene/model.py",
+        "return gear.on_seat(own.shaft.diameter_at(self.face_middles[number]))",
+        "return gear",
+        "pairs/test_rigid_bores.py::test_a_gear_without_bore_is_held_at_the_seat_of_its_shaft",
     ),
 )
 
