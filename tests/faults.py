@@ -854,6 +854,13 @@ FAULTS = (
         "pass",
         "scene/test_bevel_blank.py::test_factors_and_slot_widths_that_are_given_do_not_meet_the_usual_ones",
     ),
+    Fault(
+        "a gear on a shaft without a bore is held by the default one",
+        "scene/model.py",
+        "return gear.on_seat(own.shaft.diameter_at(self.face_middles[number]))",
+        "return gear",
+        "pairs/test_rigid_bores.py::test_a_gear_without_bore_is_held_at_the_seat_of_its_shaft",
+    ),
 )
 
 
