@@ -23,12 +23,10 @@ from loaded_tca.exchange.gears import (
 from loaded_tca.exchange.model import LENGTH, Component, Model, Reading
 from loaded_tca.exchange.modifications import Teeth, modification_keys
 from loaded_tca.exchange.shafts import diameter_at, rest_of, shaft_section
+from loaded_tca.pairs.gear import ON_SHAFT
 from loaded_tca.scene import Scene, scene_from_table
 from loaded_tca.scene.keys import literal
 from loaded_tca.supports import shafts_of
-
-ON_SHAFT = 0.8
-"""Diameter of a shaft over that of the root up to which it is the seat of the gear; above it is one with the teeth."""
 
 
 @dataclass(frozen=True, eq=False)

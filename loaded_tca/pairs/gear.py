@@ -28,6 +28,8 @@ from loaded_tca.material import Material
 from loaded_tca.tooth.families import ToothForm, ToothGeometry
 
 ROUNDING = 1e-12
+ON_SHAFT = 0.8
+"""Diameter of a shaft over that of the root up to which it is the seat of the gear; above it is one with the teeth."""
 LARGEST = 0.3
 """Largest radius of a rounded edge, over the normal module."""
 
@@ -159,6 +161,19 @@ class Gear:
         nominal = geometry.nominal(side)
         return cls(geometry.modified(nominal), nominal, geometry, material, bore_diameter)
 
+    def on_seat(self, diameter: float | None) -> Gear:
+        """The gear with the bore that a shaft of a diameter [mm] at its middle leaves; itself without one.
+
+        Itself, too, if the gear is a ring, or the shaft one with the teeth: thicker than 0.8 of the smallest root
+        diameter.
+        """
+        try:
+            root = 2.0 * float(self._root_radius(self._ends).min())
+        except (InputError, GeometryError):  # a tooth that cannot be: told where it is to bend
+            return self
+        seated = diameter is not None and diameter <= ON_SHAFT * root and self.form.sections.outwards > 0.0
+        return replace(self, bore_diameter=diameter) if seated else self
+
     def rounded(self, rounding: EdgeRounding, module: float) -> Gear:
         """The gear with rounded tip edges and face ends; itself if both are sharp.
 
@@ -227,8 +242,17 @@ class Gear:
         InputError
             If the bore leaves no rim below the teeth, or is too thin to hold the gear by.
         """
-        root, _ = self.form.sections.point(self.form.root_radius(coordinate), coordinate)
-        return self.form.held.radius(self.bore_diameter, root)
+        return self.form.held.radius(self.bore_diameter, self._root_radius(coordinate))
+
+    def _root_radius(self, coordinate: Array) -> Array:
+        """Distance (k,) of the roots from the axis in sections [mm]."""
+        return self.form.sections.point(self.form.root_radius(coordinate), coordinate)[0]
+
+    @property
+    def _ends(self) -> Array:
+        """Coordinates of the sections at both ends of the tips."""
+        rho, z = self.nominal_flank.grid(2, 2)
+        return self.form.sections.coordinate(rho[-1], z[-1])
 
     @property
     def rim_over_height(self) -> float:
@@ -243,11 +267,9 @@ class Gear:
         """
         if self.is_solid:
             return math.inf
-        sections = self.form.sections
-        rho, z = self.nominal_flank.grid(2, 2)
-        ends = sections.coordinate(rho[-1], z[-1])
-        root, _ = sections.point(self.form.root_radius(ends), ends)
-        outwards = sections.outwards
+        rho, _ = self.nominal_flank.grid(2, 2)
+        ends, outwards = self._ends, self.form.sections.outwards
+        root = self._root_radius(ends)
         height = outwards * (rho[-1] - root)  # both lengths across the axis: they lie in one direction
         rim = outwards * (root - self.bore_radius(ends))
         return float((rim / height).min()) if (height > 0.0).all() else math.inf
@@ -261,5 +283,4 @@ class Gear:
         InputError
             If it leaves no rim below the teeth.
         """
-        ends = self.form.sections.coordinate(*self.nominal_flank.grid(2, 2))[-1]
-        return 2.0 * float(self.bore_radius(ends).min())
+        return 2.0 * float(self.bore_radius(self._ends).min())

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Literal
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
 from loaded_tca.pairs.tooth_deviations import ToothDeviations, ToothFlanks
 from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
@@ -251,10 +252,17 @@ class Scene(WithStandards, ABC):
         side = pair.pinion.flank.side if sense in (None, self.sense) else -pair.pinion.flank.side
         described = replace(
             pair,
-            pinion=described_gear(pair.pinion, self.pinion.flank, "pinion", side),
-            wheel=described_gear(pair.wheel, self.wheel.flank, "wheel", side),
+            pinion=self._on_seat(described_gear(pair.pinion, self.pinion.flank, "pinion", side), 0),
+            wheel=self._on_seat(described_gear(pair.wheel, self.wheel.flank, "wheel", side), 1),
         )
         return described.rounded(build_rounding(self.pinion), build_rounding(self.wheel))
+
+    def _on_seat(self, gear: Gear, number: int) -> Gear:
+        """A gear whose body bends, held at the seat of its shaft where no bore is given."""
+        own = (self.pinion, self.wheel)[number]
+        if own.shaft is None or own.bore_diameter_mm is not None or not self.analysis.without_bodies:
+            return gear
+        return gear.on_seat(own.shaft.diameter_at(self.face_middles[number]))
 
     @property
     def has_pitch_deviations(self) -> bool:

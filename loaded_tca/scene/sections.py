@@ -209,7 +209,7 @@ class GearSection(Section):
         Number(0.0, 100000.0),
         "bore diameter, held rigid; 0: a solid gear, held by journals of 0.55 of the root diameter at both faces",
         None,
-        "0.55 of the root diameter where teeth bend",
+        "where teeth bend the shaft at the middle of the face, up to 0.8 of the root diameter; else 0.55 of it",
     )
     tip_rounding_mm: float = key(
         ROUNDING_mm, "radius of both tip edges of the teeth, up to 0.3 normal modules; 0: sharp", 0.0

@@ -340,6 +340,16 @@ class ShaftSection(Section):
         (),
     )
 
+    def diameter_at(self, place: float) -> float | None:
+        """Return the outer diameter at an axial coordinate of the gear, of two parts that meet there the smaller [mm].
+
+        None beyond the shaft.
+        """
+        ends = self.start_mm + np.cumsum([0.0, *(part.length_mm for part in self.sections)])
+        here = (ends[:-1] <= place) & (place <= ends[1:])
+        diameters = [part.outer_diameter_mm for part, inside in zip(self.sections, here, strict=True) if inside]
+        return min(diameters, default=None)
+
     @staticmethod
     def matrix_of(bearing: BearingSection) -> np.ndarray:
         """Stiffness (6, 6) of a bearing [N, N mm over mm, rad]."""

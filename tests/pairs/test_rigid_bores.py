@@ -1,5 +1,6 @@
 """The bores that are held rigid are known, and refused, before anything is computed."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -30,6 +31,20 @@ def test_a_solid_gear_is_held_by_journals_of_the_default_diameter():
 def test_a_bore_is_not_negative(name):
     with pytest.raises(InputError, match=r"pinion\.bore_diameter_mm: found -1\.0; allowed a number from 0 to 100000"):
         bending(name, pinion=-1.0)
+
+
+def test_a_gear_without_bore_is_held_at_the_seat_of_its_shaft():
+    """A shaft as thick as the body is one with the teeth: 0.8 of the pinion's root, (34/cos(15 deg) - 2.5) 3 mm."""
+    none = {"pinion.bore_diameter_mm": None, "wheel.bore_diameter_mm": None}
+    scene = read_scene(SCENES / "helical_on_shafts.toml").with_changes(none)
+    root = 3.0 * (34.0 / math.cos(math.radians(15.0)) - 2.5)
+    assert scene.rigid_bores == (45.0, 60.0)
+    for part, bore in ((0.79, 0.79 * root), (0.81, 0.55 * root)):
+        thick = scene.with_changes({"pinion.shaft.sections.2.outer_diameter_mm": round(part * root, 6)})
+        assert_allclose(thick.rigid_bores, [bore, 60.0], rtol=1e-6)
+    shoulder = scene.with_changes({"pinion.shaft.start_mm": -160.0, "pinion.shaft.torque_at_mm": -150.0})
+    assert shoulder.rigid_bores == (40.0, 60.0)  # the thinner part of two that meet at mid-face
+    assert scene.with_changes({"pinion.bore_diameter_mm": 50.0}).rigid_bores == (50.0, 60.0)
 
 
 def test_no_bore_is_held_where_the_flanks_alone_yield():
