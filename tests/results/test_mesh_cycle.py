@@ -322,6 +322,16 @@ def test_number_of_every_position_is_told_what_it_is_taken_from(name):
     assert ("has its numbers as they are" in str(told.value)) is (name in QUANTITIES)
 
 
+def test_numbers_of_edges_are_those_of_the_pair_with_the_highest_pressure_at_one():
+    cycle = result("mesh_cycle_spur")
+    pressure, others = np.zeros(cycle.peak_pressure.shape), np.zeros(cycle.peak_pressure.shape)
+    pressure[..., 0], others[..., 1] = 900.0, 800.0
+    radius = np.broadcast_to([30.0, 40.0, 50.0], cycle.peak_pressure.shape)
+    one = changed(cycle, edge_pressure=others, peak_pressure=pressure, edge_radius=radius, peak_radius=radius)
+    assert_allclose(one.at_position("edge_radius"), 40.0)
+    assert_allclose(one.at_position("peak_radius"), 30.0)
+
+
 def test_summary_has_a_column_per_torque():
     torques = line(result(torques=(20.0, 80.0)).summary(), "pinion torque")
     assert torques.split()[-2:] == ["20", "80"]

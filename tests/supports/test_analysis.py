@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,11 +13,10 @@ from numpy.testing import assert_allclose
 from loaded_tca import MeshCycle, analyse, load_result, read_scene
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import model_of
-from loaded_tca.errors import AccuracyWarning, GeometryError, NotAskedError, noted_accuracy_warnings
+from loaded_tca.errors import AccuracyWarning, GeometryError, NotAskedError
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.output.result_files import positions_csv
 from loaded_tca.results import reached_edges
-from loaded_tca.results.supports import warn_of_supports
 from loaded_tca.scene import Scene
 from loaded_tca.separation import sample_separation
 from loaded_tca.supports import support_compliance, supports_of
@@ -316,15 +314,3 @@ def test_edges_are_those_of_the_gears_where_they_stand() -> None:
     # the same flanks: over a tooth the radius follows the involute; slices of different positions miss each other a bit
     assert_allclose(on_supports["relative_radius"][within], expected[within], rtol=0.02)
     assert within.mean() > 0.8
-
-
-@pytest.mark.parametrize(("part", "told"), [(0.004, []), (0.01, ["1.0%"])])
-def test_forces_that_turn_the_pinion_by_more_or_less_than_its_torque_are_told(
-    part: float, told: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("loaded_tca.results.supports.warn_of_motions", lambda *_: None)
-    loads = np.zeros((3, 12))
-    loads[:, [5, 11]] = [-40e3 * (1.0 - part), -60e3 * (1.0 - part)]  # at two stations
-    with noted_accuracy_warnings() as sentences:
-        warn_of_supports(None, [SimpleNamespace(loads=(loads, loads))], [100e3])  # type: ignore[arg-type, list-item]
-    assert [one.partition(" more or less")[0].rpartition(" ")[2] for one in sentences] == told
