@@ -14,7 +14,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, default_density, model_of, require_teeth, root_stress_model, way_out_told
-from loaded_tca.compliance.model import torsion_of_bodies, with_enough_teeth
+from loaded_tca.compliance.model import held_bodies, with_enough_teeth
 from loaded_tca.contact.adaptive import MOST_CELLS
 from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, noted_accuracy_warnings, require
@@ -218,7 +218,6 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
             at_edges = pressures_at_rounded_edges(
                 pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
             )
-        torsion = torsion_of_bodies(scene, pair)
         turned = np.concatenate([one.carried.rotation for one in cycles]) if cycles else carried.rotation
         warn_of_accuracy(
             pair,
@@ -226,7 +225,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
             replace(carried, rotation=turned),
             at_edges,
             load_sharing=wanted.load_sharing,
-            body_torsion=torsion,
+            bodies=held_bodies(scene, pair),
         )
         if cycles:
             warn_of_supports(pair, cycles, torques.tolist())

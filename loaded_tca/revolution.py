@@ -15,7 +15,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.analysis import Effort, expected_effort, grid_of, roots_of
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, model_of
-from loaded_tca.compliance.model import SumOfParts, torsion_of_bodies, with_enough_teeth
+from loaded_tca.compliance.model import HeldBodies, SumOfParts, held_bodies, with_enough_teeth
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
@@ -128,9 +128,9 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
                 for part in carried_over_revolution(path, alone.torques, grid, bending, progress):
                     alone.add(part)
                 numbers, arrays = [alone], alone.whole()
-            torsion = torsion_of_bodies(scene, pair)
+            bodies = held_bodies(scene, pair)
             for one in numbers:
-                for sentence in one.sentences(torsion):
+                for sentence in one.sentences(bodies):
                     give_accuracy_warning(sentence)
         about = {
             "version": version("loaded_tca"),
@@ -330,13 +330,13 @@ class _Numbers:
             counted = tooth + steps * stresses["root_tension_place"][..., 0]
             self.arrays["root_tension_tooth"][:, rows, gear] = counted % self.pair.teeth[gear]
 
-    def sentences(self, body_torsion: float) -> Iterator[str]:
+    def sentences(self, bodies: HeldBodies) -> Iterator[str]:
         """Accuracy warnings of all contacts."""
         for torque, forces in zip(self.torques.tolist(), self.arrays["normal_force"], strict=True):
             if torque > 0.0 and not forces.any():
                 yield kinds.NO_TORQUE.sentence(torque=1e-3 * torque)
         yield from (at_places(reason, at, self.solved) for reason, at in self.places.items())
-        yield from rotation_reasons(self.pair, self.torques, self.arrays["rotation"], body_torsion)
+        yield from rotation_reasons(self.pair, self.torques, self.arrays["rotation"], bodies)
 
     def whole(self) -> dict[str, Array]:
         """Arrays of ``REVOLUTION_QUANTITIES``, and of ``ROOTS`` if asked for."""

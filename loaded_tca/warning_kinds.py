@@ -134,6 +134,14 @@ BODY_TWIST = Kind(
     "the `bore_diameter_mm` of the hub or shaft seat; of a pinion in one piece with its shaft none (0.55 of the "
     "root diameter)",
 )
+RIGID_BORES = Kind(
+    "bores of {bores} mm are held rigid: the mesh is about {share:.0%} stiffer than with {usual} mm, the seats of "
+    "shafts or the default bores",
+    "with teeth that bend: a thin rim on a bearing, a sleeve or a web gives way, which the model does not have; the "
+    "size is that of two models with these bores",
+    "the diameter of what is as stiff as a shaft as `bore_diameter_mm`, or none; else finite elements of the whole "
+    "gear",
+)
 FEW_CELLS = Kind(
     "fewer than 8 cells lie across the contact",
     "the grid is wide for its contact: a pair that barely carries load, or few `cells`",

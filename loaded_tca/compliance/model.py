@@ -15,12 +15,14 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import body_torsion
-from loaded_tca.compliance.compliance import tooth_compliance, way_out_told
+from loaded_tca.compliance.compliance import rim_compliance, tooth_compliance, way_out_told
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.supports import SupportCompliance, support_compliance
 
 Made = TypeVar("Made")
+THINNER = 0.5
+"""Tooth heights by which a rim is thinner than that of the usual bore, from where its effect is found."""
 
 
 class BendingModel(Protocol):
@@ -134,9 +136,34 @@ def teeth_and_bodies(scene: Scene, pair: GearPair, neighbours: int) -> BendingPa
         return tooth_compliance(pair, neighbours=neighbours)
 
 
-def torsion_of_bodies(scene: Scene, pair: GearPair) -> float:
-    """Twist of both gear bodies in :func:`teeth_and_bodies` [mm/N]: see ``body_torsion``; none where they are rigid."""
-    return sum(body_torsion(pair)) if scene.analysis.teeth_bend else 0.0
+@dataclass(frozen=True)
+class HeldBodies:
+    """What bores that are held rigid do in :func:`teeth_and_bodies`, both gears together.
+
+    Attributes
+    ----------
+    torsion : float [mm/N]
+        Twist of the bodies, see ``body_torsion``.
+    stiffening : float [mm/N]
+        How much less they give way, at the base circle per force there, than if the bores were not given.
+    usual_bores : (float, float) [mm]
+        Those of gears that have none: seats of shafts, or the default.
+    """
+
+    torsion: float = 0.0
+    stiffening: float = 0.0
+    usual_bores: tuple[float, float] = (0.0, 0.0)
+
+
+def held_bodies(scene: Scene, pair: GearPair) -> HeldBodies:
+    """What the bores of a scene's pair do; their effect is found where a rim is thinner by half a tooth height."""
+    if not scene.analysis.teeth_bend:
+        return HeldBodies()
+    usual, difference = scene.without_bores(pair), 0.0
+    rims = [[gear.rim_over_height for gear in (one.pinion, one.wheel)] for one in (usual, pair)]
+    if max(there - here for there, here in zip(*rims, strict=True)) > THINNER:
+        difference = max(0.0, sum(rim_compliance(usual)) - sum(rim_compliance(pair)))
+    return HeldBodies(sum(body_torsion(pair)), difference, usual.rigid_bores)
 
 
 def shafts_and_bearings(scene: Scene, pair: GearPair, _: int) -> BendingPart | None:

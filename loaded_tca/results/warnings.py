@@ -15,6 +15,7 @@ from scipy.ndimage import binary_dilation
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array, Mask
 from loaded_tca.compliance import require_teeth, warn_of_teeth
+from loaded_tca.compliance.model import HeldBodies
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES
@@ -55,7 +56,9 @@ HARDEST_ROOT_MPa = 1500.0
 """Root stress that no gear steel carries: nominal strengths sigma_FE of ISO 6336-5 end at 1050 MPa."""
 MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
-OF_THE_LARGEST = (kinds.ROUNDED_EDGE, kinds.BODY_TWIST, kinds.DEFLECTION)
+MOST_STIFFENED = 0.05
+"""Part by which rigid bores make a mesh stiffer from which they are warned of."""
+OF_THE_LARGEST = (kinds.ROUNDED_EDGE, kinds.BODY_TWIST, kinds.RIGID_BORES, kinds.DEFLECTION)
 """Kinds whose sentences say how large it becomes under any torque."""
 
 
@@ -66,7 +69,7 @@ def warn_of_accuracy(
     at_rounded_edges: Mapping[tuple[int, int, int], PeakAtEdge],
     *,
     load_sharing: bool,
-    body_torsion: float = 0.0,
+    bodies: HeldBodies,
 ) -> None:
     """Give one AccuracyWarning for each reason, for the caller's caller: how many pressure maps it concerns, and which.
 
@@ -79,8 +82,8 @@ def warn_of_accuracy(
         Peaks there by the indices of torque, position and tooth pair.
     load_sharing : bool
         Whether the pairs that were looked for depend on how far the load turns the wheel.
-    body_torsion : float [mm/N]
-        Twist of both gear bodies about their bores at the base circle, where teeth bend.
+    bodies : HeldBodies
+        What the bores do.
     """
     torques, maps = np.asarray(carried.torque, dtype=float), []
     limit = LARGE_ERROR * (1.0 + ROUNDING)
@@ -110,9 +113,7 @@ def warn_of_accuracy(
         ]
         sentences += [at_places(reason, at, len(some)) for reason, at in places.items()]
         rows = torques <= largest
-        sentences += rotation_reasons(
-            pair, torques[rows], carried.rotation[rows], body_torsion, load_sharing=load_sharing
-        )
+        sentences += rotation_reasons(pair, torques[rows], carried.rotation[rows], bodies, load_sharing=load_sharing)
         return {_without_size(sentence): sentence for sentence in sentences}
 
     for sentence in sentences_of_torques(torques, under):
@@ -156,14 +157,17 @@ def _without_size(sentence: str) -> str:
 
 
 def rotation_reasons(
-    pair: GearPair, torques: Array, rotation: Array, body_torsion: float, *, load_sharing: bool = True
+    pair: GearPair, torques: Array, rotation: Array, bodies: HeldBodies, *, load_sharing: bool = True
 ) -> list[str]:
     """Sentences on rotations (torque, position) [rad] by the load that are at a limit of the model."""
     sentences = []
     turned = np.where(rotation > 0.0, rotation, math.inf)
-    twist = body_torsion * torques[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
-    if (share := float(twist.max())) > MOST_TORSION:
-        bores = " and ".join(plain(bore) for bore in pair.rigid_bores)
+    force_over_deflection = torques[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
+    bores = " and ".join(plain(bore) for bore in pair.rigid_bores) if bodies.torsion else ""
+    if (share := bodies.stiffening * float(force_over_deflection.mean(axis=1).max())) > MOST_STIFFENED:
+        usual = " and ".join(plain(bore) for bore in bodies.usual_bores)
+        sentences.append(kinds.RIGID_BORES.sentence(bores=bores, usual=usual, share=share))
+    if (share := bodies.torsion * float(force_over_deflection.max())) > MOST_TORSION:
         sentences.append(kinds.BODY_TWIST.sentence(bores=bores, share=min(share, 1.0)))
     deflection = float(np.nanmax(rotation, initial=0.0)) * pair.base_radii[1]
     if load_sharing and deflection > REACH * pair.module:

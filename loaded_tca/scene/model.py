@@ -252,17 +252,27 @@ class Scene(WithStandards, ABC):
         side = pair.pinion.flank.side if sense in (None, self.sense) else -pair.pinion.flank.side
         described = replace(
             pair,
-            pinion=self._on_seat(described_gear(pair.pinion, self.pinion.flank, "pinion", side), 0),
-            wheel=self._on_seat(described_gear(pair.wheel, self.wheel.flank, "wheel", side), 1),
+            pinion=described_gear(pair.pinion, self.pinion.flank, "pinion", side),
+            wheel=described_gear(pair.wheel, self.wheel.flank, "wheel", side),
+        )
+        seated = self.without_bores(described)
+        described = replace(
+            described,
+            pinion=seated.pinion if described.pinion.bore_diameter is None else described.pinion,
+            wheel=seated.wheel if described.wheel.bore_diameter is None else described.wheel,
         )
         return described.rounded(build_rounding(self.pinion), build_rounding(self.wheel))
 
-    def _on_seat(self, gear: Gear, number: int) -> Gear:
-        """A gear whose body bends, held at the seat of its shaft where no bore is given."""
-        own = (self.pinion, self.wheel)[number]
-        if own.shaft is None or own.bore_diameter_mm is not None or not self.analysis.without_bodies:
-            return gear
-        return gear.on_seat(own.shaft.diameter_at(self.face_middles[number]))
+    def without_bores(self, pair: GearPair) -> GearPair:
+        """Return a pair held as where no bores are given: at the seats of shafts, where bodies bend, or by default."""
+
+        def held(gear: Gear, number: int) -> Gear:
+            bare, shaft = replace(gear, bore_diameter=None), (self.pinion, self.wheel)[number].shaft
+            if shaft is None or not self.analysis.without_bodies:
+                return bare
+            return bare.on_seat(shaft.diameter_at(self.face_middles[number]))
+
+        return replace(pair, pinion=held(pair.pinion, 0), wheel=held(pair.wheel, 1))
 
     @property
     def has_pitch_deviations(self) -> bool:

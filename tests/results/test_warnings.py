@@ -10,6 +10,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, InputError, analyse, read_scene
+from loaded_tca.compliance.model import HeldBodies, held_bodies
+from loaded_tca.results.warnings import rotation_reasons
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 NET_FORCE = 1.0325
@@ -81,6 +83,34 @@ def test_twist_about_a_thin_bore_is_told():
     assert (turned > force * added).all()
     # half the way from plane strain to plane stress is 0.07 %, four layers of rim are 0.1 %
     assert_allclose(turned, NET_FORCE * force * added, rtol=3e-3)
+
+
+def test_wide_bores_are_warned_of_with_what_they_do_to_the_stiffness():
+    """A bore of 90 mm on a shaft of 17 mm: it takes away the twist of the ring between, in closed form as above."""
+    bores = {"pair.helix_angle_deg": 0.0, "pinion.bore_diameter_mm": 45.0, "wheel.bore_diameter_mm": 90.0}
+    shaft = {"wheel.shaft.sections": [{"length_mm": 220.0, "outer_diameter_mm": 17.0}]}
+    scene = read_scene(SCENES / "helical_on_shafts.toml").with_changes({**bores, **shaft})
+    pair = scene.pair()
+    bodies = held_bodies(scene, pair)
+    width, modulus = scene.wheel.face_width_mm, 206000.0 / 2.6
+    ring = pair.base_radii[1] ** 2 / (4.0 * math.pi * modulus * width) * (1.0 / 8.5**2 - 1.0 / 45.0**2)
+    # bores of 17 and 6 mm are both about a tenth of the root; the rim bends, too: 1.1 %
+    assert_allclose(bodies.stiffening, NET_FORCE * ring, rtol=0.02)
+    assert bodies.usual_bores == (45.0, 17.0)
+    deflection = bodies.stiffening * 1e3 / pair.base_radii[0] / np.array([[0.1, 0.3]])  # shares of 10 and 30 %
+    rotation = deflection / pair.base_radii[1]
+    (sentence,) = (one for one in rotation_reasons(pair, np.array([1e3]), rotation, bodies) if "rigid" in one)
+    assert sentence.startswith(
+        "bores of 45 and 90 mm are held rigid: the mesh is about 20% stiffer than with 45 and 17 mm"
+    )
+    assert not rotation_reasons(pair, np.array([1e3]), 5.0 * rotation, bodies)  # 4 %
+
+
+@pytest.mark.parametrize("bores", [{"pinion.bore_diameter_mm": 0.0}, {"wheel.bore_diameter_mm": 60.0}, {}])
+def test_usual_bores_cost_no_model_and_give_no_warning(bores):
+    scene = read_scene(SCENES / "mesh_cycle_finite_elements.toml").with_changes(bores)
+    assert held_bodies(scene, scene.pair()).stiffening == 0.0
+    assert held_bodies(scene.with_changes({"analysis.compliance": "contact"}), scene.pair()) == HeldBodies()
 
 
 @pytest.mark.thorough
