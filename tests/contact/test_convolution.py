@@ -3,7 +3,6 @@
 import concurrent.futures
 import multiprocessing
 import os
-import sys
 from itertools import count
 
 import numpy as np
@@ -15,9 +14,11 @@ from loaded_tca.contact import convolution
 from loaded_tca.contact.convolution import Convolution, Preconditioner, fast_length
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.threads import allowed_threads
+from tests.interrupts import Signal, interrupted, raise_signal
 
 DOUBLE = 1e-13  # some hundred roundings of a transform, relative to the largest value
 SINGLE = 1e-5
+MODULES = convolution, threads
 
 
 def summed(pressure, aspect):
@@ -138,39 +139,6 @@ def test_workers_convolve_after_their_parent_used_threads(method):
         assert pool.submit(convolution.useful_threads, (2048, 2048), 2).result(timeout=60) == 1
 
 
-class Signal(BaseException):
-    """An exception out of a signal: a time limit, an alarm, an interrupt."""
-
-
-def traced(line, act, work):
-    """Do some work, and act before a line of the modules of transforms and threads, counted as they run.
-
-    Returns whether there were as many lines.
-    """
-    files, left = {convolution.__file__, threads.__file__}, [line]
-
-    def trace(frame, event, _):
-        if frame.f_code.co_filename not in files:
-            return None
-        if event == "line":
-            left[0] -= 1
-            if left[0] == 0:
-                act()
-        return trace
-
-    before = sys.gettrace()
-    sys.settrace(trace)
-    try:
-        work()
-    finally:
-        sys.settrace(before)
-    return left[0] <= 0
-
-
-def raise_signal():
-    raise Signal
-
-
 @pytest.mark.parametrize(("shape", "step"), [((3, 12, 12), 1), ((1, 200, 190), 7)])  # a stack; on two threads
 def test_exception_at_any_line_leaves_the_next_convolution_right(monkeypatch, rng, shape, step):
     """One out of a signal comes anywhere, and what is kept must not have half of something."""
@@ -184,7 +152,7 @@ def test_exception_at_any_line_leaves_the_next_convolution_right(monkeypatch, rn
     for line in count(1, step):
         monkeypatch.setattr(convolution, "_cache", convolution._Cache())
         try:
-            if not traced(line, raise_signal, convolve):
+            if not interrupted(MODULES, line, raise_signal, convolve):
                 break
         except Signal:
             assert np.array_equal(convolve(), right), line  # exact: the same operations on the same numbers
@@ -202,7 +170,7 @@ def test_convolution_inside_an_interrupted_one_leaves_it_right(rng):
         Convolution((12, 12), [1.0, 1.0])(others, inner)
 
     for line in count(1):
-        if not traced(line, handler, lambda: convolve(values, outer)):
+        if not interrupted(MODULES, line, handler, lambda: convolve(values, outer)):
             break
         assert np.array_equal(outer, right), line
         assert np.array_equal(inner, right_of_others), line
