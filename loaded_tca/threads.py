@@ -40,13 +40,12 @@ def one_thread() -> Iterator[None]:
     ...     allowed_threads(8)
     1
     """
-    before = _alone.get()
-    try:  # around the setting: an exception out of a signal may come as it ends
-        _alone.set(True)
+    token = _alone.set(True)
+    try:
         with one_blas_thread():
             yield
     finally:
-        _alone.set(before)
+        _alone.reset(token)
 
 
 def allowed_threads(wanted: int) -> int:

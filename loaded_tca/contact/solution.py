@@ -250,7 +250,7 @@ class ContactSolution(Solution):
 
     @property
     def contact_area(self) -> float:
-        """Area under pressure [mm^2], its edge found between the centres of the cells."""
+        """Area under pressure [mm^2], its edge found between the centres of the cells, or where the material ends."""
         return self._area_and_semi_axes[0]
 
     @property
@@ -262,7 +262,8 @@ class ContactSolution(Solution):
     def _area_and_semi_axes(self) -> tuple[float, float, float]:
         if not self.in_contact.any():
             return 0.0, 0.0, 0.0
-        return patch.area_and_semi_axes(self.pressure, self.spacing)
+        cover = np.isfinite(self.problem.gap) if self.problem.cover is None else self.problem.cover
+        return patch.area_and_semi_axes(self.pressure_on_material, self.spacing, cover.astype(np.float64))
 
     @cached_property
     def reaches_border(self) -> bool:
