@@ -26,10 +26,10 @@ def roller_gap(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def rough_gap(x: np.ndarray) -> np.ndarray:
-    """Gap of a ball of 20 mm diameter with a random roughness of 0.2 um, mm."""
-    waves = np.hypot(*np.meshgrid(np.fft.fftfreq(x.size), np.fft.fftfreq(x.size))) + 0.02
+    """Gap of a ball of 20 mm diameter with a random roughness of 0.2 um, mm: eight cells for its shortest waves."""
+    waves = np.hypot(*np.meshgrid(np.fft.fftfreq(x.size), np.fft.fftfreq(x.size)))
     noise = np.random.default_rng(1).standard_normal((x.size, x.size))
-    roughness = np.fft.ifft2(np.fft.fft2(noise) * waves**-1.8).real
+    roughness = np.fft.ifft2(np.fft.fft2(noise) * np.where(waves < 1.0 / 8.0, (waves + 0.02) ** -1.8, 0.0)).real
     return (x[:, None] ** 2 + x**2) / 20.0 + 0.0002 * roughness / roughness.std()
 
 

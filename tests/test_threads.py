@@ -1,19 +1,28 @@
-"""One thread inside ``one_thread``, whoever started the process; results do not depend on it, to the last bit."""
+"""One thread inside ``one_thread``, whoever started the process; results do not depend on it, to the last bit.
 
+And work that threads share: done as a whole, or nobody works on it any more.
+"""
+
+import _thread
 import os
+import subprocess
+import sys
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Event, get_ident
 
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 from threadpoolctl import ThreadpoolController
 
+from loaded_tca import threads
 from loaded_tca.analysis import analyse
 from loaded_tca.compliance.influence import forget
-from loaded_tca.contact import convolution, solve_contact
+from loaded_tca.contact import solve_contact
 from loaded_tca.scene import read_scene
-from loaded_tca.threads import allowed_threads, one_blas_thread, one_thread
+from loaded_tca.threads import allowed_threads, one_blas_thread, one_thread, shared
 
 SCENE = Path(__file__).parents[1] / "examples" / "scenes" / "mesh_cycle_helical.toml"
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
@@ -64,9 +73,9 @@ def test_blas_keeps_to_one_thread_inside(blas):
 
 
 def helpers_after(work):
-    """Helping threads of the transforms of a thread that does some work, and what that gives."""
+    """What some work gives, and how many threads have helped the one that did it."""
     with ThreadPoolExecutor(1) as pool:
-        return pool.submit(lambda: (work(), sorted(convolution._cache.pools))).result(timeout=120)
+        return pool.submit(lambda: (work(), threads._own.helpers.count)).result(timeout=120)
 
 
 def test_large_contact_is_the_same_on_one_thread(monkeypatch, blas):  # noqa: ARG001 (two threads of BLAS)
@@ -82,7 +91,7 @@ def test_large_contact_is_the_same_on_one_thread(monkeypatch, blas):  # noqa: AR
             return solved()
 
     (free, helped), (bound, unhelped) = helpers_after(solved), helpers_after(alone)
-    assert (helped, unhelped) == ([2], [])
+    assert (helped, unhelped) == (1, 0)
     assert_array_equal(free, bound)  # exact: threads share lines of a transform, each line is of one thread
 
 
@@ -99,3 +108,83 @@ def test_analysis_is_the_same_on_one_thread(monkeypatch, blas):  # noqa: ARG001 
     for name, values in free.dataset.variables.items():
         # exact: matrices are multiplied on one thread of BLAS in both
         assert_array_equal(values, bound.dataset.variables[name], err_msg=name)
+
+
+def test_nobody_works_on_once_the_caller_has_raised():
+    """An exception out of a signal meets the caller as the helper is amidst a part, and others are left."""
+    begun, caller, done = Event(), get_ident(), []
+
+    def work(part):
+        if get_ident() == caller:
+            assert begun.wait(60.0)
+            raise KeyboardInterrupt
+        begun.set()
+        time.sleep(0.05)
+        done.append(part)
+
+    with pytest.raises(KeyboardInterrupt):
+        shared(work, range(100), [(), ()])
+    at_once = list(done)
+    time.sleep(0.1)
+    assert done == at_once
+    assert len(done) == 1  # the part that the helper was amidst is finished, no other one begun
+
+
+def test_error_of_a_helper_is_raised_by_the_caller():
+    raised, caller = Event(), get_ident()
+
+    def work(_):
+        if get_ident() == caller:
+            assert raised.wait(60.0)
+        else:
+            raised.set()
+            raise MemoryError
+
+    with pytest.raises(MemoryError):
+        shared(work, range(2), [(), ()])
+
+
+def test_work_is_done_alone_where_no_thread_can_be_started(monkeypatch):
+    """As while the interpreter shuts down, or where a process has as many threads as it may."""
+
+    def refused(*_):
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr(threads, "_own", threads._OfThread())
+    monkeypatch.setattr(threads, "start_new_thread", refused)
+    done = []
+    shared(lambda part, own: done.append((part, own)), range(5), [("first",), ("second",)])
+    assert done == [(part, "first") for part in range(5)]
+
+
+def test_helpers_end_with_whom_they_help():
+    before, helpers = _thread._count(), threads._Helpers()
+    assert helpers.at_least(3) == 3
+    del helpers
+    deadline = time.monotonic() + 60.0
+    while _thread._count() > before and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert _thread._count() <= before
+
+
+LATE = """
+import atexit, os, threading
+import numpy as np
+os.sched_getaffinity = lambda _: {0, 1}
+from loaded_tca.contact.convolution import Convolution
+def convolve():
+    print(Convolution((192, 192), [1.0])(np.ones((1, 192, 192)), np.empty((1, 192, 192))).sum())
+def late():
+    threading.main_thread().join()
+    convolve()
+threading.Thread(target=late).start()
+atexit.register(convolve)
+"""
+
+
+def test_transforms_run_as_the_interpreter_ends():
+    """In a thread that outlives the main one, and then in ``atexit``: executors take no work there."""
+    ended = subprocess.run([sys.executable, "-c", LATE], capture_output=True, text=True, timeout=60, check=False)
+    assert not ended.stderr
+    thread, at_exit = ended.stdout.split()
+    assert thread == at_exit

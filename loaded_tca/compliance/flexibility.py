@@ -38,7 +38,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from threading import Lock
+from threading import RLock
 from typing import TypeVar, cast
 
 import numpy as np
@@ -250,7 +250,7 @@ SAME_OUTLINE = 1e-9
 """Numbers are the same if they agree to this part of the size of the gear: far above rounding."""
 UNREADABLE = OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile
 _recent: OrderedDict[str, object] = OrderedDict()
-_lock = Lock()
+_lock = RLock()  # a handler of a signal may ask for a model amidst another call
 Model = TypeVar("Model")
 
 
@@ -338,13 +338,13 @@ def kept(key: str, kind: type[Model], make: Callable[[], Model]) -> Model:
         model = make()
         if folder is not None:
             _write(folder, key, model)
-    with _lock:
-        _recent[key] = model
-        _recent.move_to_end(key)
-        while len(_recent) > MOST_IN_MEMORY:
-            _recent.popitem(last=False)
     for values in vars(model).values():
         values.setflags(write=False)
+    with _lock:
+        _recent.pop(key, None)
+        _recent[key] = model
+        while len(_recent) > MOST_IN_MEMORY:
+            _recent.popitem(last=False)
     return cast(Model, model)
 
 

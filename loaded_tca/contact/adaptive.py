@@ -21,8 +21,8 @@ Request = TypeVar("Request")
 # The residual of the iteration is kept this far below the accuracy, so that the grid alone limits it.
 TOLERANCE_SHARE = 1e-2
 MOST_CELLS = 1024
-# Where a border bounds the contact its pressure grows with the grid without end; where the curvature of the gap jumps
-# each further bit of its peak costs four times the cells of the one before.
+# Where a border bounds the contact, or a slope jumps in it, its pressure grows with the grid without end; where the
+# curvature of the gap jumps each further bit of its peak costs four times the cells of the one before.
 MOST_CELLS_FOR_FIRST_ORDER = 64
 
 
@@ -41,8 +41,9 @@ def solve_to_accuracy(
 
     Each grid has twice the cells of the one before along both axes and starts from its pressure. The accuracy is
     that of the peak pressure; from 64 cells on, along the axis that has fewer, as if its error fell with the square of
-    the cell, which it does not where the curvature of the gap jumps. Where the grid or the material ends the contact on
-    the two finest grids the accuracy is that of the approach, with at most 64 cells along the axis that has fewer.
+    the cell, which it does not where the curvature of the gap jumps. Where the pressure has no limit on the two finest
+    grids (the grid or the material ends the contact, or the slope of the gap jumps inside it) the accuracy is that of
+    the approach, with at most 64 cells along the axis that has fewer.
 
     Parameters
     ----------
@@ -55,7 +56,8 @@ def solve_to_accuracy(
         As in :func:`solve_contact`; the tolerance is tightened to a hundredth of the accuracy. A first grid that
         cannot be the last is solved to that hundredth.
     smooth : bool
-        False where the surfaces have a relief start or an end inside the contact: treated as where a border bounds it.
+        False where the surfaces are known to have a relief start or an end inside the contact: treated as where a
+        border bounds it, whatever the gap tells.
     first_cells : (int, int)
         Where to begin. The estimate needs two grids: the answer has at least twice as many.
     initial_pressure : array_like of first_cells, optional [MPa]
@@ -100,8 +102,12 @@ def solve_to_accuracy(
     )
     start = None if initial_pressure is None else numbers("initial_pressure", initial_pressure)
     solve = partial(_solved, problem, threads)
+
+    def limited(solution: ContactSolution) -> bool:
+        return smooth and solution.slope_jump == 0.0
+
     try:
-        next(refinement(solve, accuracy, tolerance, lambda _: smooth, first_cells, start))
+        next(refinement(solve, accuracy, tolerance, limited, first_cells, start))
     except StopIteration as end:
         solution, error = end.value
     if warn:
@@ -141,7 +147,7 @@ def refinement(
     while True:
         # What ends a contact inside the box makes the peak grow with the grid without end. A coarse grid alone does not
         # show it: where only one of two does, the peak has to agree as well.
-        ended, estimate = solution.bounded or not smooth(solution), solution.error_estimate
+        ended, estimate = solution.bounded or not smooth(solution), solution.estimate(0.0)
         fine = min(cells) >= MOST_CELLS_FOR_FIRST_ORDER
         error = estimate.second_order if fine and not ended else estimate.peak_pressure
         if ended and ended_before:

@@ -1,16 +1,15 @@
 """Fast convolution of pressures with influence coefficients: planned, pruned transforms.
 
 The only module that knows FFTW. Plans and their work arrays are kept per thread, since neither may be shared
-while in use; what is kept is bounded by :data:`CACHE_BYTES`.
+while in use; what is kept is bounded by :data:`CACHE_BYTES`. Those that an exception finds in use are given up.
 """
 
 import functools
 import math
 import os
 import threading
-from collections import OrderedDict, deque
+from collections import OrderedDict
 from collections.abc import Callable, Hashable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from scipy.fft import dctn
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.lazy import hidden
-from loaded_tca.threads import allowed_threads
+from loaded_tca.threads import allowed_threads, shared
 
 with hidden("dask.array.fft"):  # for interfaces that nobody here uses, it would take longer to import than all else
     import pyfftw
@@ -40,7 +39,7 @@ LARGEST_BLOCK = 16
 
 
 def _mark_fork() -> None:
-    """Threads do not survive a fork: the child makes its own, and plans anew."""
+    """The child of a fork plans anew: another thread may have been using what it would find."""
     global _cache
     _cache = _Cache()
 
@@ -50,7 +49,6 @@ class _Cache(threading.local):
 
     def __init__(self) -> None:
         self.items: OrderedDict[Hashable, Any] = OrderedDict()
-        self.pools: dict[int, ThreadPoolExecutor] = {}
         self.bytes = 0
 
     def find(self, key: Hashable) -> Any:
@@ -61,22 +59,21 @@ class _Cache(threading.local):
 
     def keep(self, key: Hashable, made: Any) -> Any:
         """Keep something new under a key, and return it."""
-        self.items[key] = made
+        # An exception in between leaves the count too large, until all that is older has gone.
         self.bytes += made.nbytes
+        replaced = self.items.pop(key, None)
+        self.items[key] = made
+        self.bytes -= 0 if replaced is None else replaced.nbytes
         while self.bytes > CACHE_BYTES and len(self.items) > 1:
             self.bytes -= self.items.popitem(last=False)[1].nbytes
+        if len(self.items) == 1:
+            self.bytes = made.nbytes
         return made
 
-    def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return what is kept under the key; make and keep it otherwise."""
+    def idle(self, key: Hashable, make: Callable[[], "_Transform"]) -> "_Transform":
+        """Return the transform that is kept under the key; make and keep one if there is none or it is in use."""
         kept = self.find(key)
-        return self.keep(key, make()) if kept is None else kept
-
-    def pool(self, threads: int) -> ThreadPoolExecutor:
-        """Helpers of this thread, made when first needed."""
-        if threads not in self.pools:
-            self.pools[threads] = ThreadPoolExecutor(threads - 1, thread_name_prefix="convolution")
-        return self.pools[threads]
+        return self.keep(key, make()) if kept is None or kept.in_use else kept
 
 
 _cache = _Cache()
@@ -100,7 +97,27 @@ def fast_length(least: int) -> int:
     return next(length for length in lengths if length >= least and length % 2 == 0)
 
 
-class _SmallTransforms:
+class _Transform:
+    """Plans and work arrays of transforms that multiply problems with even symbols in the Fourier space.
+
+    ``in_use`` stays true where an exception ends a call: nothing is known of the work arrays then. A call that a signal
+    interrupts has it true, too, while the handler computes on its own.
+    """
+
+    nbytes = 0
+    in_use = False
+
+    def __call__(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
+        """Filter values (count, rows, columns), placed at a corner of the box, into ``out``."""
+        self.in_use = True
+        self._filter(values, corner, symbol, out)
+        self.in_use = False
+
+    def _filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
+        raise NotImplementedError
+
+
+class _SmallTransforms(_Transform):
     """Planned transforms of the rows of several small problems in periodic boxes, and back.
 
     Every problem has plans of its own, all alike, so that its result is the same to the last bit wherever it stands
@@ -136,8 +153,8 @@ class _SmallTransforms:
         self._forth.append(tuple(plans[:2]))
         self._back.append(tuple(plans[2:]))
 
-    def filter(self, values: Array, symbol: Array, out: Array) -> None:
-        """Transform values (count, rows, columns), multiply by the symbols, transform back into ``out``.
+    def _filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:  # noqa: ARG002
+        """Transform values at the first corner, multiply by the symbols, transform back.
 
         A symbol is the half that the transform of real data has, (second, first direction).
         """
@@ -169,7 +186,7 @@ def _aligned(shape: tuple[int, int, int], dtype: Any) -> Array:
     return pyfftw.zeros_aligned((shape[0], size), dtype)[:, : shape[1] * shape[2]].reshape(shape)
 
 
-class _LargeTransform:
+class _LargeTransform(_Transform):
     """Planned transforms of rows of real data in a periodic box, and back, in pieces that fit the cache.
 
     ``rows`` counts those that hold data on the way forth and on the way back: no others are transformed or kept. The
@@ -199,11 +216,13 @@ class _LargeTransform:
             self._plans.append((forth, plan(lines, lines, "FFTW_FORWARD"), plan(lines, lines, "FFTW_BACKWARD"), back))
             self.nbytes += given.nbytes + output.nbytes + lines.nbytes
 
-    def filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
-        """Transform values placed at a corner of the box, multiply by the symbol, transform back into ``out``.
+    def _filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
+        """Problems by turns; a symbol is a quadrant of an even one, (second, first direction)."""
+        for given, own, target in zip(values, symbol, out, strict=True):
+            self._filter_one(given, corner, own, target)
 
-        ``symbol`` is a quadrant of an even one, (second, first direction).
-        """
+    def _filter_one(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
+        """Transform values (rows, columns), multiply by the symbol, transform back."""
         top, left = corner
         bottom, right = top + values.shape[0], left + values.shape[1]
         loaded, back = self._kept[:, : self._rows[0]], self._kept[:, : self._rows[1]]
@@ -237,9 +256,9 @@ class _LargeTransform:
             again.execute()
             np.copyto(target, again.output_array[: len(target), : out.shape[1]], casting="same_kind")
 
-        _share(inward, self._parts[0], self._plans)
-        _share(across, self._parts[1], self._plans)
-        _share(outward, self._parts[2], self._plans)
+        shared(inward, self._parts[0], self._plans)
+        shared(across, self._parts[1], self._plans)
+        shared(outward, self._parts[2], self._plans)
 
 
 def _pieces(count: int, row_bytes: int, multiple: int = 1) -> list[slice]:
@@ -247,29 +266,6 @@ def _pieces(count: int, row_bytes: int, multiple: int = 1) -> list[slice]:
     parts = -(-count // max(8, PIECE_BYTES // row_bytes))
     size = count if parts == 1 else -(-count // (multiple * parts)) * multiple
     return [slice(start, start + size) for start in range(0, count, size)]
-
-
-def _share(work: Callable[..., None], parts: list[slice], plans: Sequence[tuple[Any, ...]]) -> None:
-    """Do the work on every piece; helpers take pieces too, and nobody waits for a helper that has not begun."""
-    if len(plans) == 1 or len(parts) == 1:
-        for part in parts:
-            work(part, *plans[0])
-        return
-    waiting = deque(parts)
-
-    def drain(own: tuple[Any, ...]) -> None:
-        while waiting:
-            try:
-                part = waiting.popleft()
-            except IndexError:
-                return
-            work(part, *own)
-
-    helpers = [_cache.pool(len(plans)).submit(drain, own) for own in plans[1 : len(parts)]]
-    drain(plans[0])
-    for helper in helpers:
-        if not helper.cancel():
-            helper.result()
 
 
 class _Filter:
@@ -299,20 +295,21 @@ class _Filter:
         threads = useful_threads(box, threads)
         small = corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES
         self._symbol, self._corner = _kernels(kind, box, aspects, dtype, half=small), corner
-        self._small: _SmallTransforms | None = None
+        self._key: Hashable
+        self._make: Callable[[], _Transform]
         if small:
-            self._small = _cache.get((rows, columns, box, dtype), lambda: _SmallTransforms(rows, columns, box, dtype))
+            self._key = rows, columns, box, dtype
+            self._make = functools.partial(_SmallTransforms, rows, columns, box, dtype)
         else:
-            self._large = _cache.get((rows, box, dtype, threads), lambda: _LargeTransform(rows, box, dtype, threads))
+            self._key = rows, box, dtype, threads
+            self._make = functools.partial(_LargeTransform, rows, box, dtype, threads)
+        self._transform = _cache.idle(self._key, self._make)
 
     def __call__(self, values: Array, out: Array, rows: Rows = ALL) -> Array:
         """Write the product (count, nx, ny) into ``out`` and return it; of the problems ``rows`` of the stack."""
-        symbol = self._symbol[rows]
-        if self._small is not None:
-            self._small.filter(values, symbol, out)
-            return out
-        for given, own, target in zip(values, symbol, out, strict=True):
-            self._large.filter(given, self._corner, own, target)
+        if self._transform.in_use:
+            self._transform = _cache.idle(self._key, self._make)
+        self._transform(values, self._corner, self._symbol[rows], out)
         return out
 
 

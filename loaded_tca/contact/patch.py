@@ -104,18 +104,19 @@ def _weights_of_quadratic(pressure: Array) -> Array | None:
     return weights
 
 
-def area_and_semi_axes(pressure: Array, spacing: tuple[float, float]) -> tuple[float, float, float]:
+def area_and_semi_axes(pressure: Array, spacing: tuple[float, float], cover: Array) -> tuple[float, float, float]:
     """Area [mm^2], semi-minor and semi-major axis [mm] of the contact, its edge where p^2 passes through zero.
 
-    The axes are those of the ellipse with the same second moments of area, at any angle to the grid.
+    ``cover`` is the part of each cell that has material: nothing beyond it counts. The axes are those of the ellipse
+    with the same second moments of area, at any angle to the grid.
     """
-    window = window_around(pressure > 0.0)
+    window, parts = window_around(pressure > 0.0), 2**HALVINGS
     square = continue_outside(pressure[window] ** 2)
     for _ in range(HALVINGS):
         square = split(split(square, -2), -1)
-    inside = (square > 0.0).astype(float)
+    inside = (square > 0.0) * cover[window].repeat(parts, axis=0).repeat(parts, axis=1)
     sums, cells = (inside.sum(axis=1), inside.sum(axis=0)), inside.sum()
-    width, length = spacing[0] / 2**HALVINGS, spacing[1] / 2**HALVINGS
+    width, length = (size / parts for size in spacing)
     x, y = (np.arange(n) - np.arange(n) @ own / cells for n, own in zip(inside.shape, sums, strict=True))
     moments = np.array([[x * x @ sums[0], 0.0], [x @ (inside @ y), y * y @ sums[1]]]) / cells + np.eye(2) / 12.0
     minor, major = 2.0 * np.sqrt(np.linalg.eigvalsh(moments * np.outer((width, length), (width, length))))

@@ -16,6 +16,7 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact import patch
 from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem, GradedProblem, HalfSpaces, Spacing
+from loaded_tca.contact.slope_jumps import growth, largest_slope_jump
 from loaded_tca.errors import ConvergenceError
 
 # Fewer cells than this across a contact leave errors above 1 % in its pressure.
@@ -30,6 +31,9 @@ LEAST_ERROR = 0.6
 # eighth of it is half of theirs if the error falls with the square of the cell.
 SECOND_ORDER = 1.0 / 3.0
 MOST_OF_CHANGE, MOST_OF_CHANGE_BESIDE, MOST_OF_CHANGE_BEFORE = 0.4, 0.5, 0.15
+# Growth of the pressure with every halving of the cells, over the largest, that makes nothing of it: 17 halvings lead
+# from a hundredth of a millimetre to the size of atoms.
+LEAST_GROWTH = 1e-3
 
 
 MOST_ITERATIONS = 500
@@ -63,7 +67,7 @@ class ErrorEstimate:
     peak_pressure : float
         Hardly ever exceeded: half of the largest change of pressure from the coarser grid in the cells about the peak,
         0.15 of that change between the two grids before, 0.4 of the change of the peak, or 0.6 over the square of the
-        cells across, whichever is largest; all of the change where a border or an edge ends the contact.
+        cells across, whichever is largest; all of the change of the largest cell where the pressure has no limit.
     approach : float
         The change of the approach from the coarser grid.
     second_order : float
@@ -250,7 +254,7 @@ class ContactSolution(Solution):
 
     @property
     def contact_area(self) -> float:
-        """Area under pressure [mm^2], its edge found between the centres of the cells."""
+        """Area under pressure [mm^2], its edge found between the centres of the cells, or where the material ends."""
         return self._area_and_semi_axes[0]
 
     @property
@@ -262,7 +266,8 @@ class ContactSolution(Solution):
     def _area_and_semi_axes(self) -> tuple[float, float, float]:
         if not self.in_contact.any():
             return 0.0, 0.0, 0.0
-        return patch.area_and_semi_axes(self.pressure, self.spacing)
+        cover = np.isfinite(self.problem.gap) if self.problem.cover is None else self.problem.cover
+        return patch.area_and_semi_axes(self.pressure_on_material, self.spacing, cover.astype(np.float64))
 
     @cached_property
     def reaches_border(self) -> bool:
@@ -278,6 +283,18 @@ class ContactSolution(Solution):
     def bounded(self) -> bool:
         """Whether the grid or the material ends the contact, where theory has an infinite pressure."""
         return self.reaches_border or self.reaches_material_edge
+
+    @cached_property
+    def slope_jump(self) -> float:
+        """Largest jump of the slope of the gap inside the contact, in rad; zero if none matters to the pressure.
+
+        Where theory has an infinite pressure; told by the gap on this grid, which cannot tell it from an edge that is
+        rounded within two cells, nor from roughness with less than some five cells for its shortest waves.
+        """
+        if not self.in_contact.any():
+            return 0.0
+        least = LEAST_GROWTH * float(self.pressure.max()) / growth(1.0, self.problem.contact_modulus)
+        return largest_slope_jump(self.problem.gap, self.in_contact, self.spacing, least)
 
     @cached_property
     def cells_across(self) -> tuple[int, int]:
@@ -296,6 +313,14 @@ class ContactSolution(Solution):
                 "contact reaches an end of the material, where the pressure has no limit: that of the cells beside it "
                 "grows with their number"
             )
+        if self.slope_jump > 0.0 and float(self.pressure.max()) < (self.problem.max_pressure or math.inf):
+            grown = growth(self.slope_jump, self.problem.contact_modulus)
+            shown = f"{grown:.0f}" if grown >= 100.0 else f"{grown:.2g}"
+            sentences.append(
+                f"the slope of the gap jumps by {1e3 * self.slope_jump:.3g} mrad inside the contact: at a ridge the "
+                f"pressure has no limit, that of the cells beside it grows by about {shown} MPa whenever cells are "
+                "halved; waves of roughness have too few cells"
+            )
         if 0 < min(self.cells_across) < FEWEST_CELLS:
             across = min(self.cells_across)
             sentences.append(f"contact is {across} cells across: fewer than {FEWEST_CELLS} leave errors above 1 %")
@@ -304,14 +329,19 @@ class ContactSolution(Solution):
     @cached_property
     def error_estimate(self) -> ErrorEstimate:
         """Discretisation error of the peak and of the approach."""
+        return self.estimate(self.slope_jump)
+
+    def estimate(self, slope_jump: float) -> ErrorEstimate:
+        """Discretisation error where the slope of the gap jumps by so much; zero: nowhere, as the surfaces may tell."""
         if self.status is ContactStatus.NO_LOAD:
             return ErrorEstimate(0.0, 0.0, 0.0)
         coarser = self.coarser
         if coarser is None:
             return ErrorEstimate(math.nan, math.nan, math.nan)
         least, cap = LEAST_ERROR / min(self.cells_across) ** 2, self.problem.max_pressure
-        if self.bounded or (cap is not None and self.pressure.max() >= cap):
-            change = max(coarser.change_of_largest, least)
+        if self.bounded or slope_jump > 0.0 or (cap is not None and self.pressure.max() >= cap):
+            grown = growth(slope_jump, self.problem.contact_modulus) / float(self.pressure.max())
+            change = max(coarser.change_of_largest, grown, least)
             return ErrorEstimate(change, coarser.approach_change, change)
         change, beside = coarser.change_of_peak, coarser.change_beside_peak
         return ErrorEstimate(

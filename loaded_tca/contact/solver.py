@@ -116,7 +116,8 @@ def solve_contact(
     Warns
     -----
     AccuracyWarning
-        If the contact reaches the border of the grid, or is fewer than 8 cells across.
+        If the contact reaches the border of the grid or an end of the material, if the slope of the gap jumps inside
+        it, or if it is fewer than 8 cells across.
 
     Examples
     --------

@@ -86,6 +86,8 @@ class HeldContact:
         Of these cells.
     ends : (ny, ny) array or None [mm/N]
         Compliance of free edges.
+    slopes : (keys, nx, ny) array or None [mm per unit of the key]
+        Derivatives of the gap, where these are the same for all values of the keys.
     """
 
     tooth_pair: ToothPair
@@ -94,6 +96,7 @@ class HeldContact:
     pinion: MetPoints
     wheel: MetPoints
     ends: Array | None
+    slopes: Array | None = None
 
     def growth(self, one: GearPair, two: GearPair, gears: Sequence[str] = ("pinion", "wheel")) -> Array:
         """Growth of the gap (nx, ny) [mm] from the flanks of one pair to those of another."""
@@ -206,14 +209,18 @@ class HeldContacts:
         spans, each = np.array([*ranges.values()]), np.eye(self.start.size, dtype=bool)
         shapes = [self.pair, *(self.pair_at(np.where(own, ends, self.start)) for ends in spans.T for own in each)]
         self._held: dict[ContactPoint, HeldContact] = {}
+        self._is_linear = False
         self.contacts: list[list[ContactPoint]] = []
         for position in range(len(mesh)):
             contacts = self._held_at(position, shapes)
             self._held.update((one.tooth_pair.contact, one) for one in contacts)
             self.contacts.append([one.tooth_pair.contact for one in contacts])
-        first, last = (self._slopes_at(values) for values in (self.start, spans[:, 1]))
+        contacts_held = [*self._held.values()]
+        first, last = (self._slopes_at(values, contacts_held) for values in (self.start, spans[:, 1]))
         bends = [np.abs(last[one] - first[one]).max(axis=(1, 2)) @ np.ptp(spans, axis=1) for one in first]
-        self._slopes = first if max(bends) <= STRAIGHT else None
+        if max(bends) <= STRAIGHT:
+            self._held = {contact: replace(one, slopes=first[contact]) for contact, one in self._held.items()}
+            self._is_linear = True
 
     def pair_at(self, values: Array) -> GearPair:
         """The gears with other values of the keys."""
@@ -223,16 +230,19 @@ class HeldContacts:
 
     def gaps(self, values: Array, contacts: Iterable[ContactPoint] | None = None) -> dict[ContactPoint, Array]:
         """Gaps (nx, ny) [mm] with other values of the keys, the gears held at their angles; of all contacts or some."""
-        held_gaps = {one: self._held[one].separation.cut_gap for one in (self._held if contacts is None else contacts)}
-        if self._slopes is not None:
-            change = values - self.start
-            return {contact: gap + np.tensordot(change, self._slopes[contact], 1) for contact, gap in held_gaps.items()}
-        pair = self.pair_at(values)
-        return {contact: gap + self._held[contact].growth(self.pair, pair) for contact, gap in held_gaps.items()}
+        some = {contact: self._held[contact] for contact in (self._held if contacts is None else contacts)}
+        pair, change = self.pair if self._is_linear else self.pair_at(values), values - self.start
+        return {
+            contact: one.separation.cut_gap
+            + (one.growth(self.pair, pair) if one.slopes is None else np.tensordot(change, one.slopes, 1))
+            for contact, one in some.items()
+        }
 
     def slopes(self, values: Array) -> dict[ContactPoint, Array]:
         """Derivatives (keys, nx, ny) [mm per unit of the key] of :meth:`gaps`."""
-        return self._slopes_at(values) if self._slopes is None else self._slopes
+        if self._is_linear:
+            return {contact: one.slopes for contact, one in self._held.items() if one.slopes is not None}
+        return self._slopes_at(values, [*self._held.values()])
 
     @property
     def pitches_apart(self) -> int:
@@ -253,20 +263,20 @@ class HeldContacts:
         one = self._held[contact]
         (larger,) = self._in_boxes([one.tooth_pair], [box])
         line = np.interp(larger.separation.y, one.separation.y, one.separation.force_line)
-        self._held[contact] = replace(larger, separation=replace(larger.separation, force_line=line))
-        if self._slopes is not None:
-            self._slopes |= self._slopes_at(self.start, [contact])
+        larger = replace(larger, separation=replace(larger.separation, force_line=line))
+        if self._is_linear:
+            larger = replace(larger, slopes=self._slopes_at(self.start, [larger])[contact])
+        self._held[contact] = larger  # grid and slopes at once: an exception out of a signal may come anywhere
 
     def _scene(self, values: Array) -> Scene:
         return self.scene.with_changes(dict(zip(self.keys, values.tolist(), strict=True)))
 
-    def _slopes_at(self, values: Array, contacts: Iterable[ContactPoint] | None = None) -> dict[ContactPoint, Array]:
+    def _slopes_at(self, values: Array, contacts: Iterable[HeldContact]) -> dict[ContactPoint, Array]:
         changes = pair_changes(self._scene(values), self.keys)
         slopes = {}
-        for contact in self._held if contacts is None else contacts:
-            one = self._held[contact]
+        for one in contacts:
             grown = [one.growth(by.below, by.above, (by.key.partition(".")[0],)) / by.difference for by in changes]
-            slopes[contact] = np.array(grown)
+            slopes[one.tooth_pair.contact] = np.array(grown)
         return slopes
 
     def _held_at(self, position: int, shapes: Sequence[GearPair]) -> list[HeldContact]:

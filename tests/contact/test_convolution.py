@@ -2,18 +2,23 @@
 
 import concurrent.futures
 import multiprocessing
+import os
+from itertools import count
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from loaded_tca import threads
 from loaded_tca.contact import convolution
 from loaded_tca.contact.convolution import Convolution, Preconditioner, fast_length
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.threads import allowed_threads
+from tests.interrupts import Signal, interrupted, raise_signal
 
 DOUBLE = 1e-13  # some hundred roundings of a transform, relative to the largest value
 SINGLE = 1e-5
+MODULES = convolution, threads
 
 
 def summed(pressure, aspect):
@@ -132,3 +137,41 @@ def test_workers_convolve_after_their_parent_used_threads(method):
     with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
         assert pool.submit(_centre_displacement, 220).result(timeout=60) == pytest.approx(expected, rel=DOUBLE)
         assert pool.submit(convolution.useful_threads, (2048, 2048), 2).result(timeout=60) == 1
+
+
+@pytest.mark.parametrize(("shape", "step"), [((3, 12, 12), 1), ((1, 200, 190), 7)])  # a stack; on two threads
+def test_exception_at_any_line_leaves_the_next_convolution_right(monkeypatch, rng, shape, step):
+    """One out of a signal comes anywhere, and what is kept must not have half of something."""
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1}, raising=False)
+    values, aspects = rng.random(shape), np.linspace(1.0, 1.5, shape[0])
+
+    def convolve():
+        return Convolution(shape[1:], aspects)(values, np.empty(shape))
+
+    right = convolve()
+    for line in count(1, step):
+        monkeypatch.setattr(convolution, "_cache", convolution._Cache())
+        try:
+            if not interrupted(MODULES, line, raise_signal, convolve):
+                break
+        except Signal:
+            assert np.array_equal(convolve(), right), line  # exact: the same operations on the same numbers
+    assert line > 20
+
+
+def test_convolution_inside_an_interrupted_one_leaves_it_right(rng):
+    """A handler of a signal may solve contacts of its own, on the same grids."""
+    values, others = rng.random((2, 2, 12, 12))
+    convolve = Convolution((12, 12), [1.0, 1.0])
+    right, right_of_others = (convolve(own, np.empty(own.shape)) for own in (values, others))
+    inner, outer = np.empty(values.shape), np.empty(values.shape)
+
+    def handler():
+        Convolution((12, 12), [1.0, 1.0])(others, inner)
+
+    for line in count(1):
+        if not interrupted(MODULES, line, handler, lambda: convolve(values, outer)):
+            break
+        assert np.array_equal(outer, right), line
+        assert np.array_equal(inner, right_of_others), line
+    assert line > 10

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.contact import patch, solve_contact
+from loaded_tca.contact import ContactProblem, patch, solve_contact, solve_problem
 from loaded_tca.reference import hertz
 
 ROUNDING = 1e-12
@@ -66,7 +66,7 @@ def test_peak_of_many_cells_is_thinned_without_loss():
 )
 def test_area_and_axes_of_an_ellipse(offset, axes, angle):
     pressure = ellipse((48, 48), (23.5 + offset[0], 23.5 + offset[1]), axes, angle)
-    area, minor, major = patch.area_and_semi_axes(pressure, (1.0, 1.0))
+    area, minor, major = patch.area_and_semi_axes(pressure, (1.0, 1.0), np.ones(pressure.shape))
     # the edge is found to a quarter of a cell all round
     assert_allclose(area, math.pi * axes[0] * axes[1], rtol=0.5 / min(axes))
     assert_allclose([minor, major], sorted(axes), rtol=0.5 / min(axes))
@@ -80,6 +80,22 @@ def test_axes_of_a_solved_contact_are_hertz():
     solution = solve_contact(0.05 * x[:, None] ** 2 + 0.05 / 37.4 * y**2, spacing, 115e3, load=100.0)
     assert_allclose(solution.semi_axes, (contact.semi_minor, contact.semi_major), rtol=5e-3)  # 43 cells across
     assert_allclose(solution.contact_area, contact.area, rtol=5e-3)
+
+
+@pytest.mark.parametrize("cut", [False, True])
+@pytest.mark.parametrize("half_lengths", [(1.0, 0.7), (0.7, 1.0)])
+def test_area_and_axes_of_a_flat_punch_are_those_of_its_material(half_lengths, cut):
+    """Nothing is carried beyond; ends between the borders of cells, which material covers in part or not at all."""
+    n, width = 32, 2.4 / 32
+    centres = (np.arange(n) + 0.5) * width - 1.2
+    parts = [np.clip((half - np.abs(centres)) / width + 0.5, 0.0, 1.0) for half in half_lengths]
+    cover = np.outer(*parts) if cut else np.outer(*(part > 0.5 for part in parts)).astype(float)
+    gap = np.where(cover > 0.0, 0.0, np.inf)
+    problem = ContactProblem(gap, (width, width), 115e3, load=100.0, cover=cover if cut else None)
+    solution = solve_problem(problem)
+    assert_allclose(solution.contact_area, problem.material_area, rtol=1e-12)  # summed in another order
+    # second moments of a rectangle are those of an ellipse with 2/sqrt(3) of its sides; ends to half a cell
+    assert_allclose(solution.semi_axes, np.array([0.7, 1.0]) * 2.0 / math.sqrt(3.0), rtol=0.5 * width / 0.7)
 
 
 def test_area_without_contact_is_zero():

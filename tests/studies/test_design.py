@@ -8,7 +8,7 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.stats import norm
 
 from loaded_tca import analyse, read_scene
@@ -19,6 +19,7 @@ from loaded_tca.separation.pair_change import value_at
 from loaded_tca.studies import DesignModel, DesignResult, Study, load_design, optimise, robustness
 from loaded_tca.studies import design as designs
 from loaded_tca.studies.design_figures import FIGURES, Limit, averaged, mean_pressure_norm, smooth_span
+from tests.interrupts import Signal, raise_signal
 from tests.refusals import refusals
 from tests.samples.root_stress import coarsely
 
@@ -115,12 +116,18 @@ def test_held_contacts_have_the_errors_of_the_whole_analysis(changes, allowed):
     assert_allclose(evaluation.figure("face_load_factor")[0], whole.face_load_factor, rtol=0.05)
 
 
-def test_a_contact_that_outgrows_its_grid_gets_a_larger_one():
+def test_a_contact_that_outgrows_its_grid_gets_a_larger_one(monkeypatch):
     narrow = model(variables={CROWNING: (4.9, 5.1)}, scatter=None)
     contacts = narrow.held[0][0]
     contact = contacts.contacts[0][0]
     across, along = contacts[contact].separation.box.half_lengths
     wanted = narrow.evaluate(narrow.start).transmission_error
+    before = contacts.gaps(np.array([5.1]))[contact]
+    with monkeypatch.context() as patched:
+        patched.setattr(contacts, "_slopes_at", lambda *_: raise_signal())
+        with pytest.raises(Signal):
+            contacts.grow(contact, (0.4 * across, 0.4 * along))
+    assert_array_equal(contacts.gaps(np.array([5.1]))[contact], before)  # not the new grid with slopes of the old one
     contacts.grow(contact, (0.4 * across, 0.4 * along))
     found = narrow.evaluate(narrow.start).transmission_error
     assert min(np.divide(contacts[contact].separation.box.half_lengths, (across, along))) > 0.4
