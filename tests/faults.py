@@ -257,8 +257,8 @@ FAULTS = (
     Fault(
         "bending: results of a file know one part of the model alone",
         "results/derivatives.py",
-        "bending = model_of(result.scene, pair, apart)",
-        "bending = model_of(result.scene, pair, apart).parts[0]",
+        "bending = model_of(result.scene, pair, result.coupled_pitches)",
+        "bending = model_of(result.scene, pair, result.coupled_pitches).parts[0]",
         "compliance/test_model.py::test_model_twice_as_soft_has_one_answer_in_memory_and_from_a_file",
     ),
     Fault(
@@ -803,6 +803,41 @@ FAULTS = (
         "return float(used.sum() ** (-8.0 / 9.0))",
         "return float(used.sum() ** -0.9)",
         "supports/test_rolling.py::test_lives_fall_with_powers_of_the_load",
+    ),
+    Fault(
+        "results of files: cells that edges cut count as whole",
+        "results/derivatives.py",
+        "return Separation(one.gap, *place, one.cover, cut_gap, one.force_line)",
+        "return Separation(one.gap, *place, np.ones(one.gap.shape), 0.0 * cut_gap, one.force_line)",
+        "results/test_memory_and_file.py::test_cells_at_the_cap_stay_there_in_the_states_of_a_file",
+    ),
+    Fault(
+        "results of files: teeth of the scene couple neighbours alone",
+        "results/derivatives.py",
+        "bending = model_of(result.scene, pair, result.coupled_pitches)",
+        "bending = model_of(result.scene, pair, 1)",
+        "results/test_memory_and_file.py::test_teeth_that_states_of_a_file_couple_are_those_that_the_result_says",
+    ),
+    Fault(
+        "states: tooth pairs in another order than results have",
+        "loaded/cycle.py",
+        "order = np.argsort(pairs).tolist()",
+        "order = np.argsort(-pairs).tolist()",
+        "results/test_memory_and_file.py::test_cells_at_the_cap_stay_there_in_the_states_of_a_file",
+    ),
+    Fault(
+        "free edges: of no grid at all",
+        "loaded/free_edges.py",
+        "    if not grids:\n        return []\n",
+        "",
+        "supports/test_sensitivities.py::test_derivatives_from_a_file_are_those_of_the_analysis",
+    ),
+    Fault(
+        "errors by the grid: of slices that carry nothing",
+        "loaded/loaded_contact.py",
+        "        if self.solution.load == 0.0:\n            return 0.0\n        if not self.is_rough:",
+        "        if not self.is_rough:",
+        "results/test_memory_and_file.py::test_contact_on_an_edge_has_no_error_without_load",
     ),
 )
 
