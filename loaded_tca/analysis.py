@@ -14,7 +14,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, default_density, model_of, require_teeth, root_stress_model, way_out_told
-from loaded_tca.compliance.model import held_bodies, with_enough_teeth
+from loaded_tca.compliance.model import SumOfParts, held_bodies, with_enough_teeth
 from loaded_tca.contact.adaptive import MOST_CELLS
 from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, noted_accuracy_warnings, require
@@ -206,6 +206,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         cycles: list[CarriedOnSupports] = []
         if scene.is_supported:
             carried, at_edges, cycles = _on_supports(scene, pair, angles, grid, progress)
+            bending: SumOfParts | None = cycles[0].bending
         else:
             if wanted.load_sharing:
                 mesh = trace_teeth(pair, angles)
@@ -230,7 +231,10 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         if cycles:
             warn_of_supports(pair, cycles, torques.tolist())
         date = datetime.now(UTC).isoformat(timespec="seconds")
-        return mesh_cycle(scene, pair, carried, at_edges, roots, cycles, warnings=warned, date=date)
+        coupled = 0 if bending is None else bending.coupled_pitches
+        return mesh_cycle(
+            scene, pair, carried, at_edges, roots, cycles, coupled_pitches=coupled, warnings=warned, date=date
+        )
 
 
 def _on_supports(

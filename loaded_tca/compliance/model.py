@@ -106,6 +106,11 @@ class SumOfParts(BendingModel):
         """Its part that is the supports, if there is one."""
         return next((part for part in self.parts if isinstance(part, SupportCompliance)), None)
 
+    @property
+    def coupled_pitches(self) -> int:
+        """How many pitches two tooth pairs may be apart that its teeth couple; 0 where no teeth bend."""
+        return 0 if (teeth := self.on_rigid_supports) is None else teeth.neighbours
+
     def on_supports(self, supports: SupportCompliance) -> SumOfParts:
         """The same parts with other supports."""
         return SumOfParts(tuple(supports if isinstance(part, SupportCompliance) else part for part in self.parts))

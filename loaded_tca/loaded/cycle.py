@@ -297,10 +297,10 @@ def in_gear_angles(mesh: MeshPath) -> tuple[ContactPath, dict[int, ContactPath]]
 
 
 def _loaded_states(pairs: NDArray[np.int_], contacts: Contacts, bending: BendingModel | None) -> LoadedStates:
-    """Tooth pairs under load of all torques and positions."""
-    numbers = pairs.tolist()
+    """Tooth pairs under load of all torques and positions, in the order that results have them in."""
+    order = np.argsort(pairs).tolist()
     states = [
-        [LoadedGrid.of(number, one) for number, one in zip(numbers, at, strict=True) if one is not None]
+        [LoadedGrid.of(int(pairs[k]), one) for k in order if (one := at[k]) is not None]
         for positions in contacts
         for at in positions
     ]

@@ -105,6 +105,8 @@ class Slices(ContactGrid, Protocol):
 
 def edge_compliances(pair: GearPair, grids: Sequence[Slices]) -> list[Array | InputError | None]:
     """Return :func:`edge_compliance` of many grids, found together; an error stands in the place of what raises it."""
+    if not grids:
+        return []
     slices, problems = SliceRow.of(grids), dict[int, InputError]()
     compliances = np.zeros(sum(one.y.size**2 for one in grids))
     for line in edge_lines(pair, grids):

@@ -98,8 +98,10 @@ class LoadedContact:
     def peak_error(self) -> float:
         """Estimated relative error of its peak, or where it is rough of the pressure of its slices, by the grid.
 
-        No less than :attr:`peak_change`. NaN where there was one grid alone.
+        No less than :attr:`peak_change`. NaN where there was one grid alone, zero without load.
         """
+        if self.solution.load == 0.0:
+            return 0.0
         if not self.is_rough:
             return float(np.maximum(self.solution.error_estimate.peak_pressure, self.peak_change))
         least = LEAST_ERROR_OF_SLICES / min(self.solution.cells_across) ** 2

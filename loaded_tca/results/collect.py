@@ -40,6 +40,7 @@ def mesh_cycle(
     roots: Sequence[RootStress] = (),
     on_supports: Sequence[CarriedOnSupports] = (),
     *,
+    coupled_pitches: int = 0,
     warnings: Sequence[str] = (),
     date: str = "",
 ) -> MeshCycle:
@@ -57,6 +58,8 @@ def mesh_cycle(
         Of pinion and wheel, where the scene asks for root stress.
     on_supports : sequence of CarriedOnSupports
         By torque, where supports give way; ``carried`` is all of them.
+    coupled_pitches : int
+        As of the bending model that was used.
     warnings : sequence of str
         Sentences of the accuracy warnings of the analysis; each is kept once.
     date : str
@@ -80,6 +83,7 @@ def mesh_cycle(
         "pinion_angle": path.pinion_angle,
         "wheel_base_radius": pair.base_radii[1],
         "face_width": pair.face_width,
+        "coupled_pitches": coupled_pitches,
         "max_pressure": math.nan if pair.max_pressure is None else pair.max_pressure,
         "unloaded_transmission_error": path.transmission_error,
         "face_load_factor": face_load_factor,

@@ -6,7 +6,7 @@ On supports they are found torque by torque, each in the gears as they stand und
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
 
@@ -16,7 +16,6 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import SumOfParts, model_of
 from loaded_tca.errors import InputError, require
-from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.force_lines import bending_by_shift
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.loaded_grid import LoadedGrid
@@ -65,11 +64,11 @@ def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = No
         If the maps do not belong to the scene of the result.
     """
     pair, wanted, numbers = result.gear_pair, result.scene.analysis, result.pair.tolist()
-    unloaded, apart = _unloaded_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
+    unloaded = _unloaded_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
     if supports is None:
-        bending = model_of(result.scene, pair, apart)
+        bending = model_of(result.scene, pair, result.coupled_pitches)
     else:
-        at_rest = model_of(result.scene, result.scene.pair(), apart)
+        at_rest = model_of(result.scene, result.scene.pair(), result.coupled_pitches)
         assert at_rest is not None
         bending = at_rest.on_supports(supports).mounted(pair)
     places = np.argwhere(result.normal_force > 0.0).tolist()
@@ -94,14 +93,13 @@ def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = No
     return loaded_states(states, bending)
 
 
-def _unloaded_contacts(pair: GearPair, angles: Array, *, alone: bool) -> tuple[list[dict[int, ContactPoint]], int]:
-    """Contacts by position and number of the tooth pair, and how many pitches those of a position are apart."""
+def _unloaded_contacts(pair: GearPair, angles: Array, *, alone: bool) -> list[dict[int, ContactPoint]]:
+    """Contacts by position and number of the tooth pair."""
     if alone:
         path = trace_contact(pair, angles)
-        return [{0: path[n]} for n in range(len(path))], 1
+        return [{0: path[n]} for n in range(len(path))]
     mesh = trace_teeth(pair, angles)
-    contacts = [{one.pair: one.contact for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
-    return contacts, max(farthest_apart(mesh), 1)
+    return [{one.pair: one.contact for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
 
 
 def _separation(one: PressureMap, curvature: RelativeCurvature) -> Separation:

@@ -86,7 +86,8 @@ class MeshCycle(CycleNumbers):
     states : (Scene, tuple of LoadedStates) or None
         The contact problems behind the maps, of all positions torque by torque, for sensitivities, and the scene they
         belong to; on supports, where the gears stand elsewhere under each torque, those of each by themselves. None if
-        the result comes from a file, which does not keep them: they are made again when needed.
+        the result comes from a file, which does not keep them: they are made again of the maps when needed, to the last
+        bit.
     """
 
     def __repr__(self) -> str:

@@ -15,6 +15,11 @@ QUANTITIES: dict[str, Part] = {
     "pinion_angle": (("position",), "rad", "angle of the pinion phi1"),
     "wheel_base_radius": ((), "mm", "base radius of the wheel"),
     "face_width": ((), "mm", "common face width"),
+    "coupled_pitches": (
+        (),
+        "1",
+        "most pitches between two tooth pairs that the bending of the teeth couples; 0 where no teeth bend",
+    ),
     "max_pressure": ((), "MPa", "cap on the pressure; NaN: elastic"),
     "unloaded_transmission_error": (("position",), "rad", "unloaded transmission error, absolute"),
     "face_load_factor": (("torque",), "1", "face load factor K_Hbeta, from 30 strips of the face"),

@@ -52,7 +52,7 @@ def with_a_gap():
         if entry.name != "pinion_angle"
     }
     small = whole.maps[0][-1][0]
-    small = replace(small, x=small.x[4:-4], pressure=small.pressure[4:-4], gap=small.gap[4:-4])
+    small = replace(small, x=small.x[4:-4], pressure=small.pressure[4:-4], gap=small.gap[4:-4], cover=small.cover[4:-4])
     maps = tuple((row[0], (None,), *row[2:-1], (small,)) for row in whole.maps)
     path = replace(whole.path, **path)
     return replace(changed(whole, **numbers), path=path, paths=(path,), maps=maps)

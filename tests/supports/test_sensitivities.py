@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import MeshCycle, analyse, load_result, read_scene
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.model import SumOfParts
 from loaded_tca.errors import InputError
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import number_at
@@ -85,6 +86,11 @@ def analysed(name: str, compliance: str = "contact", changes: tuple[tuple[str, f
     if TORQUE in wanted:
         wanted = {"analysis.torques_Nm": [wanted[TORQUE]]}
     return analyse(scene.with_changes(wanted))
+
+
+@pytest.fixture(scope="module")
+def torques() -> MeshCycle:
+    return analyse(scene_of("helical").with_changes({"analysis.torques_Nm": [0.0, 40.0, 130.0]}))
 
 
 def slopes(name: str, key: str, step: float, compliance: str = "contact") -> Mapping[str, Array]:
@@ -176,10 +182,12 @@ def test_load_along_the_face_changes_as_in_whole_analyses() -> None:
         )
 
 
-def test_derivatives_from_a_file_are_those_of_the_analysis(tmp_path: Any) -> None:
-    one = analysed("spur", "contact+tooth")
+@pytest.mark.parametrize("name", ["spur", "helical"])
+def test_derivatives_from_a_file_are_those_of_the_analysis(tmp_path: Any, torques: MeshCycle, name: str) -> None:
+    """Of teeth that bend, and of three torques with zero among them."""
+    one = analysed("spur", "contact+tooth") if name == "spur" else torques
     keys = ["mounting.misalignment_um", "pinion.modifications.lead_crowning_um", TORQUE]
-    keys += ["pinion.shaft.bearings.1.radial_stiffness_N_per_um"]
+    keys += ["pinion.shaft.bearings.1.radial_stiffness_N_per_um"] if name == "spur" else []
     one.save(tmp_path / "result.nc")
     kept, found = one.sensitivities(keys), load_result(tmp_path / "result.nc").sensitivities(keys)
     for name in ("transmission_error", "line_load", "face_load_factor"):
@@ -188,9 +196,14 @@ def test_derivatives_from_a_file_are_those_of_the_analysis(tmp_path: Any) -> Non
         assert (np.nan_to_num(np.abs(getattr(found, name) - expected)) <= FROM_FILE * largest).all(), name
 
 
-@pytest.fixture(scope="module")
-def torques() -> MeshCycle:
-    return analyse(scene_of("helical").with_changes({"analysis.torques_Nm": [0.0, 40.0, 130.0]}))
+def test_result_says_how_many_pitches_its_teeth_couple(torques: MeshCycle) -> None:
+    one = analysed("spur", "contact+tooth")
+    assert one.states is not None
+    bending = one.states[1][0].bending
+    assert isinstance(bending, SumOfParts)
+    assert bending.on_rigid_supports is not None
+    assert one.coupled_pitches == bending.on_rigid_supports.neighbours
+    assert torques.coupled_pitches == 0  # flanks alone
 
 
 def test_each_torque_has_the_derivatives_of_its_own_gears(torques: MeshCycle) -> None:
