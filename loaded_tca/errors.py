@@ -1,5 +1,6 @@
 """Every error and warning of the package, in one place."""
 
+import sys
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -127,7 +128,21 @@ def give_accuracy_warning(sentence: str, stacklevel: int = 2) -> None:
     for sentences, _ in _noted.get():
         sentences.append(sentence)
     if all(given for _, given in _noted.get()):
-        warnings.warn(sentence, AccuracyWarning, stacklevel=stacklevel + 1)
+        warnings.warn(sentence, AccuracyWarning, stacklevel=_with_checks(stacklevel + 1))
+
+
+CHECKS = "call_checked"
+"""Name of the function that checks the arguments of another one and calls it: it is no caller."""
+
+
+def _with_checks(stacklevel: int) -> int:
+    """A level of the stack, as the caller counts it, when the functions are counted that check arguments of others."""
+    frame, levels = sys._getframe(1), 1
+    while levels < stacklevel and frame.f_back is not None:
+        frame = frame.f_back
+        stacklevel += frame.f_code.co_name == CHECKS
+        levels += 1
+    return stacklevel
 
 
 @contextmanager

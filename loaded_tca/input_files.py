@@ -1,8 +1,11 @@
-"""Files that are read: regular files of a bounded size, so that reading ends."""
+"""Files that are read: regular files of a bounded size, so that reading ends; tables and numbers in their text."""
 
 from __future__ import annotations
 
+import csv
 import os
+import re
+from typing import NamedTuple
 
 from loaded_tca.errors import InputError, reason_of, require
 
@@ -68,3 +71,108 @@ def read_text(path: str | os.PathLike[str], largest: int, kind: str = "scene and
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(f"{os.fspath(path)}: not a text file in UTF-8 (line {line})") from None
+
+
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+WHOLE = re.compile(r"[+-]?\d+", re.ASCII)
+MICRO = str.maketrans({"\N{MICRO SIGN}": "u", "\N{GREEK SMALL LETTER MU}": "u"})
+BESIDE_CELLS = '";,\t \N{NO-BREAK SPACE}'
+"""Characters that stand around the cells of a table."""
+MOST_DIGITS = 1000
+"""Of a number in text; Python refuses to read whole numbers of several times as many."""
+
+
+def number_in(text: str) -> float:
+    """Number that a text is: digits 0 to 9, one decimal point, an exponent.
+
+    Raises
+    ------
+    ValueError
+        If it is none; Python would take ``1_0``, digits of other scripts, and words for infinity.
+
+    Examples
+    --------
+    >>> number_in(" -1.5e3 ")
+    -1500.0
+    """
+    text = text.strip()
+    if len(text) > MOST_DIGITS or NUMBER.fullmatch(text) is None:
+        raise ValueError(text)
+    return float(text)
+
+
+def is_place(text: str) -> bool:
+    """Whether a text is the place of an entry in a list: a whole number from 0 on in digits 0 to 9."""
+    return text.isascii() and text.isdigit() and len(text) < 10
+
+
+def whole_in(text: str) -> int:
+    """Whole number that a text is; ValueError if it is none."""
+    text = text.strip()
+    if len(text) > MOST_DIGITS or WHOLE.fullmatch(text) is None:
+        raise ValueError(text)
+    return int(text)
+
+
+class Table(NamedTuple):
+    """A table in a text, whose first line names the columns.
+
+    Attributes
+    ----------
+    comments : tuple of str
+        Lines that begin with #, without it.
+    number : int
+        Of the line with the names, from 1.
+    names : tuple of str
+        Of the columns, with u for the micro of units.
+    rows : tuple of (int, tuple of str)
+        Number of each line, and its cells.
+    separator : str
+        What stands between cells.
+    """
+
+    comments: tuple[str, ...]
+    number: int
+    names: tuple[str, ...]
+    rows: tuple[tuple[int, tuple[str, ...]], ...]
+    separator: str
+
+
+def table_in(text: str) -> Table:
+    """The table that a text is, as people and spreadsheets write it; without names and rows if it has no line.
+
+    Semicolons, tabs or commas are between cells: the first of them that the line of names has. Cells may be quoted.
+    Separators at the ends of lines, below nothing in the line of names, and lines of separators alone are left out.
+
+    Raises
+    ------
+    InputError
+        If a quotation does not end.
+    """
+    numbered = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip(BESIDE_CELLS)]
+    comments = [line for _, line in numbered if line.lstrip(BESIDE_CELLS).startswith("#")]
+    body = [(number, line) for number, line in numbered if not line.lstrip(BESIDE_CELLS).startswith("#")]
+    separator = next((mark for mark in (";", "\t") if body and mark in body[0][1]), ",")
+    rows = [(number, _cells(number, line, separator)) for number, line in body]
+    names = [name.translate(MICRO) for name in rows[0][1]] if rows else []
+    while names and not names[-1]:
+        del names[-1]
+    for _, cells in rows:
+        while len(cells) > len(names) and not cells[-1]:
+            del cells[-1]
+    return Table(
+        tuple(line.strip(BESIDE_CELLS).removeprefix("#") for line in comments),
+        rows[0][0] if rows else 0,
+        tuple(names),
+        tuple((number, tuple(cells)) for number, cells in rows[1:]),
+        separator,
+    )
+
+
+def _cells(number: int, line: str, separator: str) -> list[str]:
+    """Cells of a line without their quotes and the blanks around them."""
+    try:
+        (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True)
+    except csv.Error:
+        raise InputError(f"line {number}: a quotation that does not end, or goes on behind its end") from None
+    return [cell.strip() for cell in cells]

@@ -1,12 +1,16 @@
 """Units at the ends of names, of keys of scenes, columns of tables and figures: the one place that says what they are.
 
 Results and numerics are in mm, N, MPa and rad; a name that ends with a unit, as ``face_width_mm``, tells another one.
+Units that other packages write beside their numbers are converted to them.
 """
 
 from __future__ import annotations
 
+import functools
 import math
 import re
+from collections import Counter
+from fractions import Fraction
 from typing import NamedTuple
 
 
@@ -97,3 +101,117 @@ def factor_of(name: str) -> float:
     (1000.0, 0.001, 1.0)
     """
     return 1.0 / UNITS[ending].factor if (ending := ending_of(name)) else 1.0
+
+
+METRE, KILOGRAM, SECOND, RADIAN, KELVIN, CELSIUS = "m", "kg", "s", "rad", "K", "degree Celsius"
+PREFIXES = (
+    ("", "", "1"),
+    ("n", "nano", "1e-9"),
+    ("u", "micro", "1e-6"),
+    ("m", "milli", "1e-3"),
+    ("c", "centi", "1e-2"),
+    ("d", "deci", "1e-1"),
+    ("h", "hecto", "1e2"),
+    ("k", "kilo", "1e3"),
+    ("M", "mega", "1e6"),
+    ("G", "giga", "1e9"),
+)
+"""Before symbols and before names of units, and the factor."""
+PREFIXED: tuple[tuple[str, tuple[str, ...], str, dict[str, int]], ...] = (
+    ("m", ("metre", "meter"), "1", {METRE: 1}),
+    ("g", ("gram",), "1e-3", {KILOGRAM: 1}),
+    ("s", ("second",), "1", {SECOND: 1}),
+    ("N", ("newton",), "1", {KILOGRAM: 1, METRE: 1, SECOND: -2}),
+    ("Nm", (), "1", {KILOGRAM: 1, METRE: 2, SECOND: -2}),
+    ("Pa", ("pascal",), "1", {KILOGRAM: 1, METRE: -1, SECOND: -2}),
+    ("J", ("joule",), "1", {KILOGRAM: 1, METRE: 2, SECOND: -2}),
+    ("W", ("watt",), "1", {KILOGRAM: 1, METRE: 2, SECOND: -3}),
+    ("rad", ("radian",), "1", {RADIAN: 1}),
+    ("K", ("kelvin",), "1", {KELVIN: 1}),
+)
+"""Units that take prefixes: symbol, names, size in base units, and what each is made of."""
+OTHERS: tuple[tuple[tuple[str, ...], Fraction, dict[str, int]], ...] = (
+    (("in", "inch", "inches"), Fraction("0.0254"), {METRE: 1}),
+    (("micron", "microns"), Fraction("1e-6"), {METRE: 1}),
+    (("Nmm",), Fraction("1e-3"), {KILOGRAM: 1, METRE: 2, SECOND: -2}),
+    (("bar",), Fraction("1e5"), {KILOGRAM: 1, METRE: -1, SECOND: -2}),
+    (("min", "minute", "minutes"), Fraction(60), {SECOND: 1}),
+    (("h", "hr", "hour", "hours"), Fraction(3600), {SECOND: 1}),
+    (("rpm", "revolutions_per_minute"), Fraction(1, 60), {SECOND: -1}),
+    (("deg", "degree", "degrees", "\N{DEGREE SIGN}"), Fraction(math.pi / 180.0), {RADIAN: 1}),
+    (("arcmin", "arcminute", "arcminutes"), Fraction(math.pi / 10800.0), {RADIAN: 1}),
+    (("arcsec", "arcsecond", "arcseconds"), Fraction(math.pi / 648000.0), {RADIAN: 1}),
+    (("percent", "%"), Fraction("1e-2"), {}),
+    (("dimensionless",), Fraction(1), {}),
+    (("C", "degC", "deg_C", "\N{DEGREE SIGN}C", "celsius", "degree_Celsius"), Fraction(1), {CELSIUS: 1}),
+)
+"""Units without prefixes: names, size in base units, and what each is made of. Degrees Celsius are no kelvins."""
+MOST_POWER, LONGEST = 9, 60
+"""Largest exponent that is read, and the most characters."""
+FACTOR = re.compile(
+    r"\s*(?:(?P<sign>[/*()])|(?P<number>\d{1,9}(?:\.\d{0,9})?(?:[eE][+-]?\d{1,2})?(?![\d.]))|"
+    r"(?P<unit>[^\W\d]+|%|\N{DEGREE SIGN}[^\W\d]*)(?:\s*\^\s*(?P<power>[+-]?\d+)|(?P<behind>[+-]?\d+))?)\s*",
+    re.ASCII,
+)
+"""Of a unit in words: a sign, a number, or the symbol or name of a unit and its exponent."""
+PLAIN = str.maketrans(
+    {"\N{MICRO SIGN}": "u", "\N{GREEK SMALL LETTER MU}": "u", "\N{MIDDLE DOT}": "*", "\N{DOT OPERATOR}": "*"}
+    | {"\N{SUPERSCRIPT TWO}": "2", "\N{SUPERSCRIPT THREE}": "3"}
+)
+
+
+def conversion(written: str, wanted: str) -> float | None:
+    """Factor from a unit, as a person or a package writes it, to another; None if there is none.
+
+    Parameters
+    ----------
+    written, wanted : str
+        Products and ratios of units; nothing for pure numbers.
+
+    Examples
+    --------
+    >>> conversion("\N{MICRO SIGN}m", "mm"), conversion("newton / millimeter ** 2", "MPa"), conversion("mm", "N")
+    (0.001, 1.0, None)
+    """
+    size, of_wanted = (_size(unit[:LONGEST].translate(PLAIN).replace("**", "^").strip()) for unit in (written, wanted))
+    if size is None or of_wanted is None or size[1] != of_wanted[1]:
+        return None
+    return float(size[0] / of_wanted[0])
+
+
+@functools.cache
+def _size(unit: str) -> tuple[Fraction, tuple[tuple[str, int], ...]] | None:
+    """Size of a unit in base units, and its dimensions; None if it cannot be read."""
+    size, dimensions = Fraction(1), Counter[str]()
+    groups, sign, place = [1], 1, 0
+    while place < len(unit):
+        match = FACTOR.match(unit, place)
+        if match is None or not groups:
+            return None
+        place = match.end()
+        if match["sign"]:
+            groups += [sign * groups[-1]] if match["sign"] == "(" else []
+            del groups[len(groups) - (match["sign"] == ")") :]
+            sign = -1 if match["sign"] == "/" else 1
+            continue
+        number = match["number"]
+        factor, parts = (Fraction(number), {}) if number else _simple_units().get(match["unit"], (Fraction(0), {}))
+        power = sign * groups[-1] * int(match["power"] or match["behind"] or 1)
+        if not factor or abs(power) > MOST_POWER:
+            return None
+        size, sign = size * factor**power, 1
+        dimensions.update({name: exponent * power for name, exponent in parts.items()})
+    return (
+        (size, tuple(sorted((name, power) for name, power in dimensions.items() if power))) if groups == [1] else None
+    )
+
+
+@functools.cache
+def _simple_units() -> dict[str, tuple[Fraction, dict[str, int]]]:
+    """Size in base units of every symbol and name, with its prefix, and what the unit is made of."""
+    units = {}
+    for symbol, names, size, parts in PREFIXED:
+        for prefix, word, factor in PREFIXES:
+            written = (f"{prefix}{symbol}", *(f"{word}{name}{plural}" for name in names for plural in ("", "s")))
+            units.update(dict.fromkeys(written, (Fraction(size) * Fraction(factor), parts)))
+    return units | {name: (size, parts) for names, size, parts in OTHERS for name in names}

@@ -127,12 +127,16 @@ NO_TORQUE = Kind(
     "forces below 1e-12 E* m_n² (1 µN at module 3) deform flanks by what rounding puts into their gaps",
     "nothing, or a torque that is one",
 )
+IN_ONE_PIECE = (
+    "of a pinion in one piece with its shaft `bore_diameter_mm = 0`, or none beside a `[pinion.shaft]`, which has its "
+    "torsion"
+)
+"""What bore to give a gear that has none."""
 BODY_TWIST = Kind(
     "the twist of the gear bodies about their bores, {bores} mm, is up to {share:.0%} of the deflection: the mesh "
     "stiffness is that of the bodies",
     "with teeth that bend: bores are held rigid, and small ones let the whole body turn",
-    "the `bore_diameter_mm` of the hub or shaft seat; of a pinion in one piece with its shaft none (0.55 of the "
-    "root diameter)",
+    f"the `bore_diameter_mm` of the hub or shaft seat; {IN_ONE_PIECE}",
 )
 RIGID_BORES = Kind(
     "bores of {bores} mm are held rigid: the mesh is about {share:.0%} stiffer than with {usual} mm, the seats of "
@@ -180,8 +184,7 @@ THIN_RIM = Kind(
     "root stress of the {gear}: the rim below its teeth is {rim:.2g} tooth heights thick, less than {least:g}: on a "
     "bore that is held rigid stress falls as the rim thins, on a real one it rises",
     "a real rim bends, and root stress on it rises by Y_B of ISO 6336-3; the bore of the model takes that strain",
-    "multiply by Y_B, or finite elements of the whole gear; of a pinion in one piece with its shaft "
-    "`bore_diameter_mm = 0`",
+    f"multiply by Y_B, or finite elements of the whole gear; {IN_ONE_PIECE}",
 )
 UNCOVERED = Kind(
     "{direction}: the points leave {left} of the flank uncovered; there the deviation is a continuation",

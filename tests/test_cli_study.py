@@ -82,6 +82,8 @@ def test_workers_find_what_one_process_finds(study):
         (["--workers", "0"], "workers: found 0; allowed a whole number from 1 on"),
         (["--keep-maps", "9"], "keep_maps: [9] are not variants 0 to 1"),
         (["--keep-maps", "a"], "allowed whole numbers with commas between them, as 0,12"),
+        (["--keep-maps", "\N{SUPERSCRIPT TWO}"], "allowed whole numbers with commas between them, as 0,12"),
+        (["--workers", "1_0"], "--workers: '1_0': allowed a whole number"),
         (["--workers", "2", "--scheduler", "tcp://localhost:1"], "not allowed with argument"),
     ],
 )

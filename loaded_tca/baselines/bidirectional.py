@@ -41,6 +41,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, GeometryError, InputError
 from loaded_tca.flanks.cradle import ALPHA, RHO, CradleGeneration, Z
@@ -80,6 +81,7 @@ class LinePoints:
         return np.cross(self.point, self.normal)
 
 
+@checked
 class GeneratingLine:
     """Line of contact of cutter and flank at the centre of roll.
 

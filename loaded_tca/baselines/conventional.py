@@ -29,6 +29,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import root
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices, Mask, numbers
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
@@ -89,6 +90,7 @@ class ConventionalResult:
         return f"ConventionalResult({len(self.converged)} starts, {solved} converged, {contacts} of them to a contact)"
 
 
+@checked
 def solve_conventional(
     pair: GearPair,
     phi1: ArrayLike,

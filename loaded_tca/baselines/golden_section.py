@@ -31,6 +31,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Mask, finite_row
 from loaded_tca.errors import ConvergenceError, GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
@@ -84,6 +85,7 @@ class GoldenSectionResult:
         return f"GoldenSectionResult({len(self.in_contact)} positions, {touching} touch, {self.evaluations} gaps each)"
 
 
+@checked
 def search_golden_section(pair: GearPair, pinion_angles: ArrayLike, *, sections: int = SECTIONS) -> GoldenSectionResult:
     """Wheel angle at which the flanks of one tooth pair just touch, at each pinion angle.
 

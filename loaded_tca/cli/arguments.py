@@ -11,6 +11,7 @@ from typing import NoReturn
 from loaded_tca.cli import commands as run_by
 from loaded_tca.cli.terminal import flush
 from loaded_tca.errors import InputError
+from loaded_tca.input_files import is_place, number_in, whole_in
 
 DESCRIPTION = "Loaded tooth contact analysis of gears."
 FILES = """files in DIR:
@@ -210,13 +211,13 @@ def _add_readers(command: Command) -> None:
     ):
         reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
         reader.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {BESIDE}")
-        reader.add_argument("--torque", metavar="NM", type=float, help=f"{of_torque}; default: largest")
-        reader.add_argument("--position", metavar="N", type=int, help=f"position of {of_position}, from 1; {peak}")
+        reader.add_argument("--torque", metavar="NM", type=_float, help=f"{of_torque}; default: largest")
+        reader.add_argument("--position", metavar="N", type=_int, help=f"position of {of_position}, from 1; {peak}")
     plot.add_argument("--pdf", action="store_true", help="write at_a_glance.pdf too, a sheet of A4")
     plot.add_argument("--all", action="store_true", help="draw contact_patterns.png and full_mesh.png too")
-    tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
+    tooth.add_argument("--fillet-radius", metavar="MM", type=_float, help="of arcs at the root; default: by the module")
     tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")
-    below.add_argument("--pair", metavar="K", type=int, help=f"tooth pair, as load_share.png counts; {peak}")
+    below.add_argument("--pair", metavar="K", type=_int, help=f"tooth pair, as load_share.png counts; {peak}")
     below.add_argument(
         "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
     )
@@ -228,7 +229,7 @@ def _add_tribology(command: Command) -> None:
     reader = command("tribology", run_by.tribology, text, TRIBOLOGY)
     reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
     text = "of the pinion; default: operation.pinion_speed_rpm of the scene"
-    reader.add_argument("--speed", metavar="RPM", nargs="+", type=float, help=text)
+    reader.add_argument("--speed", metavar="RPM", nargs="+", type=_float, help=text)
     text = "another value of a key, for instance lubricant.oil_temperature_C=90; may be given again for other keys"
     reader.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
     reader.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: beside the result")
@@ -242,9 +243,12 @@ def _add_comparisons(command: Command) -> None:
     )
     compare.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
     compare.add_argument("--names", metavar="NAME", nargs="+", help="of the results; default: from their directories")
-    compare.add_argument("--torque", metavar="NM", type=float, help="pinion torque of the pictures; default: largest")
+    compare.add_argument("--torque", metavar="NM", type=_float, help="pinion torque of the pictures; default: largest")
     compare.add_argument(
-        "--position", metavar="N", type=int, help="position of the maps in the first result, from 1; default: own peaks"
+        "--position",
+        metavar="N",
+        type=_int,
+        help="position of the maps in the first result, from 1; default: own peaks",
     )
     slopes = command(
         "sensitivities", run_by.sensitivities, "show what keys of the scene and their tolerances change", SENSITIVITIES
@@ -253,7 +257,7 @@ def _add_comparisons(command: Command) -> None:
     text = "for instance mounting.axial_offset_mm=0.05"
     slopes.add_argument("--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=_tolerance, help=text)
     slopes.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {BESIDE}")
-    slopes.add_argument("--torque", metavar="NM", type=float, help="pinion torque shown; default: largest, bands all")
+    slopes.add_argument("--torque", metavar="NM", type=_float, help="pinion torque shown; default: largest, bands all")
 
 
 def _add_tables_and_maps(command: Command) -> None:
@@ -278,7 +282,7 @@ def _add_tables_and_maps(command: Command) -> None:
     vh.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
     for name, what in (("v", "V, upwards"), ("h", "H, to the right")):
         text = f"values of {what}; default: three that move the contact by parts of a module"
-        vh.add_argument(f"--{name}", metavar=name.upper(), nargs="+", type=float, help=text)
+        vh.add_argument(f"--{name}", metavar=name.upper(), nargs="+", type=_float, help=text)
     for reader in (ease_off, vh):
         reader.add_argument(
             "--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion"
@@ -304,7 +308,7 @@ def _add_exchange(command: Command) -> None:
     writer.add_argument("--model", metavar="MODEL", required=True, type=_path, help="REXS file that the scene is from")
     writer.add_argument("--stage", metavar="ID", required=True, help="id of the stage")
     writer.add_argument("--out", metavar="FILE", required=True, type=_path, help="REXS file to write")
-    writer.add_argument("--torque", metavar="NM", type=float, help="pinion torque of the numbers; default: largest")
+    writer.add_argument("--torque", metavar="NM", type=_float, help="pinion torque of the numbers; default: largest")
 
 
 def _add_studies(command: Command) -> None:
@@ -334,7 +338,7 @@ def _add_studies(command: Command) -> None:
 def _add_engine(parser: argparse.ArgumentParser) -> None:
     """Add who analyses the variants of a study."""
     engine = parser.add_mutually_exclusive_group()
-    engine.add_argument("--workers", metavar="N", type=int, help="processes on this machine; default: this one alone")
+    engine.add_argument("--workers", metavar="N", type=_int, help="processes on this machine; default: this one alone")
     engine.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://host:8786")
 
 
@@ -398,9 +402,23 @@ def _path(text: str) -> Path:
     return Path(text)
 
 
+def _float(text: str) -> float:
+    try:
+        return number_in(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed a number") from None
+
+
+def _int(text: str) -> int:
+    try:
+        return whole_in(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed a whole number") from None
+
+
 def _torque(text: str) -> float:
     try:
-        torque = float(text)
+        torque = number_in(text)
     except ValueError:
         torque = math.nan
     if not 0.0 < torque < math.inf:
@@ -409,7 +427,7 @@ def _torque(text: str) -> float:
 
 
 def _numbers(text: str) -> tuple[int, ...]:
-    if not all(part.isdecimal() for part in text.split(",")):
+    if not all(is_place(part) for part in text.split(",")):
         raise argparse.ArgumentTypeError(f"{text}: allowed whole numbers with commas between them, as 0,12")
     return tuple(map(int, text.split(",")))
 
@@ -418,7 +436,7 @@ def _tolerance(text: str) -> tuple[str, float | None]:
     """Key, and its standard deviation if that is given."""
     key, equals, value = (part.strip() for part in text.partition("="))
     try:
-        tolerance = float(value) if equals else None
+        tolerance = number_in(value) if equals else None
     except ValueError:
         tolerance = math.nan
     if not key or not (tolerance is None or 0.0 < tolerance < math.inf):

@@ -12,6 +12,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import body_torsion
 from loaded_tca.compliance.flexibility import MOST_IN_MEMORY
@@ -41,6 +42,7 @@ _LINES: WeakKeyDictionary[ContactGrid, dict[int, tuple[FlankLine, FlankLine]]] =
 """Lines of the grids, by the numbers of the tooth pairs, on pinion and wheel."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class ToothCompliance:
     """Bending, shear and foundation of both gears, beside the half-spaces of the contact solver.

@@ -28,6 +28,7 @@ from weakref import WeakKeyDictionary, ref
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import flexibility
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
@@ -39,6 +40,7 @@ from loaded_tca.pairs.gear import Gear
 from loaded_tca.tooth.families import ToothGeometry
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class FlankLine:
     """Places along a line on one flank of a gear.
@@ -60,6 +62,7 @@ SPREAD = 3.7
 """Standard deviation of the spread of the local term along the face, over the mean depth of the middle of the tooth."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class GearCompliance:
     """Compliance of one gear, made once.

@@ -29,6 +29,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 from scipy.sparse import csr_array, vstack
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.body import FlankPlaces, ToothFrame, gear_body, gear_nodes
 from loaded_tca.compliance.compliance import default_density, require_bending
@@ -100,6 +101,7 @@ class RootInfluence:
     tangent_angle: Array
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class RootStress:
     """Root stress of one gear, made once.

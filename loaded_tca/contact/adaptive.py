@@ -1,5 +1,7 @@
 """The coarsest grid that answers a contact problem as closely as asked."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
@@ -8,6 +10,7 @@ from typing import Any, Never, TypeVar
 
 from numpy.typing import ArrayLike
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem
@@ -26,6 +29,7 @@ MOST_CELLS = 1024
 MOST_CELLS_FOR_FIRST_ORDER = 64
 
 
+@checked
 def solve_to_accuracy(
     problem: Callable[[Cells], ContactProblem],
     *,

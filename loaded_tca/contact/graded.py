@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.fft import dct, irfft, rfft
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import ALL, Rows, Window, fast_length
@@ -60,6 +61,7 @@ REACH_RESERVE = 1.1
 """Of the largest gap that may close, for the part of the coefficients that is not symmetric."""
 
 
+@checked
 def solve_graded(
     problem: GradedProblem,
     *,

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.contact import checks
 from loaded_tca.contact.edges import FreeEdge, check_edges, limits, without_material_beyond
@@ -51,6 +52,7 @@ class HalfSpaces:
         return self.gap.shape[0], self.gap.shape[1]
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class ContactProblem(HalfSpaces):
     """Two elastic half-spaces that a load, or a prescribed approach, brings together over a gap.
@@ -153,6 +155,7 @@ class ContactProblem(HalfSpaces):
         return self.spacing[0] * self.spacing[1]
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class GradedProblem(HalfSpaces):
     """Two elastic half-spaces that a load brings together over a gap on columns of unlike widths.

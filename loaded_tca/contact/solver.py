@@ -25,6 +25,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.descent import Descent, judge
@@ -51,6 +52,7 @@ STACK_CELLS = 2**15
 SINGLE_PRECISION = 1e-6
 
 
+@checked
 def solve_contact(
     gap: ArrayLike,
     spacing: Spacing,
@@ -155,6 +157,7 @@ def solve_contact(
     return solution
 
 
+@checked
 def solve_problem(
     problem: ContactProblem,
     *,

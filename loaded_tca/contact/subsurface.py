@@ -11,6 +11,8 @@ Love 1929, Phil. Trans. R. Soc. A 228, 377-420; Johnson 1985, Contact Mechanics,
 J. Tribol. 124, 36-45 (the same by transforms).
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.fft import irfft2, next_fast_len, rfft2
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.contact import checks
 from loaded_tca.contact.checks import memory_problem
@@ -104,6 +107,7 @@ class SubsurfaceStress:
         return np.asarray(normal / 6.0 + self.tau_xy**2 + self.tau_xz**2 + self.tau_yz**2)
 
 
+@checked
 def subsurface_stress(
     pressure: ArrayLike, spacing: tuple[float, float], depths: ArrayLike, poisson_ratio: float = 0.3
 ) -> SubsurfaceStress:

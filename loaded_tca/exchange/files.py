@@ -20,9 +20,10 @@ import zipfile
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require
 from loaded_tca.exchange.model import Attribute, Component, LoadCase, Model, Relation, Value
-from loaded_tca.input_files import read_bytes
+from loaded_tca.input_files import number_in, read_bytes
 
 LARGEST_FILE = 2**26
 """Bytes of a model; the public ones have about 10^5."""
@@ -30,6 +31,7 @@ CODES = {"float64": "d", "float32": "f", "int32": "i"}
 """Codes of arrays in base64, little-endian -> those of ``struct``."""
 
 
+@checked
 def read_rexs(path: str | os.PathLike[str]) -> Model:
     """Read a REXS model.
 
@@ -370,7 +372,7 @@ def _frozen(value: Any) -> Value:
 
 def _order(value: Any, source: str) -> int:
     try:
-        return round(float(value))
+        return round(number_in(value) if isinstance(value, str) else float(value))
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{source}: relation: order: found {value!r:.40}; allowed a number") from None
 

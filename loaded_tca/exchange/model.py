@@ -5,6 +5,7 @@ The same for all formats and versions; what its names mean, says :mod:`loaded_tc
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -12,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from loaded_tca.errors import InputError, require
+from loaded_tca.input_files import number_in
 
 LENGTH = {"mm": 1.0, "m": 1e3, "cm": 10.0, "mum": 1e-3}
 ANGLE = {"deg": 1.0, "°": 1.0, "rad": math.degrees(1.0)}
@@ -154,10 +156,12 @@ class Component:
 
 def _finite(component: Component, name: str, value: Value) -> float:
     """A number of a file, which may have it as text."""
-    try:
-        number = math.nan if isinstance(value, bool | tuple) else float(value)
-    except (ValueError, OverflowError):
-        number = math.nan
+    number = math.nan
+    with contextlib.suppress(ValueError, OverflowError):
+        if isinstance(value, str):
+            number = number_in(value)
+        elif not isinstance(value, bool | tuple):
+            number = float(value)
     sound = abs(number) <= LARGEST_NUMBER  # not of NaN
     require((sound, f"{component}: {name}: found {value!r:.40}; allowed a number of up to {LARGEST_NUMBER:g}"))
     return number

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.ndimage import zoom
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, GearName, finite_row
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.pattern import COMPOUND, ContactPattern, contact_pattern
@@ -75,6 +76,7 @@ class VHCheck:
         return f"VHCheck({len(self.v)} x {len(self.h)} patterns on the {gear}, {edge} with edge contact)"
 
 
+@checked
 def vh_check(
     build: Build,
     v: ArrayLike,

@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 
 SMALLEST_DISTANCE = 1e-3
@@ -213,6 +214,7 @@ class FlankFrame(ABC):
         """Where on the flank a point lies."""
 
 
+@checked
 @dataclass(frozen=True)
 class CylinderFrame(FlankFrame):
     """Axial place from mid-face, against the diameter.
@@ -240,6 +242,7 @@ class CylinderFrame(FlankFrame):
         return f"diameter {2.0 * rho:.4g} mm, {_rounded(z)} mm from mid-face"
 
 
+@checked
 @dataclass(frozen=True)
 class ConeFrame(FlankFrame):
     """Cone distance from the middle of the face, against the height R (u - delta) above the pitch cone.
@@ -295,6 +298,7 @@ EDGE_NAMES = ("tip", "root", "lower side", "upper side")
 small z (toe), upper at large z (heel). ``FlankFrame.edges`` has the words of each kind of gear."""
 
 
+@checked
 class Flank(ABC):
     """One side of a tooth: theta = Theta(rho, z) on a region of (rho, z) with four edges.
 

@@ -44,6 +44,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import ConeFrame, Flank, Jet, cone_angle, cone_distance, of_cone_angle
@@ -196,6 +197,7 @@ def _q(sine: Array, base_angle: float) -> Array:
     return np.sqrt(np.maximum((sine - base) * (sine + base), SMALLEST_Q**2))
 
 
+@checked
 class SphericalInvoluteFlank(Flank):
     """Unmodified flank of a bevel gear between root and face cone, toe and heel.
 

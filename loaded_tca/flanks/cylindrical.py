@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import CylinderFrame, Flank, Jet, Point
@@ -34,6 +35,7 @@ SMALLEST_ROLL_LENGTH = 1e-6
 """Roll lengths are kept above this fraction of r_b: at the base circle itself the curvature is infinite."""
 
 
+@checked
 class InvoluteFlank(Flank):
     """Unmodified involute helicoid between form circle and tip circle, over the face width.
 

@@ -28,6 +28,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import ConeFrame, Jet, Region
@@ -67,6 +68,7 @@ class FlankAngles:
     transverse_pressure: float
 
 
+@checked
 class GeneratedFlank(ToothRegion):
     """Exact flank of a face-milled gear, generated or formate.
 

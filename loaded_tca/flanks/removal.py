@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import DerivedFlank, Flank, Jet, unmodified
 
@@ -118,6 +119,7 @@ class Polynomial:
         return lengthwise + profile + x.times(y) * twist
 
 
+@checked
 class ModifiedFlank(DerivedFlank):
     """A flank with material removed along its normal: Theta - s delta |grad F|.
 

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import Chebyshev
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import require
 from loaded_tca.flanks.base import EDGE_NAMES, DerivedFlank, Flank, Jet, outward_normal, unmodified
@@ -176,6 +177,7 @@ class Arc:
         return derivatives.compose(along, tangent)
 
 
+@checked
 class RoundedFlank(DerivedFlank):
     """A flank with rounded edges.
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
 from loaded_tca.flanks.base import DerivedFlank, Flank, Jet, Region, unmodified
@@ -208,6 +209,7 @@ class FitError:
         return f"{1e3 * self.largest:.3g} um at most, {1e3 * self.rms:.3g} um rms"
 
 
+@checked
 class SplineFlank(DerivedFlank):
     """Theta of a nominal flank plus a tensor B-spline over its profile and lengthwise coordinates.
 

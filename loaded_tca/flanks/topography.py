@@ -17,7 +17,9 @@ The columns are either ``x, y, z`` (points), or ``radius, axial`` and one of ``d
 than nominal, as measuring centres count) and ``removed`` (positive: less material, as modifications count), each with
 ``_um``, ``_mm``, ``_m`` or ``_in`` behind it. Rows come in any order with the columns ``profile_index`` and
 ``lengthwise_index``; without them in the order of the grid, the profile running fastest, and a comment says how many
-points there are: ``# points = 5 x 9`` (profile x lengthwise). Semicolons and tabs separate values, too.
+points there are: ``# points = 5 x 9`` (profile x lengthwise). Semicolons and tabs separate values, too. Names and
+values may be quoted, the sign for micro in a name stands for u, and separators at the ends of lines, as spreadsheets
+write them, are left out. Numbers have a decimal point.
 
 References
 ----------
@@ -30,16 +32,17 @@ import difflib
 import os
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from loaded_tca.arrays import Array
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array, OtherKindError, numbers, shown
 from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.base import Flank
-from loaded_tca.input_files import read_text
+from loaded_tca.input_files import Table, number_in, read_text, table_in
 
 LARGEST_FILE = 2**23
 """Bytes of a topography file; a point takes about 60."""
@@ -48,11 +51,12 @@ UNITS = {"um": 1e-3, "mm": 1.0, "m": 1e3, "in": 25.4}
 INDICES = ("profile_index", "lengthwise_index")
 LENGTHS = ("x", "y", "z", "radius", "axial", "deviation", "removed")
 CHOICES = ({"x", "y", "z"}, {"radius", "axial", "deviation"}, {"radius", "axial", "removed"})
-DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*")
+DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?", re.ASCII)
 MOST_PROBLEMS = 10
 """Problems of single lines that are told; more of them are counted."""
 
 
+@checked
 def read_topography(path: str | os.PathLike[str]) -> Topography:
     r"""Read the measured points, or deviations, of one flank.
 
@@ -89,16 +93,13 @@ def read_topography(path: str | os.PathLike[str]) -> Topography:
 
 def parse_topography(text: str) -> Topography:
     """Topography of the text of a file; see ``read_topography``."""
-    numbered = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    comments = [line[1:].split("=", 1) for _, line in numbered if line.startswith("#")]
+    lines = table_in(text)
+    comments = [comment.split("=", 1) for comment in lines.comments]
     notes = {part[0].strip(): part[1].strip() for part in comments if len(part) == 2}
-    body = [(number, line) for number, line in numbered if not line.startswith("#")]
-    if len(body) < 2:
+    if not lines.rows:
         raise InputError("no points: a line with the names of the columns, and one line per point, are asked for")
-    separator = next((mark for mark in (";", "\t") if mark in body[0][1]), ",")
-    header = [name.strip() for name in body[0][1].split(separator)]
-    columns = _factors(body[0][0], header)
-    values = _numbers(body[1:], header, separator)
+    columns = _factors(lines.number, lines.names)
+    values = _numbers(lines)
     table = {name: values[:, k] * factor for k, (name, factor) in enumerate(columns)}
     if INDICES[0] in table:
         shape, order = _order_by_indices(*(table[name] for name in INDICES))
@@ -111,13 +112,13 @@ def parse_topography(text: str) -> Topography:
     return MeasuredDeviations(grids["radius"], grids["axial"], excess, notes)
 
 
-def _numbers(body: list[tuple[int, str]], header: list[str], separator: str) -> Array:
+def _numbers(table: Table) -> Array:
     """Rows of numbers (points, columns); InputError with every line that is none.
 
     Places are told, and not what stands there: the file may be any that can be read.
     """
-    lines = [(number, line.split(separator)) for number, line in body]
-    longer = [number for number, cells in lines if separator == "," and len(cells) > len(header)]
+    lines, header = table.rows, table.names
+    longer = [number for number, cells in lines if table.separator == "," and len(cells) > len(header)]
     with_comma = [number for number, cells in lines if any(map(DECIMAL_COMMA.fullmatch, cells))]
     if 2 * len(longer) > len(lines) or with_comma:
         raise InputError(
@@ -144,12 +145,12 @@ def _numbers(body: list[tuple[int, str]], header: list[str], separator: str) -> 
 
 def _number(cell: str) -> float:
     try:
-        return float(cell)
+        return number_in(cell)
     except ValueError:
         return float("nan")
 
 
-def _factors(line: int, header: list[str]) -> list[tuple[str, float]]:
+def _factors(line: int, header: Sequence[str]) -> list[tuple[str, float]]:
     """Name of each column without its unit, and the factor to mm; InputError with every problem of the header."""
     factors, problems = [], []
     known = [*INDICES, *(f"{name}_{unit}" for name in LENGTHS for unit in UNITS)]
@@ -161,6 +162,9 @@ def _factors(line: int, header: list[str]) -> list[tuple[str, float]]:
             factors.append((name, UNITS[unit]))
         elif column in LENGTHS:
             problems.append(f"column {column!r} has no unit; allowed {', '.join(f'{column}_{unit}' for unit in UNITS)}")
+        elif name in LENGTHS:
+            allowed = ", ".join(f"{name}_{unit}" for unit in UNITS)
+            problems.append(f"line {line}, column {k}: the unit of {name} is unknown; allowed {allowed}")
         else:
             near = difflib.get_close_matches(column, known, 1)
             meant = f"did you mean {near[0]!r}?" if near else f"allowed {', '.join(INDICES)}, and lengths as x_mm"
@@ -180,7 +184,7 @@ def _factors(line: int, header: list[str]) -> list[tuple[str, float]]:
 
 def _given_order(count: int, points: str) -> tuple[tuple[int, int], Array]:
     """Shape (profile, lengthwise) of a grid that a comment tells, and the order in which ``count`` rows fill it."""
-    match = re.fullmatch(r"(\d+)\s*x\s*(\d+)", points)
+    match = re.fullmatch(r"(\d{1,9})\s*x\s*(\d{1,9})", points, re.ASCII)
     if match is None:
         columns = " and ".join(INDICES)
         raise InputError(f"the shape of the grid is missing: columns {columns}, or a comment '# points = 5 x 9'")
@@ -238,6 +242,7 @@ class Topography(ABC):
         """Material (n, m) in excess of a nominal flank [mm]; ``turned``: the azimuth of the tooth has no meaning."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class MeasuredPoints(Topography):
     """Points of one flank, measured in the gear's own frame (z along its axis).
@@ -272,6 +277,7 @@ class MeasuredPoints(Topography):
         return nominal.side * ahead / nominal.gradient_norm(self.radius, self.axial).value
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class MeasuredDeviations(Topography):
     """Deviations from the nominal flank along its normal.
@@ -329,12 +335,12 @@ def excess_problems(nominal: Flank, excess: Array) -> list[str]:
 
 
 def _grid(name: str, values: ArrayLike, parts: int | None = None) -> Array:
-    """Array (n, m) or (n, m, parts) of finite numbers."""
+    """A new array (n, m) or (n, m, parts) of finite numbers."""
     shape = "(n, m)" if parts is None else f"(n, m, {parts})"
     try:
-        array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{name}: an array {shape} of numbers is asked for, not {values!r:.60}") from None
+        array = numbers(name, values, "mm").copy()
+    except OtherKindError:
+        raise InputError(f"{name}: an array {shape} of numbers is asked for, not {shown(values)}") from None
     if array.ndim != (2 if parts is None else 3) or (parts is not None and array.shape[-1] != parts) or not array.size:
         raise InputError(f"{name}: shape {array.shape}; allowed {shape}, axes (profile, lengthwise)")
     bad = np.argwhere(~np.isfinite(array))

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
 from loaded_tca.flank_maps.ease_off_map import EaseOffMap
 from loaded_tca.loaded.shaft_lines import ShaftLine
@@ -25,6 +26,7 @@ REVOLUTION_FILES = "revolution.nc", "revolution.json", "revolution.csv", "teeth.
 """Names of the files."""
 
 
+@checked
 def write_revolution(revolution: Revolution, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
     """Write a revolution and its tables, all files or none.
 
@@ -97,6 +99,7 @@ DATA, TABLE, SLICES = TRIBOLOGY_FILES = "tribology.nc", "tribology.csv", "tribol
 """Names of the files."""
 
 
+@checked
 def write_tribology(tribology: Tribology, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
     """Write ``tribology.nc``, ``tribology.csv`` and ``tribology_slices.csv``, all files or none.
 
@@ -155,6 +158,7 @@ def _column(name: str, unit: str) -> str:
     return f"{name}_{ending}" if (ending := as_ending(unit)) else name
 
 
+@checked
 def write_stage(result: StageResult, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
     """Write a stage, its figures and its table, all files or none.
 

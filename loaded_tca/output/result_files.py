@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
 from loaded_tca.results.files import Buffer, FilePath, Part, replace_together
 from loaded_tca.results.key_figures import ARCSEC
@@ -56,6 +57,7 @@ COLUMNS = {
 """Name -> column, and how many times the number, where this does not follow from the unit: full widths, diameters."""
 
 
+@checked
 def write_report(result: MeshCycle, directory: FilePath, outdated: Iterable[str] = ()) -> tuple[Path, ...]:
     """Write ``result.nc``, ``summary.json`` and ``positions.csv``, all of them or none.
 

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import require
 from loaded_tca.exchange.files import LARGEST_FILE, parse_rexs, with_attributes
@@ -36,6 +37,7 @@ Results = dict[str, dict[str, Attribute]]
 """Attributes by the ids of components."""
 
 
+@checked
 def write_rexs(
     result: MeshCycle,
     model: str | PathLike[str],

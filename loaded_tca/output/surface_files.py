@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.pairs import MatingTeeth
@@ -30,6 +31,7 @@ STL_HEADER = 80
 _STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
+@checked
 def write_vtk(path: FilePath, mesh: TriangleMesh, title: str = "", *, binary: bool = True) -> None:
     """Write a surface with its point and cell data as legacy VTK PolyData.
 
@@ -85,6 +87,7 @@ def _numbers(values: Array, *, binary: bool) -> bytes:
     return "".join(" ".join(repr(number) for number in row) + "\n" for row in rows).encode("ascii")
 
 
+@checked
 def write_stl(path: FilePath, mesh: TriangleMesh, title: str = "") -> None:
     """Write a surface as binary STL: triangles in single precision, without data.
 
@@ -120,6 +123,7 @@ def _header(mesh: TriangleMesh, title: str, longest: int) -> str:
     return text.encode("ascii", "replace").decode("ascii")[:longest]
 
 
+@checked
 def write_teeth(
     shown: TeethInSpace,
     teeth: MatingTeeth,

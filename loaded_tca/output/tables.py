@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.flank_maps.vh_check import VHCheck
 from loaded_tca.output.result_files import cell, csv_table, json_text, known
 from loaded_tca.results import MeshCycle
@@ -38,6 +39,7 @@ COMPARISON, COMPARISON_DATA = "comparison.csv", "comparison.json"
 """Names of the two files."""
 
 
+@checked
 def write_comparison(comparison: Comparison, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
     """Write ``comparison.csv`` and ``comparison.json``, all files or none.
 
@@ -143,6 +145,7 @@ def vh_table(check: VHCheck, keys: tuple[str, str]) -> str:
     return csv_table({name: values.ravel().tolist() for name, values in columns.items()})
 
 
+@checked
 def write_dynamics(result: MeshCycle, path: FilePath) -> tuple[Path, ...]:
     """Write two tables of a result in SI units for models of gear dynamics, both or none.
 
@@ -212,6 +215,7 @@ SENSITIVITY_DATA, SENSITIVITIES = "sensitivities.nc", "sensitivities.csv"
 WIDTH = 15
 
 
+@checked
 def write_sensitivities(
     sensitivities: Sensitivities, tolerances: Mapping[str, float], directory: FilePath, more: Mapping[str, Buffer] = {}
 ) -> tuple[Path, ...]:
@@ -390,6 +394,7 @@ STRESSES = {
 """Field of ``SubsurfaceStress`` -> what the file says of it."""
 
 
+@checked
 def write_subsurface(below: StressBelow, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
     """Write ``subsurface.nc`` and ``subsurface.csv``, all files or none.
 

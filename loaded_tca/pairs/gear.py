@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
@@ -123,6 +124,7 @@ def _limit_of_land(geometry: ToothGeometry, flank: Flank) -> list[tuple[float, s
     return [(float(width[worst] / lengths[worst]), reason)]
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Gear:
     """One gear of a pair.

@@ -25,7 +25,8 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 
-from loaded_tca.arrays import GEARS, Array, GearName
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import GEARS, Array, GearName, keep_copies
 from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import EdgeRounding
@@ -68,6 +69,7 @@ def require_finite(errors: Any, units: tuple[str, ...]) -> None:
         raise InputError(problems)
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class GearPair:
     """Two gears in space, with the flanks that may be in contact.
@@ -104,6 +106,9 @@ class GearPair:
     module: float
     base_radii: tuple[float, float]
     face_width: float
+
+    def __post_init__(self) -> None:
+        keep_copies(self)
 
     @property
     def ratio(self) -> float:
@@ -230,6 +235,7 @@ def signs_of(driving: Driving, sense: Sense) -> tuple[int, int]:
     return (1 if sense == "positive" else -1), (1 if driving == "pinion" else -1)
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class MatingTeeth:
     """One tooth of each gear, of the tooth pair in contact.

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
+from loaded_tca.arguments import checked
 from loaded_tca.loaded.shaft_lines import shaft_lines
 from loaded_tca.plots.at_a_glance import plot_at_a_glance
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
@@ -368,6 +369,7 @@ CAPTIONS = {
 """How each picture is read."""
 
 
+@checked
 def plot_all(
     result: MeshCycle,
     directory: FilePath,

@@ -21,9 +21,11 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.image import imsave
 from scipy.ndimage import label
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import require
 from loaded_tca.flanks.base import FlankFrame
+from loaded_tca.input_files import is_place
 from loaded_tca.plots.layout import estimated_at_first
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.files import FilePath, replace_file
@@ -60,6 +62,7 @@ FAST_TEXT: Any = {"text.hinting": "no_hinting"}
 """Letters as they are, not moved onto pixels: a tenth of the time of a picture, and even spaces."""
 
 
+@checked
 def save_figure(figure: Figure, path: FilePath) -> None:
     """Save a figure as PNG, whole or not at all; InputError if that cannot be done."""
     replace_file(path, png_of(figure))
@@ -321,7 +324,7 @@ def label_of(name: str) -> str:
     'stage pin tangential 0 [µm]'
     """
     *sections, key = name.split(".")
-    place = [key] if key.isdigit() and sections else []  # in a list
+    place = [key] if is_place(key) and sections else []  # in a list
     key = sections.pop() if place else key
     words = [*(section for section in sections if section not in SILENT), without_unit(key), *place]
     words = [NAMES.get(word) or word.replace("_", " ") for word in words]

@@ -8,9 +8,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 
 
+@checked
 def schlenk(
     line_load: ArrayLike,
     sum_velocity: ArrayLike,
@@ -63,6 +65,7 @@ def schlenk(
     return np.asarray(0.048 * load**0.2 * thick * np.asarray(roughness, dtype=float) ** 0.25 * lubricant_factor)
 
 
+@checked
 def xu_kahraman(
     pressure: ArrayLike,
     slide_to_roll: ArrayLike,

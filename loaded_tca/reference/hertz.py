@@ -1,5 +1,7 @@
 """Hertz contact of elastic half-spaces: point contact of any ellipticity, and line contact."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -9,12 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import elliprd, elliprf
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require_positive
 
 # The greatest shear below a line contact lies where z/sqrt(a^2 + z^2) is the golden section.
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 
+@checked
 @dataclass(frozen=True)
 class PointContact:
     """Elliptical Hertz contact; x runs across it (along the minor axis), y along it.
@@ -116,6 +120,7 @@ class PointContact:
         return -float(optimum.fun) * self.max_pressure, self.semi_minor * math.exp(float(optimum.x))
 
 
+@checked
 @dataclass(frozen=True)
 class LineContact:
     """Hertz contact of parallel cylinders.
@@ -157,6 +162,7 @@ class LineContact:
         return self.max_pressure * _GOLDEN**2.5, self.half_width * math.sqrt(_GOLDEN)
 
 
+@checked
 def point_contact(load: float, curvatures: tuple[float, float], contact_modulus: float) -> PointContact:
     r"""Elliptical Hertz contact of two elastic half-spaces.
 
@@ -208,6 +214,7 @@ def point_contact(load: float, curvatures: tuple[float, float], contact_modulus:
     return PointContact(load, contact_modulus, semi_major, q * semi_major, max_pressure, approach)
 
 
+@checked
 def point_contact_gap(
     radii: tuple[float, float], size: tuple[float, float], cells: tuple[int, int]
 ) -> tuple[NDArray[np.float64], tuple[float, float]]:
@@ -258,6 +265,7 @@ def point_contact_gap(
     return x[:, None] ** 2 / (2.0 * radii[0]) + y**2 / (2.0 * radii[1]), spacing
 
 
+@checked
 def line_contact(line_load: float, curvature: float, contact_modulus: float) -> LineContact:
     r"""Hertz contact of parallel cylinders.
 

@@ -10,11 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import atan, cos, pi, sin, sqrt, tan
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import require_positive
 
 Both = tuple[float, float]
 
 
+@checked
 @dataclass(frozen=True)
 class VirtualPair:
     r"""Virtual cylindrical gears of a pair.

@@ -5,9 +5,12 @@ formulas instead of the tables of 1995: each tolerance follows from diameter, mo
 the ranges they lie in. Its classes 1 to 11 are not the grades 0 to 12 of 1995.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from math import cos, degrees, floor, hypot, inf, pi, sqrt
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import require, require_positive
 
 TOLERANCE_CLASSES = range(1, 12)
@@ -48,6 +51,7 @@ class FlankTolerances:
     total_helix: float
 
 
+@checked
 def flank_tolerances(
     teeth: int,
     normal_module: float,

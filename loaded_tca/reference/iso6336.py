@@ -5,8 +5,11 @@ stiffnesses in N/(mm um), that is N/um per mm of face width. Formulas as in the 
 the examples are the numbers of ISO/TR 6336-30:2017, example 1.
 """
 
+from __future__ import annotations
+
 from math import asin, cos, degrees, inf, pi, radians, sin, sqrt, tan
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require, require_positive
 
 _STEEL = 206000.0
@@ -14,6 +17,7 @@ _WORKING_ANGLE = "working_pressure_angle: {} rad is not between 0 and 90 deg"
 _THEORETICAL_TO_REAL = 0.8  # C_M: measured single stiffness over the theoretical one, for solid discs
 
 
+@checked
 def zone_factor(transverse_pressure_angle: float, working_pressure_angle: float, base_helix_angle: float) -> float:
     r"""Zone factor Z_H: curvature at the pitch point.
 
@@ -40,6 +44,7 @@ def zone_factor(transverse_pressure_angle: float, working_pressure_angle: float,
     return sqrt(2.0 * curvature) / cos(transverse_pressure_angle)
 
 
+@checked
 def elasticity_factor(contact_modulus: float) -> float:
     r"""Elasticity factor Z_E [MPa^0.5].
 
@@ -63,6 +68,7 @@ def elasticity_factor(contact_modulus: float) -> float:
     return sqrt(contact_modulus / pi)
 
 
+@checked
 def contact_ratio_factor(transverse_contact_ratio: float, overlap_ratio: float) -> float:
     r"""Contact ratio factor Z_eps: length of the lines of contact.
 
@@ -89,6 +95,7 @@ def contact_ratio_factor(transverse_contact_ratio: float, overlap_ratio: float) 
     return sqrt((4.0 - transverse_contact_ratio) / 3.0 * (1.0 - overlap) + overlap / transverse_contact_ratio)
 
 
+@checked
 def helix_angle_factor(helix_angle: float) -> float:
     r"""Helix angle factor Z_beta of the editions from 2006 on.
 
@@ -106,6 +113,7 @@ def helix_angle_factor(helix_angle: float) -> float:
     return 1.0 / sqrt(cos(helix_angle))
 
 
+@checked
 def single_contact_factors(
     teeth: tuple[int, int],
     tip_over_base: tuple[float, float],
@@ -173,6 +181,7 @@ def single_contact_factors(
     return max(1.0, first), max(1.0, second)
 
 
+@checked
 def largest_transverse_load_factor(transverse_contact_ratio: float, overlap_ratio: float) -> float:
     r"""Upper bound of the transverse load factor K_Halpha; the lower one is 1.
 
@@ -200,6 +209,7 @@ def largest_transverse_load_factor(transverse_contact_ratio: float, overlap_rati
     return total / (transverse_contact_ratio * factor**2)
 
 
+@checked
 def nominal_contact_stress(
     tangential_force: float,
     pinion_reference_diameter: float,
@@ -244,6 +254,7 @@ def nominal_contact_stress(
     return factors * sqrt(load * (gear_ratio + 1.0) / gear_ratio)
 
 
+@checked
 def virtual_teeth(teeth: int, helix_angle: float, pressure_angle: float) -> float:
     r"""Teeth z_n of the spur gear with the tooth of a helical gear's normal section.
 
@@ -269,6 +280,7 @@ def virtual_teeth(teeth: int, helix_angle: float, pressure_angle: float) -> floa
     return teeth / (cos(base_helix_angle) ** 2 * cos(helix_angle))
 
 
+@checked
 def theoretical_single_stiffness(virtual_teeth: tuple[float, float], profile_shifts: tuple[float, float]) -> float:
     r"""Theoretical single stiffness c'_th of a steel tooth pair of the basic rack of ISO 53 [N/(mm um)].
 
@@ -299,6 +311,7 @@ def theoretical_single_stiffness(virtual_teeth: tuple[float, float], profile_shi
     return 1.0 / (0.04723 + teeth - 0.00635 * x1 - 0.00193 * x2 + 0.00529 * x1**2 + 0.00182 * x2**2)
 
 
+@checked
 def basic_rack_factor(dedendum_coefficient: float = 1.25, pressure_angle: float = radians(20)) -> float:
     r"""Factor C_B of the basic rack: deeper teeth are softer, greater pressure angles stiffer.
 
@@ -324,6 +337,7 @@ def basic_rack_factor(dedendum_coefficient: float = 1.25, pressure_angle: float 
     return depth * (1.0 - 0.02 * (20.0 - degrees(pressure_angle)))
 
 
+@checked
 def single_stiffness(
     theoretical_single_stiffness: float,
     helix_angle: float,
@@ -361,6 +375,7 @@ def single_stiffness(
     return solid * gear_blank_factor * basic_rack_factor
 
 
+@checked
 def mesh_stiffness(single_stiffness: float, transverse_contact_ratio: float) -> float:
     r"""Mean mesh stiffness c_gamma_alpha [N/(mm um)].
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require, require_positive
 
@@ -16,6 +17,7 @@ LOAD_STAGES = 1, 14
 """First and last load stage of the FZG test A/8.3/90."""
 
 
+@checked
 def scuffing_temperature(
     load_stage: float, viscosity: float, lubricant_factor: float = 1.0, structure_factor: float = 1.0
 ) -> float:
@@ -55,6 +57,7 @@ def scuffing_temperature(
     return 80.0 + (0.85 + 1.4 * structure_factor) * lubricant_factor * viscosity**-0.05 * load_stage**2
 
 
+@checked
 def scuffing_safety(
     scuffing_temperature: ArrayLike, oil_temperature: ArrayLike, contact_temperature: ArrayLike
 ) -> Array:

@@ -7,12 +7,14 @@ contact analysis, kept to compare with. The document takes 150 N/mm for smaller 
 
 from __future__ import annotations
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import require, require_positive
 
 STAGE_TORQUES = (3.3, 13.7, 35.3, 60.8, 94.1, 135.3, 183.4, 239.3, 302.0, 372.6, 450.1, 534.5, 626.9, 714.2)
 """Torque on the pinion of the FZG test A/8.3/90 at the load stages from 1 on [N m]."""
 
 
+@checked
 def contact_ratio_factor(recess: float, approach: float) -> float:
     r"""Contact ratio factor X_eps: mean flash temperature over that at E, where one pair would carry all.
 
@@ -53,6 +55,7 @@ def contact_ratio_factor(recess: float, approach: float) -> float:
     return mean / (2.0 * ratio * recess)
 
 
+@checked
 def integral_temperature(oil_temperature: float, mean_flash_temperature: float, supply_factor: float = 1.0) -> float:
     r"""Integral temperature [C].
 
@@ -83,6 +86,7 @@ def integral_temperature(oil_temperature: float, mean_flash_temperature: float, 
     return oil_temperature + (0.7 * supply_factor + 1.5) * mean_flash_temperature
 
 
+@checked
 def scuffing_integral_temperature(
     load_stage: int, viscosity_40: float, lubricant_factor: float = 1.0, structure_factor: float = 1.0
 ) -> float:

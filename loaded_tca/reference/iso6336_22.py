@@ -16,6 +16,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require, require_positive
 
@@ -30,6 +31,7 @@ class LubricantLike(Protocol):
         """Pressure-viscosity coefficient [mm2/N]."""
 
 
+@checked
 def film_thickness(
     radius: ArrayLike,
     reduced_modulus: float,
@@ -94,6 +96,7 @@ def film_thickness(
         return np.asarray(1600.0 * np.asarray(radius) * material**0.6 * velocity**0.7 * load**-0.13 * thinning**0.22)
 
 
+@checked
 def flash_temperature(
     friction: ArrayLike,
     pressure: ArrayLike,
@@ -158,6 +161,7 @@ def flash_temperature(
     return np.asarray(rate * np.sqrt(8e-3 * np.asarray(radius) * peak / reduced_modulus))
 
 
+@checked
 def mean_friction(
     line_load: ArrayLike,
     sum_velocity: ArrayLike,
@@ -219,6 +223,7 @@ SUPPLY_FACTORS = {"dip": 1.0, "spray": 1.2, "submerged": 0.2}
 """X_S: how the oil comes to the gears."""
 
 
+@checked
 def bulk_temperature(
     oil_temperature: ArrayLike,
     power_kW: ArrayLike,
@@ -268,6 +273,7 @@ def bulk_temperature(
     return np.asarray(oil_temperature + rise * supply_factor / (1.2 * tip_relief_factor))
 
 
+@checked
 def load_loss_factor(
     recess: float, approach: float, teeth_1: int, teeth_2: int, base_helix_angle: float = 0.0
 ) -> float:

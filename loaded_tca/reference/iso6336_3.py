@@ -6,11 +6,14 @@ life, notch sensitivity, surface and size factors, deep teeth (Y_DT), and with t
 Formulas of the edition of 2006; the examples are FZG C14 gears of GEARpie.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from math import acos, cos, degrees, hypot, inf, log, pi, radians, sin, sqrt, tan
 
 from scipy.optimize import brentq
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import GeometryError, require, require_positive
 from loaded_tca.reference.iso6336 import virtual_teeth
 
@@ -66,6 +69,7 @@ class RootSection:
         return (1.2 + 0.13 * slenderness) * notch ** (1.0 / (1.21 + 2.3 / slenderness))
 
 
+@checked
 def root_section(
     teeth: int,
     profile_shift: float,
@@ -193,6 +197,7 @@ def _single_contact(
     return diameter, angle - half, half
 
 
+@checked
 def helix_angle_factor(helix_angle: float, overlap_ratio: float) -> float:
     r"""Helix angle factor Y_beta of the edition of 2006.
 
@@ -223,6 +228,7 @@ def helix_angle_factor(helix_angle: float, overlap_ratio: float) -> float:
     return 1.0 - min(1.0, overlap_ratio) * degrees(min(abs(helix_angle), _HELIX_ANGLE_LIMIT)) / 120.0
 
 
+@checked
 def rim_thickness_factor(rim_over_height: float) -> float:
     r"""Rim thickness factor Y_B of an external gear.
 
@@ -252,6 +258,7 @@ def rim_thickness_factor(rim_over_height: float) -> float:
     return 1.0 if rim_over_height >= THIN_RIM else 1.6 * log(2.242 / rim_over_height)
 
 
+@checked
 def nominal_root_stress(tangential_force: float, face_width: float, normal_module: float, factors: float) -> float:
     r"""Nominal tooth root stress sigma_F0 [MPa].
 
@@ -281,6 +288,7 @@ def nominal_root_stress(tangential_force: float, face_width: float, normal_modul
     return tangential_force / (face_width * normal_module) * factors
 
 
+@checked
 def face_load_factor(contact_face_load_factor: float, height_over_width: float) -> float:
     r"""Face load factor of root stress K_Fbeta.
 

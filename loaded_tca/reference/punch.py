@@ -1,11 +1,14 @@
 """Rigid punches on an elastic half-space: profiles C r^n, flat ends, flat strips with rounded ends."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import require, require_positive
 
 # F/(E* L delta) of a flat square punch of side L: pi times the electrostatic capacity of the unit square, 0.36679,
@@ -32,6 +35,7 @@ class PunchContact:
     approach: float
 
 
+@checked
 def power_law(radius: float, coefficient: float, exponent: float, contact_modulus: float) -> PunchContact:
     r"""Punch of the profile C r^n, pressed in until it touches within a radius a.
 
@@ -78,6 +82,7 @@ def power_law(radius: float, coefficient: float, exponent: float, contact_modulu
     return PunchContact(load, radius, approach)
 
 
+@checked
 def flat_circular(load: float, radius: float, contact_modulus: float) -> PunchContact:
     r"""Flat-ended cylinder: :math:`\delta = F/(2 a E^*)`.
 
@@ -108,6 +113,7 @@ def flat_circular(load: float, radius: float, contact_modulus: float) -> PunchCo
     return PunchContact(load, radius, load / (2.0 * radius * contact_modulus))
 
 
+@checked
 @dataclass(frozen=True)
 class RoundedPunch:
     r"""Flat punch with rounded ends on an elastic half-plane.

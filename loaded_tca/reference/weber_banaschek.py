@@ -4,12 +4,15 @@ All values are per line load, mm per N/mm, strain being plane; deflections are c
 nor the bore is known here: a gear on a shaft is softer.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import Material
 
@@ -38,6 +41,7 @@ class ToothDeflection:
         return self.bending + self.foundation
 
 
+@checked
 def tooth_deflection(
     height: NDArray[np.float64],
     thickness: NDArray[np.float64],
@@ -106,6 +110,7 @@ def tooth_deflection(
     return ToothDeflection(scale * bending, scale * foundation)
 
 
+@checked
 def flank_flattening(half_width: float, depth: float, material: Material = Material()) -> float:
     r"""Approach of a flank's surface to the middle of its tooth, per line load, under Hertz's pressure.
 
@@ -139,6 +144,7 @@ def flank_flattening(half_width: float, depth: float, material: Material = Mater
     return (2.0 * math.log(2.0 * depth / half_width) - nu / (1.0 - nu)) / (math.pi * material.plane_strain_modulus)
 
 
+@checked
 def ring_torsion(inner_radius: float, outer_radius: float, material: Material = Material()) -> float:
     r"""Rotation of a ring's outside against its rigid inside, per torque and width [rad per N].
 

@@ -1,10 +1,13 @@
 """Elastic wedge in plane strain under a line load normal to one of its faces."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import require, require_positive
 
 STEP, LAST = 0.1, 40.0
@@ -13,6 +16,7 @@ FARTHEST = math.exp(0.5 * math.pi / STEP)
 """Ratio of distances up to which the rule holds: half of that at which its sum would repeat."""
 
 
+@checked
 def extra_displacement(place: ArrayLike, load_place: ArrayLike, angle: float) -> NDArray[np.float64]:
     r"""Displacement of a face, normal to it, by a line load on it, beyond that of a half-plane.
 

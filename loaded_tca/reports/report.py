@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require
 from loaded_tca.plots import plot_before_and_after, plot_peak_to_peak_over_torque, plot_study
 from loaded_tca.plots.style import label_of
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@checked
 def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, rank_by: str | None = None) -> Path:
     """Write the report of a result, a stage, a study or a design: one HTML file with pictures, which needs no other.
 

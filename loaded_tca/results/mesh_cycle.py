@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError, require
 from loaded_tca.results.derivatives import sensitivities
@@ -133,6 +134,7 @@ class MeshCycle(CycleNumbers):
         """
         return sensitivities(self, keys)
 
+    @checked
     def tribology(
         self,
         pinion_speed_rpm: ArrayLike | None = None,
@@ -286,6 +288,7 @@ class MeshCycle(CycleNumbers):
             carrying = "one tooth pair carries the whole load (load sharing off)"
         return f"{where}; {carrying}; {self.bending}"
 
+    @checked
     def save(self, path: FilePath) -> None:
         """Write everything to a NetCDF-3 file, whole or not at all; ``load`` reads it back unchanged.
 
@@ -308,6 +311,7 @@ class MeshCycle(CycleNumbers):
         return netcdf_of(whole.assign_attrs(title=self.scene.title, scene_toml=self.scene.to_toml()))
 
     @classmethod
+    @checked
     def load(cls, path: FilePath) -> MeshCycle:
         """Read a file that ``save`` wrote.
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array, index_checks
 from loaded_tca.errors import InputError, require
 from loaded_tca.results.dynamics import PARTS, TORQUE, teeth_and_radii
@@ -374,6 +375,7 @@ class Revolution:
         coordinates = {TORQUE: 1e-3 * self.torque, angle: data["pinion_angle"].values}
         return xarray.Dataset(arrays, coordinates, {"title": self.scene.title})
 
+    @checked
     def save(self, path: FilePath) -> None:
         """Write everything but pressure maps to a NetCDF-3 file, whole or not at all; ``load`` reads it back."""
         replace_file(path, self.to_netcdf())
@@ -384,6 +386,7 @@ class Revolution:
         return netcdf_of(self.dataset.assign_attrs(about))
 
     @classmethod
+    @checked
     def load(cls, path: FilePath) -> Revolution:
         """Read a file that ``save`` wrote.
 

@@ -116,7 +116,8 @@ class Scene(WithStandards, ABC):
             rule(
                 (f"{gear}.bore_diameter_mm", f"{gear}.shaft", "analysis.compliance"),
                 lambda bore, shaft, compliance: bore != 0.0 or shaft is None or compliance == "contact",
-                f"found {{0:g}}, a solid gear, whose torsion [{gear}.shaft] has, too; allowed the diameter of its seat",
+                f"found {{0:g}}, a solid gear, whose torsion [{gear}.shaft] has, too; allowed the diameter of its "
+                "seat, or none",
             )
             for gear in GEARS
         ),

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
 from loaded_tca.scene.keys import Choice, Key, literal, shown, shown_key
@@ -34,6 +35,7 @@ MOST_SQUARED_DOTS = 2e7
 """Sum of squares of the dots of all lines, which is what reading them takes; two large measured flanks have 6e6."""
 
 
+@checked
 def read_scene(path: str | os.PathLike[str]) -> Scene:
     """Read a scene file.
 
@@ -54,6 +56,7 @@ def read_scene(path: str | os.PathLike[str]) -> Scene:
     return parse_scene(read_text(path, LARGEST_FILE), source=os.fspath(path), folder=Path(path).parent)
 
 
+@checked
 def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str] | None = ".") -> Scene:
     r"""Make a scene of the text of a scene file.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named, require
-from loaded_tca.input_files import read_text
+from loaded_tca.input_files import number_in, read_text, table_in
 from loaded_tca.pairs.tooth_deviations import random_index
 from loaded_tca.scene.keys import Choice, Either, Line, List, Number, Whole, key, shown
 from loaded_tca.scene.section import Rule, Section
@@ -133,22 +132,19 @@ def read_deviations(file: str) -> tuple[str, tuple[float, ...]]:
         If the file cannot be read, has not one of the columns, or an entry that is no number within the limits.
     """
     text = read_text(file, LARGEST_FILE, "file of pitch deviations")
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    rows = csv.DictReader(lines, skipinitialspace=True)
-    columns = [name.strip() for name in rows.fieldnames or ()]
-    names = [name for name in COLUMNS if name in columns]
-    if len(names) != 1:
-        raise InputError(
-            f"{file}: found the columns {', '.join(columns) or 'none'}; allowed one of index_um, single_um"
-        )
-    rows.fieldnames = columns
-    values: list[float] = []
-    for number, row in enumerate(rows, 1):
+    with named(file):
+        table = table_in(text)
+        names = [name for name in COLUMNS if name in table.names]
+        columns = ", ".join(table.names) or "none"
+        require((len(names) == 1, f"found the columns {columns}; allowed one of index_um, single_um"))
+    column, values = table.names.index(names[0]), []
+    for number, (_, cells) in enumerate(table.rows, 1):
+        cell = cells[column] if column < len(cells) else ""
         try:
-            values.append(DEVIATION_um.read(float(row[names[0]] or "")))
-        except (TypeError, ValueError):
+            values.append(DEVIATION_um.read(number_in(cell)))
+        except ValueError:
             raise InputError(
-                f"{file}: line {number} of the table: found {shown(row[names[0]])}; allowed {DEVIATION_um.allowed}"
+                f"{file}: line {number} of the table: found {shown(cell)}; allowed {DEVIATION_um.allowed}"
             ) from None
     try:
         return names[0], DEVIATIONS_um.read(values)

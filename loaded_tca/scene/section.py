@@ -13,6 +13,7 @@ from textwrap import shorten
 from typing import Any, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
+from loaded_tca.input_files import is_place
 from loaded_tca.scene.keys import Key, did_you_mean, nearest, shown, shown_key
 
 SectionType = TypeVar("SectionType", bound="Section")
@@ -264,7 +265,7 @@ def key_at(section: type[Section], path: str, place: str = "") -> Key:
         return key_at(entry.section, rest, f"{place}{name}.")
     if rest and isinstance(entry.kind, Tables):
         index, _, rest = rest.partition(".")
-        if not index.isdigit():
+        if not is_place(index):
             raise InputError(f"{place}{name}.{shown_key(index)}: not a place in a list; allowed 0, 1, ...")
         if rest:
             return key_at(entry.kind.section, rest, f"{place}{name}.{index}.")

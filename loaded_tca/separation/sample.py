@@ -26,6 +26,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.errors import GeometryError, InputError
@@ -48,6 +49,7 @@ SLIVER = 0.01
 """Part of a cell that does not count: below it a cell has no material, and one that lacks no more is whole."""
 
 
+@checked
 def slice_middles(x: Array, pressure: Array) -> tuple[Array, Array]:
     """Slices of a grid that carry load, and where across the contact the middle of their pressure lies.
 
@@ -165,6 +167,7 @@ class Separation:
         """Where the grid lies in the tangent plane."""
         return Box.of(self)
 
+    @checked
     def loaded_by(self, pressure: Array, module: float) -> Separation:
         """Return the same grid, its forces at the centres of a pressure (nx, ny); as it is where there is none.
 

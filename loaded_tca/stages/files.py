@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
 from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, section_lines, toml_table, with_files_from
@@ -12,6 +13,7 @@ from loaded_tca.scene.section import Section
 from loaded_tca.stages.sections import PlanetaryStage, Stage, StageGeometry, StageLoad, stage_from_table
 
 
+@checked
 def parse_stage(text: str, source: str = "stage", folder: str | os.PathLike[str] | None = ".") -> Stage:
     r"""Make a stage of the text of a stage file.
 
@@ -54,6 +56,7 @@ def is_stage_file(path: str | os.PathLike[str]) -> bool:
     return is_table_of_stage(table)
 
 
+@checked
 def read_stage(path: str | os.PathLike[str]) -> Stage:
     """Read a stage file.
 

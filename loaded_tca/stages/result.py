@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.results import MeshCycle
@@ -261,6 +262,7 @@ class StageResult:
         notes = [f"note: {sentence}" for sentence in self.findings()]
         return "\n".join([*lines, *notes, *(f"warning: {sentence}" for sentence in self.warnings)])
 
+    @checked
     def save(self, directory: FilePath) -> tuple[Path, ...]:
         """Write ``stage.nc``, ``sun_mesh.nc`` and ``ring_mesh.nc`` into a directory, all or none.
 
@@ -278,6 +280,7 @@ class StageResult:
         return dict(zip(FILES, (content, self.sun_mesh.to_netcdf(), self.ring_mesh.to_netcdf()), strict=True))
 
     @classmethod
+    @checked
     def load(cls, directory: FilePath) -> StageResult:
         """Read the files that ``save`` wrote into a directory.
 

@@ -41,7 +41,7 @@ SAME_DISTANCE = 1e-3
 """Difference of the centre distances of both meshes, in modules, that counts as none."""
 WRITTEN_deg = 1e-3
 """Of angles that are written with four digits."""
-PLACE = re.compile(r"stage\.(pin_tangential_um|pin_radial_um|planet_angles_deg)\.\d{1,3}")
+PLACE = re.compile(r"stage\.(pin_tangential_um|pin_radial_um|planet_angles_deg)\.\d{1,3}", re.ASCII)
 """Paths to the value of one planet."""
 PIN_um = List(Number(-10000.0, 10000.0), 1, MOST_PLANETS)
 

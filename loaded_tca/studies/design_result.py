@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, require
+from loaded_tca.input_files import number_in
 from loaded_tca.results.files import DESIGN, FilePath, Part, read_dataset, write_dataset
 from loaded_tca.studies.design_figures import FIGURES, Limit
 
@@ -138,7 +140,7 @@ class DesignResult:
             if (words := re.fullmatch(r"(\S+) <= (\S+) at (.+) N m", line)) is None or words[1] not in FIGURES:
                 continue
             under = tuple(k for k, one in enumerate(torques) if one in words[3].split(", "))
-            limits.append(Limit(words[1], under, float(words[2])))
+            limits.append(Limit(words[1], under, number_in(words[2])))
         return tuple(limits)
 
     @property
@@ -203,6 +205,7 @@ class DesignResult:
         """How many designs were evaluated."""
         return int(self.dataset.sizes["evaluation"])
 
+    @checked
     def save(self, path: FilePath) -> None:
         """Write the result to a NetCDF-3 file, to be read by :func:`load_design`."""
         write_dataset(path, self.dataset)
@@ -219,6 +222,7 @@ def told_limit(limit: Limit, torques: Array) -> str:
     return f"{limit.figure} <= {limit.highest:g} at {under} N m"
 
 
+@checked
 def load_design(path: FilePath) -> DesignResult:
     """Read the result of a design.
 

@@ -5,6 +5,7 @@ The V-H check under load: a study of two mounting errors.
 
 from __future__ import annotations
 
+import csv
 import io
 import os
 import warnings
@@ -16,8 +17,9 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, named
-from loaded_tca.input_files import read_text
+from loaded_tca.input_files import read_text, table_in
 from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest, shown, shown_key
 from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, toml_table
@@ -40,6 +42,7 @@ CLASS = "tolerance_class"
 """Word for a tolerance class of ISO 1328-1, alone: the distribution of a slope of gears that are of it."""
 
 
+@checked
 def read_study(path: str | os.PathLike[str]) -> Study:
     """Read a study file.
 
@@ -57,6 +60,7 @@ def read_study(path: str | os.PathLike[str]) -> Study:
     return parse_study(read_text(path, LARGEST_FILE), source=os.fspath(path), folder=Path(path).parent)
 
 
+@checked
 def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str] = ".") -> Study:
     r"""Make a study of the text of a study file.
 
@@ -234,13 +238,15 @@ def _table(name: Any, folder: Path) -> dict[str, list[Any]]:
     import pandas
 
     with named("table"):
-        text = read_text(
-            folder / name, LARGEST_TABLE, "table of variants"
-        )  # pandas would unpack it, or open an address
+        # pandas would unpack it, or open an address
+        text = read_text(folder / name, LARGEST_TABLE, "table of variants")
+    with named(f"table: {folder / name}"):
+        table, lines = table_in(text), io.StringIO()
+    csv.writer(lines).writerows([table.names, *(cells for _, cells in table.rows)])
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # rows longer than the header are cut with a warning
-            frame = pandas.read_csv(io.StringIO(text), index_col=False)
+            frame = pandas.read_csv(io.StringIO(lines.getvalue()), index_col=False)
     except Exception as error:  # on what is no CSV the reader stumbles in any way
         raise InputError(f"table: {folder / name}: no CSV: {error}") from None
     return {str(key): column.tolist() for key, column in frame.items()}

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, reason_of
 from loaded_tca.input_files import require_regular
@@ -307,6 +308,7 @@ def _varied(study: Study) -> dict[str, tuple[str, Array, dict[str, str]]]:
     return {key: ("sample", np.array(column), sampling[key]) for key, column in columns.items()}
 
 
+@checked
 def load_study(path: FilePath) -> xarray.Dataset:
     """Read the result of a study.
 

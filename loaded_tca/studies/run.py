@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.analysis import analyse
+from loaded_tca.arguments import checked
 from loaded_tca.errors import (
     ConvergenceError,
     DamageWarning,
@@ -35,6 +36,7 @@ from loaded_tca.errors import (
     noted_accuracy_warnings,
     require,
 )
+from loaded_tca.input_files import is_place
 from loaded_tca.results.files import FilePath, make_directory, read_dataset, remove, replace_file, write_dataset
 from loaded_tca.scene import Scene
 from loaded_tca.stages import Stage
@@ -58,6 +60,7 @@ Progress = Callable[[int, int, int], None]
 """Called with how many variants are done, of how many, and how many of these are not ok."""
 
 
+@checked
 def run_study(
     study: Study,
     executor: Executor | None = None,
@@ -290,7 +293,7 @@ def _status_of(error: Exception) -> str:
 def _remove_outdated(maps: Path, study: Study) -> None:
     """Remove kept results of variants that the study does not have any more, or has under another number."""
     for path in maps.glob("*.nc"):
-        variant = int(path.stem) if path.stem.isdecimal() else len(study)
+        variant = int(path.stem) if is_place(path.stem) else len(study)
         try:
             scene = study.scene.with_changes(study.changes(variant)).to_toml() if variant < len(study) else ""
             outdated = read_dataset(path).attrs.get("scene_toml") != scene

@@ -14,6 +14,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
+from loaded_tca.input_files import is_place
 from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.scene.keys import Key
 from loaded_tca.scene.section import as_table, key_at
@@ -114,7 +115,7 @@ def nominal_of(subject: Scene | Stage, path: str) -> Any:
     for name in path.split("."):
         if isinstance(value, dict):
             value = value.get(name)
-        elif isinstance(value, tuple | list) and name.isdigit() and int(name) < len(value):
+        elif isinstance(value, tuple | list) and is_place(name) and int(name) < len(value):
             value = value[int(name)]
         else:
             return None
@@ -138,7 +139,7 @@ def problem_of_places(subject: Scene | Stage, path: str, varied: Collection[str]
         given, lengths = nominal_of(subject, place), {place}
         if isinstance(subject, Stage) and PLACE.fullmatch(path):
             given, lengths = subject.stage.angles, {*NUMBERS_OF_PLANETS, place}
-        is_list = isinstance(given, tuple | list) and index.isdigit() and lengths.isdisjoint(varied)
+        is_list = isinstance(given, tuple | list) and is_place(index) and lengths.isdisjoint(varied)
         if is_list and int(index) >= len(given):
             allowed = "0" if len(given) == 1 else f"0 to {len(given) - 1}"
             return f"{path}: {index} is past the end of a list of {len(given)}; allowed {allowed}"

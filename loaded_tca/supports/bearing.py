@@ -21,7 +21,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.linalg import solve
 
-from loaded_tca.arrays import Array
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array, keep_copies
 from loaded_tca.errors import InputError
 
 
@@ -66,12 +67,16 @@ class AnyBearing(Protocol):
         """What it does against a motion (6,) of its inner ring [mm, rad]."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Bearing:
     """A linear bearing: its place on the axis [mm], and its stiffness (6, 6) [N, N mm over mm, rad], symmetric."""
 
     at: float
     stiffness: Array
+
+    def __post_init__(self) -> None:
+        keep_copies(self)
 
     @property
     def joint(self) -> Array:

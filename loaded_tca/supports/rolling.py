@@ -30,6 +30,7 @@ from functools import cached_property
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.reference.hertz import line_contact, point_contact
@@ -151,6 +152,7 @@ class RollingBearing(ABC):
         """Basic reference rating life [million revolutions] under a motion (6,); inf without load."""
 
 
+@checked
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BallBearing(RollingBearing):
     """A row of balls: deep groove without a contact angle, angular contact with one.
@@ -279,6 +281,7 @@ class BallBearing(RollingBearing):
         )
 
 
+@checked
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RollerBearing(RollingBearing):
     """A row of rollers: cylindrical without a contact angle, tapered with one.

@@ -27,7 +27,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array, keep_copies
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import Material
 from loaded_tca.supports.bearing import AnyBearing, Bearing, Seat, balanced, solved
@@ -105,6 +106,7 @@ class ShaftSection:
         return matrix
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class ShaftLoad:
     """A load of something else on the shaft: place [mm], and force and moment (6,) [N, N mm]."""
@@ -112,7 +114,11 @@ class ShaftLoad:
     at: float
     load: Array
 
+    def __post_init__(self) -> None:
+        keep_copies(self)
 
+
+@checked
 @dataclass(frozen=True, eq=False)
 class Shaft:
     """A stepped shaft on bearings.

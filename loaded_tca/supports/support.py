@@ -27,7 +27,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array, keep_copies
 from loaded_tca.errors import require
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.supports.bearing import AnyBearing
@@ -37,6 +38,7 @@ KEPT = 256
 """Grids whose loads are kept, since a balance asks for them again and again."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Support:
     """What holds a gear, in the axes of its own frame.
@@ -92,6 +94,7 @@ class Support:
             ),
             (shape in ((), (size,)), f"motion: shape {shape}, expected ({size},)"),
         )
+        keep_copies(self)
 
     @property
     def places(self) -> Array:
@@ -203,6 +206,7 @@ def moved_pair(pair: GearPair, supports: tuple[Support, Support], motions: Seque
     )
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class SupportCompliance:
     """The part of a bending model that is the supports of both gears.

@@ -27,12 +27,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize.elementwise import find_root
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank
 
 
+@checked
 class Sections(ABC):
     """A family of sections, told apart by a lengthwise ``coordinate``; all arrays broadcast against each other.
 
@@ -75,6 +77,7 @@ def in_space(sections: Sections, radius: Array, angle: Array, coordinate: Array)
     return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=-1)
 
 
+@checked
 class TransversePlanes(Sections):
     """Planes z = const, told apart by z.
 
@@ -107,6 +110,7 @@ class TransversePlanes(Sections):
         return radius + distance + 0.0 * coordinate
 
 
+@checked
 class ApexSpheres(Sections):
     """Spheres about the apex, told apart by the cone distance R.
 
@@ -277,6 +281,7 @@ class Fillet(ABC):
         """
 
 
+@checked
 @dataclass(frozen=True)
 class ArcFillet(Fillet):
     """Circular arc on the section, tangent to the flank and to the root circle.
@@ -374,6 +379,7 @@ class CutRoot(Protocol):
         """Radial and circumferential parts (points,) of the unit tangents, towards the root circle."""
 
 
+@checked
 @dataclass(frozen=True)
 class RackFillet(Fillet):
     """Trochoid that the rounded tip of the basic rack cuts into a cylindrical gear.

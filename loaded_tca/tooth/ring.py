@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.cylindrical import RingFlank
@@ -30,6 +31,7 @@ SMALLEST_OUTSIDE, LARGEST_OUTSIDE = 1.02, 20.0
 """Outer diameters over the largest root diameter: a smaller one leaves no rim."""
 
 
+@checked
 @dataclass(frozen=True)
 class InvertedPlanes(Sections):
     """Planes z = const of a ring gear, each seen through the inversion at its root circle.
@@ -103,6 +105,7 @@ class _ImageOfRoot:
         return -radial, circumferential
 
 
+@checked
 @dataclass(frozen=True)
 class RingFillet(Fillet):
     """Arc, or what a pinion-type cutter cuts, at the root of a ring.

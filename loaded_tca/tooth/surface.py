@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array, Indices, count_problems
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array, Indices, count_problems, keep_copies
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank, sharp
@@ -23,6 +24,7 @@ from loaded_tca.tooth.families import ToothForm
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, Profile, in_space, profile_of
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class TriangleMesh:
     """Vertices, triangles and data on either.
@@ -68,6 +70,7 @@ class TriangleMesh:
                     problems.append(f"{kind} data {name}: shape {values.shape} is not ({count},)")
         if problems:
             raise InputError(problems)
+        keep_copies(self)
 
     @property
     def size(self) -> int:

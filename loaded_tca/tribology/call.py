@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import loaded_tca.warning_kinds as kinds
+from loaded_tca.arguments import checked
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.tribology.conditions import Lubricant, conditions_of
@@ -26,6 +27,7 @@ LOOKED_AT = {
 """Extremes that a warning may tell: the number of tooth pairs behind each, and its name."""
 
 
+@checked
 def tribology_of(
     result: CycleNumbers,
     *,

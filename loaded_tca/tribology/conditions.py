@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import InputError, require
 from loaded_tca.reference.iso6336_20 import LOAD_STAGES
@@ -77,6 +78,7 @@ def _of_oil_alone(oil: type[AnyOil]) -> type[AnyOil]:
     return oil
 
 
+@checked
 @_of_oil_alone
 @dataclass(frozen=True, kw_only=True)
 class Lubricant:

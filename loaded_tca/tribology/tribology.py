@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array, GearName, Indices, place_checks
 from loaded_tca.errors import NotAskedError, require
 from loaded_tca.reference.iso6336_20 import scuffing_safety, scuffing_temperature
@@ -420,6 +421,7 @@ class Tribology:
         """
         return summary_text(self, speed)
 
+    @checked
     def save(self, path: FilePath) -> None:
         """Write the dataset to a NetCDF-3 file, whole or not at all.
 

@@ -17,6 +17,7 @@ from weakref import ReferenceType, WeakKeyDictionary, ref
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import lengthwise_direction
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
@@ -41,6 +42,7 @@ class RelativeCurvature:
     along: float
     axes: Array
 
+    @checked
     def along_axes(self, axes: Array) -> tuple[float, float]:
         """Relative curvatures [1/mm] along the first two of other axes (rows) in the same plane."""
         if axes is self.axes or np.array_equal(axes, self.axes):

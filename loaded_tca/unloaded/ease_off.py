@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Jet, weighted_sum
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
@@ -112,6 +113,7 @@ def _dot(parts: Sequence[Any], vectors: Array, out: Array | None = None) -> Arra
     return total
 
 
+@checked
 class EaseOff:
     """The ease-off field of a pair over its pinion flank, with the edges and relief starts of both flanks.
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import loaded_tca.warning_kinds as kinds
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices, Mask, finite_row
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
@@ -130,6 +131,7 @@ class ContactPath(_Contact[Array, Indices, Mask]):
         return f"ContactPath({len(self)} positions, {int(self.in_contact.sum())} touch, {edge} on an edge)"
 
 
+@checked
 def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, warn: bool = True) -> ContactPath:
     """Unloaded contact of one tooth pair at each pinion angle.
 

@@ -16,6 +16,7 @@ from itertools import combinations
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 
@@ -227,6 +228,7 @@ class _Local:
     slopes: Array
 
 
+@checked
 def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
     """Climb the ease-off field from every start at once.
 

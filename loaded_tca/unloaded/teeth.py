@@ -26,6 +26,7 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices, finite_row
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
@@ -261,6 +262,7 @@ class MeshPath:
         )
 
 
+@checked
 def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: Iterable[int] | None = None) -> MeshPath:
     """Unloaded contact of all teeth that can touch.
 

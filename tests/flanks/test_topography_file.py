@@ -106,7 +106,57 @@ def test_points_are_read_with_every_separator_a_byte_order_mark_and_blank_lines(
     assert_allclose(found.radius, rho, rtol=2e-15)  # the root of sine and cosine squared: 1e-16 seen
 
 
+def as_a_spreadsheet(header, rows):
+    """Text as a spreadsheet writes it: quoted names, separators at the ends of lines, lines of separators alone."""
+    lines = ['"# gear = pinion";;;;;', ";".join(f'"{name}"' for name in header.split(",")) + ";", ";;;;;"]
+    return "\r\n".join([*lines, *(f"{row.replace(',', ';')};" for row in rows), ";;;;;", ""])
+
+
+@pytest.mark.parametrize("micro", ["u", "\N{MICRO SIGN}", "\N{GREEK SMALL LETTER MU}"])
+def test_file_of_a_spreadsheet_is_read_with_every_sign_for_micro(grid, micro):
+    rows = rows_of(grid[0], grid[1], 1e3 * grid[2])
+    found = parse_topography(as_a_spreadsheet(HEADER.replace("_um", f"_{micro}m"), rows))
+    assert found.notes == {"gear": "pinion"}
+    assert_allclose(found.excess, grid[2], rtol=1e-15)  # two conversions of units
+    assert_allclose(found.axial, grid[1], rtol=0)
+
+
+def test_empty_first_cell_between_tabs_is_no_other_column():
+    text = "\n".join([HEADER.replace(",", "\t"), "\t1\t50\t0\t0"])
+    assert problems_of(text) == ("line 2, column 1: profile_index is not a finite number",)
+
+
 # What is refused
+
+
+@pytest.mark.parametrize(
+    "cell",
+    ["1_0", "\N{ARABIC-INDIC DIGIT ONE}", "\N{FULLWIDTH DIGIT TWO}", "nan", "inf", "0x1", "1e999", "1d0", "\u22121"],
+)
+def test_what_python_alone_takes_for_a_number_is_none(cell):
+    assert problems_of(f"{HEADER}\n1,1,50,0,{cell}") == ("line 2, column 5: deviation_um is not a finite number",)
+
+
+def test_unknown_unit_of_a_known_column_is_told_as_such():
+    """The nearest name is that in metres, a million times as much."""
+    (problem,) = problems_of("radius_mm,axial_mm,deviation_UM\n1,2,3")
+    units = "deviation_um, deviation_mm, deviation_m, deviation_in"
+    assert problem == f"line 1, column 3: the unit of deviation is unknown; allowed {units}"
+
+
+def test_decimal_commas_in_quotes_are_one_problem():
+    (problem,) = problems_of(f'{HEADER}\n1,1,"50,5",0,0')
+    assert problem.startswith("line 2: decimal commas, it seems (1 such lines)")
+
+
+@pytest.mark.parametrize("row", ['1,1,"50,0,0', '1,1,"50"5,0,0'])
+def test_quotation_that_does_not_end_is_told(row):
+    assert problems_of(f"{HEADER}\n{row}") == ("line 2: a quotation that does not end, or goes on behind its end",)
+
+
+def test_shape_of_a_grid_has_digits_that_people_of_all_scripts_read():
+    (problem,) = problems_of("# points = \N{ARABIC-INDIC DIGIT TWO} x 2\nx_mm,y_mm,z_mm\n" + "1,2,3\n" * 4)
+    assert problem.startswith("the shape of the grid is missing")
 
 
 def test_columns_that_are_unknown_without_unit_or_double_are_refused_all_at_once():

@@ -15,7 +15,7 @@ SCENE = read_scene("examples/scenes/mesh_cycle_helical.toml").with_changes({"pin
 
 def written(folder, text):
     path = folder / "pitch.csv"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     return str(path)
 
 
@@ -34,6 +34,11 @@ def test_file_of_deviations_takes_the_place_of_a_list(tmp_path):
 
 def test_file_with_single_deviations(tmp_path):
     assert read_deviations(written(tmp_path, "single_um\n1\n-2\n1\n")) == ("single_um", (1.0, -2.0, 1.0))
+
+
+def test_file_of_a_spreadsheet_is_read(tmp_path):
+    text = '\N{BYTE ORDER MARK}"tooth";"index_\N{MICRO SIGN}m";\r\n1;1.5;\r\n2;"-2";\r\n3;.5;\r\n;;\r\n'
+    assert read_deviations(written(tmp_path, text)) == ("index_um", (1.5, -2.0, 0.5))
 
 
 def test_scene_names_a_file_in_its_folder(tmp_path):
@@ -99,6 +104,9 @@ test_refusals = refused_calls(
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\nx\n3\n")), 'line 2 of the table: found "x"'),
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\nnan\n3\n")), 'line 2 of the table: found "nan"'),
     (lambda tmp_path: read_deviations(written(tmp_path, "t,index_um\n1,1\n2\n")), "line 2 of the table: found"),
+    (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\n1_0\n")), 'line 2 of the table: found "1_0"'),
+    (lambda tmp_path: read_deviations(written(tmp_path, "a;index_um\n1;2,5\n")), 'line 1 of the table: found "2,5"'),
+    (lambda tmp_path: read_deviations(written(tmp_path, 'index_um\n"1\n')), "line 2: a quotation that does not end"),
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\n")), "allowed a list of 3 to 10000 values"),
     (
         lambda tmp_path: Pitch(file=written(tmp_path, "single_um\n1\n2\n3\n")),

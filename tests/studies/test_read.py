@@ -101,6 +101,26 @@ def test_table_is_not_unpacked(tmp_path, pack):
         parse_study(f'scene = "{HELICAL}"\ntable = "packed.csv.xz"', folder=tmp_path)
 
 
+def test_table_of_a_spreadsheet_is_read(tmp_path):
+    lines = [
+        '"mounting.misalignment_\N{MICRO SIGN}m";"pinion.modifications.lead_crowning_form";',
+        "1.5;circular;",
+        ";;",
+    ]
+    (tmp_path / "table.csv").write_text("\r\n".join(lines), encoding="utf-8-sig")
+    study = parse_study(f'scene = "{HELICAL}"\ntable = "table.csv"', folder=tmp_path)
+    assert study.changes(0) == {
+        "mounting.misalignment_um": 1.5,
+        "pinion.modifications.lead_crowning_form": "circular",
+    }
+
+
+def test_number_that_python_alone_reads_is_none_in_a_table(tmp_path):
+    (tmp_path / "table.csv").write_text("mounting.misalignment_um\n1_0\n")
+    with pytest.raises(InputError, match=r"mounting\.misalignment_um: .*1_0"):
+        parse_study(f'scene = "{HELICAL}"\ntable = "table.csv"', folder=tmp_path)
+
+
 def test_table_that_is_too_long_is_told(tmp_path, monkeypatch):
     monkeypatch.setattr(read, "LARGEST_TABLE", 10)
     (tmp_path / "long.csv").write_text("mounting.misalignment_um\n1\n")

@@ -14,6 +14,7 @@ from loaded_tca.scene import Scene
 from loaded_tca.scene.section import key_at
 from loaded_tca.supports import Support, moved_pair, shafts_of, supports_of
 from loaded_tca.unloaded import trace_teeth
+from loaded_tca.warning_kinds import BODY_TWIST, THIN_RIM, Kind
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # contacts at edges: not the matter here
 
@@ -149,7 +150,8 @@ def test_gear_without_a_shaft_has_no_bearings(scene: Scene) -> None:
         ({"pinion.support.compliance": [[0.0] * 6] * 6}, r"pinion.support: found beside \[pinion.shaft\]"),
         (
             {"pinion.bore_diameter_mm": 0.0, "analysis.compliance": "contact+tooth"},
-            "pinion.bore_diameter_mm: found 0, a solid gear, whose torsion",
+            r"pinion.bore_diameter_mm: found 0, a solid gear, whose torsion \[pinion.shaft\] has, too; allowed the "
+            "diameter of its seat, or none$",
         ),
     ],
 )
@@ -158,6 +160,13 @@ def test_shafts_that_cannot_be_are_refused_as_they_are_read(
 ) -> None:
     with pytest.raises(InputError, match=message):
         scene.with_changes(changes)
+
+
+@pytest.mark.parametrize("known", [BODY_TWIST, THIN_RIM], ids=["body twist", "thin rim"])
+def test_bores_that_a_warning_advises_are_those_that_a_scene_takes(scene: Scene, known: Kind) -> None:
+    assert "`bore_diameter_mm = 0`, or none beside a `[pinion.shaft]`" in known.advice
+    bending = scene.with_changes({"analysis.compliance": "contact+tooth", "pinion.bore_diameter_mm": None})
+    assert bending.with_changes({"pinion.shaft": None, "pinion.bore_diameter_mm": 0.0}).pinion.bore_diameter_mm == 0.0
 
 
 @pytest.mark.parametrize(

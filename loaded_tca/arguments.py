@@ -1,0 +1,215 @@
+"""Arguments of public functions, checked and converted before the functions run, by their annotations.
+
+Whatever annotation a public parameter has decides what it takes: arrays, pairs and rows of numbers, numbers, text and
+paths. Units are those of the parameter's docstring. What a number may be, its range, is for the function to say.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import os
+import re
+import sys
+import warnings
+from collections.abc import Callable
+from numbers import Real
+from types import FunctionType
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+from loaded_tca.arrays import OtherKindError, has_masked_cells, has_unit, numbers, shown
+from loaded_tca.errors import InputError, LoadedTCAError
+
+Checked = TypeVar("Checked", bound=Callable[..., Any])
+Unit = Callable[[], str | None]
+"""Unit of a parameter, looked up where a value has one or a message needs it."""
+FLOAT = np.dtype(float)
+
+
+def checked(target: Checked) -> Checked:
+    """A function, or the constructor and the methods of a class, whose arguments are checked before it runs.
+
+    Parameters
+    ----------
+    target : function or class
+        Its annotations are text (``from __future__ import annotations``). Parameters annotated by ``KINDS``, with or
+        without None, are checked; arrays that a constructor or an ``ArrayLike`` takes are copied.
+
+    Raises
+    ------
+    InputError
+        When it is called, with every argument that is none of its kind.
+
+    Examples
+    --------
+    >>> @checked
+    ... def doubled(length: float) -> float:
+    ...     return 2.0 * length
+    >>> doubled("1 mm")
+    Traceback (most recent call last):
+    ...
+    loaded_tca.errors.InputError: length: a number is asked for, not '1 mm'
+    """
+    if not inspect.isclass(target):
+        return cast(Checked, _with_checks(cast(FunctionType, target), target))
+    for name, member in list(vars(target).items()):
+        function = getattr(member, "__func__", member)
+        if not inspect.isfunction(function) or getattr(function, "__isabstractmethod__", False):
+            continue
+        if name == "__init__" or not name.startswith("_"):
+            with_checks = _with_checks(function, target if name == "__init__" else function)
+            if with_checks is not function:
+                setattr(target, name, with_checks if function is member else type(member)(with_checks))
+    return target
+
+
+def kind_of(annotation: object) -> str | None:
+    """The entry of ``KINDS`` of an annotation; None if it has none."""
+    text = str(annotation).removesuffix(" | None")
+    return text if text in KINDS else None
+
+
+def units_of(documented: object) -> dict[str, str]:
+    """Units that a numpydoc docstring gives its parameters in brackets, nothing for pure numbers.
+
+    Examples
+    --------
+    >>> from loaded_tca.contact import solve_contact
+    >>> units = units_of(solve_contact)
+    >>> units["gap"], units["contact_modulus"], units["tolerance"]
+    ('mm', 'MPa', '')
+    """
+    lines = inspect.cleandoc(getattr(documented, "__doc__", None) or "").partition("Parameters\n----------\n")[2]
+    units = {}
+    for names, unit in PARAMETER.findall(lines):
+        units.update(dict.fromkeys(names.split(", "), unit))
+    return units
+
+
+PARAMETER = re.compile(r"^(\w+(?:, \w+)*) : .*?(?:\[([^\]\n]*)\])?$", re.MULTILINE)
+
+
+def _with_checks(function: FunctionType, documented: object) -> FunctionType:
+    """The function that checks what it has a kind for; the function itself if it has none."""
+    names = inspect.getfullargspec(function)
+    annotations = function.__annotations__
+    of_names = {name: kind_of(annotations.get(name)) for name in (*names.args, *names.kwonlyargs)}
+    checks = {name: KINDS[kind] for name, kind in of_names.items() if kind}
+    if not checks:
+        return function
+    places = tuple((place, name) for place, name in enumerate(names.args) if name in checks)
+    optional = {name for name in checks if str(annotations[name]).endswith(" | None")}
+    units = functools.cache(lambda: units_of(documented))
+
+    @functools.wraps(function)
+    def call_checked(*arguments: Any, **options: Any) -> Any:
+        values: list[Any] = list(arguments)
+        problems, doubts = Problems(), Problems()
+        places_given: list[tuple[Any, Any, str]] = [
+            (values, place, name) for place, name in places if place < len(values)
+        ]
+        for where, key, name in (*places_given, *((options, name, name) for name in checks if name in options)):
+            if where[key] is not None or name not in optional:
+                where[key] = _taken(checks[name], name, where[key], units, problems, doubts)
+        if problems:
+            raise InputError(problems)
+        if not doubts:
+            return function(*values, **options)
+        with warnings.catch_warnings(action="ignore"):
+            try:  # the function may say more of it: what is allowed, and what else is wrong
+                function(*values, **options)
+            except LoadedTCAError:
+                raise
+            except Exception:  # numbers were asked for: what text comes to is no matter
+                raise InputError(doubts) from None
+        raise InputError(doubts)
+
+    return cast(FunctionType, call_checked)
+
+
+Problems = list[str]
+
+
+def _taken(
+    kind: Kind, name: str, value: Any, units: Callable[[], dict[str, str]], problems: Problems, doubts: Problems
+) -> Any:
+    """The value as a function takes it; as it is, if it is of another kind, and the problem among the others."""
+    try:
+        return kind(name, value, lambda: units().get(name))
+    except OtherKindError as error:
+        doubts += error.problems
+    except InputError as error:
+        problems += error.problems
+    return value
+
+
+def _array(name: str, value: Any, unit: Unit) -> Any:
+    """An array, or a number that behaves as one."""
+    plain = (type(value) is np.ndarray and value.dtype == FLOAT) or type(value) in (float, np.float64)
+    return value if plain else numbers(name, value, unit())
+
+
+def _number(name: str, value: Any, unit: Unit) -> Any:
+    """A number as it is; one with a unit, or in an array, as a float."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        if isinstance(value, int) and abs(value) > sys.float_info.max:
+            raise InputError(f"{name}: a whole number beyond {sys.float_info.max:.3g}")
+        return value
+    if has_unit(value) or has_masked_cells(value):
+        value = numbers(name, value, unit())
+    if getattr(value, "ndim", None) == 0:
+        return _number(name, value.item(), unit)
+    raise OtherKindError(f"{name}: a number{_in(unit)} is asked for, not {shown(value)}")
+
+
+def _row(name: str, value: Any, unit: Unit, length: int | None = None) -> Any:
+    """A row of numbers as it is, or those of an array as a tuple of floats."""
+    plain = isinstance(value, list | tuple) and all(type(part) in (float, int) for part in value)
+    try:
+        row = np.asarray(value, dtype=float) if plain else numbers(name, value, unit())
+    except InputError as error:
+        raise OtherKindError(error.problems) from None
+    if row.ndim != 1 or length not in (None, len(row)):
+        wanted = "a row of" if length is None else f"a row of {length}"
+        raise OtherKindError(f"{name}: {wanted} numbers{_in(unit)} is asked for, not {shown(value)}")
+    return value if plain else tuple(row.tolist())
+
+
+def _pair(name: str, value: Any, unit: Unit) -> Any:
+    return _row(name, value, unit, 2)
+
+
+def _text(name: str, value: Any, unit: Unit) -> str:  # noqa: ARG001 (all kinds are called alike)
+    if not isinstance(value, str):
+        raise OtherKindError(f"{name}: text is asked for, not {shown(value)}")
+    return value
+
+
+def _path(name: str, value: Any, unit: Unit) -> Any:  # noqa: ARG001
+    if not isinstance(value, str | os.PathLike):
+        raise InputError(f"{name}: the name of a file or directory is asked for, not {shown(value)}")
+    return value
+
+
+def _in(unit: Unit) -> str:
+    return f" in {unit()}" if unit() else ""
+
+
+Kind = Callable[[str, Any, Unit], Any]
+KINDS: dict[str, Kind] = {
+    "ArrayLike": _array,
+    "Array": _array,
+    "float": _number,
+    "int": _number,
+    "tuple[float, float]": _pair,
+    "Spacing": _pair,
+    "Both": _pair,
+    "Sequence[float]": _row,
+    "str": _text,
+    "FilePath": _path,
+    "str | os.PathLike[str]": _path,
+    "str | PathLike[str]": _path,
+}
+"""Annotation of a parameter, less None -> what its argument becomes, with InputError if it is of no such kind."""
