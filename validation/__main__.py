@@ -62,6 +62,7 @@ CASES = (
     "loaded.root_stress_space",
     "loaded.root_stress_precision",
     "loaded.root_face_load",
+    "loaded.face_ends_space",
     "loaded.numbers_to_copy",
     "calculix.mesh_cycle",
     "calculix.helical_relief",

@@ -10,6 +10,8 @@
 - ``jumps``, ``error_estimates``: what grids do to the transmission error, and what estimates of peak pressures are
   worth, over random scenes of all families, in minutes;
 - ``face_ends``: K_Hbeta of half-spaces at sharp face ends, beside fine cells, in minutes;
+- ``face_ends_space``: line load up to the free ends of the face, aligned and misaligned, beside finite elements in
+  space of its own;
 - ``local_term``: how far the local term of a tooth reaches along the face;
 - ``ring_teeth``: deflection and root stress of teeth of rings beside plane-strain finite elements of their own
   (``plane_teeth``); ``internal_cycle``: the mesh cycle of a pinion in a ring beside the same elements of several teeth
