@@ -18,7 +18,7 @@ from loaded_tca import AccuracyWarning, parse_scene, read_scene
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import LoadedTCAError
 from loaded_tca.scene import Scene
-from validation.scene_features import FEATURES
+from validation.scene_features import FEATURES, Feature
 
 SCENES = Path(__file__).parents[1] / "examples" / "scenes"
 FAMILIES = (
@@ -91,14 +91,11 @@ def featured_scene(seed: int, **analysis: Any) -> FeaturedScene:
     Gears and features are drawn each by generators of their own, so that a new feature leaves all others as they are. A
     feature that does not go with those before it is left out.
     """
-    family = ALL_FAMILIES[seed % len(ALL_FAMILIES)]
+    family, tossed = coins(seed)
     scene, features = _plain(family, np.random.default_rng([seed, 0])), []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        for feature in FEATURES:
-            rng = np.random.default_rng([seed, crc32(feature.name.encode())])
-            if family not in feature.families or rng.random() >= feature.chance:
-                continue
+        for feature, rng in tossed:
             try:
                 more = feature.draw(rng, scene)
                 more.pair()
@@ -109,6 +106,16 @@ def featured_scene(seed: int, **analysis: Any) -> FeaturedScene:
             features.append(feature.name)
         scene = scene.with_changes({f"analysis.{key}": value for key, value in analysis.items()})
     return FeaturedScene(seed, family, tuple(features), scene)
+
+
+def coins(seed: int) -> tuple[str, list[tuple[Feature, np.random.Generator]]]:
+    """Family of a seed, and the features whose coins fall for it, each with the generator that draws it."""
+    family, tossed = ALL_FAMILIES[seed % len(ALL_FAMILIES)], []
+    for feature in FEATURES:
+        rng = np.random.default_rng([seed, crc32(feature.name.encode())])
+        if family in feature.families and rng.random() < feature.chance:
+            tossed.append((feature, rng))
+    return family, tossed
 
 
 def _plain(family: str, rng: np.random.Generator) -> Scene:

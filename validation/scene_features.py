@@ -233,11 +233,12 @@ def _shaft(bearings: Callable[[np.random.Generator, float, float], list[Section]
 
     def draw(rng: np.random.Generator, scene: Scene) -> Scene:
         pair = scene.pair()
-        middle, width, module = scene.face_middles[0], pair.face_width, pair.module
+        middle, module = scene.face_middles[0], pair.module
+        width = max(pair.face_width, getattr(scene.pinion, "face_width_mm", 0.0))
         diameter = float(f"{pair.rigid_bores[0]:.3g}")
         overhangs = middle != 0.0 or rng.random() < 0.5
         places = (0.8, 2.0) if overhangs else (-1.0, 1.0)
-        start, length = middle - (0.5 if overhangs else 1.5) * width, 3.0 * width
+        start, length = middle - (0.6 if overhangs else 1.5) * width, 3.0 * width
         at = [float(middle + place * width) for place in places]
         shaft = {
             "start_mm": float(start),
