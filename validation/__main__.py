@@ -81,6 +81,7 @@ LONG = (
     "loaded.root_stress_families",
     "loaded.jumps",
     "loaded.random_sensitivities",
+    "loaded.random_scenes",
     "loaded.moving_edges",
     "loaded.bending_line",
     "loaded.face_ends",

@@ -1,0 +1,56 @@
+"""Quick random scenes, every feature and every invariance among them; ``validation.loaded.random_scenes`` runs more."""
+
+import pytest
+
+from validation.invariances import INVARIANCES
+from validation.loaded.random_scenes import beyond, examined
+from validation.random_scenes import ALL_FAMILIES, coins
+from validation.scene_features import FEATURES
+
+QUICK = {
+    1: ("pitch later", "torque balanced"),
+    5: ("pitch later", "torque balanced"),
+    8: ("zeros as none",),
+    10: ("energy kept",),
+    13: ("stiffness and rotation",),
+    14: ("mirror along",),
+    15: ("pitch later", "torque balanced"),
+    17: ("lengths doubled",),
+    29: ("pitch later", "torque balanced"),
+    41: ("finer grids",),
+    77: ("torque balanced",),
+    82: ("pitch later", "torque balanced"),
+    83: ("torque balanced",),
+    109: ("continuous",),
+    150: ("gears exchanged",),
+    153: ("torque balanced",),
+    169: ("moments on shafts",),
+    202: ("pitch later", "torque balanced"),
+    209: ("pitch later", "torque balanced"),
+    214: ("positions among others",),
+    217: ("pitch later", "torque balanced"),
+    228: ("moments on shafts",),
+    265: ("derivatives and differences",),
+    382: ("memory and file",),
+    457: ("revolution doubled",),
+    471: ("mirror across",),
+    507: ("pitch later", "torque balanced"),
+    538: ("torque in a list",),
+    541: ("moments on shafts",),
+    565: ("torque balanced",),
+}
+"""Seed -> names of what it is examined for."""
+
+
+@pytest.mark.parametrize("seed", QUICK)
+def test_what_holds_of_every_scene_holds_of_a_random_one(seed):
+    found = examined(seed, QUICK[seed])
+    assert found["features"] == tuple(feature.name for feature, _ in coins(seed)[1])  # none is left out
+    assert beyond(found) == []
+
+
+def test_every_feature_family_and_invariance_is_among_the_quick_scenes():
+    families, tossed = zip(*map(coins, QUICK), strict=True)
+    assert set(families) == set(ALL_FAMILIES)
+    assert {feature.name for features in tossed for feature, _ in features} == {feature.name for feature in FEATURES}
+    assert {name for names in QUICK.values() for name in names} == {one.name for one in INVARIANCES}

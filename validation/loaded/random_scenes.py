@@ -1,0 +1,96 @@
+"""Random scenes with every feature against the invariances that hold of them all: a line for each that does not.
+
+``python -m validation.loaded.random_scenes 0 300 --log FILE`` runs seeds 0 to 299 and writes a line of JSON for each,
+with processor seconds and what is off by more than is allowed; seeds that stand in the file are not run again.
+"""
+
+import argparse
+import json
+import time
+import warnings
+from pathlib import Path
+from typing import Any
+
+from loaded_tca import AccuracyWarning
+from validation.invariances import INVARIANCES, Subject
+from validation.table import Row
+
+CASE, SOURCE = "random scenes", "invariances of every scene"
+SEEDS = range(24)
+"""Of the table; logs have more."""
+
+
+def rows() -> list[Row]:
+    """A row for each scene: the largest of what is off, over what is allowed."""
+    return [_row(examined(seed)) for seed in SEEDS]
+
+
+def _row(found: dict[str, Any]) -> Row:
+    sizes = {f"{check}: {name}": size for check, off in found["off"].items() for name, size in off.items()}
+    worst = max(sizes, key=lambda name: sizes[name])
+    note = ", ".join([*found["features"], *found["failed"].values()])
+    return Row(CASE, SOURCE, f"seed {found['seed']}, {found['family']}: {worst}", 0.0, sizes[worst], 1.0, note=note)
+
+
+def examined(seed: int, checks: tuple[str, ...] = ()) -> dict[str, Any]:
+    """What is off of a scene, over what is allowed, by invariance and quantity; what failed with an error; seconds.
+
+    Parameters
+    ----------
+    seed : int
+    checks : tuple of str
+        Names of invariances; none: those that a long run has for the scene.
+    """
+    start, off, failed, seconds = time.process_time(), {}, {}, {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        subject = Subject.of(seed)
+        for invariance in INVARIANCES:
+            wanted = invariance.name in checks if checks else invariance.is_tried_on(subject)
+            if not wanted or not invariance.holds_for(subject):
+                continue
+            since = time.process_time()
+            try:
+                off[invariance.name] = invariance.check(subject)
+            except Exception as error:  # whatever a check raises is a result of it
+                failed[invariance.name] = f"{type(error).__name__}: {error}"[:300]
+            seconds[invariance.name] = round(time.process_time() - since, 2)
+    featured = subject.featured
+    about = {"seed": seed, "family": featured.family, "features": featured.features, "off": off, "failed": failed}
+    return about | {"seconds": round(time.process_time() - start, 2), "by_check": seconds}
+
+
+def beyond(found: dict[str, Any]) -> list[str]:
+    """Lines on what is off by more than is allowed, or failed."""
+    who = f"seed {found['seed']} {found['family']}"
+    lines = [
+        f"{who}: {check}: {name}: {size:.3g} times what is allowed"
+        for check, off in found["off"].items()
+        for name, size in off.items()
+        if not size <= 1.0
+    ]
+    lines += [f"{who}: {check}: {error}" for check, error in found["failed"].items()]
+    return [f"{line} [{', '.join(found['features'])}]" for line in lines]
+
+
+def main() -> None:
+    """Run seeds and write the log."""
+    parser = argparse.ArgumentParser(prog="python -m validation.loaded.random_scenes", description=__doc__)
+    parser.add_argument("first", type=int)
+    parser.add_argument("end", type=int)
+    parser.add_argument("--log", type=Path, required=True, help="lines of JSON, one for each scene")
+    parser.add_argument("--only", nargs="*", default=(), help="names of invariances, tried on every scene")
+    options = parser.parse_args()
+    lines = options.log.read_text().splitlines() if options.log.exists() else []
+    known = {json.loads(line)["seed"] for line in lines}
+    for seed in range(options.first, options.end):
+        if seed in known:
+            continue
+        found = examined(seed, tuple(options.only))
+        with options.log.open("a") as log:
+            log.write(json.dumps(found) + "\n")
+        print(*beyond(found), sep="\n", end="\n" if beyond(found) else "", flush=True)
+
+
+if __name__ == "__main__":
+    main()
