@@ -1126,6 +1126,48 @@ FAULTS = (
         "- one.y[along] * one.axes[1]\n",
         "results/test_stress_below.py::test_stress_beside_a_spike_is_that_across_the_contact_point",
     ),
+    Fault(
+        "boxes: ends of parabolas 2 % of what is left of them too far",
+        "separation/strips.py",
+        "np.sqrt(outer + rest)",
+        "np.sqrt(outer + 1.02 * rest)",
+        "separation/test_strips.py::test_end_of_a_penetration_that_falls_as_a_parabola_is_where_that_is_zero",
+    ),
+    Fault(
+        "cover: cells at the end of a grid count half their width",
+        "separation/sample.py",
+        "sums[:, -1] += steps[:, -1]",
+        "sums[:, -1] += 0.5 * steps[:, -1]",
+        "separation/test_separation.py::test_cover_of_cells_that_an_oblique_edge_cuts_follows_its_distance_up_to_the_end_of_the_grid",
+    ),
+    Fault(
+        "line loads: slopes at their top leave out that the loaded length changes",
+        "results/slice_pressure.py",
+        " + by_length * slices.length_slopes",
+        "",
+        "results/test_figure_slopes.py::test_line_load_over_the_loaded_length_changes_as_that_does",
+    ),
+    Fault(
+        "supports: wind-up counts how the gears stand at rest",
+        "results/supports.py",
+        "for load in loads]) - support.at_rest",
+        "for load in loads])",
+        "supports/test_shafts_of_scenes.py::test_wind_up_is_that_of_the_torque_alone",
+    ),
+    Fault(
+        "supports: lives of bearings are those of the first position",
+        "results/supports.py",
+        "bearing.life(own[loaded].mean(axis=0))",
+        "bearing.life(own[loaded][0])",
+        "supports/test_shafts_of_scenes.py::test_life_of_a_bearing_is_that_under_its_mean_motion_of_the_loaded_positions",
+    ),
+    Fault(
+        "supports: motions of bodies are given on top of those of supports",
+        "loaded/moved_gears.py",
+        "else support.motion - body)",
+        "else support.motion + body)",
+        "supports/test_shafts_of_scenes.py::test_teeth_that_move_with_the_body_of_their_gear_are_displaced_by_nothing_else",
+    ),
 )
 
 
