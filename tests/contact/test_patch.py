@@ -142,3 +142,10 @@ def test_contact_that_the_material_cuts_ends_where_that_does(part):
     place = np.broadcast_to(np.arange(20.0)[:, None], pressure.shape)
     ends = patch.values_at_ends(np.where(cover > 0.0, pressure, 0.0), place, cover, axes=(0,))
     assert_allclose(ends.max(), 8.5 + part, rtol=ROUNDING)
+
+
+def test_width_of_a_contact_that_fills_its_material_ends_with_the_parts_of_cut_cells():
+    """Three whole cells and 0.4 and 0.3 of one at either end, under an even pressure; a free slice has none."""
+    cover = np.array([[0.0, 0.4, 1.0, 1.0, 1.0, 0.3, 0.0]] * 2).T
+    pressure = np.where(cover > 0.0, 1.0, 0.0) * [1.0, 0.0]
+    assert_allclose(patch.widths(pressure, cover), [3.7, 0.0])

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from loaded_tca.results.figure_slopes import (
     smooth_peak_slopes,
 )
 from loaded_tca.results.load_factors import load_factors
-from loaded_tca.results.slice_pressure import largest_slice_pressures
+from loaded_tca.results.slice_pressure import _relative_slopes, largest_slice_pressures
 from loaded_tca.scene import read_scene
 from loaded_tca.separation import sample_separation
 from loaded_tca.separation.box import Box
@@ -230,6 +231,22 @@ def test_slice_pressure_of_a_contact_shorter_than_the_average_changes_with_its_l
     expected = (figure(pressure + step * grown) - figure(pressure - step * grown)) / (2.0 * step)
     assert_allclose((slopes * grown).sum() * area, expected, rtol=0.02)  # the place is one of some between slices
     assert_allclose((slopes * pressure).sum() * area, 0.5 * peak.pressure, rtol=1e-9)  # evenly more: the same length
+
+
+def test_line_load_over_the_loaded_length_changes_as_that_does():
+    """Slices 1, 2, 1 N, less long than the average: a force at an end makes that longer, one in the middle shorter."""
+    grid = SimpleNamespace(x=np.zeros(1), y=np.arange(3.0), spacing=(1.0, 1.0), cover=np.ones((1, 3)))
+    forces, step = np.array([[1.0, 2.0, 1.0]]), 1e-5
+
+    def loads(pressure):
+        return line_load.SliceLoads(100.0, grid, pressure)
+
+    def line(pressure):
+        return loads(pressure).at(np.ones(1))[2].item()
+
+    differences = [(line(forces + step * one) - line(forces - step * one)) / (2.0 * step) for one in np.eye(3)]
+    slopes = _relative_slopes(loads(forces), 1.0, np.ones(3))
+    assert_allclose(slopes, np.array(differences) / line(forces), rtol=1e-6)  # of differences
 
 
 def test_slice_pressure_of_a_map_is_that_of_its_result():

@@ -143,6 +143,10 @@ def test_stress_beside_a_spike_is_that_across_the_contact_point():
     assert abs(below.pressure_map.y[column]) <= 0.5 * below.pressure_map.spacing[1] * (1.0 + 1e-9)
     assert_allclose(below.pressure_map.pressure[row, column], cycle.central_pressure[at], rtol=COARSE)
     inner, anywhere = (below.largest("max_shear", anywhere=one) for one in (False, True))
+    _, row, column = below.stress.max_shear_at
+    x, y, z = below.pressure_map.points[row, column]
+    assert_allclose((anywhere.radius, anywhere.axial), (np.hypot(x, y), z), rtol=1e-9)
+    assert abs(z) > 5.0  # near an end of the face of 14 mm
     assert inner.value < 0.9 * anywhere.value
     assert_allclose(inner.value, 0.3003 * cycle.central_pressure[at], rtol=COARSE)  # as below a long line
 

@@ -25,7 +25,7 @@ from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.reference import hertz
 from loaded_tca.separation.normal_gap import NormalGap
-from loaded_tca.separation.sample import cells_for_accuracy
+from loaded_tca.separation.sample import _covers, cells_for_accuracy
 from tests.refusals import refusals
 from tests.samples.gear_pairs import SAM_PAPER_TORQUE, cylindrical_mesh, gear_pair, pairs, sam_paper
 from tests.samples.results import SCENES
@@ -337,3 +337,13 @@ def test_cover_is_the_part_of_the_cell_within_the_edges(name):
     assert cut.any()
     assert_allclose(separation.cover, inside, rtol=0.0, atol=0.13)
     assert_allclose(separation.cover.sum(), inside.sum(), rtol=2e-3)
+
+
+def test_cover_of_cells_that_an_oblique_edge_cuts_follows_its_distance_up_to_the_end_of_the_grid():
+    """Edges with the normal (0.6, 0.8) run through cells of 1 mm within 0.7 mm of their middles."""
+    place = np.arange(4.0)
+    distance = 4.2 - 0.6 * place[:, None] - 0.8 * place
+    covers = _covers(distance[None, None], np.ones((1, 2)))[0]
+    expected = np.clip(0.5 + distance / 1.4, 0.0, 1.0)
+    assert_allclose(covers, expected, atol=1e-12)
+    assert 0.0 < expected[3, 3] < 1.0

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.contact import solve_contact
 from loaded_tca.reference.hertz import point_contact
-from loaded_tca.separation.strips import strip_pressure
+from loaded_tca.separation.strips import _ends_of_parabolas, strip_pressure
 
 MODULUS, LOAD = 115e3, 1000.0
 
@@ -49,3 +49,11 @@ def test_solver_needs_fewer_convolutions_from_strips_than_from_nothing():
     flat = solve_contact(gap, spacing, MODULUS, initial_pressure=np.isfinite(gap) * 1.0, **keys)
     assert by_strips.convolutions < flat.convolutions
     assert_allclose(by_strips.pressure, flat.pressure, rtol=0, atol=1e-3 * flat.pressure.max())
+
+
+def test_end_of_a_penetration_that_falls_as_a_parabola_is_where_that_is_zero():
+    """Between the strips; of its two ends the farther one."""
+    places = np.linspace(-2.0, 2.0, 21)
+    penetration = np.stack([3e-3 * (1.0 - (places / end) ** 2) for end in (1.27, 0.73)])
+    ends = _ends_of_parabolas(np.abs(np.stack([places, places])), penetration, penetration > 0.0)
+    assert_allclose(ends, [1.27, 0.73], rtol=1e-9)

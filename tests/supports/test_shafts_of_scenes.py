@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,11 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import MeshCycle, analyse, load_result, parse_scene, read_scene
 from loaded_tca.errors import InputError, NotAskedError
+from loaded_tca.loaded.moved_gears import given_motions
+from loaded_tca.results.supports import _of_rolling_bearings, _wind_up
 from loaded_tca.scene import Scene
 from loaded_tca.scene.section import key_at
-from loaded_tca.supports import Support, moved_pair, shafts_of, supports_of
+from loaded_tca.supports import BallBearing, Support, moved_pair, shafts_of, supports_of
 from loaded_tca.unloaded import trace_teeth
 from loaded_tca.warning_kinds import BODY_TWIST, THIN_RIM, Kind
 
@@ -199,3 +202,37 @@ def test_teeth_along_a_shaft_are_refused_for_bevel_gears() -> None:
     }
     with pytest.raises(InputError, match=r'pinion.shaft.gear: found "along"; allowed "rigid" for bevel gears'):
         supports_of(bevel.with_changes({"pinion.shaft": shaft}))
+
+
+def test_wind_up_is_that_of_the_torque_alone() -> None:
+    """Gears that stand turned without it, by other loads on their shafts, are not wound up by that."""
+    rest, parts = np.array([0.1, 0.0, 0.0, 0.0, 0.0, 3e-3]), (2e-9, 1e-9)
+    supports = [SimpleNamespace(moved=lambda load, part=part: rest + part * load, at_rest=rest) for part in parts]
+    loads = tuple(np.array([[0.0, 0.0, 0.0, 0.0, 0.0, torque]]) for torque in (-40e3, 100e3))
+    one = SimpleNamespace(loads=loads, bending=SimpleNamespace(supports=SimpleNamespace(supports=supports)))
+    assert_allclose(_wind_up(one), 2e-9 * 40e3**2 / 100e3 + 1e-9 * 100e3)  # type: ignore[arg-type]
+
+
+def test_life_of_a_bearing_is_that_under_its_mean_motion_of_the_loaded_positions() -> None:
+    ball = BallBearing(at=0.0, elements=7, diameter=11.5, pitch_diameter=43.5)
+    motions = np.array([[0.01, 0.0, 0.0, 0.0, 0.0, 0.0], [0.03, 0.0, 0.01, 0.0, 0.0, 0.0], [np.nan] * 6])
+    own = SimpleNamespace(bearings=[ball], bearing_motions=lambda load: motions[[int(load[0])]])
+    none = SimpleNamespace(bearings=[])
+    one = SimpleNamespace(
+        loads=(np.arange(3.0)[:, None], np.zeros((3, 1))),
+        bending=SimpleNamespace(supports=SimpleNamespace(supports=[own, none])),
+    )
+    arrays = _of_rolling_bearings([one])  # type: ignore[list-item]
+    assert_allclose(arrays["pinion_bearing_life"], ball.life(np.array([0.02, 0.0, 0.005, 0.0, 0.0, 0.0])))
+
+
+def test_teeth_that_move_with_the_body_of_their_gear_are_displaced_by_nothing_else() -> None:
+    """What is given is the motion of the support beyond that of the body; of linear ones the body stands too far."""
+    body = np.array([1e-3, -2e-3, 0.0, 1e-5, 0.0, 0.0])
+    supports = SimpleNamespace(
+        supports=[SimpleNamespace(with_middle=lambda motion: motion, motion=motion) for motion in (body, None)],
+        bodies=lambda _: (body, body),
+    )
+    followed, linear = given_motions(supports, (body, body))  # type: ignore[arg-type]
+    assert not followed.any()
+    assert_allclose(linear, -body)
