@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import loaded_tca
-from loaded_tca import InputError, analyse, load_result, parse_scene, solve_contact, trace_contact
+from loaded_tca import AccuracyWarning, InputError, analyse, load_result, parse_scene, solve_contact, trace_contact
 from loaded_tca.arguments import checked, kind_of, units_of
 from loaded_tca.arrays import numbers, real
 from loaded_tca.contact import ContactProblem, subsurface_stress
@@ -313,3 +313,9 @@ def test_every_array_that_cannot_be_used_is_named_at_once():
         sum_of(np.ma.masked, second=Quantity([1.0], "mm"))
     assert [problem.split(":")[0] for problem in told.value.problems] == ["first", "second"]
     assert sum_of([1.0], second=None).tolist() == [1.0]
+
+
+def test_warning_is_that_of_the_line_that_calls():
+    with pytest.warns(AccuracyWarning) as given:
+        solve_contact(GAP, SPACING, 115e3, load=1.0)
+    assert {warning.filename for warning in given} == {__file__}
