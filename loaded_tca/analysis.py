@@ -12,6 +12,7 @@ from datetime import UTC, datetime
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, default_density, model_of, require_teeth, root_stress_model, way_out_told
 from loaded_tca.compliance.model import SumOfParts, held_bodies, with_enough_teeth
@@ -167,6 +168,7 @@ THICKEST_LAYER = 1.2
 (a load of 2.7 modules: 2.5 % on 1.3 modules, 9 % on 1.9, 16 % on 2.6)."""
 
 
+@checked
 def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     """Analyse a scene: at every position of a pitch one tooth pair carries the load, or all in contact share it.
 

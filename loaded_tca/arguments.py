@@ -13,7 +13,7 @@ import re
 import sys
 import warnings
 from collections.abc import Callable
-from numbers import Real
+from numbers import Integral, Real
 from types import FunctionType
 from typing import Any, TypeVar, cast
 
@@ -181,6 +181,15 @@ def _pair(name: str, value: Any, unit: Unit) -> Any:
     return _row(name, value, unit, 2)
 
 
+def _whole_pair(name: str, value: Any, unit: Unit) -> Any:  # noqa: ARG001 (all kinds are called alike)
+    """Two whole numbers as they are, or those of an array."""
+    pair = value.tolist() if isinstance(value, np.ndarray) else value
+    whole = isinstance(pair, list | tuple) and all(isinstance(k, Integral) and not isinstance(k, bool) for k in pair)
+    if not whole or len(pair) != 2:
+        raise OtherKindError(f"{name}: a row of 2 whole numbers is asked for, not {shown(value)}")
+    return pair
+
+
 def _text(name: str, value: Any, unit: Unit) -> str:  # noqa: ARG001 (all kinds are called alike)
     if not isinstance(value, str):
         raise OtherKindError(f"{name}: text is asked for, not {shown(value)}")
@@ -193,6 +202,20 @@ def _path(name: str, value: Any, unit: Unit) -> Any:  # noqa: ARG001
     return value
 
 
+def _instance(title: str) -> Kind:
+    """The kind of all objects of a class, whose module need not be loaded for that."""
+
+    def instance(name: str, value: Any, unit: Unit) -> Any:  # noqa: ARG001
+        if title not in (base.__name__ for base in type(value).__mro__):
+            raise OtherKindError(f"{name}: a {title} is asked for, not {shown(value)}")
+        return value
+
+    return instance
+
+
+CLASSES = ("ContactPoint", "ContactProblem", "ContactSolution", "GearPair", "Material", "Scene")
+
+
 def _in(unit: Unit) -> str:
     return f" in {unit()}" if unit() else ""
 
@@ -201,9 +224,11 @@ Kind = Callable[[str, Any, Unit], Any]
 KINDS: dict[str, Kind] = {
     "ArrayLike": _array,
     "Array": _array,
+    "NDArray[np.float64]": _array,
     "float": _number,
     "int": _number,
     "tuple[float, float]": _pair,
+    "tuple[int, int]": _whole_pair,
     "Spacing": _pair,
     "Both": _pair,
     "Sequence[float]": _row,
@@ -211,5 +236,6 @@ KINDS: dict[str, Kind] = {
     "FilePath": _path,
     "str | os.PathLike[str]": _path,
     "str | PathLike[str]": _path,
+    **{title: _instance(title) for title in CLASSES},
 }
 """Annotation of a parameter, less None -> what its argument becomes, with InputError if it is of no such kind."""

@@ -59,6 +59,8 @@ class OtherKindError(InputError):
 
 def _plain(name: str, values: Any, unit: str | None) -> Array:
     """Numbers as an array of floats, in the unit asked for; TypeError or ValueError if they are none."""
+    if isinstance(values, bool):
+        raise TypeError
     if isinstance(values, list | tuple):
         return _floats(np.asarray([part if isinstance(part, PLAIN) else _plain(name, part, unit) for part in values]))
     written, bare = _without_unit(values)

@@ -13,6 +13,7 @@ import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.analysis import Effort, expected_effort, grid_of, roots_of
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, model_of
 from loaded_tca.compliance.model import HeldBodies, SumOfParts, held_bodies, with_enough_teeth
@@ -59,6 +60,7 @@ def expected_revolution_effort(scene: Scene) -> Effort:
     return Effort(2 * states * torques, part.cells, seconds, part.memory, certain=part.certain)
 
 
+@checked
 def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: Sequence[int] = ()) -> Revolution:
     """Analyse a whole revolution: at every position of every pitch all tooth pairs in contact share the load.
 

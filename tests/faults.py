@@ -1,8 +1,9 @@
 """Deliberate faults of the package, each with the test that has to fail with it.
 
 Run from the root of the repository: ``python -m tests.faults [WORD ...]``, all faults or those with a word in their
-description; two to three minutes. Each is written into a copy of the package, where its test is run; one that no test
-notices, or whose text is not there any more, makes the exit code 1. ``tests/test_faults.py`` keeps the texts true.
+description; four to five seconds of processor time each. Each is written into a copy of the package, where its test
+is run; one that no test notices, or whose text is not there any more, makes the exit code 1. ``tests/test_faults.py``
+keeps the texts true.
 """
 
 import argparse
@@ -1345,6 +1346,56 @@ FAULTS = (
         "self.problem.max_pressure is None",
         "contact/test_slope_jumps.py::test_cap_that_is_reached_limits_the_pressure_of_a_jump",
     ),
+    Fault(
+        "arguments: the mask of an array is dropped",
+        "arrays.py",
+        "    if has_masked_cells(values):\n        way_out",
+        "    if False:\n        way_out",
+        f"{ARGUMENTS}test_arrays_that_are_no_plain_numbers_are_refused_by_every_public_function",
+    ),
+    Fault(
+        "arguments: the unit of numbers is dropped",
+        "arrays.py",
+        "return array if written is None else",
+        "return array if True else",
+        f"{ARGUMENTS}test_pressure_does_not_depend_on_how_a_gap_is_stored",
+    ),
+    Fault(
+        "arguments: a public function is not among those whose arguments are checked",
+        "flank_maps/vh_check.py",
+        "@checked\ndef vh_check",
+        "def vh_check",
+        f"{ARGUMENTS}test_arrays_that_are_no_plain_numbers_are_refused_by_every_public_function",
+    ),
+    Fault(
+        "arguments: measured points are the array of the caller",
+        "flanks/topography.py",
+        'numbers(name, values, "mm").copy()',
+        'numbers(name, values, "mm")',
+        f"{ARGUMENTS}test_results_share_no_memory_with_arrays_of_the_caller",
+    ),
+    Fault(
+        "arguments: a warning is given where arguments are checked, not where the function is called",
+        "errors.py",
+        "stacklevel=_with_checks(stacklevel + 1)",
+        "stacklevel=stacklevel + 1",
+        f"{ARGUMENTS}test_warning_is_that_of_the_line_that_calls",
+    ),
+    Fault(
+        "text: numbers are what Python takes for them",
+        "input_files.py",
+        "if len(text) > MOST_DIGITS or NUMBER.fullmatch(text) is None:",
+        "if len(text) > MOST_DIGITS:",
+        "flanks/test_topography_file.py::test_what_python_alone_takes_for_a_number_is_none",
+    ),
+    Fault(
+        "text: the nearest name of a column with an unknown unit is that in metres",
+        "flanks/topography.py",
+        "        elif name in LENGTHS:\n            allowed",
+        "        elif False:\n            allowed",
+        "flanks/test_topography_file.py::test_unknown_unit_of_a_known_column_is_told_as_such",
+    ),
+ARGUMENTS = "test_arguments.py::"
     Fault(
         "local term of teeth: no more beside the free ends of the face than at mid-face",
         "compliance/influence.py",

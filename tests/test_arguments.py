@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import loaded_tca
-from loaded_tca import InputError, load_result, parse_scene, solve_contact, trace_contact
+from loaded_tca import AccuracyWarning, InputError, analyse, load_result, parse_scene, solve_contact, trace_contact
 from loaded_tca.arguments import checked, kind_of, units_of
 from loaded_tca.arrays import numbers, real
 from loaded_tca.contact import ContactProblem, subsurface_stress
 from loaded_tca.flanks import MeasuredDeviations, MeasuredPoints
-from loaded_tca.reference import friction, hertz, iso6336
+from loaded_tca.reference import friction, hertz, iso6336, iso6336_22, weber_banaschek
 from loaded_tca.supports import ShaftLoad
 from loaded_tca.tribology import Lubricant
 from loaded_tca.units import conversion
@@ -280,6 +280,16 @@ test_arguments_of_another_kind_are_named = refusals(
     (lambda: parse_scene(None), "^text: text is asked for, not None$"),
     (lambda: iso6336.zone_factor("0.3", 0.3, 0.1), "^transverse_pressure_angle: a number in rad is asked for"),
     (lambda: friction.schlenk(1.0, 1.0, 1.0, "thick", 1.0), "^viscosity: an array of finite numbers is asked for"),
+    (lambda: analyse("scene.toml"), "^scene: a Scene is asked for, not 'scene.toml'$"),
+    (lambda: trace_contact(None), "^pair: a GearPair is asked for, not None$"),
+    (lambda: weber_banaschek.ring_torsion(1.0, 2.0, "steel"), "^material: a Material is asked for, not 'steel'$"),
+    (
+        lambda: hertz.point_contact_gap((1.0, 1.0), (1.0, 1.0), (2.5, 2)),
+        "^cells: a row of 2 whole numbers is asked for",
+    ),
+    (lambda: iso6336.zone_factor(9.0, 0.3, 0.1), "^transverse_pressure_angle: 9.0 rad is not between 0 and 90 deg$"),
+    (lambda: iso6336.helix_angle_factor(np.inf), "^helix_angle: inf rad is not within 90 deg$"),
+    (lambda: iso6336_22.mean_friction(1.0, 1.0, 0.0, 1.0, 1.0, 2.0), "^radius: 0.0 is not positive and finite$"),
     (
         lambda: hertz.point_contact(1.0, (1.0,), 1.0),
         r"^curvatures: a row of 2 numbers in 1/mm is asked for, not \(1.0,\)$",
@@ -303,3 +313,9 @@ def test_every_array_that_cannot_be_used_is_named_at_once():
         sum_of(np.ma.masked, second=Quantity([1.0], "mm"))
     assert [problem.split(":")[0] for problem in told.value.problems] == ["first", "second"]
     assert sum_of([1.0], second=None).tolist() == [1.0]
+
+
+def test_warning_is_that_of_the_line_that_calls():
+    with pytest.warns(AccuracyWarning) as given:
+        solve_contact(GAP, SPACING, 115e3, load=1.0)
+    assert {warning.filename for warning in given} == {__file__}

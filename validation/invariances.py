@@ -116,6 +116,11 @@ def span(result: MeshCycle) -> Array:
     return np.maximum(np.ptp(error, axis=1, keepdims=True), LEAST_SPAN * deflection)
 
 
+def told(result: MeshCycle) -> Array:
+    """Estimated errors of the grids of each state, the mean over its forces (torque, position)."""
+    return np.asarray(np.nansum(result.load_share * result.discretisation_error, axis=-1))
+
+
 def of_pairs(result: MeshCycle, name: str, pairs: Array) -> Array:
     """A quantity of tooth pairs by their numbers (torque, position, pair), zero of those that carry nothing."""
     values = np.nan_to_num(np.asarray(getattr(result, name)))
@@ -161,8 +166,8 @@ def gears_exchanged(subject: Subject) -> Off:
     """Seen from the wheel, at the angle where it stands without load, under the moment that the teeth turn it with.
 
     Contacts are solved where they lie without load, and load turns one gear or the other from there: numbers may differ
-    by what they change over the way of that rotation. Rotations are compared, since a tilt about the middle of the
-    other face turns the gear, too.
+    by what they change over the way of that rotation, rotations by the errors told of both grids as well. Rotations are
+    compared, since a tilt about the middle of the other face turns the gear, too.
     """
     result, scene, other = subject.result, subject.scene, exchanged(subject.scene)
     ratio = result.gear_pair.ratio
@@ -177,6 +182,7 @@ def gears_exchanged(subject: Subject) -> Off:
         seen = _alone(other, ratio * angles[n] + unloaded[n], float(moments[n]))
         seen = seen._replace(rotation=-ratio * seen.rotation)
         away, moved = (np.array(here.differences(one)) / here.sizes(result) for one in (seen, turned))
+        away[0] -= 2.0 * told(result)[-1, n] * abs(rotation) / float(span(result)[-1, 0])
         off.append(np.maximum(away - moved, 0.0) / SOLVED_ANEW)
     names = "rotation", "load share", "peak pressure"
     return dict(zip(names, np.max(off, axis=0).tolist(), strict=True))
@@ -348,8 +354,8 @@ def finer_grids(subject: Subject) -> Off:
         for name in ("load_share", "peak_pressure", "discretisation_error")
     )
     counted = (np.minimum(*shares) > LITTLE_LOAD) & (errors[0] > 0.0)
-    told = errors[0] * peaks[0] + errors[1] * peaks[1] + LITTLE_LOAD * 1e-2 * peaks[0].max()
-    off = np.where(counted, np.abs(peaks[1] - peaks[0]) / told, 0.0)
+    allowed = errors[0] * peaks[0] + errors[1] * peaks[1] + LITTLE_LOAD * 1e-2 * peaks[0].max()
+    off = np.where(counted, np.abs(peaks[1] - peaks[0]) / allowed, 0.0)
     return {
         "peak pressure over the errors told": float(off.max()),
         "transmission error": float(np.abs((fine.transmission_error - result.transmission_error) / span(result)).max())
@@ -382,8 +388,8 @@ def energy_kept(subject: Subject) -> Off:
     between = (moment[2] - moment[0]) * (rotation[0] + 4.0 * rotation[1] + rotation[2]) / 6.0
     work = moment[2] * rotation[2] - moment[0] * rotation[0] - between
     stored = _deformation_work(result)
-    told = np.nansum(result.load_share * result.discretisation_error, axis=-1).max(axis=0)
-    return {"work": float((np.abs((stored[2] - stored[0]) / work - 1.0) / (ENERGY + told)).max())}
+    allowed = ENERGY + told(result).max(axis=0)
+    return {"work": float((np.abs((stored[2] - stored[0]) / work - 1.0) / allowed).max())}
 
 
 def _deformation_work(result: MeshCycle) -> Array:

@@ -175,6 +175,7 @@ def subsurface_stress(
     return SubsurfaceStress(depths, (dx, dy), poisson_ratio, *stresses)
 
 
+@checked
 def depths_below(solution: ContactSolution, count: int = 31) -> Array:
     """Depths from the surface to three semi-minor axes of a contact, closer near the surface.
 

@@ -28,6 +28,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, GearName, Mask
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.conjugate import (
@@ -248,6 +249,7 @@ class EaseOffMap:
         return f"EaseOffMap({self.gear}, {shape} points, up to {1e3 * float(self.ease_off.max()):.4g} um)"
 
 
+@checked
 def ease_off_map(pair: GearPair, gear: GearName = "pinion", grid: tuple[int, int] = GRID) -> EaseOffMap:
     """Ease-off of a flank against the conjugate of its mating flank.
 

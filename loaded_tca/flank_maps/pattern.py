@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, GearName, Indices, Mask
 from loaded_tca.errors import InputError
 from loaded_tca.flank_maps.conjugate import exchanged, problems_of_map
@@ -265,6 +266,7 @@ def _sectors(turn: Array, x: Array, y: Array, edge: Array) -> Array:
     return 0.5 * bow * (x[:-1] * y[1:] - x[1:] * y[:-1])
 
 
+@checked
 def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOUND, rays: int = RAYS) -> ContactArea:
     """Instantaneous contact area around a contact point, on its own tooth pair.
 
@@ -345,6 +347,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     )
 
 
+@checked
 def contact_pattern(
     pair: GearPair,
     mesh: MeshPath | None = None,

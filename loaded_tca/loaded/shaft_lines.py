@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named
 from loaded_tca.loaded.moved_gears import loads_at_first_contact, moved_by
@@ -52,6 +53,7 @@ class ShaftLine:
     bearing_motions: Array
 
 
+@checked
 def shaft_lines(scene: Scene) -> tuple[ShaftLine, ...]:
     """Shafts of a scene under each of its torques, gear by gear.
 

@@ -13,8 +13,23 @@ from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require, require_positive
 
 _STEEL = 206000.0
-_WORKING_ANGLE = "working_pressure_angle: {} rad is not between 0 and 90 deg"
 _THEORETICAL_TO_REAL = 0.8  # C_M: measured single stiffness over the theoretical one, for solid discs
+
+
+def _angle_checks(**angles: float) -> list[tuple[bool, str]]:
+    """Checks that pressure angles lie between 0 and 90 deg."""
+    return [
+        (0.0 < angle < 0.5 * pi, f"{name}: {angle} rad is not between 0 and 90 deg") for name, angle in angles.items()
+    ]
+
+
+def _require_angles(**angles: float) -> None:
+    require(*_angle_checks(**angles))
+
+
+def _require_slopes(**angles: float) -> None:
+    """Refuse helix angles of 90 deg and more, of either hand."""
+    require(*((abs(angle) < 0.5 * pi, f"{name}: {angle} rad is not within 90 deg") for name, angle in angles.items()))
 
 
 @checked
@@ -38,8 +53,8 @@ def zone_factor(transverse_pressure_angle: float, working_pressure_angle: float,
     >>> round(zone_factor(*angles), 5)
     2.39533
     """
-    if not 0.0 < working_pressure_angle < 0.5 * pi:
-        raise InputError(_WORKING_ANGLE.format(working_pressure_angle))
+    _require_angles(transverse_pressure_angle=transverse_pressure_angle, working_pressure_angle=working_pressure_angle)
+    _require_slopes(base_helix_angle=base_helix_angle)
     curvature = cos(base_helix_angle) * cos(working_pressure_angle) / sin(working_pressure_angle)
     return sqrt(2.0 * curvature) / cos(transverse_pressure_angle)
 
@@ -110,6 +125,7 @@ def helix_angle_factor(helix_angle: float) -> float:
     >>> round(helix_angle_factor(radians(15.8)), 5)
     1.01944
     """
+    _require_slopes(helix_angle=helix_angle)
     return 1.0 / sqrt(cos(helix_angle))
 
 
@@ -161,7 +177,7 @@ def single_contact_factors(
     require(
         *((count >= 1, f"teeth: {count} is below 1") for count in teeth),
         *((1.0 <= ratio < inf, f"tip_over_base: {ratio} is not in [1, inf)") for ratio in tip_over_base),
-        (0.0 < working_pressure_angle < 0.5 * pi, _WORKING_ANGLE.format(working_pressure_angle)),
+        *_angle_checks(working_pressure_angle=working_pressure_angle),
         (1.0 < transverse_contact_ratio < inf, f"transverse_contact_ratio: {transverse_contact_ratio} is not above 1"),
         (0.0 <= overlap_ratio < inf, f"overlap_ratio: {overlap_ratio} is negative or not finite"),
     )
@@ -276,6 +292,9 @@ def virtual_teeth(teeth: int, helix_angle: float, pressure_angle: float) -> floa
     >>> round(virtual_teeth(17, radians(15.8), radians(20)), 3)
     18.905
     """
+    require_positive(teeth=teeth)
+    _require_angles(pressure_angle=pressure_angle)
+    _require_slopes(helix_angle=helix_angle)
     base_helix_angle = asin(sin(helix_angle) * cos(pressure_angle))
     return teeth / (cos(base_helix_angle) ** 2 * cos(helix_angle))
 
@@ -371,6 +390,7 @@ def single_stiffness(
     12.37047
     """
     require_positive(theoretical_single_stiffness=theoretical_single_stiffness, youngs_modulus=youngs_modulus)
+    _require_slopes(helix_angle=helix_angle)
     solid = _THEORETICAL_TO_REAL * theoretical_single_stiffness * cos(helix_angle) * youngs_modulus / _STEEL
     return solid * gear_blank_factor * basic_rack_factor
 

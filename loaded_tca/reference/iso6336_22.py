@@ -212,6 +212,7 @@ def mean_friction(
     >>> round(float(mean_friction(1.6780 * 255936.0 / 360.0, 16.469, 54.577, 30.09, 0.6, 2.884)), 4)
     0.03
     """
+    require_positive(radius=radius)
     excess = min(max(total_contact_ratio, 2.0), 3.5)
     bearing = 1.0 + 0.2 * math.sqrt((excess - 2.0) * (5.0 - excess))
     rough = 2.2 * (roughness / radius) ** 0.25

@@ -139,7 +139,7 @@ class MeshCycle(CycleNumbers):
         self,
         pinion_speed_rpm: ArrayLike | None = None,
         lubricant: Lubricant | None = None,
-        roughness_um: Sequence[float] | None = None,
+        roughness_um: Sequence[float | None] | None = None,
         application_factor: float | None = None,
         dynamic_factor: float | None = None,
         friction: str | float | None = None,

@@ -193,6 +193,7 @@ def cells_for_accuracy(accuracy: float) -> int:
     return 2 * math.ceil(0.5 * MARGIN * max(8.0, math.sqrt(PEAK_ERROR / accuracy)))
 
 
+@checked
 def sample_separation(
     pair: GearPair,
     contact: ContactPoint,

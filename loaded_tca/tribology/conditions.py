@@ -266,7 +266,7 @@ def conditions_of(
     cylindrical: bool,
     pinion_speed_rpm: ArrayLike | None,
     lubricant: Lubricant | None,
-    roughness_um: Sequence[float] | None,
+    roughness_um: Sequence[float | None] | None,
     application_factor: float | None,
     dynamic_factor: float | None,
     friction: str | float | None,
