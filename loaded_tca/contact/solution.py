@@ -34,6 +34,9 @@ MOST_OF_CHANGE, MOST_OF_CHANGE_BESIDE, MOST_OF_CHANGE_BEFORE = 0.4, 0.5, 0.15
 # Growth of the pressure with every halving of the cells, over the largest, that makes nothing of it: 17 halvings lead
 # from a hundredth of a millimetre to the size of atoms.
 LEAST_GROWTH = 1e-3
+# What a halving may add beside a jump of the slope, over its mean: a cell amidst which it lies has as much more pressure
+# as a halving adds than one at whose border it lies.
+MOST_OF_GROWTH = 2.0
 
 
 MOST_ITERATIONS = 500
@@ -67,7 +70,8 @@ class ErrorEstimate:
     peak_pressure : float
         Hardly ever exceeded: half of the largest change of pressure from the coarser grid in the cells about the peak,
         0.15 of that change between the two grids before, 0.4 of the change of the peak, or 0.6 over the square of the
-        cells across, whichever is largest; all of the change of the largest cell where the pressure has no limit.
+        cells across, whichever is largest. Where the pressure has no limit, all of the change of the largest cell, and
+        at least twice what a halving of the cells adds beside a jump of the slope.
     approach : float
         The change of the approach from the coarser grid.
     second_order : float
@@ -340,7 +344,7 @@ class ContactSolution(Solution):
             return ErrorEstimate(math.nan, math.nan, math.nan)
         least, cap = LEAST_ERROR / min(self.cells_across) ** 2, self.problem.max_pressure
         if self.bounded or slope_jump > 0.0 or (cap is not None and self.pressure.max() >= cap):
-            grown = growth(slope_jump, self.problem.contact_modulus) / float(self.pressure.max())
+            grown = MOST_OF_GROWTH * growth(slope_jump, self.problem.contact_modulus) / float(self.pressure.max())
             change = max(coarser.change_of_largest, grown, least)
             return ErrorEstimate(change, coarser.approach_change, change)
         change, beside = coarser.change_of_peak, coarser.change_beside_peak
