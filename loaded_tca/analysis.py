@@ -227,6 +227,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
             grid,
             replace(carried, rotation=turned),
             at_edges,
+            mesh_rate=np.stack([one.mesh_rate for one in cycles]) if cycles else carried.torque_rate,
             load_sharing=wanted.load_sharing,
             bodies=held_bodies(scene, pair),
         )

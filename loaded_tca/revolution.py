@@ -338,7 +338,8 @@ class _Numbers:
             if torque > 0.0 and not forces.any():
                 yield kinds.NO_TORQUE.sentence(torque=1e-3 * torque)
         yield from (at_places(reason, at, self.solved) for reason, at in self.places.items())
-        yield from rotation_reasons(self.pair, self.torques, self.arrays["rotation"], bodies)
+        rotation, rate = self.arrays["rotation"], self.arrays["stiffness"]
+        yield from rotation_reasons(self.pair, self.torques, rotation, rate, bodies)
 
     def whole(self) -> dict[str, Array]:
         """Arrays of ``REVOLUTION_QUANTITIES``, and of ``ROOTS`` if asked for."""

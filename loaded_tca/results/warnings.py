@@ -68,6 +68,7 @@ def warn_of_accuracy(
     carried: Carried,
     at_rounded_edges: Mapping[tuple[int, int, int], PeakAtEdge],
     *,
+    mesh_rate: Array,
     load_sharing: bool,
     bodies: HeldBodies,
 ) -> None:
@@ -80,6 +81,8 @@ def warn_of_accuracy(
     carried : Carried
     at_rounded_edges : mapping
         Peaks there by the indices of torque, position and tooth pair.
+    mesh_rate : (m, n) array [N mm/rad]
+        Tangent of the torque over the rotation of the wheel, of the teeth alone.
     load_sharing : bool
         Whether the pairs that were looked for depend on how far the load turns the wheel.
     bodies : HeldBodies
@@ -113,7 +116,8 @@ def warn_of_accuracy(
         ]
         sentences += [at_places(reason, at, len(some)) for reason, at in places.items()]
         rows = torques <= largest
-        sentences += rotation_reasons(pair, torques[rows], carried.rotation[rows], bodies, load_sharing=load_sharing)
+        rotation = carried.rotation[rows]
+        sentences += rotation_reasons(pair, torques[rows], rotation, mesh_rate[rows], bodies, load_sharing=load_sharing)
         return {_without_size(sentence): sentence for sentence in sentences}
 
     for sentence in sentences_of_torques(torques, under):
@@ -157,17 +161,31 @@ def _without_size(sentence: str) -> str:
 
 
 def rotation_reasons(
-    pair: GearPair, torques: Array, rotation: Array, bodies: HeldBodies, *, load_sharing: bool = True
+    pair: GearPair,
+    torques: Array,
+    rotation: Array,
+    mesh_rate: Array,
+    bodies: HeldBodies,
+    *,
+    load_sharing: bool = True,
 ) -> list[str]:
-    """Sentences on rotations (torque, position) [rad] by the load that are at a limit of the model."""
+    """Sentences on rotations (torque, position) [rad] by the load, and their rate, that are at a limit of the model."""
     sentences = []
     turned = np.where(rotation > 0.0, rotation, math.inf)
+<<<<<<< HEAD
     force_over_deflection = torques[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
     bores = " and ".join(plain(bore) for bore in pair.rigid_bores) if bodies.torsion else ""
     if (share := bodies.stiffening * float(force_over_deflection.mean(axis=1).max())) > MOST_STIFFENED:
         usual = " and ".join(plain(bore) for bore in bodies.usual_bores)
+=======
+    twist = bodies.torsion * torques[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
+    stiffness = float(np.nan_to_num(mesh_rate).mean(axis=1).max()) / math.prod(pair.base_radii)
+    bores = " and ".join(f"{bore:.4g}" for bore in pair.rigid_bores) if bodies.torsion else ""
+    if (share := bodies.stiffening * stiffness) > MOST_STIFFENED:
+        usual = " and ".join(f"{bore:.4g}" for bore in bodies.usual_bores)
+>>>>>>> geometry
         sentences.append(kinds.RIGID_BORES.sentence(bores=bores, usual=usual, share=share))
-    if (share := bodies.torsion * float(force_over_deflection.max())) > MOST_TORSION:
+    if (share := float(twist.max())) > MOST_TORSION:
         sentences.append(kinds.BODY_TWIST.sentence(bores=bores, share=min(share, 1.0)))
     deflection = float(np.nanmax(rotation, initial=0.0)) * pair.base_radii[1]
     if load_sharing and deflection > REACH * pair.module:

@@ -97,13 +97,13 @@ def test_wide_bores_are_warned_of_with_what_they_do_to_the_stiffness():
     # bores of 17 and 6 mm are both about a tenth of the root; the rim bends, too: 1.1 %
     assert_allclose(bodies.stiffening, NET_FORCE * ring, rtol=0.02)
     assert bodies.usual_bores == (45.0, 17.0)
-    deflection = bodies.stiffening * 1e3 / pair.base_radii[0] / np.array([[0.1, 0.3]])  # shares of 10 and 30 %
-    rotation = deflection / pair.base_radii[1]
-    (sentence,) = (one for one in rotation_reasons(pair, np.array([1e3]), rotation, bodies) if "rigid" in one)
+    rate = np.array([[0.1, 0.3]]) * math.prod(pair.base_radii) / bodies.stiffening  # of 10 and 30 % less deflection
+    about = pair, np.array([1e3]), np.array([[1e-4, 1e-4]])
+    (sentence,) = rotation_reasons(*about, rate, bodies)
     assert sentence.startswith(
         "bores of 45 and 90 mm are held rigid: the mesh is about 20% stiffer than with 45 and 17 mm"
     )
-    assert not rotation_reasons(pair, np.array([1e3]), 5.0 * rotation, bodies)  # 4 %
+    assert not rotation_reasons(*about, 0.2 * rate, bodies)  # 4 %
 
 
 @pytest.mark.parametrize("bores", [{"pinion.bore_diameter_mm": 0.0}, {"wheel.bore_diameter_mm": 60.0}, {}])
