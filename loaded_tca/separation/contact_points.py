@@ -22,18 +22,22 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import GEARS, Array, Mask
 from loaded_tca.flanks.removal import ModifiedFlank
-from loaded_tca.flanks.rounding import sharp
+from loaded_tca.flanks.rounding import Arc, RoundedFlank, sharp
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.pair_change import Distance, PairChange, Places, edge_distance, grown, rises, start_distance
 from loaded_tca.separation.sample import Separation
 from loaded_tca.unloaded import ContactPoint
 from loaded_tca.unloaded.curvature import relative_curvatures
+from loaded_tca.unloaded.scan import lengths_past_tangents
 
 BESIDE = 1e-3
 """Distance of the points beside the contact point that slopes are taken of, over the module."""
+BESIDE_ON_ARC = 1e-4
+"""The same on the arc of a rounded edge, over the smallest radius. Slopes are wrong by the square of this, over the
+curvature of the arc, which is up to 1e5 times that of the contact along it."""
 SAME_NORMAL = 1e-9
 """Difference of two unit normals that is none."""
 ON_LINE = 1e-6
@@ -97,6 +101,8 @@ class _Stencil:
                 for one in changes
             ]
         self.curvatures, self.beside = relative_curvatures(pair, contacts), BESIDE * pair.module
+        if _beside_arcs(pair, contacts[:1]).any():  # then all are
+            self.beside = BESIDE_ON_ARC * min(arc.radius for arc in _arcs(pair))
         self.axes = np.array([one.axes for one in self.curvatures])
         parts = [0.0, -1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0, 1.0]
         x, y = (self.beside * np.tile(part, (len(contacts), 1)) for part in parts)
@@ -146,8 +152,9 @@ def point_changes(
         The grid of each.
     changes : sequence of PairChange
     """
-    on_start = np.array([bool(one.on_relief_start) for one in contacts])
-    groups = [np.flatnonzero(~on_start), *np.flatnonzero(on_start)[:, None]]
+    on_start, on_arc = np.array([bool(one.on_relief_start) for one in contacts]), _beside_arcs(pair, contacts)
+    groups = [np.flatnonzero(~on_start & (on_arc == arc)) for arc in (False, True)]
+    groups += [*np.flatnonzero(on_start)[:, None]]
     groups = [group for group in groups if group.size]
     parts = [_alike(pair, [contacts[i] for i in group], [separations[i] for i in group], changes) for group in groups]
     order = np.argsort(np.concatenate(groups))
@@ -160,6 +167,26 @@ def point_changes(
             for one in fields(PointChanges)
         }
     )
+
+
+def _arcs(pair: GearPair) -> list[Arc]:
+    """Arcs of the rounded edges of both flanks."""
+    flanks = pair.pinion.flank, pair.wheel.flank
+    return [arc for flank in flanks if isinstance(flank, RoundedFlank) for arc in flank.arcs]
+
+
+def _beside_arcs(pair: GearPair, contacts: Sequence[ContactPoint]) -> Mask:
+    """Whether contact points (n,) lie on the arcs of rounded edges, or nearer than places beside them elsewhere."""
+    if pair.sharp is pair:
+        return np.zeros(len(contacts), dtype=bool)
+    pinion, wheel = (
+        (
+            np.array([getattr(one, f"{name}_radius") for one in contacts]),
+            np.array([getattr(one, f"{name}_axial") for one in contacts]),
+        )
+        for name in GEARS
+    )
+    return np.asarray((lengths_past_tangents(pair, pinion, wheel) > -BESIDE * pair.module).any(axis=-1))
 
 
 def _without_ramps(pair: GearPair, contact: ContactPoint) -> GearPair:
@@ -180,7 +207,7 @@ def _alike(
     separations: Sequence[Separation],
     changes: Sequence[PairChange],
 ) -> PointChanges:
-    """Derivatives at contact points that lie on no relief start, or at one that does."""
+    """Derivatives at contact points alike: on arcs or not, on no relief start; or at one that does."""
     stencil = _Stencil(pair, contacts, changes)
     held = np.array([bool(one.on_edge or one.on_relief_start) for one in contacts])
     gaps = (stencil.grown[1] - stencil.grown[0])[..., 0]

@@ -21,6 +21,7 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from loaded_tca.arrays import Array, Indices, Mask
+from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.contact_points import PointChanges, point_changes
 from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
@@ -40,6 +41,9 @@ from loaded_tca.unloaded.scan import arcs_at
 
 OF_GRIDS = MOTIONS + 3
 """Motions of a grid: in its plane, tilts of its normal along x and y, along the normal."""
+
+LITTLE_BY_MOTION = 1e-3
+"""Mean square of the growth of gaps by a motion of their grid along one way, over that by both: none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +69,8 @@ class ContactChanges:
         At the contact points.
     moves_edges : (keys,) bool array
         Whether a key moves the edges of flanks by more than it removes.
-    on_arcs : (contacts,) bool array
-        Whether cells, or cells beside them, lie on the arc of a rounded edge, whose slopes are those of a few cells:
-        their grids stay where they are, since the motion of a grid times such a slope is as large as all that the key
-        changes, and a contact that ends where an arc begins does not go with its grid.
+    arcs : BorderCells
+        Cells that lie on the arc of a rounded edge, or have one beside them that does.
     """
 
     gaps: Array
@@ -79,7 +81,7 @@ class ContactChanges:
     border: BorderCells
     at_points: PointChanges
     moves_edges: Mask
-    on_arcs: Mask
+    arcs: BorderCells
 
     @property
     def held_gaps(self) -> Array:
@@ -96,29 +98,56 @@ class ContactChanges:
         separations : sequence of Separation
             The grid of each contact.
         """
-        border, points, of_border = self.border, self.at_points, self.contact[self.border.cell]
-        parts = forces[border.cell] / np.bincount(self.contact, forces)[of_border]
+        border, points = self.border, self.at_points
+        parts = forces / np.bincount(self.contact, forces)[self.contact]
         scales = np.array([(*one.spacing, 4.0 * one.spacing[0] / (one.y.size * one.spacing[1])) for one in separations])
         motions = np.zeros((*points.gaps.shape, OF_GRIDS))
         # a modification moves contacts by little: their grids stay, but where they lie on the start of a relief
         motions[..., 0] = np.where(points.held, points.across, 0.0)
         edges = np.flatnonzero(self.moves_edges)
-        motions[edges, :, :2] = np.where(self.on_arcs[:, None], 0.0, points.shifts[edges])
-        plane = motions[..., :MOTIONS]
-        plane[edges] = following(border.of_keys(edges), of_border, parts, plane[edges], scales)
         motions[edges, :, MOTIONS:-1], motions[edges, :, -1] = points.tilts[edges], points.lifts[edges]
         gaps, covers = self.gaps.copy(), np.zeros(self.gaps.shape)
         for key in edges.tolist():
             gaps[key] += (points.tilts[key, self.contact] * self.tilt_slopes).sum(axis=-1)
+        plane, lines = motions[..., :MOTIONS], border.of_keys(edges).with_others(self.arcs.of_keys(edges))
+        plane[edges, :, :2] = self._with_gaps(gaps[edges], points.shifts[edges], scales[:, :2])
+        plane[edges] = following(lines, self.contact[lines.cell], parts[lines.cell], plane[edges], scales)
         moved = plane.any(axis=(1, 2))
         for key in np.flatnonzero(moved).tolist():
             gaps[key] += (plane[key, self.contact] * self.slopes).sum(axis=-1)
-        by_motion = (plane[:, of_border] * border.slopes).sum(axis=-1)
+        by_motion = (plane[:, self.contact[border.cell]] * border.slopes).sum(axis=-1)
         of_edges = np.flatnonzero(self.moves_edges | moved)
         covers[np.ix_(of_edges, border.cell)] = (self.moves_edges[:, None] * border.rates + by_motion)[of_edges]
         kinks = np.zeros(covers.shape)
         kinks[np.ix_(edges, border.cell)] = border.kinks[edges]
         return MovedContacts(gaps, covers, kinks, motions)
+
+    def _with_gaps(self, gaps: Array, shifts: Array, scales: Array) -> Array:
+        """Motions (keys, contacts, 2) of grids along x and y by which gaps change least, but for a part in common.
+
+        ``gaps`` (keys, n) grow by the keys on grids that stay; ``shifts`` (keys, contacts, 2) of the contact points are
+        the motions along which gaps do not change; ``scales`` (contacts, 2) are the widths of cells.
+        """
+        if not self.contact.size:
+            return shifts
+        first = np.searchsorted(self.contact, np.arange(len(scales)))
+
+        def means(values: Array) -> Array:
+            """Of each contact (contacts, ...), of values (n, ...)."""
+            sums, counts = np.add.reduceat(values, first), np.diff([*first, self.contact.size])
+            return np.asarray(sums / counts.reshape(-1, *[1] * (values.ndim - 1)))
+
+        slopes = self.slopes[:, :2] * scales[self.contact]
+        slopes -= means(slopes)[self.contact]
+        matrix = means(slopes[:, :, None] * slopes[:, None])
+        size = np.trace(matrix, axis1=1, axis2=2)[:, None]
+        little = np.where(size > 0.0, LITTLE_BY_MOTION * size, 1.0)  # a single cell has no gap to go with
+        solved = np.linalg.inv(matrix + little[..., None] * np.eye(2))
+        motions = np.zeros(shifts.shape)
+        for key, growth in enumerate(gaps):
+            wanted = little * shifts[key] / scales - means(slopes * growth[:, None])
+            motions[key] = (solved @ wanted[..., None])[..., 0] * scales
+        return motions
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,28 +210,32 @@ def contact_changes(
         part = slice(first, first + TOGETHER)
         at, lever_parts[part] = met.at(contact[part], x[part], y[part])
         gaps[:, part], tilt_slopes[part], slopes[part] = at.gaps, at.tilt_slopes, at.gap_slopes
+    spacings = np.array([one.spacing for one in separations])
+
+    def beside(cell: Indices) -> Places:
+        """Middles of cells, then those of the next ones across, then those of the next ones along."""
+        (dx, dy), none = spacings[contact[cell]].T, np.zeros(cell.size)
+        steps = np.concatenate([none, dx, none]), np.concatenate([none, none, dy])
+        return met.at(np.tile(contact[cell], 3), np.tile(x[cell], 3) + steps[0], np.tile(y[cell], 3) + steps[1])[0]
+
     near = np.concatenate([_near_edges(grid.cover)[own] for grid, own in zip(separations, cells, strict=True)])
-    cell = np.flatnonzero(near)
-    own, (dx, dy) = np.tile(contact[cell], 3), np.array([one.spacing for one in separations])[contact[cell]].T
-    none = np.zeros(cell.size)
-    beside, _ = met.at(
-        own,
-        np.tile(x[cell], 3) + np.concatenate([none, dx, none]),
-        np.tile(y[cell], 3) + np.concatenate([none, none, dy]),
-    )
-    border = BorderCells.of(pair, beside, cell, changes)
+    on_arcs = np.concatenate([_near_arcs(pair, *one) for one in zip(separations, cells, strict=True)])
+    cell, of_arcs = np.flatnonzero(near), np.flatnonzero(on_arcs.any(axis=-1))
+    border = BorderCells.of(pair, beside(cell), cell, changes)
+    arcs = BorderCells.of_arcs(pair, beside(of_arcs), of_arcs, on_arcs[of_arcs], changes)
     moves_edges = np.array([not change.of_modifications for change in changes], dtype=bool)
-    on_arcs = np.array([_on_arcs(pair, grid, own) for grid, own in zip(separations, cells, strict=True)], dtype=bool)
-    return ContactChanges(gaps, tilt_slopes, lever_parts, slopes, contact, border, met.at_points, moves_edges, on_arcs)
+    return ContactChanges(gaps, tilt_slopes, lever_parts, slopes, contact, border, met.at_points, moves_edges, arcs)
 
 
-def _on_arcs(pair: GearPair, grid: Separation, cells: Mask) -> bool:
-    """Whether some cells of a grid, or cells beside them, lie on the arc of a rounded edge of either flank."""
-    if pair.sharp is pair:
-        return False
-    across, along = np.nonzero(binary_dilation(cells, np.ones((3, 3), dtype=bool)))
-    places = grid.origin + grid.x[across, None] * grid.axes[0] + grid.y[along, None] * grid.axes[1]
-    return bool(arcs_at(pair, places).any())
+def _near_arcs(pair: GearPair, grid: Separation, cells: Mask) -> Mask:
+    """Edges (n, 8) on whose arcs cells of a grid lie, or cells beside them."""
+    near = np.zeros((np.count_nonzero(cells), 2 * len(EDGE_NAMES)), dtype=bool)
+    if pair.sharp is not pair:
+        places = grid.origin + grid.x[:, None, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
+        on = arcs_at(pair, places)
+        for edge in np.flatnonzero(on.any(axis=(0, 1))).tolist():
+            near[:, edge] = binary_dilation(on[..., edge], np.ones((3, 3), dtype=bool))[cells]
+    return near
 
 
 class _Met:

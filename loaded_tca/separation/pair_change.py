@@ -12,9 +12,9 @@ cell to cell (:func:`loaded_tca.separation.sample._covers`). A normal that tilts
 along the plane where it meets a flank.
 
 Any grid that covers a contact is as good as another, but an edge that runs through the cells of a held grid takes the
-derivative of the discretisation with it. So grids go with their contacts: V is that for which the edges in the contact
-stay where they are in the grid, weighted with the pressure beside them; where these leave it open, as far as the
-contact point moves of itself.
+derivative of the discretisation with it. So grids go with their contacts: V is that for which the edges in the contact,
+sharp or rounded, stay where they are in the grid, weighted with the pressure beside them; where these leave it open,
+that for which the gap on the grid changes least.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from numbers import Real
 
 import numpy as np
 
-from loaded_tca.arrays import GEARS, Array, Indices
+from loaded_tca.arrays import GEARS, Array, Indices, Mask
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
 from loaded_tca.flanks.base import EDGE_NAMES, Jet
 from loaded_tca.flanks.removal import removal_change
@@ -190,7 +190,7 @@ MOTIONS = 3
 AT_ONE_PLACE = 0.02
 """Difference of the parts that two edges leave of a cell, up to which either may rule."""
 OPEN = 1e-5
-"""Weight of the motion of the contact point itself, over that of edges beside the whole force."""
+"""Weight of the motion with the gap, over that of edges beside the whole force."""
 
 
 def rises(points: FlankPoints, plane: Array) -> Array:
@@ -333,10 +333,9 @@ class BorderCells:
         cell : (n,) int array
         changes : sequence of PairChange
         """
-        edges = [(gear, edge_distance(gear, number)) for gear in (0, 1) for number in range(len(EDGE_NAMES))]
-        shape = len(edges), 3, cell.size
+        edges = _edges()
         values = [np.broadcast_to(distance(pair, places.points[gear]).value, 3 * cell.size) for gear, distance in edges]
-        distances = np.array(values).reshape(shape)
+        distances = np.array(values).reshape(len(edges), 3, cell.size)
         steps = distances[:, 1:] - distances[:, :1]
         widths = np.abs(steps).sum(axis=1)
         parts = 0.5 + distances[:, 0] / widths
@@ -361,9 +360,48 @@ class BorderCells:
             least[:, own], most[:, own] = np.minimum(least[:, own], by_keys), np.maximum(most[:, own], by_keys)
         return cls(cell[kept], rates[:, kept], (most - least)[:, kept], slopes[kept])
 
+    @classmethod
+    def of_arcs(
+        cls, pair: GearPair, places: Places, cell: Indices, arcs: Mask, changes: Sequence[PairChange]
+    ) -> BorderCells:
+        """Cells on the arcs of rounded edges or beside them, (n, 8), as if the edges ran there; one for each arc.
+
+        Parameters
+        ----------
+        pair : GearPair
+        places : Places
+            As of ``of``.
+        cell : (n,) int array
+        arcs : (n, 8) bool array
+        changes : sequence of PairChange
+        """
+        rows, edges = np.nonzero(arcs.T)[::-1]
+        rates, slopes = np.zeros((len(changes), rows.size)), np.zeros((rows.size, MOTIONS))
+        for number in np.unique(edges).tolist():
+            own, (gear, distance) = edges == number, _edges()[number]
+            values = np.reshape(distance(pair, places.points[gear]).value, (3, -1))
+            width = np.abs(values[1:] - values[0]).sum(axis=0)[rows[own]]
+            rates[:, own] = places.growth(pair, gear, distance, changes)[:, rows[own]] / width
+            slopes[own] = places.slopes_of(pair, gear, distance)[rows[own]] / width[:, None]
+        return cls(cell[rows], rates, np.zeros(rates.shape), slopes)
+
     def of_keys(self, keys: Indices) -> BorderCells:
         """The same with some of the keys."""
         return replace(self, rates=self.rates[keys], kinks=self.kinks[keys])
+
+    def with_others(self, others: BorderCells) -> BorderCells:
+        """These and others."""
+        return BorderCells(
+            np.concatenate([self.cell, others.cell]),
+            np.concatenate([self.rates, others.rates], axis=1),
+            np.concatenate([self.kinks, others.kinks], axis=1),
+            np.concatenate([self.slopes, others.slopes]),
+        )
+
+
+def _edges() -> list[tuple[int, Distance]]:
+    """Gear of each edge, and the distance to it: those of the pinion, then of the wheel."""
+    return [(gear, edge_distance(gear, number)) for gear in (0, 1) for number in range(len(EDGE_NAMES))]
 
 
 def edge_distance(gear: int, number: int) -> Distance:

@@ -1,4 +1,4 @@
-"""Derivatives of contacts on rounded edges: grids stay where the slopes of arcs are those of a few cells."""
+"""Derivatives of contacts on rounded edges: grids stay with the arcs that end the contact."""
 
 import warnings
 

@@ -22,19 +22,24 @@ GAP = 1e-7
 COVER = 1e-3
 """Asked for, of the largest change; cells that the sampling rounds to none or all of their material are left out."""
 OFFSET, DISTANCE = "mounting.offset_mm", "mounting.centre_distance_error_mm"
+TIP_ROUNDING = "pinion.tip_rounding_mm", "wheel.tip_rounding_mm"
 CASES = {
-    "tip edge of the pinion": ("helical", DISTANCE, 1.0, 0),
-    "tip edge of the wheel": ("helical", DISTANCE, -1.0, 4),
-    "free, its end cut off": ("helical", DISTANCE, -0.75, None),
-    "spiral bevel": ("spiral_bevel", OFFSET, 0.1, None),
-    "straight bevel": ("straight_bevel", "mounting.pinion_axial_mm", 0.6, None),
+    "tip edge of the pinion": ("helical", DISTANCE, 1.0, 0, None),
+    "tip edge of the wheel": ("helical", DISTANCE, -1.0, 4, None),
+    "free, its end cut off": ("helical", DISTANCE, -0.75, None, None),
+    "spiral bevel": ("spiral_bevel", OFFSET, 0.1, None, None),
+    "straight bevel": ("straight_bevel", "mounting.pinion_axial_mm", 0.6, None, None),
+    "arc of the pinion's tip": ("spiral_bevel", "mounting.shaft_angle_error_deg", 1.1, 0, TIP_ROUNDING[0]),
+    "arc of the wheel's tip": ("spiral_bevel", "mounting.wheel_axial_mm", -1.1, 4, TIP_ROUNDING[1]),
 }
 
 
 @cache
 def case(name):
-    file, key, pitches, edge = CASES[name]
+    file, key, pitches, edge, rounding = CASES[name]
     scene = read_scene(SCENES / f"{file}.toml")
+    if rounding is not None:
+        scene = scene.with_changes({rounding: 0.15})
     pair = scene.pair()
     contact = trace_contact(pair, [pitches * pair.pitch], warn=False)[0]
     assert edge is None or contact.edges[edge], "the contact point lies on that edge"
