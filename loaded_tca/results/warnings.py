@@ -172,18 +172,11 @@ def rotation_reasons(
     """Sentences on rotations (torque, position) [rad] by the load, and their rate, that are at a limit of the model."""
     sentences = []
     turned = np.where(rotation > 0.0, rotation, math.inf)
-<<<<<<< HEAD
-    force_over_deflection = torques[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
-    bores = " and ".join(plain(bore) for bore in pair.rigid_bores) if bodies.torsion else ""
-    if (share := bodies.stiffening * float(force_over_deflection.mean(axis=1).max())) > MOST_STIFFENED:
-        usual = " and ".join(plain(bore) for bore in bodies.usual_bores)
-=======
     twist = bodies.torsion * torques[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
     stiffness = float(np.nan_to_num(mesh_rate).mean(axis=1).max()) / math.prod(pair.base_radii)
-    bores = " and ".join(f"{bore:.4g}" for bore in pair.rigid_bores) if bodies.torsion else ""
+    bores = " and ".join(plain(bore) for bore in pair.rigid_bores) if bodies.torsion else ""
     if (share := bodies.stiffening * stiffness) > MOST_STIFFENED:
-        usual = " and ".join(f"{bore:.4g}" for bore in bodies.usual_bores)
->>>>>>> geometry
+        usual = " and ".join(plain(bore) for bore in bodies.usual_bores)
         sentences.append(kinds.RIGID_BORES.sentence(bores=bores, usual=usual, share=share))
     if (share := float(twist.max())) > MOST_TORSION:
         sentences.append(kinds.BODY_TWIST.sentence(bores=bores, share=min(share, 1.0)))

@@ -9,11 +9,8 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError
-<<<<<<< HEAD
 from loaded_tca.results.sensitivities import Sensitivities
-=======
 from loaded_tca.scene import parse_scene
->>>>>>> motions
 from tests.refusals import refusals
 from tests.samples.results import FLANKS_ALONE, ONE_PAIR, SCENES, result
 from tests.samples.shared import made_once
