@@ -37,6 +37,7 @@ FREE_EDGES, ROUNDED = "loaded/test_free_edges.py", "loaded/test_rounded_edges.py
 EDGE_GROWTH = "loaded/test_free_edge_growth.py::"
 AT_EDGES = "results/test_sensitivities_at_edges.py::"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
+ARGUMENTS = "test_arguments.py::"
 FAULTS = (
     Fault(
         "local synthesis: the path leans to the other end of the face",
@@ -1395,7 +1396,6 @@ FAULTS = (
         "        elif False:\n            allowed",
         "flanks/test_topography_file.py::test_unknown_unit_of_a_known_column_is_told_as_such",
     ),
-ARGUMENTS = "test_arguments.py::"
     Fault(
         "local term of teeth: no more beside the free ends of the face than at mid-face",
         "compliance/influence.py",
