@@ -34,8 +34,8 @@ MOST_OF_CHANGE, MOST_OF_CHANGE_BESIDE, MOST_OF_CHANGE_BEFORE = 0.4, 0.5, 0.15
 # Growth of the pressure with every halving of the cells, over the largest, that makes nothing of it: 17 halvings lead
 # from a hundredth of a millimetre to the size of atoms.
 LEAST_GROWTH = 1e-3
-# What a halving may add beside a jump of the slope, over its mean: a cell amidst which it lies has as much more pressure
-# as a halving adds than one at whose border it lies.
+# What a halving may add beside a jump of the slope, over its mean: a cell amidst which the jump lies has more pressure
+# than one at whose border it lies, by as much as a halving adds.
 MOST_OF_GROWTH = 2.0
 
 
