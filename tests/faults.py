@@ -1171,6 +1171,27 @@ FAULTS = (
         "supports/test_shafts_of_scenes.py::test_teeth_that_move_with_the_body_of_their_gear_are_displaced_by_nothing_else",
     ),
     Fault(
+        "hypoid: distances from the root cone without the parabola between points",
+        "gears/hypoid.py",
+        "bend = before - 2.0 * at + after\n",
+        "bend = before - 2.2 * at + after\n",
+        "gears/test_hypoid.py::test_points_above_a_root_cone_are_as_far_as_the_parabola_through_them",
+    ),
+    Fault(
+        "blanks: the blade reaches as deep as the mating tip",
+        "gears/bevel_blank.py",
+        "_TOOL_DEPTH = 1.1",
+        "_TOOL_DEPTH = 1.0",
+        "gears/test_bevel_blank.py::test_least_profile_shift_of_straight_teeth_is_that_of_their_virtual_gear_at_the_toe",
+    ),
+    Fault(
+        "stages: a sun that moves towards a planet opens that mesh",
+        "stages/balance.py",
+        "along * tangential + np.sin(pressure_angle) * radial",
+        "along * tangential - np.sin(pressure_angle) * radial",
+        "stages/test_balance.py::test_sun_that_moves_towards_a_planet_closes_that_mesh_whichever_flank_is_loaded",
+    ),
+    Fault(
         "overlap ratio without the axial offset",
         "gears/involute.py",
         "return self.common_face_width * sin(abs(self.pinion.helix_angle))",
@@ -1268,6 +1289,20 @@ FAULTS = (
         "        if self.solution.load == 0.0:\n            return 0.0\n        if not self.is_rough:",
         "        if not self.is_rough:",
         "results/test_memory_and_file.py::test_contact_on_an_edge_has_no_error_without_load",
+    ),
+    Fault(
+        "cap: cells between the bounds grow with their material, too",
+        "results/gap_growth.py",
+        "    growth[:, grid.active] = 0.0\n",
+        "",
+        "loaded/test_sensitivity.py::test_force_of_a_cell_at_the_cap_grows_with_its_part_of_material_and_no_other",
+    ),
+    Fault(
+        "cap: what forces at the cap do to the slices of other pairs is left out",
+        "loaded/sensitivity.py",
+        "            moved += (self._coupling @ np.concatenate([one.sum(axis=0) for one in forces]))[self._slice]\n",
+        "            pass\n",
+        "loaded/test_sensitivity.py::test_forces_at_the_cap_that_grow_turn_the_pairs_as_the_dense_problem_solved_anew",
     ),
     Fault(
         "transforms: work arrays that an exception found in use are used again",

@@ -276,3 +276,13 @@ def test_profile_shift_named_by_the_refusal_is_enough():
     needed = refused.pinion.smallest_profile_shift
     assert refused.pinion.is_undercut
     assert not replace(refused, profile_shift=needed + 1e-9, allow_undercut=False).pinion.is_undercut
+
+
+def test_least_profile_shift_of_straight_teeth_is_that_of_their_virtual_gear_at_the_toe():
+    """ISO 23509: a blade 1.1 times as deep as the addendum stays above the foot of the line of action there."""
+    pair = blank(
+        teeth=(11, 62), face_width=10.0, spiral_angle=0.0, cutter_radius=None, taper="uniform", allow_undercut=True
+    )
+    radius = pair.pinion.cone_distances[0] * math.tan(pair.pitch_angles[0])
+    room = radius * math.sin(pair.pressure_angle) ** 2 / pair.mean_normal_module
+    assert_allclose(pair.pinion.smallest_profile_shift, 1.1 * pair.addendum_factor - room, rtol=1e-9)

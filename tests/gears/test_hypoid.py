@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import GeometryError
 from loaded_tca.gears import HypoidCones, pitch_cones_by_method_1
 from loaded_tca.gears.bevel import pitch_angles
+from loaded_tca.gears.hypoid import _above_root
 from loaded_tca.gears.pitch_cones import limit_curvature, limit_pressure_angle
 from tests.refusals import refused_calls
 
@@ -199,3 +201,13 @@ test_cones_refuse = refused_calls(
     (lambda: annex_f3(pinion_spiral_angle=1.2), "pinion_spiral_angle: 1.2 rad is not within"),
     (lambda: annex_f3(cutter_radius=8.0), "no pitch cones of method 1", GeometryError),
 )
+
+
+def test_points_above_a_root_cone_are_as_far_as_the_parabola_through_them():
+    """A row whose distance from the cone is least, 0.3 mm, between two of its points."""
+    blank = SimpleNamespace(root_angle=math.radians(70.0), root_apex=1.5, cone_distances=(20.0, 40.0))
+    place = np.linspace(-1.0, 1.0, 9)
+    along, height = 30.0 + 2.0 * place, 0.3 + 0.5 * (place - 0.07) ** 2
+    sine, cosine = math.sin(blank.root_angle), math.cos(blank.root_angle)
+    rho, z = along * sine + height * cosine, along * cosine - height * sine - blank.root_apex
+    assert_allclose(_above_root(np.stack([rho, 0.0 * rho, z], axis=-1)[None], blank), 0.3, rtol=1e-9)

@@ -89,6 +89,14 @@ def test_force_beyond_the_largest_is_as_stiff_as_there():
     assert_allclose(shares.rotation, 5000.0 / STIFFNESS, rtol=1e-9)
 
 
+@pytest.mark.parametrize("sun_drives", [True, False])
+def test_sun_that_moves_towards_a_planet_closes_that_mesh_whichever_flank_is_loaded(sun_drives):
+    """The planet at the angle 0 lies along x: teeth there lean by the pressure angle to either side."""
+    ((across, along),) = directions_of([0.0], ALPHA, sun_drives)
+    assert_allclose(across, np.sin(ALPHA))
+    assert_allclose(along, (1.0 if sun_drives else -1.0) * np.cos(ALPHA))
+
+
 def test_radial_pin_error_does_nothing_where_both_pressure_angles_are_equal():
     nothing = pin_errors(np.zeros(3), np.ones(3), (ALPHA, ALPHA), True)
     assert_allclose(nothing, 0.0, atol=1e-15)
