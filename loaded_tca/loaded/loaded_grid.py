@@ -61,6 +61,11 @@ class LoadedGrid:
         """Cells between the bounds, (nx, ny)."""
         return np.asarray((self.pressure > 0.0) & (self.pressure < self.problem.cap))
 
+    @cached_property
+    def pressed(self) -> Mask:
+        """Cells under pressure, those at the cap among them, (nx, ny)."""
+        return np.asarray(self.pressure > 0.0)
+
 
 def block_diagonal(matrices: Sequence[Array]) -> csr_array:
     """Square matrices of single states as one of all their places."""
@@ -93,10 +98,10 @@ class Block:
     def __init__(self, grids: Sequence[LoadedGrid], cells: Indices) -> None:
         problems = [grid.problem for grid in grids]
         stack, active = Grids.of(problems), np.stack([grid.active for grid in grids])
-        self.cells = cells
+        self.cells, self.grids = cells, grids
         self._at, self._shape = np.flatnonzero(active), active.shape
-        unit = [problem.spacing[1] * problem.contact_modulus for problem in problems]  # N to the lengths of a stack
-        self._unit = np.repeat(unit, active.sum(axis=(1, 2)))
+        unit = np.array([one.spacing[1] * one.contact_modulus for one in problems])  # N to the lengths of a stack
+        self._of_grids, self._unit = unit[:, None, None], np.repeat(unit, active.sum(axis=(1, 2)))
         self._operator, self._inverse = stack.operator(threads=1), Preconditioner(stack.shape, stack.aspects, 1)
         self._root = 1.0 if stack.cover is None else np.sqrt(stack.cover[active])
 
@@ -110,6 +115,11 @@ class Block:
         """Displacement of the cells [mm] under forces [N] on them."""
         pressure = np.zeros(self._shape)
         pressure.ravel()[self._at] = forces / self._unit
+        return np.asarray(self._operator(pressure, np.empty(self._shape)).ravel()[self._at])
+
+    def displaced_by(self, forces: Sequence[Array]) -> Array:
+        """The same under forces [N] on any cells (nx, ny) of each grid."""
+        pressure = np.stack(forces) / self._of_grids
         return np.asarray(self._operator(pressure, np.empty(self._shape)).ravel()[self._at])
 
     def preconditioned(self, residual: Array) -> Array:

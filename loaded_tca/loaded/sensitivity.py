@@ -195,6 +195,22 @@ class Tangents:
             moved += (self._coupling @ np.bincount(self._slice, forces, self._slices))[self._slice]
         return moved
 
+    def displaced_by(self, forces: Sequence[Array]) -> Array:
+        """Displacement of the active cells (n,) [mm] under forces [N] on any cells (nx, ny) of each grid."""
+        moved, of_grid = np.empty(self.grid.size), dict(zip(self.grids, forces, strict=True))
+        for block in self._blocks:
+            moved[block.cells] = block.displaced_by([of_grid[grid] for grid in block.grids])
+        if self._coupling is not None:
+            moved += (self._coupling @ np.concatenate([one.sum(axis=0) for one in forces]))[self._slice]
+        if self.by_shift is not None:
+            shifts = [
+                ((grid.separation.x[:, None] - grid.separation.force_line) * one).sum(axis=0)
+                / np.where(grid.slice_force > 0.0, grid.slice_force, np.inf)
+                for grid, one in of_grid.items()
+            ]
+            moved += (self.by_shift @ np.concatenate(shifts))[self._slice]
+        return moved
+
     def solved(self, displacement: Array, start: Array | None = None, *, transposed: bool = False) -> Array:
         """Forces (n,) [N] that displace the active cells by as much [mm].
 

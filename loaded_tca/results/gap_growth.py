@@ -117,31 +117,58 @@ def gap_growth(
         return GapGrowth(np.zeros((0, tangents.grid.size)), none, none, motions, none, tilts)
     separations = [grid.separation for grid in grids]
     held = contact_changes(
-        pair, [grid.contact for grid in grids], separations, [grid.active for grid in grids], changes
+        pair, [grid.contact for grid in grids], separations, [grid.pressed for grid in grids], changes
     )
-    growth, points = held.followed(tangents.gathered(grid.pressure for grid in grids), separations), held.at_points
+    pressures = np.concatenate([grid.pressure[grid.pressed] for grid in grids])
+    growth, points = held.followed(pressures, separations), held.at_points
     # the gears of a pair are turned back into contact first, then closed under load
     touching = np.array([path.transmission_error for path in result.paths])[pairs, positions]
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
     wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
-    gaps, kinks = growth.gaps, np.zeros(points.turns.shape)
+    active = np.concatenate([grid.active[grid.pressed] for grid in grids])
+    gaps, kinks = growth.gaps[:, active], np.zeros(points.turns.shape)
     for row, closed in zip(gaps, points.turns * wheel_levers - turned * points.levers[1], strict=True):
         row += closed[tangents.grid]
+    ends = np.cumsum([np.count_nonzero(grid.pressed) for grid in grids])[:-1]
+    covers, kinks_of_cells = (np.split(values, ends, axis=1) for values in (growth.covers, growth.kinks))
     for i, (first, last) in enumerate(pairwise([0, *tangents.ends.tolist()])):
-        if (own := growth.covers[:, first:last]).any():
+        if (own := covers[i]).any():
             gaps[:, first:last] += _released(grids[i], own)
-        if (own := growth.kinks[:, first:last]).any():
+        if (own := kinks_of_cells[i]).any():
             kinks[:, i] = _shorter(grids[i], own)
+    lever_torques = result.normal_force[places] * points.levers[0]
+    if pair.max_pressure is not None:
+        _add_forces_at_cap(tangents, covers, gaps, lever_torques)
     free_edges = result.scene.analysis.free_edges
     _add_moved_lines(pair, tangents, bending, changes, growth.motions, gaps, free_edges=free_edges)
-    lever_torques = result.normal_force[places] * points.levers[0]
     return GapGrowth(gaps, kinks, lever_torques, growth.motions, points.turns, points.tilts)
 
 
-def _released(grid: LoadedGrid, covers: Array) -> Array:
-    """What the forces of a grid displace its active cells (keys, n) [mm per unit] more as edges move in it."""
+def _add_forces_at_cap(tangents: Tangents, covers: Sequence[Array], gaps: Array, lever_torques: Array) -> None:
+    """Add to gaps (keys, n) and torques (keys, grids) what cells at the cap carry more as edges move in them."""
+    forces = [growth_at_cap(grid, own) for grid, own in zip(tangents.grids, covers, strict=True)]
+    for i, (grid, own) in enumerate(zip(tangents.grids, forces, strict=True)):
+        lever_torques[:, i] += grid.contact.pinion_lever * own.sum(axis=(1, 2))
+    for key in np.flatnonzero(np.any([own.any(axis=(1, 2)) for own in forces], axis=0)).tolist():
+        gaps[key] += tangents.displaced_by([own[key] for own in forces])
+
+
+def growth_at_cap(grid: LoadedGrid, covers: Array) -> Array:
+    """Growth of the forces (keys, nx, ny) [N per unit] of cells at the cap, whose parts of material grow (keys, n)."""
     growth = np.zeros((len(covers), *grid.active.shape))
-    growth[:, grid.active] = covers
+    assert grid.problem.max_pressure is not None
+    growth[:, grid.pressed] = covers * (grid.problem.max_pressure * grid.problem.cell_area)
+    growth[:, grid.active] = 0.0
+    return growth
+
+
+def _released(grid: LoadedGrid, covers: Array) -> Array:
+    """What the forces of a grid displace its active cells (keys, n) [mm per unit] more as edges move in it.
+
+    ``covers`` (keys, m): growth of the parts of its cells under pressure.
+    """
+    growth = np.zeros((len(covers), *grid.active.shape))
+    growth[:, grid.pressed] = covers
     (dx, dy), problem = grid.problem.spacing, grid.problem
     cover = np.ones(grid.active.shape) if problem.cover is None else problem.cover
     displaced = crowding_growth(cover, growth, grid.pressure, dy / dx)
@@ -151,12 +178,12 @@ def _released(grid: LoadedGrid, covers: Array) -> Array:
 def _shorter(grid: LoadedGrid, kinks: Array) -> Array:
     """Part (keys,) of its loaded slices by which a contact is shorter on one side of the keys.
 
-    ``kinks`` (keys, n): of the parts of its active cells; of a slice the mean by the pressure, since an end has them
-    all across.
+    ``kinks`` (keys, n): of the parts of its cells under pressure; of a slice the mean by the pressure, since an end has
+    them all across.
     """
-    slices, line = grid.active.nonzero()[1], grid.pressure.sum(axis=0)
+    slices, line = grid.pressed.nonzero()[1], grid.pressure.sum(axis=0)
     parts = np.zeros((line.size, len(kinks)))
-    np.add.at(parts, slices, (kinks * grid.pressure[grid.active] / line[slices]).T)
+    np.add.at(parts, slices, (kinks * grid.pressure[grid.pressed] / line[slices]).T)
     return np.asarray(parts.max(axis=0) / np.count_nonzero(line))
 
 

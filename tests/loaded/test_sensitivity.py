@@ -18,6 +18,7 @@ from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.sensitivity import Tangents, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
+from loaded_tca.results.gap_growth import growth_at_cap
 from loaded_tca.separation.gap_change import contact_changes
 from loaded_tca.separation.pair_change import pair_changes
 from loaded_tca.unloaded import trace_contact, trace_teeth
@@ -29,6 +30,8 @@ RATE = 3e-6
 """Of the rate of the torque, whose linear systems are solved to 1e-6."""
 MODULUS, TORQUE = 113187.0, 6000.0  # MPa, N mm
 SHAPE, SPACING = (10, 9), (0.02, 0.15)
+CAP = 540.0
+"""Pressure [MPa] that 12 of 126 loaded cells have; without it the largest is 601 MPa."""
 LEVERS = {0: (47.0, 80.0), 1: (46.0, 81.0)}  # mm, of pinion and wheel: as of a bevel pair
 
 
@@ -91,10 +94,10 @@ class DensePairs:
         other = self.between_matrix[j[:, None], j]  # of pair 1 under pair 0
         return np.block([[blocks[0], other.T], [other, blocks[1]]])
 
-    def solve(self, torque=TORQUE, gap=None):
+    def solve(self, torque=TORQUE, gap=None, cap=None):
         """Forces, rotation and active cells: pulling cells dropped, penetrating ones added, capped ones held."""
         gap = self.gap if gap is None else gap
-        cap = np.broadcast_to(self.cap, gap.shape)
+        cap = np.broadcast_to(self.cap if cap is None else cap, gap.shape)
         active, held = self.material.copy(), np.zeros(gap.shape, dtype=bool)
         for _ in range(100):
             forces, n = np.where(held, cap, 0.0), int(active.sum())
@@ -138,7 +141,7 @@ def dense(cap=None):
     return DensePairs(cap)
 
 
-@pytest.fixture(params=[None, 900.0], ids=["elastic", "capped"])
+@pytest.fixture(params=[None, CAP], ids=["elastic", "capped"])
 def pairs(request):
     return dense(request.param)
 
@@ -156,7 +159,8 @@ def test_dense_problem_has_pairs_that_share_and_cells_of_every_kind(pairs):
     forces, _, active = pairs.solve()
     assert all(part.any() for part in np.split(active, 2))
     assert (pairs.material & ~active).any()
-    assert (forces == pairs.cap).any() == np.isfinite(pairs.cap).any()
+    at_cap = pairs.material & (forces == pairs.cap)
+    assert at_cap.any() == np.isfinite(pairs.cap).any()
 
 
 def test_rotation_changes_with_the_gaps_as_the_dense_problem_solved_anew(pairs):
@@ -174,6 +178,32 @@ def test_rotation_changes_with_the_torque_as_the_dense_problem_solved_anew(pairs
     step = 0.5
     rotations = [pairs.solve(TORQUE + sign * step)[1] for sign in (-1.0, 1.0)]
     assert_allclose(pairs.tangent().stiffness, 2.0 * step / np.ptp(rotations), rtol=TRANSMISSION_ERROR)
+
+
+def test_forces_at_the_cap_that_grow_turn_the_pairs_as_the_dense_problem_solved_anew():
+    pairs, step = dense(CAP), 1e-4
+    forces, _, active = pairs.solve()
+    at_cap = pairs.material & (forces == pairs.cap)
+    growth = np.where(at_cap, pairs.cap * np.random.default_rng(3).uniform(size=forces.size), 0.0)
+    below, above = (pairs.solve(cap=pairs.cap + sign * step * growth) for sign in (-1.0, 1.0))
+    assert all((state[2] == active).all() for state in (below, above)), "no cell enters or leaves"
+    tangent = pairs.tangent()
+    gaps = tangent.displaced_by([part.reshape(SHAPE) for part in np.split(growth, 2)])
+    found = tangent.rotation_change(gaps, -pairs.pinion @ growth)
+    assert_allclose(found, (above[1] - below[1]) / (2.0 * step), rtol=TRANSMISSION_ERROR)
+
+
+def test_force_of_a_cell_at_the_cap_grows_with_its_part_of_material_and_no_other():
+    grid = next(one for one in dense(CAP).grids(TORQUE) if (one.pressed & ~one.active).any())
+    growth, step = np.random.default_rng(4).uniform(size=SHAPE), 1e-3
+    half = np.where(np.isfinite(grid.problem.gap), 0.5, 0.0)
+    less, more = (
+        replace(grid.problem, cover=half * (1.0 + sign * step * growth)).cap * grid.problem.cell_area
+        for sign in (-1.0, 1.0)
+    )
+    expected = np.where(grid.pressed & ~grid.active, (more - less) / step, 0.0)  # of covers that grow by that much
+    found = growth_at_cap(grid, growth[None, grid.pressed])
+    assert_allclose(found[0], expected, rtol=1e-9)  # a difference over 1e-3 of numbers rounded at 1e-16
 
 
 def test_forces_change_with_gaps_and_torque_as_in_the_dense_problem(pairs):
@@ -245,7 +275,7 @@ def test_rates_are_the_same_to_the_last_bit_whatever_is_found_together(pairs, mo
 
 
 def test_contacts_without_a_cell_between_the_bounds_have_no_part_in_the_rate():
-    pairs = dense(900.0)
+    pairs = dense(CAP)
     first, second = pairs.grids(TORQUE)
     capped, none = (replace(first, pressure=p * np.isfinite(first.problem.gap)) for p in (first.problem.cap, 0.0))
     states = [[capped], [second], [capped, none], [capped, second, none], []]
