@@ -156,7 +156,10 @@ def point_changes(
     groups = [np.flatnonzero(~on_start & (on_arc == arc)) for arc in (False, True)]
     groups += [*np.flatnonzero(on_start)[:, None]]
     groups = [group for group in groups if group.size]
-    parts = [_alike(pair, [contacts[i] for i in group], [separations[i] for i in group], changes) for group in groups]
+    parts = [
+        _alike(pair, [contacts[i] for i in group.tolist()], [separations[i] for i in group.tolist()], changes)
+        for group in groups
+    ]
     order = np.argsort(np.concatenate(groups))
     axes = {"steepness": 0, "held": 0, "levers": 2}
     return PointChanges(
