@@ -59,9 +59,7 @@ QUICK = (
     "plot_transmission_error",
     "plot_planetary_stage",
     "plot_bevel_blank",
-    "plot_tribology",
     "plot_ease_off",
-    "plot_misalignment_sensitivity",
     "plot_sensitivities",
     "plot_bidirectional_start",
 )

@@ -38,6 +38,7 @@ def rounded(radius, keys=EDGES):
     return tuple(dict.fromkeys(keys, radius).items())
 
 
+@pytest.mark.thorough
 def test_transmission_error_under_load_tends_to_that_of_sharp_edges():
     """The difference is proportional to the radius: to 15 % on this grid, whose cells are 0.02 mm wide."""
     changes = {"load_sharing": True, "cells": (48, 96)}

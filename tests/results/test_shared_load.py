@@ -359,6 +359,7 @@ def test_bending_teeth_are_half_as_stiff_as_their_contacts():
     assert (bending(True).mesh_stiffness > 1.2 * alone).all()  # two pairs at both ends of the pitch
 
 
+@pytest.mark.thorough
 def test_face_milled_teeth_that_bend_are_softer_and_share_more_evenly():
     """Both ends of a pitch are one state of the mesh, with and without bending."""
     bends, stiff = (bending_face_milled(True, compliance) for compliance in ("contact+tooth", "contact"))
