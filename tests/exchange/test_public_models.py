@@ -251,7 +251,7 @@ def test_stages_are_shown_with_their_gears() -> None:
 
 def test_a_planetary_stage_is_no_scene() -> None:
     with pytest.raises(
-        InputError, match=r"stage 9: planetary_stage; scenes are made of cylindrical stages .*: 211, 220"
+        InputError, match=r"stage 9: planetary stages are not covered; import makes scenes of .* of two gears: 211, 220"
     ):
         import_stage(planetary(), "9")
 

@@ -400,7 +400,7 @@ def test_peak_error_is_that_of_the_peak_or_of_the_line_load():
 def test_error_of_slices_that_agree_by_chance_falls_with_the_square_of_the_cells():
     errors = [
         LoadedContact.peak_error.fget(
-            SimpleNamespace(is_rough=True, line_load_error=0.0, solution=SimpleNamespace(cells_across=cells))
+            SimpleNamespace(is_rough=True, line_load_error=0.0, solution=SimpleNamespace(cells_across=cells, load=1.0))
         )
         for cells in ((10, 90), (90, 20))
     ]

@@ -171,9 +171,11 @@ def test_flank_of_a_map_ends_where_its_last_cell_with_material_does():
     gap = np.zeros((10, 1))
     gap[8:] = np.inf
     x, none = np.linspace(-0.45, 0.45, 10), np.zeros(1)
-    one = PressureMap(x, none, (0.1, 0.1), np.ones((10, 1)), gap, np.zeros(3), np.eye(3), none)
+    one = PressureMap(x, none, (0.1, 0.1), np.ones((10, 1)), gap, np.isfinite(gap) * 1.0, np.zeros(3), np.eye(3), none)
     assert [one.flank_ends_within(distance) for distance in (0.29, 0.31)] == [False, True]
-    wide = replace(one, gap=np.repeat(gap, 9, 1), pressure=np.ones((10, 9)), y=np.linspace(-4.0, 4.0, 9))
+    wide = replace(
+        one, gap=np.repeat(gap, 9, 1), cover=np.ones((10, 9)), pressure=np.ones((10, 9)), y=np.linspace(-4.0, 4.0, 9)
+    )
     assert wide.near_end(0.35)[:, 4].nonzero()[0].tolist() == [0, 5, 6, 7, 8, 9]  # the box ends at the first cell
 
 
