@@ -1460,6 +1460,20 @@ FAULTS = (
         "plane[edges, :, :2] = points.shifts[edges]",
         "results/test_sensitivities.py::test_transmission_error_follows_a_misalignment_into_an_end_relief",
     ),
+    Fault(
+        "findings: every edge that a contact reaches has its edge pressure",
+        "results/warnings.py",
+        "return np.asarray(reached & (distances <= distances[reached].min() + 2.0 * max(one.spacing)))",
+        "return np.asarray(reached)",
+        "results/test_reached_edges.py::test_finding_names_the_edge_where_the_pressure_lies_not_every_edge_of_the_contact",
+    ),
+    Fault(
+        "misalignment: both ends of a pitch count as two places in the picture",
+        "plots/supports.py",
+        "means = [mean_over_a_pitch(over_pitch) for over_pitch in values]",
+        "means = np.nanmean(values, axis=1)",
+        "supports/test_rolling_of_scenes.py::test_picture_of_the_misalignment_has_the_means_of_the_summary",
+    ),
 )
 
 

@@ -39,7 +39,10 @@ FAR = 1e3
 
 
 def growth(jump: float, contact_modulus: float) -> float:
-    """What the cells beside a jump of the slope gain whenever their width is halved [MPa]; at an apex a tenth more."""
+    """What the cells beside a ridge gain whenever their width is halved [MPa].
+
+    At the apex of a cone pi/2 times as much: its pressure is E* jump arcosh(a/r)/4 (Johnson 1985, section 5.2).
+    """
     return contact_modulus * jump * math.log(2.0) / (2.0 * math.pi)
 
 

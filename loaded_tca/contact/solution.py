@@ -18,6 +18,7 @@ from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem, GradedProblem, HalfSpaces, Spacing
 from loaded_tca.contact.slope_jumps import growth, largest_slope_jump
 from loaded_tca.errors import ConvergenceError
+from loaded_tca.plain import plain
 
 # Fewer cells than this across a contact leave errors above 1 % in its pressure.
 FEWEST_CELLS = 8
@@ -311,7 +312,10 @@ class ContactSolution(Solution):
         """Reasons why the result may be less exact, as sentences; empty if there are none."""
         sentences = []
         if self.reaches_border:
-            sentences.append("contact reaches the box: the pressure at its border is that of a body ending there")
+            sentences.append(
+                "contact reaches the box: the pressure at its border is that of a body ending there, which "
+                "grows with the number of cells"
+            )
         if self.reaches_material_edge and self.problem.max_pressure is None:
             sentences.append(
                 "contact reaches an end of the material, where the pressure has no limit: that of the cells beside it "
@@ -319,11 +323,10 @@ class ContactSolution(Solution):
             )
         if self.slope_jump > 0.0 and float(self.pressure.max()) < (self.problem.max_pressure or math.inf):
             grown = growth(self.slope_jump, self.problem.contact_modulus)
-            shown = f"{grown:.0f}" if grown >= 100.0 else f"{grown:.2g}"
             sentences.append(
-                f"the slope of the gap jumps by {1e3 * self.slope_jump:.3g} mrad inside the contact: at a ridge the "
-                f"pressure has no limit, that of the cells beside it grows by about {shown} MPa whenever cells are "
-                "halved; waves of roughness have too few cells"
+                f"the slope of the gap jumps by {plain(1e3 * self.slope_jump, 3)} mrad inside the contact: at a ridge "
+                f"the pressure has no limit, that of the cells beside it grows by about {plain(grown, 3)} MPa whenever "
+                "cells are halved, at an apex by half as much again; waves of roughness have too few cells"
             )
         if 0 < min(self.cells_across) < FEWEST_CELLS:
             across = min(self.cells_across)

@@ -403,6 +403,19 @@ def findings_of(result: CycleNumbers) -> tuple[str, ...]:
     return tuple(sentence for sentences in by_torque for sentence in sentences if sentence)
 
 
+def _edges_of_pressure(result: CycleNumbers, torque: int, position: int, column: int) -> NDArray[np.bool_]:
+    """Edges (8,) that a contact reaches where its edge pressure lies: the nearest, and those within two cells of it."""
+    reached = edges_of_contact(result, torque, position, column)
+    one, pair = result.maps[torque][position][column], standing(result, torque)[0].gear_pair
+    if one is None or not reached.any():
+        return reached
+    place = np.array([result.edge_radius[torque, position, column], result.edge_axial[torque, position, column]])
+    points = one.points.reshape(-1, 3)
+    away = np.hypot(np.hypot(points[:, 0], points[:, 1]) - place[0], points[:, 2] - place[1])
+    distances = edge_distances(pair, points[[away.argmin()]])[0]
+    return np.asarray(reached & (distances <= distances[reached].min() + 2.0 * max(one.spacing)))
+
+
 def _edge_finding(result: CycleNumbers, torque: int) -> str:
     """The largest pressure at an edge of pairs that carry a thousandth of the torque: where, and what would remove it.
 
@@ -414,7 +427,7 @@ def _edge_finding(result: CycleNumbers, torque: int) -> str:
         return ""
     n, k = (int(index) for index in np.unravel_index(int(np.nanargmax(pressures)), pressures.shape))
     at = torque, n, k
-    edges = [name for name, one in zip(EDGES, edges_of_contact(result, *at), strict=True) if one]
+    edges = [name for name, one in zip(EDGES, _edges_of_pressure(result, *at), strict=True) if one]
     error, cap = float(result.edge_pressure_error[at]), float(result.max_pressure)
     accuracy = "mesh-dependent: theory has an infinite one at a sharp edge"
     if result.edge_is_rounded[at]:

@@ -34,6 +34,16 @@ def test_finding_names_the_edges_of_the_largest_edge_pressure_and_the_relief_tha
     assert f"{deflection:.2g} um, by which the pair deflects, since it touches there without load" in sentences[0]
 
 
+@pytest.mark.parametrize(("end", "side"), [(-1.0, "lower side"), (1.0, "upper side")])
+def test_finding_names_the_edge_where_the_pressure_lies_not_every_edge_of_the_contact(end, side):
+    """A line contact along the whole face, whose pressure is highest at one of its ends."""
+    line = result("fzg_c14", positions=1)
+    place = np.full_like(line.edge_axial, end * np.abs(line.edge_axial).max())
+    pressed = changed(line, edge_axial=place, edge_pressure=np.full_like(line.edge_pressure, 1e4))
+    (sentence,) = [one for one in pressed.findings() if one.startswith("edge pressure")]
+    assert f" on pinion {side} + wheel {side} (" in sentence
+
+
 def test_edge_pressure_below_the_peak_pressure_is_no_finding():
     cycle = result("misaligned", positions=2)
     higher = np.where(np.isnan(cycle.peak_pressure), np.nan, 1.01 * np.nanmax(cycle.edge_pressure))
