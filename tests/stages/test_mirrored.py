@@ -47,6 +47,7 @@ def test_other_hand_shares_alike(plain):
     assert_allclose(other.transmission_error, plain.transmission_error, rtol=SOLVED_ANEW)
 
 
+@pytest.mark.thorough
 def test_driving_carrier_mirrors_planets_pins_and_motion(plain):
     """In the plane through planet 0: angles and tangential errors change their sign, the mesh turns back in time."""
     order = [0, 3, 2, 1]

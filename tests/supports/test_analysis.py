@@ -75,6 +75,7 @@ def test_coupled_analysis_equals_rigid_ones_with_moved_gears(name: str, size: tu
     assert (np.abs(motions - expected.motions) < MOTIONS_AGREE * largest).all()
 
 
+@pytest.mark.thorough
 def test_supports_couple_tooth_pairs_that_no_model_of_teeth_has_together() -> None:
     """A helix slope against soft shafts brings four pairs within reach: two of them three pitches apart."""
     slope = {"pinion.modifications.helix_slope_um": -17.0}
@@ -216,6 +217,7 @@ def test_motions_of_doubtful_size_are_warned_of() -> None:
         analyse(on(scene, np.diag([0.0] * 5 + [5e-7]), None))
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("default::loaded_tca.AccuracyWarning")
 def test_forces_on_supports_that_do_not_balance_the_torque_are_warned_of() -> None:
     """Normals turn within the contact of a hypoid pair; forces have that of the contact point."""

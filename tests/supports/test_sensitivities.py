@@ -141,9 +141,9 @@ def changes_alike(name: str, key: str, step: float, agreement: float, compliance
 @pytest.mark.parametrize(
     ("key", "step", "agreement"),
     [
-        ("pinion.modifications.helix_slope_um", 0.5, 0.01),
+        pytest.param("pinion.modifications.helix_slope_um", 0.5, 0.01, marks=pytest.mark.thorough),
         ("pinion.modifications.profile_slope_um", 0.5, 0.01),
-        (TORQUE, 4.0, SMOOTH),
+        pytest.param(TORQUE, 4.0, SMOOTH, marks=pytest.mark.thorough),
     ],
 )
 def test_directions_of_forces_turn_with_the_contacts(key: str, step: float, agreement: float) -> None:
