@@ -229,6 +229,7 @@ KINDS: dict[str, Kind] = {
     "int": _number,
     "tuple[float, float]": _pair,
     "tuple[int, int]": _whole_pair,
+    "Cells": _whole_pair,
     "Spacing": _pair,
     "Both": _pair,
     "Sequence[float]": _row,

@@ -288,8 +288,12 @@ def blank_rows(blanks: BevelBlank) -> list[Row]:
     ]
 
 
+LARGEST_SHOWN = 1e6
+"""Numbers from here on are limits that go to infinity, as of undercut towards a crown wheel: there are none."""
+
+
 def _numbers(*values: float) -> tuple[str, ...]:
-    return tuple(f"{value:z.4f}" for value in values)
+    return tuple(f"{value:z.4f}" if abs(value) < LARGEST_SHOWN else "none" for value in values)
 
 
 def cone_rows(mesh: BevelMesh, *, seen: bool) -> list[Row]:
