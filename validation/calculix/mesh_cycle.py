@@ -55,10 +55,11 @@ def short_rows() -> list[Row]:
     """Rows of the wide face at the largest torque of either variant, and of the pairs in space."""
     kept = read_cycles()
     torque = max((torque for _, torque in kept), default=0.0)
-    return rows_of({key: kept[key] for key in kept if key[1] == torque}, model(WIDE)) + pairs_in_space.rows()
+    some = {key: kept[key] for key in kept if key[1] == torque}
+    return rows_of(some, model(WIDE), kept) + pairs_in_space.rows()
 
 
-def rows_of(kept: Cycles, ours: Model) -> list[Row]:
+def rows_of(kept: Cycles, ours: Model, every: Cycles | None = None) -> list[Row]:
     """Rows of every cycle that is given.
 
     Parameters
@@ -66,8 +67,11 @@ def rows_of(kept: Cycles, ours: Model) -> list[Row]:
     kept : dict
         Positions by variant and torque.
     ours : Model
+    every : dict, optional
+        Those by which the stiffness of kept runs is judged, of three torques at least; default: the same.
     """
-    slopes, uncertain = slopes_of(kept), stiffness_errors(kept)
+    every = kept if every is None else every
+    slopes, uncertain = slopes_of(every), stiffness_errors(every)
     table: list[Row] = []
     for key, cycle in kept.items():
         pairs = _beside(ours, key, cycle)
