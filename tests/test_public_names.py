@@ -51,7 +51,7 @@ def test_contact_solver_loads_no_gears(package):
     loaded = modules_after(f"from {package} import solve_contact")
     below = {
         "loaded_tca",
-        *(f"loaded_tca.{module}" for module in ("lazy", "arguments", "arrays", "errors", "threads", "units")),
+        *(f"loaded_tca.{module}" for module in ("lazy", "arguments", "arrays", "errors", "plain", "threads", "units")),
     }
     assert own(loaded) <= below | {name for name in loaded if name.startswith("loaded_tca.contact")}
     assert not {"loaded_tca.contact.subsurface", "loaded_tca.contact.adaptive"} & loaded
