@@ -106,16 +106,16 @@ def _with_checks(function: FunctionType, documented: object) -> FunctionType:
     @functools.wraps(function)
     def call_checked(*arguments: Any, **options: Any) -> Any:
         values: list[Any] = list(arguments)
-        problems, doubts = Problems(), Problems()
+        problems, misfits = Problems(), Problems()
         places_given: list[tuple[Any, Any, str]] = [
             (values, place, name) for place, name in places if place < len(values)
         ]
         for where, key, name in (*places_given, *((options, name, name) for name in checks if name in options)):
             if where[key] is not None or name not in optional:
-                where[key] = _taken(checks[name], name, where[key], units, problems, doubts)
+                where[key] = _taken(checks[name], name, where[key], units, problems, misfits)
         if problems:
             raise InputError(problems)
-        if not doubts:
+        if not misfits:
             return function(*values, **options)
         with warnings.catch_warnings(action="ignore"):
             try:  # the function may say more of it: what is allowed, and what else is wrong
@@ -123,8 +123,8 @@ def _with_checks(function: FunctionType, documented: object) -> FunctionType:
             except LoadedTCAError:
                 raise
             except Exception:  # numbers were asked for: what text comes to is no matter
-                raise InputError(doubts) from None
-        raise InputError(doubts)
+                raise InputError(misfits) from None
+        raise InputError(misfits)
 
     return cast(FunctionType, call_checked)
 
@@ -133,13 +133,13 @@ Problems = list[str]
 
 
 def _taken(
-    kind: Kind, name: str, value: Any, units: Callable[[], dict[str, str]], problems: Problems, doubts: Problems
+    kind: Kind, name: str, value: Any, units: Callable[[], dict[str, str]], problems: Problems, misfits: Problems
 ) -> Any:
     """The value as a function takes it; as it is, if it is of another kind, and the problem among the others."""
     try:
         return kind(name, value, lambda: units().get(name))
     except OtherKindError as error:
-        doubts += error.problems
+        misfits += error.problems
     except InputError as error:
         problems += error.problems
     return value

@@ -8,6 +8,7 @@ import functools
 import math
 import os
 import threading
+from abc import ABC, abstractmethod
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Sequence
 from typing import Any
@@ -97,7 +98,7 @@ def fast_length(least: int) -> int:
     return next(length for length in lengths if length >= least and length % 2 == 0)
 
 
-class _Transform:
+class _Transform(ABC):
     """Plans and work arrays of transforms that multiply problems with even symbols in the Fourier space.
 
     ``in_use`` stays true where an exception ends a call: nothing is known of the work arrays then. A call that a signal
@@ -113,8 +114,9 @@ class _Transform:
         self._filter(values, corner, symbol, out)
         self.in_use = False
 
+    @abstractmethod
     def _filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
-        raise NotImplementedError
+        """Transform the values, multiply by the symbols, transform back."""
 
 
 class _SmallTransforms(_Transform):
