@@ -1,5 +1,6 @@
 """What every test shares: NaN stops at once, pictures go to no screen, random numbers are seeded."""
 
+import collections
 import gc
 import itertools
 import os
@@ -22,8 +23,22 @@ LONG = ("tests/test_site.py", "tests/test_examples.py", "tests/test_release.py",
 """Files with tests of several seconds."""
 
 
-def pytest_collection_modifyitems(items):
-    """Put long tests first: none is the last, for which other workers wait."""
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items, config):
+    """Mark cases beside quick ones; put long tests first: none is the last, for which other workers wait."""
+    cases = collections.defaultdict(list)
+    for item in items:
+        if item.get_closest_marker("quick_cases"):
+            cases[item.nodeid.partition("[")[0]].append(item)
+    for test, of_test in cases.items():
+        quick = of_test[0].get_closest_marker("quick_cases").args
+        if not any("::" in path for path in config.args) and (
+            missing := {*quick} - {case.callspec.id for case in of_test}
+        ):
+            raise pytest.UsageError(f"{test}: no case {', '.join(sorted(missing))}")
+        for case in of_test:
+            if case.callspec.id not in quick:
+                case.add_marker(pytest.mark.thorough)
     items.sort(key=lambda item: not item.nodeid.startswith(LONG))
 
 

@@ -54,6 +54,7 @@ def fail_with(monkeypatch, error):
     monkeypatch.setattr(loaded_tca.analysis, "analyse", analyse)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_demo_needs_no_file_and_tells_what_to_try_next(run):
     """And has nothing to warn of; with its pictures, too: tests/test_release.py."""
@@ -150,6 +151,7 @@ def test_run_leaves_no_picture_of_an_earlier_scene(run):
     assert set(os.listdir("out")) == REPORT | PICTURES
 
 
+@pytest.mark.thorough
 def test_plot_draws_another_torque_and_position(run, refused, request):
     changes = {"positions = 21": "positions = 3\ntorques_Nm = [20.0, 40.0]"}
     run("run", scene(**changes), "--out", "out")
@@ -183,6 +185,7 @@ def test_check_tells_teeth_that_overlap(run):
     assert "(at the centre distance of 141.3000 mm by 0.01" in run("check", scene(**changes))[1]
 
 
+@pytest.mark.quick_cases("straight_bevel")
 @pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
 def test_bevel_scene_is_run_and_drawn_as_any_other(run, name, request):
     text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
@@ -200,6 +203,7 @@ def test_check_of_a_spur_pair_names_no_hand(run):
     assert "none          none" in run("check", SCENES / "spur.toml")[1]
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_edge_contact_warns_once_and_exits_0(run):
     text = (SCENES / "misaligned.toml").read_text(encoding="utf-8").replace("positions = 21", "positions = 3")
@@ -326,6 +330,7 @@ def test_traceback_is_shown_when_asked_for(run, monkeypatch, arguments):
     assert err[-1] == "loaded-tca: not converged"
 
 
+@pytest.mark.quick_cases("failure0-130")
 @pytest.mark.usefixtures("blank_pictures")
 @pytest.mark.parametrize(
     ("failure", "code"), [(KeyboardInterrupt(), 130), (MemoryError(), 2), (OSError(28, "No space left on device"), 2)]
@@ -516,16 +521,19 @@ def test_full_standard_output_is_told(arguments):
     assert in_a_shell("> /dev/full", *arguments) == (2, told)
 
 
+@pytest.mark.quick_cases(">&-")
 @pytest.mark.parametrize("redirected", [">&-", "2>&- > /dev/null"])
 def test_closed_standard_output_or_error_is_no_failure(redirected):
     assert in_a_shell(redirected, "check", HELICAL) == (0, [])
 
 
+@pytest.mark.quick_cases("2>&-")
 @pytest.mark.parametrize("redirected", ["2>&-", "2> /dev/full"])
 def test_standard_error_that_cannot_be_written_leaves_the_exit_code(redirected):
     assert in_a_shell(redirected, "check", "absent.toml") == (2, [])
 
 
+@pytest.mark.thorough
 def test_closed_pipe_is_no_fault_of_a_command_that_draws_a_progress_bar():
     with subprocess.Popen(
         command_of("run", scene(), "--out", "out"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -543,6 +551,7 @@ def test_file_that_the_system_does_not_give_is_no_fault(run, monkeypatch):
 # Ease-off
 
 
+@pytest.mark.quick_cases("pinion")
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 def test_ease_off_of_a_scene_is_drawn(run, gear):
     code, out, err = run("ease-off", scene(), "--out", "maps", "--gear", gear)

@@ -51,6 +51,7 @@ def test_compare_names_results_by_what_differs_in_their_paths_or_as_told(run):
     assert compared()["compared_with"] == "as is"
 
 
+@pytest.mark.thorough
 def test_compare_draws_another_torque_and_position(run):
     saved("a")
     saved("b")
@@ -99,6 +100,7 @@ def test_place_that_cannot_be_written_is_told_before_anything_is_read(refused):
     assert "is a file; give a directory" in refused("compare", "absent", "other", "--out", "out")
 
 
+@pytest.mark.thorough
 def test_plot_draws_more_pictures_on_request(run, monkeypatch):
     """These alone: the others are drawn without the request, too."""
     figures = plots.result_figures

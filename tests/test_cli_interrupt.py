@@ -61,6 +61,7 @@ runpy.run_module("loaded_tca", run_name="__main__", alter_sys=True)
 """
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["loaded_tca.cli", "argparse", "loaded_tca.scene", "numpy", "xarray"])
 def test_interrupt_while_a_module_is_imported_is_one_line(tmp_path, name):
     code = PRESSED_WHILE_IMPORTING.replace("NAME", repr(name))
@@ -72,12 +73,14 @@ def test_interrupt_while_a_module_is_imported_is_one_line(tmp_path, name):
     assert done.returncode == 130
 
 
+@pytest.mark.quick_cases("between positions")
 @pytest.mark.parametrize(
     ("compliance", "shown"),
     [
         ("contact+tooth", r" 0/99"),  # on its way to the first position: the teeth are modelled
-        ("contact", r" [1-9]\d?/99"),  # between two positions
+        ("contact", r" [1-9]\d?/99"),
     ],
+    ids=["in models of teeth", "between positions"],
 )
 def test_interrupted_cycle_leaves_no_file_and_one_line(tmp_path, compliance, shown):
     scene = tmp_path / "cycle.toml"

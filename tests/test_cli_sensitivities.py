@@ -39,6 +39,7 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
+@pytest.mark.thorough
 def test_every_modification_and_mounting_error_is_looked_at(run, out):
     code, text, errors = run("sensitivities", out)
     assert code == 0
@@ -110,6 +111,7 @@ def test_torque_without_load_has_no_sensitivities(refused, tmp_path):
     assert os.listdir(tmp_path) == ["result.nc"]
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_file_of_sensitivities_is_no_result(run, refused, out):
     run("sensitivities", out, "--keys", CROWNING)

@@ -24,6 +24,7 @@ def options(*changes):
     return [part for change in changes for part in ("--set", change)]
 
 
+@pytest.mark.usefixtures("blank_pictures")
 @pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
 def test_stage_is_written_with_its_tables_and_pictures(tmp_path, capsys):
     assert main(["stage", STAGE, "--out", str(tmp_path), *options(*QUICK)]) == 0

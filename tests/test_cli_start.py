@@ -17,6 +17,7 @@ print(code, *sorted({"dask", "distributed"} & {name.partition(".")[0] for name i
 """
 
 
+@pytest.mark.thorough
 def test_result_is_made_written_and_read_without_packages_of_clusters(tmp_path):
     pytest.importorskip("distributed")
     few = ["--set", "analysis.positions=2", "--set", "analysis.compliance='contact'"]

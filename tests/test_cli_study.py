@@ -67,6 +67,7 @@ def test_long_study_says_beforehand_what_its_variants_take(study, capsys, monkey
     assert whole == pytest.approx(2.0 * each, rel=0.05)  # two digits each
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_workers_find_what_one_process_finds(study):
     name = study([2.0, 4.0, 6.0])
@@ -134,6 +135,7 @@ def test_study_fails_whatever_its_variants_fail_of(study, capsys, monkeypatch, e
     assert err == "loaded-tca: no variant was analysed; the summary says why\n"
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_damaged_row_is_one_line_of_the_command(study, capsys):
     name, rows = study([2.0, 6.0]), Path("out/study.rows.jsonl")
@@ -188,6 +190,7 @@ def test_wrong_study_is_told_before_anything_is_written(study, capsys):
     assert not os.path.exists("out")
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 @pytest.mark.parametrize("workers", [[], ["--workers", "2"]])
 def test_interrupt_keeps_what_is_done_and_the_same_command_goes_on(study, workers):

@@ -23,6 +23,7 @@ def test_tooth_writes_surfaces_and_a_picture_beside_the_result(run, directory):
     assert all(name in out for name in FILES)
 
 
+@pytest.mark.thorough
 def test_tooth_writes_elsewhere_the_whole_gears_if_asked(run, directory):
     elsewhere = directory / "new" / "place"
     options = ("--out", elsewhere, "--torque", 20, "--position", 2, "--fillet-radius", 0.4, "--whole-gears")

@@ -39,6 +39,7 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
+@pytest.mark.thorough
 def test_command_writes_what_the_call_finds(run, out):
     code, text, _ = run("tribology", out, "--speed", "500", "1500", *settings(*OIL, *ROUGH))
     assert code == 0

@@ -58,6 +58,7 @@ def test_vh_refuses_what_is_no_number(run):
     assert "v: " in errors[0]
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_coast_side_is_analysed_and_compared(run):
     code, out, errors = run("run", SCENES / "spur.toml", "--coast", "--out", "both", *FEW)
@@ -68,6 +69,7 @@ def test_coast_side_is_analysed_and_compared(run):
     assert load_result("both/coast/result.nc").scene.driving == "wheel"
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_gears_on_supports_are_compared_with_held_ones(run):
     scene = SCENES / "helical_on_supports.toml"

@@ -52,18 +52,12 @@ EXPECTED = {
 
 QUICK = (
     "plot_subsurface_stress",
-    "plot_contact_from_arrays",
-    "plot_convergence_of_methods",
     "plot_contact_pattern",
     "plot_bevel_pressure",
-    "plot_transmission_error",
-    "plot_planetary_stage",
-    "plot_bevel_blank",
     "plot_ease_off",
-    "plot_sensitivities",
     "plot_bidirectional_start",
 )
-"""Of a second or two. The others are analyses and pictures that the tests of their folders have on fewer cells."""
+"""Of half a second. The others are analyses and pictures that the tests of their folders have on fewer cells."""
 
 ON_A_GRID = {"analysis.compliance": "contact", "analysis.cells": [12, 16], "analysis.accuracy": None}
 A_WHOLE_TURN = {"revolution.positions_per_pitch": 4, "revolution.pitches": 24}
@@ -112,9 +106,8 @@ def _coarse_roots():
 
 @pytest.mark.usefixtures("_coarse_roots")
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # some show contacts that reach an edge
-@pytest.mark.parametrize(
-    "name", [*QUICK, *(pytest.param(name, marks=pytest.mark.thorough) for name in EXPECTED if name not in QUICK)]
-)
+@pytest.mark.quick_cases(*QUICK)
+@pytest.mark.parametrize("name", EXPECTED)
 def test_example_gives_its_number_and_its_picture(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     number, tolerance = EXPECTED[name]
@@ -153,6 +146,7 @@ def test_pages_of_pictures_have_every_kind(tmp_path, monkeypatch):
     assert kinds - drawn == set()
 
 
+@pytest.mark.thorough
 def test_study_on_a_cluster_follows_hertz(tmp_path, monkeypatch):
     """Eight times the load: twice the pressure. Workers are threads; studies on processes are tests of engines."""
     monkeypatch.chdir(tmp_path)

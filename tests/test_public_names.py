@@ -46,6 +46,7 @@ def test_importing_the_package_loads_nothing():
     assert "numpy" not in loaded
 
 
+@pytest.mark.quick_cases("loaded_tca.contact")
 @pytest.mark.parametrize("package", ["loaded_tca", "loaded_tca.contact"])
 def test_contact_solver_loads_no_gears(package):
     loaded = modules_after(f"from {package} import solve_contact")

@@ -56,6 +56,7 @@ def contents(wheel):
         return {name: archive.read(name) for name in archive.namelist()}
 
 
+@pytest.mark.thorough
 def test_wheel_has_every_file_of_the_package_and_nothing_else(archives):
     found = contents(archives[1])
     of_package = {name for name in found if not name.startswith(f"loaded_tca-{VERSION}.dist-info/")}

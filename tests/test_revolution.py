@@ -42,6 +42,7 @@ def revolution_of(scene, pitches, per_pitch=4, **changes):
     return analyse_revolution(scene.with_changes(asked | changes))
 
 
+@pytest.mark.quick_cases("mesh_cycle_spur-changes0", "mesh_cycle_bevel-changes2")
 @pytest.mark.parametrize(
     ("name", "changes"),
     [
@@ -73,6 +74,7 @@ def slopes(scene, tooth, positions):
     return (curves[0] - curves[1]) / (2.0 * STEP_um)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("changes", [CONTACT | FINE, COARSE | FINE], ids=["flanks alone", "bending"])
 def test_slope_to_the_deviation_of_one_tooth_is_its_share_of_the_tangent_stiffness(changes):
     """Of flanks alone the own stiffness of the pair over the sum; with bending the row sum of the inverse compliance.
@@ -235,6 +237,7 @@ def test_effort_grows_with_the_states():
     assert efforts[0].memory <= efforts[2].memory < 1.5 * efforts[0].memory
 
 
+@pytest.mark.thorough
 def test_study_of_a_class_scatters_over_its_seeds_within_its_tolerance():
     """Rigid, without modifications: the total deviation is that of the class, but for where two pairs overlap."""
     bare = {"pinion.modifications.lead_crowning_um": 0.0, "pinion.modifications.profile_crowning_um": 0.0}
@@ -306,6 +309,7 @@ def test_all_teeth_with_flanks_of_their_own_are_a_gear_with_these_flanks(gear):
 FULL = {"lead_crowning_um": 0.0, "profile_crowning_um": 0.0} | CROWNED
 
 
+@pytest.mark.quick_cases("flanks alone")
 @pytest.mark.parametrize("changes", [CONTACT, COARSE], ids=["flanks alone", "bending"])
 def test_tooth_with_less_material_all_over_is_one_that_is_set_back(changes):
     """An amount along the normal is 1/cos(beta_b) of it along the transverse line of action."""
@@ -320,6 +324,7 @@ def test_tooth_with_less_material_all_over_is_one_that_is_set_back(changes):
     assert_allclose(thinner.dataset.load_share, set_back.dataset.load_share, atol=2e-3)
 
 
+@pytest.mark.thorough
 def test_tooth_with_its_own_relief_changes_its_own_mesh_alone():
     relief = {"tip_relief_um": 20.0, "tip_relief_start_roll_deg": 30.0}
     scene = helical()

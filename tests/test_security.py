@@ -89,6 +89,7 @@ READS = {
 }
 
 
+@pytest.mark.thorough
 def test_reading_opens_the_named_files_and_does_nothing_else(folder):
     """No pickles, no code, no processes, no connections."""
     assert seen(READS, folder) == [[("open", name) for name in files] for files in READS.values()]

@@ -95,6 +95,7 @@ def test_large_contact_is_the_same_on_one_thread(monkeypatch, blas):  # noqa: AR
     assert_array_equal(free, bound)  # exact: threads share lines of a transform, each line is of one thread
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
 def test_analysis_is_the_same_on_one_thread(monkeypatch, blas):  # noqa: ARG001 (two threads of BLAS)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1}, raising=False)

@@ -138,6 +138,7 @@ def test_guess_tells_the_distance_of_its_points(gears, flank):
     assert_allclose(np.linalg.norm(misfit[0, :3]) * pair.base_radii[1], guess.distance, rtol=0, atol=1e-5)
 
 
+@pytest.mark.thorough
 def test_start_of_conjugate_gears_is_a_contact_already():
     """Two gears of uniform depth cut by one crown gear touch along a line; both starts lie on it."""
     gears = conjugate_gears()

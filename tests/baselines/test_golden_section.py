@@ -39,16 +39,8 @@ def unknowns(path):
     return np.stack(parts, axis=-1)
 
 
-def _first_alone(cases):
-    """Values of a table for parametrize, of which the first is quick enough for every run."""
-    rows = [one if isinstance(one, tuple) else (one,) for one in cases.values()]
-    return [
-        pytest.param(*row, id=name, marks=[pytest.mark.thorough] if k else [])
-        for k, (name, row) in enumerate(zip(cases, rows, strict=True))
-    ]
-
-
-@pytest.mark.parametrize("pair", _first_alone(PAIRS))
+@pytest.mark.quick_cases("crowned spur")
+@pytest.mark.parametrize("pair", PAIRS.values(), ids=PAIRS)
 def test_interior_contacts_of_three_methods_agree(pair):
     """Reduced, golden section, and the conventional equations from a start 0.1 mm and 0.01 rad off."""
     path = trace_contact(pair, np.linspace(-0.5, 0.5, 3) * pair.pitch)
@@ -69,7 +61,8 @@ EDGES = {
 }
 
 
-@pytest.mark.parametrize(("pair", "angles"), _first_alone(EDGES))
+@pytest.mark.thorough
+@pytest.mark.parametrize(("pair", "angles"), EDGES.values(), ids=EDGES)
 def test_edge_contacts_are_found_where_the_conventional_equations_have_none(pair, angles):
     path = trace_contact(pair, angles)
     assert path.on_edge.all()
@@ -78,6 +71,7 @@ def test_edge_contacts_are_found_where_the_conventional_equations_have_none(pair
     assert not solve_conventional(pair, angles, unknowns(path)).is_contact.any()
 
 
+@pytest.mark.thorough
 def test_no_point_of_the_flanks_touches_before_the_angle_found():
     """Against a dense grid that knows neither gaps nor sections."""
     pair = sam_paper(15.0, mounting=Mounting(2e-4, 1e-4))
@@ -87,6 +81,7 @@ def test_no_point_of_the_flanks_touches_before_the_angle_found():
         assert 0.0 <= lag - highest_on_grid(pair, np.array(angle)) < 1e-5
 
 
+@pytest.mark.thorough
 def test_wheel_flank_passes_through_the_point_found():
     pair = PAIRS["misaligned"]
     found = search_golden_section(pair, [-0.02, 0.02], sections=INTERIOR)
@@ -120,11 +115,13 @@ def test_contact_whole_turns_away_is_that_of_the_same_tooth(turns):
     assert_allclose(found.wheel_angle, expected, rtol=0, atol=rounding)
 
 
+@pytest.mark.thorough
 def test_line_contact_of_an_unmodified_pair_is_found():
     found = search_golden_section(gear_pair(), [0.01], sections=INTERIOR)
     assert_allclose(found.wheel_angle, 0.01 * 34 / 57, rtol=0, atol=2.0 * CLOSED)
 
 
+@pytest.mark.thorough
 def test_positions_without_a_common_region_are_not_a_number():
     found = search_golden_section(sam_paper(), [1.5, 0.0], sections=INTERIOR)
     assert found.in_contact.tolist() == [False, True]

@@ -102,6 +102,7 @@ def test_stiffness_of_a_tooth_pair_is_that_of_the_standard():
     assert_allclose(stiffness, 0.8 * theoretical_single_stiffness((25, 37), (0.0, 0.0)), rtol=STANDARD)
 
 
+@pytest.mark.quick_cases("bevel")
 @FAMILIES
 def test_compliance_is_symmetric_and_positive_definite(make):
     compliance = make()

@@ -42,12 +42,14 @@ def below(gear, height):
     return WIDTH * between(gear, one, one)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("height", HEIGHTS)
 def test_compliance_is_converged(height):
     fine = model(MeshDensity(6, 8, 3, 3, 6, 5, 1))
     assert_allclose(whole(model(), height), whole(fine, height), rtol=CONVERGED)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("part", [1.0, 0.4])
 def test_compliance_needs_no_more_layers(part):
     fine = model(replace(COARSE, lengthwise=10))

@@ -61,6 +61,7 @@ def mirrored(stress):
     return stress[..., ::-1]
 
 
+@pytest.mark.thorough
 def test_tension_under_an_even_load_is_that_of_the_reference_in_space():
     """1.043 of the plane value in the middle of the face, 0.729 at its ends: 1.5 % and 3 %."""
     tension = model().stress(0, [line()])[0].max(axis=0) / PLANE
@@ -152,6 +153,7 @@ def test_stress_of_a_spur_gear_is_the_same_from_either_end():
     assert stress[0].max(axis=0).argmax() > 0.6 * stress.shape[2]  # where the load is
 
 
+@pytest.mark.thorough
 def test_stress_of_the_other_side_is_the_mirror_image():
     """Teeth come in the other order."""
     for tooth in (0, 1):

@@ -49,6 +49,7 @@ def test_a_solid_gear_is_softer_than_one_on_a_rigid_shaft_as_thick_as_its_journa
         assert stiff < solid < slender
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("height", [0.1, 0.5, 0.9])
 def test_compliance_of_a_solid_gear_does_not_diverge_with_the_mesh(height):
     found = [
@@ -100,6 +101,7 @@ def test_twist_of_a_solid_body_is_inverse_to_the_modulus_and_to_the_cube_of_its_
     assert_allclose(solid_torsion(200.0, 350.0, 250.0), 1e-3 * steel, rtol=1e-9)
 
 
+@pytest.mark.thorough
 def test_body_torsion_of_a_solid_gear_is_that_of_all_its_teeth_loaded_alike(monkeypatch):
     """A pure torque on the body in space; even layers of the rim resolve the edge of the journals."""
     model.cache_clear()

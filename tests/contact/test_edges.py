@@ -173,6 +173,7 @@ def test_tangent_stiffness_with_an_edge_is_the_slope_of_the_load():
     assert_allclose(contact_stiffness(solution), (loads[1] - loads[0]) / (2.0 * step), rtol=5e-2)
 
 
+@pytest.mark.quick_cases("None-30.5", "1200.0-24.0")
 @pytest.mark.parametrize("position", [24.0, 30.5, 37.2])
 @pytest.mark.parametrize("cap", [None, 1200.0])
 def test_contact_conditions_hold_with_an_edge_anywhere(position, cap):

@@ -66,6 +66,7 @@ def direct_displacement(solution):
     return found
 
 
+@pytest.mark.quick_cases("options1")
 @pytest.mark.parametrize("options", [{}, {"max_pressure": 900.0}])
 def test_contact_conditions_hold_by_direct_summation(options):
     solution = graded(**options)

@@ -183,6 +183,7 @@ CUT_AREAS = {
 }
 
 
+@pytest.mark.quick_cases("side of the wheel")
 @pytest.mark.parametrize("case", CUT_AREAS)
 def test_area_cut_by_edges_is_that_of_a_dense_grid(case):
     arguments, angle = CUT_AREAS[case]
@@ -195,6 +196,7 @@ def test_area_cut_by_edges_is_that_of_a_dense_grid(case):
     )  # 700 cells across; curved tip of the mating gear
 
 
+@pytest.mark.thorough
 def test_area_cut_by_edges_does_not_depend_on_the_rays():
     pair = gear_pair(LIGHT, helix_deg=15.0, mounting=Mounting(out_of_plane=4e-3))
     few, many = (contact_area(pair, contact(pair, 0.17), rays=rays) for rays in (16, 720))

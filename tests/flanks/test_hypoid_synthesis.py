@@ -54,6 +54,7 @@ def test_cut_is_as_deep_as_the_blank(member):
     assert_allclose(np.mean(heights), depth[0], atol=MET)
 
 
+@pytest.mark.quick_cases("concave-convex")
 @pytest.mark.parametrize(("flank", "mating"), [("concave", "convex"), ("convex", "concave")])
 def test_slopes_of_the_pinion_are_those_of_the_conjugate(flank, mating):
     pinion, wheel = hypoid_gears("right")
@@ -65,6 +66,7 @@ def test_slopes_of_the_pinion_are_those_of_the_conjugate(flank, mating):
     assert_allclose([theta.rho[0], theta.z[0]], slopes, atol=1e-9)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "mismatch",
     [
@@ -157,6 +159,7 @@ def test_pinion_of_a_formate_wheel_is_cut_by_a_tilted_cutter():
     assert math.degrees(machine.root_angle) < 5.0
 
 
+@pytest.mark.thorough
 def test_bevel_pairs_without_an_offset_are_synthesised_too():
     sheet = BevelBlank.from_wheel_diameter(
         (14, 39), 176.893, 25.4, spiral_angle=math.radians(35.0), cutter_radius=114.3, profile_shift=0.4

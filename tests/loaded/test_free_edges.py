@@ -132,12 +132,14 @@ def test_entries_beside_an_end_are_those_of_hetenyis_quarter_space():
     assert (np.abs(error) < 0.04 * image).all()  # psi of contacts, which are no points: 3.5 % less
 
 
+@pytest.mark.thorough
 def test_block_with_free_ends_of_finite_elements_deforms_as_the_slices_say():
     rows = [row for row in free_block.rows() if row.tolerance is not None]
     assert len(rows) == 8  # five of an even load, three of a flush contact
     assert all(row.holds for row in rows)
 
 
+@pytest.mark.thorough
 def test_half_space_that_ends_is_none_of_the_block():
     """The comparison can fail: without free edges the deformation at the end is a third too small."""
     without = [row for row in free_block.rows() if "half-space" in row.case]

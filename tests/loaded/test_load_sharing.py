@@ -124,6 +124,7 @@ def elastic_energy(found):
     return energy
 
 
+@pytest.mark.thorough
 def test_torque_is_the_derivative_of_the_elastic_energy_along_the_rotation():
     """The wheel turns against a pinion that stands: its torque is that of the pinion over the ratio."""
     phi1, step = -0.3 * CENTRE, 0.02

@@ -77,6 +77,7 @@ def test_edges_are_where_the_arcs_begin():
         assert line.radius == 0.2
 
 
+@pytest.mark.quick_cases("False")
 @pytest.mark.parametrize("free_edges", [False, True])
 def test_force_is_kept(solutions, free_edges):
     pair, one = loaded(free_edges=free_edges)
@@ -91,6 +92,7 @@ def test_force_is_kept(solutions, free_edges):
         assert not border.any(), "the last box holds the contact"
 
 
+@pytest.mark.quick_cases("False")
 @pytest.mark.parametrize("free_edges", [False, True])
 def test_both_ends_of_a_symmetric_contact_have_the_same_peak(free_edges):
     pair, one = loaded(free_edges=free_edges)
@@ -111,6 +113,7 @@ def test_peak_does_not_depend_on_the_order_of_the_edges():
         assert_allclose(last.pressure, first.pressure, rtol=first.error + last.error)
 
 
+@pytest.mark.thorough
 def test_peak_beside_a_crossing_has_the_error_of_both_edges(solutions):
     """An edge that lies across the fine columns of the other one has the larger estimate."""
     peak = found(*loaded(**SKEW))
@@ -282,6 +285,7 @@ def test_bound_is_that_of_a_narrow_rounding_on_coarse_cells():
     assert largest_pressure(1e4, 1e-6, 0.2, 113187.0) > 1e4, "the cell is narrower than the pressed part"
 
 
+@pytest.mark.thorough
 def test_contacts_left_out_do_not_change_the_largest_pressure():
     """Ends of misaligned teeth, whose contacts were expected to differ by up to four times."""
     scene = read_scene(SCENES / "misaligned.toml").with_changes(

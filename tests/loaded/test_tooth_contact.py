@@ -142,6 +142,7 @@ def test_hertz_holds_nothing_where_a_relief_begins_in_the_ellipse():
     assert solved(sam_paper(15.0), 2700.0).hertz is not None
 
 
+@pytest.mark.thorough
 def test_box_of_a_corner_holds_its_contact():
     """At the corner of a tip and a side nearly all of a long window is void; the first box holds the contact."""
     pair = gear_pair(helix_deg=20.0, teeth=(22, 41))

@@ -91,6 +91,7 @@ def test_deflection_of_a_shaft_is_along_its_own_axes(result) -> None:
     assert_allclose(attributes["torsion_u"].value, np.degrees(line.motions[:, 5]), atol=1e-12)
 
 
+@pytest.mark.thorough
 def test_a_shaft_that_points_the_other_way_has_its_own_coordinates(second) -> None:
     attributes = rexs_results(second, example(), "11")["5"]
     places = np.array(attributes["u_coordinates_of_beam_nodes"].value)
@@ -120,6 +121,7 @@ def test_bearings_hold_the_forces_of_their_shaft(result) -> None:
     assert_allclose(on_casing, [axial, tangential, -radial], rtol=5e-3)
 
 
+@pytest.mark.thorough
 def test_bearings_that_the_scene_has_elsewhere_get_no_forces(result) -> None:
     moved = analyse(result.scene.with_changes({"pinion.shaft.bearings.1.at_mm": 65.0, "analysis.torques_Nm": [150.0]}))
     results = rexs_results(moved, example(), "10")
@@ -141,6 +143,7 @@ def test_rows_of_a_bearing_hold_as_one(result) -> None:
     assert own["torque_acting_on_outer_component_v"].value == pytest.approx(-tilting, rel=1e-6)
 
 
+@pytest.mark.quick_cases("rexs")
 @pytest.mark.parametrize("suffix", ["rexs", "rexsj"])
 def test_written_models_are_read_again(result, tmp_path, suffix: str) -> None:
     model = tmp_path / f"model.{suffix}"

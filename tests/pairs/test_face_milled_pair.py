@@ -47,6 +47,7 @@ def from_top(pair, parts):
 # Numbers computed independently from the same settings; tolerances are their last printed digits
 
 
+@pytest.mark.quick_cases("False")
 @pytest.mark.parametrize("exact", [True, False])
 def test_transmission_error_of_the_matched_pair_is_that_of_the_five_equations(exact):
     _, error = from_top(matched(exact=exact), np.arange(-4, 5) / 8.0)
@@ -193,6 +194,7 @@ def perturbed(gear, radial, root, roll):
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
 @settings(max_examples=15)
 @given(st.tuples(parts, parts, parts), st.tuples(parts, parts, parts), st.floats(-0.5, 0.5))

@@ -123,6 +123,7 @@ def test_motion_curve_at_the_mean_point_is_that_of_the_traced_contact(flank):
     assert_allclose((2.0 * top - before - after) / (8.0 * part**2), fall, rtol=tolerance)
 
 
+@pytest.mark.thorough
 def test_local_synthesis_goes_on_from_a_synthesised_pinion():
     pinion, wheel = hypoid_gears()
     aim = MeanContact(math.radians(12.0 / 3600.0), math.radians(120.0), 8.0)

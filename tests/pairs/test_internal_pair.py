@@ -29,6 +29,7 @@ def test_unmodified_pair_has_no_transmission_error(driving, sense, helix_deg):
     assert np.abs(path.transmission_error).max() < CONJUGATE
 
 
+@pytest.mark.thorough
 @settings(max_examples=20)
 @given(st.integers(18, 40), st.integers(12, 60), st.floats(0.0, 25.0), st.floats(0.0, 0.4), st.floats(-0.1, 0.1))
 def test_random_internal_pairs_are_conjugate(pinion, more, helix, first, second):

@@ -93,6 +93,7 @@ def test_contact_at_the_mean_point_is_as_asked_for(flank, path, options):
     assert pinion.blank == basic.blank
 
 
+@pytest.mark.thorough
 def test_both_flanks_of_a_tooth_are_as_asked_for_in_one_pass():
     basic, wheel = start()
     drive, coast = asked(12.0, 125.0, 11.0), asked(8.0, 60.0, 9.0)
@@ -115,6 +116,7 @@ def test_local_numbers_are_those_of_the_published_fields():
     assert_allclose(8.0 * MARKING / contact.contact_length**2, 3.954798e-4, rtol=1e-4)  # its normals differ by 1e-5
 
 
+@pytest.mark.thorough
 def test_motion_that_is_conjugate_to_second_order_can_be_asked_for():
     basic, wheel = start()
     pinion = local_synthesis(basic, wheel, asked(fall=0.0))
@@ -135,6 +137,7 @@ def test_tooth_is_as_thick_as_asked_for():
     assert_allclose(mean, 114.3, rtol=1e-12)
 
 
+@pytest.mark.thorough
 def test_larger_pair_of_the_same_form_has_larger_settings_of_the_same_form():
     """Lengths scale with the module, angles stay."""
     settings = []
@@ -166,6 +169,7 @@ def test_uniform_depth_and_small_cutters_take_all_settings():
         assert pinion.machine.tilt != 0.0
 
 
+@pytest.mark.thorough
 def test_settings_that_are_not_found_are_told(monkeypatch):
     monkeypatch.setattr("loaded_tca.pairs.synthesis.MOST_TRIALS", 30)
     basic, wheel = start()

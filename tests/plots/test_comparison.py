@@ -76,6 +76,7 @@ def test_result_without_load_sharing_has_no_harmonics():
     assert "no order is known" in texts[0].get_text()
 
 
+@pytest.mark.thorough
 def test_names_are_taken_literally():
     """Neither TeX, nor left out of the legend for an underscore at the beginning."""
     names = ["_old", "$x_1 \\frac{", "third"]

@@ -105,6 +105,7 @@ def test_objective_without_a_name_is_called_so():
     assert plot_robustness(one).axes[0].get_ylabel() == "objective"
 
 
+@pytest.mark.quick_cases("1-plot_before_and_after", "all-plot_peak_to_peak_over_torque")
 @pytest.mark.parametrize("plot", PLOTS)
 @pytest.mark.parametrize("one", [design(), design(samples=1), design(torques=TORQUES[:1])], ids=["all", "1", "torque"])
 def test_every_picture_is_drawn(plot, one, tmp_path):

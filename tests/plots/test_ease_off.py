@@ -23,6 +23,7 @@ def written(figure):
     return found
 
 
+@pytest.mark.thorough
 def test_ease_off_picture_has_corner_values_and_coefficients(tmp_path):
     figure = plot_ease_off(ease_off_map(gear_pair(TWISTED)), "Twisted $pair")
     texts = written(figure)

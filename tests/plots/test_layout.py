@@ -30,6 +30,7 @@ def positions(figure):
     return np.array([axes.get_position().extents for axes in figure.axes]) * [*figure.bbox.size, *figure.bbox.size]
 
 
+@pytest.mark.thorough
 def test_panels_lie_where_two_measured_passes_put_them():
     """Within a pixel."""
     measured, estimated = panels(), panels()

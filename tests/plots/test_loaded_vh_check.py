@@ -35,6 +35,7 @@ def framed(axes):
     return to_hex(axes.spines["top"].get_edgecolor()) == ACCENT
 
 
+@pytest.mark.thorough
 def test_variants_lie_where_their_errors_say():
     """Variant 1 alone has an edge: V = -0.01 below, H = 0.02 on the right."""
     off = changed(cycle(), on_edge=np.zeros_like(cycle().on_edge))

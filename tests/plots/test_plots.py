@@ -66,12 +66,8 @@ def texts(figure):
     return "\n".join(found)
 
 
-QUICK = ("several torques", "positions without contact", "line contact", "no load")
-
-
-@pytest.mark.parametrize(
-    "case", [*QUICK, *(pytest.param(case, marks=pytest.mark.thorough) for case in CASES if case not in QUICK)]
-)
+@pytest.mark.quick_cases("positions without contact", "no load")
+@pytest.mark.parametrize("case", CASES)
 def test_every_case_gives_every_picture(case, tmp_path):
     paths = plot_all(CASES[case](), tmp_path)
     always = {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}
@@ -294,6 +290,7 @@ def test_flanks_are_drawn_with_the_part_that_the_mate_reaches(name):
         assert (axes.get_xlabel(), axes.get_ylabel()) == flank.frame.labels
 
 
+@pytest.mark.quick_cases("spiral_bevel")
 @pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
 def test_pictures_of_bevel_pairs_speak_of_toe_and_heel(name):
     cycle = result(name, positions=3)
@@ -319,6 +316,7 @@ def test_colours_of_the_flanks_begin_at_zero():
     assert limits[1] >= max(one.pressure.max() for (one,) in cycle.maps[0])
 
 
+@pytest.mark.thorough
 def test_pictures_of_one_torque_say_which_of_several():
     cycle = result(torques=(20.0, 80.0))
     for plot in (plot_contact_path, plot_pressure_map):

@@ -97,6 +97,7 @@ def test_pictures_say_which_key_is_missing(plot):
         plot(result(**WITHOUT))
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_pictures_are_among_those_of_a_result_that_has_them(tmp_path):
     names = {name for name in PICTURES if name.startswith("root_stress")}

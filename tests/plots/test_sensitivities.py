@@ -140,6 +140,7 @@ def test_band_of_one_torque_is_that_one():
     assert "40 N m" in told(figure)
 
 
+@pytest.mark.quick_cases("pinion")
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 def test_removal_over_a_whole_flank_counts_as_much_as_its_height(gear):
     """1 um off everywhere: 1 um along the normal, 1/cos(beta_b) at the base circle.
@@ -157,6 +158,7 @@ def test_removal_over_a_whole_flank_counts_as_much_as_its_height(gear):
     assert_allclose(total, 1.0, rtol=0.01)  # cells in the tangent plane, some half a cell beyond the end of the face
 
 
+@pytest.mark.thorough
 def test_picture_of_removal_has_both_flanks_and_its_unit():
     figure = plot_removal_weights(found())
     shown = [[one for one in axes.collections if isinstance(one, QuadMesh)] for axes in figure.axes[:2]]
@@ -174,6 +176,12 @@ CASES = {
 }
 
 
+@pytest.mark.quick_cases(
+    "plot_removal_weights-one pair alone",
+    "plot_tornado-one pair alone",
+    "plot_transmission_error_band-one position",
+    "plot_sensitivity_curves-one pair alone",
+)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize(
     "plot", [plot_tornado, plot_sensitivity_curves, plot_transmission_error_band, plot_removal_weights]

@@ -49,6 +49,7 @@ def test_marks_of_a_spur_pair_are_those_of_its_involutes():
     assert found["A"] < found["B"] < found["C"] < found["D"] < found["E"]
 
 
+@pytest.mark.thorough
 def test_path_without_ends_on_the_flanks_has_no_marks_for_them():
     """Positions end where no contact has left the flanks yet."""
     cycle = result("mesh_cycle_bevel", positions=5, torques=(0.2,))
@@ -144,6 +145,7 @@ def test_table_of_the_path_has_lengths_roll_angles_and_diameters_beside_those_of
             assert_allclose(float(own), value, atol=5e-3)  # to 5e-5 of four pitches, and three digits
 
 
+@pytest.mark.quick_cases("plot_harmonics")
 @pytest.mark.parametrize(
     "plot", [plot_harmonics, plot_load_share, plot_path_pressure, sharing.plot_mesh_stiffness, plot_peak_pressure]
 )
@@ -311,6 +313,7 @@ def test_letters_that_are_not_drawn_are_not_explained():
     assert {letter for letter in "ABCDE" if f"{letter}: " in label} == drawn
 
 
+@pytest.mark.thorough
 def test_letters_say_what_they_are_and_do_not_cover_each_other():
     figure = plot_path_pressure(shared())
     figure.draw_without_rendering()

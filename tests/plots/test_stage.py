@@ -1,25 +1,18 @@
 """Pictures of stages: curves of the numbers of the result, with axes that say what they are."""
 
-import warnings
-from pathlib import Path
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.errors import InputError
 from loaded_tca.plots import STAGE_PICTURES, plot_stage_load_factor, plot_stage_shares, plot_stage_sun_orbit
-from loaded_tca.stages import analyse_stage, read_stage, rebalanced
-
-STAGE = Path(__file__).parents[2] / "examples" / "stages" / "helical_automotive.toml"
+from loaded_tca.stages import rebalanced
+from tests.samples.stages import analysed
 
 
 @pytest.fixture(scope="module")
 def result():
-    changes = {"analysis.cells": [12, 16], "analysis.compliance": "contact", "analysis.free_edges": False}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)  # contacts reach edges, on few cells
-        return analyse_stage(read_stage(STAGE).with_changes({**changes, "analysis.positions": 5}))
+    return analysed()[0]
 
 
 @pytest.mark.parametrize("name", STAGE_PICTURES)

@@ -316,6 +316,7 @@ def test_each_design_has_its_band_over_the_torque():
     assert [text.get_text() for text in figure.legends[0].texts] == ["2", "6"]
 
 
+@pytest.mark.thorough
 def test_heat_map_of_many_cells_takes_no_mask_of_all_samples_for_each():
     """14 400 cells with 14 400 samples: masks would take 207 MB, the picture takes 20."""
     count = 120
@@ -357,6 +358,7 @@ def test_scatter_matrix_shows_keys_and_figures_and_crosses_what_failed():
     assert "16 variants: 15 ok, 1 refused" in title(figure)
 
 
+@pytest.mark.thorough
 def test_scatter_matrix_of_many_keys_shows_those_that_matter(rng):
     names = [
         f"wheel.modifications.{name}"
@@ -381,6 +383,7 @@ def test_scatter_matrix_of_many_keys_shows_those_that_matter(rng):
     assert "6 of 7 varied keys" in title(figure)
 
 
+@pytest.mark.thorough
 def test_words_and_whole_numbers_have_their_ticks_in_the_scatter_matrix():
     hand, teeth = (list(column) for column in zip(*itertools.product(["right", "left"], [33, 34, 35]), strict=True))
     keys = {"pinion.hand": hand, "pinion.teeth": teeth, "load.pinion_torque_Nm": np.linspace(70.0, 80.0, 6)}
@@ -416,6 +419,7 @@ def test_ranking_begins_with_the_best_and_counts_the_rest():
     assert "20 best of 25 variants, least peak pressure first" in title(long)
 
 
+@pytest.mark.thorough
 def test_ranking_fills_its_picture():
     for figure in (plot_study_ranking(grid()), plot_study_ranking(grid(leads=np.arange(5.0), tips=np.arange(5.0)))):
         figure.draw_without_rendering()

@@ -22,6 +22,7 @@ def axes_of(figure):
     return figure.axes[0]
 
 
+@pytest.mark.quick_cases("helical")
 @pytest.mark.parametrize("name", ["helical", "straight_bevel", "spiral_bevel"])
 def test_picture_says_units_load_and_place_and_is_saved(name, tmp_path):
     figure = plot_teeth(result(name, positions=3))
@@ -44,6 +45,7 @@ def test_scales_of_the_three_axes_are_equal():
     assert_allclose(scale, scale[0], rtol=1e-9)
 
 
+@pytest.mark.thorough
 def test_names_of_the_axes_are_upright_and_clear_of_the_numbers():
     for name in ("helical", "spiral_bevel", "misaligned", "fzg_c14"):
         figure = plot_teeth(result(name, positions=3))

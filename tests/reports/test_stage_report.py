@@ -6,8 +6,8 @@ from loaded_tca.cli import main
 from loaded_tca.errors import InputError
 from loaded_tca.plots import STAGE_CAPTIONS, STAGE_PICTURES
 from loaded_tca.reports import write_html_report
-from loaded_tca.stages import analyse_stage, read_stage
 from tests.reports.test_report import Page
+from tests.samples.stages import analysed
 
 STAGE = "examples/stages/helical_automotive.toml"
 WHEN = "2026-03-04T05:06:07+00:00"
@@ -17,13 +17,24 @@ pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
 
 @pytest.fixture(scope="module")
 def result():
-    quick = {"analysis.compliance": "contact", "analysis.free_edges": False, "analysis.cells": [12, 16]}
-    return analyse_stage(read_stage(STAGE).with_changes({**quick, "analysis.positions": 7}))
+    return analysed()[0]
 
 
+@pytest.fixture
+def _blank_pictures(monkeypatch):
+    """Pictures are made but not drawn."""
+    monkeypatch.setattr("loaded_tca.reports.page.svg_of", lambda *_: "<svg></svg>")
+
+
+@pytest.mark.thorough
+def test_report_of_the_same_result_is_the_same_file(result, tmp_path):
+    paths = [write_html_report(result, tmp_path / f"{name}.html", date=WHEN) for name in ("report", "again")]
+    assert paths[0].read_bytes() == paths[1].read_bytes()
+
+
+@pytest.mark.usefixtures("_blank_pictures")
 def test_report_has_phases_figures_and_pictures(result, tmp_path):
-    path = write_html_report(result, tmp_path / "report.html", date=WHEN)
-    page = Page(path)
+    page = Page(write_html_report(result, tmp_path / "report.html", date=WHEN))
     text = " ".join(page.text)
     assert page.headings[:5] == [result.stage.title, "What was asked", "Key figures", "Phases and orders", "Meshes"]
     phases = next(table for table in page.tables if table[0][1:] == ["sun's mesh", "ring's mesh"])
@@ -37,10 +48,9 @@ def test_report_has_phases_figures_and_pictures(result, tmp_path):
     assert "sun_mesh.nc" in text
     assert text.count("Figure ") == len(STAGE_PICTURES)
     assert set(STAGE_CAPTIONS) == set(STAGE_PICTURES)
-    again = write_html_report(result, tmp_path / "again.html", date=WHEN)
-    assert again.read_bytes() == path.read_bytes()
 
 
+@pytest.mark.usefixtures("_blank_pictures")
 def test_command_writes_the_report_of_a_directory(result, tmp_path, capsys):
     result.save(tmp_path)
     assert main(["report", str(tmp_path)]) == 0

@@ -126,6 +126,7 @@ def test_radii_turn_forces_into_torques_and_lengths_into_angles():
     assert_allclose(force, along_normal, rtol=2e-3)  # lengthwise crowning tilts the normals a little
 
 
+@pytest.mark.thorough
 def test_angles_of_cylindrical_gears_give_the_direction_of_the_force():
     """sin(beta_b) = sin(beta) cos(alpha_n); no profile shift: alpha_wt = alpha_t."""
     dynamics = cycle().to_dynamics()

@@ -85,6 +85,7 @@ def test_an_error_of_the_centre_distance_jams_gears_whose_backlash_is_given(dist
         assert [sentence.startswith("negative backlash") for sentence in found] == [True] * (error in errors)
 
 
+@pytest.mark.thorough
 def test_study_of_mounting_errors_of_nominal_gears_is_without_warnings_and_counts_those_of_given_backlash():
     errors = {"mounting.centre_distance_error_mm": [-0.04, -0.02, 0.0, 0.02]}
     for distance, count in ((None, 0), (136.51, 2)):

@@ -74,6 +74,7 @@ def test_bending_lets_the_wheel_lag_and_spreads_the_load():
     assert np.nanmax(soft.load_share) < np.nanmax(stiff.load_share)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("key", "step"),
     [

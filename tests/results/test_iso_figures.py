@@ -100,6 +100,7 @@ def test_bound_of_the_transverse_load_factor_stands_beside_it_alone():
     assert math.isnan(alone["largest_transverse_load_factor_iso_6336"])
 
 
+@pytest.mark.thorough
 def test_reasons_stand_in_overview_report_and_reference_and_the_summary_says_where(monkeypatch):
     monkeypatch.setattr("loaded_tca.reports.result_page.result_figures", lambda *_, **__: {})
     cycle = result("mesh_cycle_spur")

@@ -169,6 +169,7 @@ def refined(accuracy, torques=(65.0, 130.0)):
         return analyse(read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(changes))
 
 
+@pytest.mark.thorough
 def test_discretisation_error_bounds_the_error_of_the_peak_by_the_grid():
     coarse, fine = refined(1e-2), refined(1e-4)
     known = np.isfinite(coarse.discretisation_error) & np.isfinite(fine.discretisation_error)

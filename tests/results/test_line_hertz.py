@@ -66,6 +66,7 @@ def test_line_on_a_tip_has_no_pressure_after_hertz():
     assert np.isnan(cycle.hertz_pressure[0][on_edge]).all()
 
 
+@pytest.mark.thorough
 def test_lines_without_load_have_no_pressure_after_hertz():
     scene = read_scene(SCENES / "fzg_c14.toml").with_changes(
         {"analysis.positions": 1, "analysis.cells": (16, 16), "load.pinion_torque_Nm": 0.0}

@@ -181,12 +181,14 @@ def crowned(out_of_plane_deg, cells=32):
         return analyse(scene)
 
 
+@pytest.mark.quick_cases("1.0")
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_face_load_factor_rises_with_misalignment_on_both_sides(sign):
     factors = [crowned(sign * error).face_load_factor.item() for error in (0.0, 0.04, 0.08, 0.12)]
     assert (np.diff(factors) > 0.0).all()
 
 
+@pytest.mark.quick_cases("0.04")
 @pytest.mark.parametrize("error", [0.0, 0.04])
 def test_face_load_factor_does_not_depend_on_the_grid(error):
     coarse, fine = (crowned(error, cells).face_load_factor.item() for cells in (32, 64))

@@ -38,6 +38,7 @@ def from_file(tmp_path_factory):
     return load_result(path)
 
 
+@pytest.mark.thorough
 def test_derivatives_at_a_cap_are_those_of_the_file(from_file):
     kept, found = (one.sensitivities(["mounting.offset_mm", "load.pinion_torque_Nm"]) for one in (capped(), from_file))
     for name in ("transmission_error", "load_share", "line_load", "face_load_factor", "peak_to_peak"):

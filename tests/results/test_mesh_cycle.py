@@ -209,6 +209,7 @@ def test_dataset_selects_tabulates_and_draws():
     assert_allclose(axes.lines[1].get_ydata(), cycle.transmission_error[1])
 
 
+@pytest.mark.thorough
 def test_guide_to_the_dataset_shows_what_happens(monkeypatch):
     monkeypatch.chdir(SCENES.parents[1])
     found = doctest.testfile(str(SCENES.parents[1] / "docs" / "guide" / "results.md"), module_relative=False)

@@ -84,6 +84,7 @@ def test_nominal_stress_grows_with_the_helix_and_shrinks_with_the_face():
     assert_allclose(narrow.tooth_height_over_width, 2.0 * wide.tooth_height_over_width, rtol=1e-12)
 
 
+@pytest.mark.thorough
 def test_standard_is_silent_on_bevel_gears_and_single_positions():
     bevel = result("mesh_cycle_bevel")
     assert np.isnan(bevel.scene.nominal_root_stress).all()

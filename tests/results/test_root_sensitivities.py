@@ -28,6 +28,7 @@ def sensitivities(cycle, keys):
         return found, found.root_tension, found.root_compression
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("key", "step", "bends"),
     [

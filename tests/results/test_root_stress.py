@@ -178,6 +178,7 @@ def test_misaligned_pair_has_its_tension_where_its_load_is():
     assert (cycle.root_tension[1, 2] > 1.1 * result().root_tension[1, 2]).all()
 
 
+@pytest.mark.thorough
 def test_other_sense_of_rotation_is_the_mirror_image():
     one, other = result(), result(**{"pair.sense": "negative"})
     for name in ("root_tension", "root_compression", "root_tension_angle"):

@@ -98,6 +98,7 @@ def test_pressure_at_a_rounded_edge_is_a_number_of_the_gear():
     assert all(12.5 - 0.25 < one["pinion_axial_at_edge_mm"] < 12.5 for one in blunt), "on the arc or just before it"
 
 
+@pytest.mark.thorough
 def test_rounded_tip_between_sharp_face_ends_is_told_to_have_no_limit():
     tips = rounded(0.2, [key for key in EDGES if "tip" in key])
     line, told = analysed("fzg_c14", tips, load_sharing=True)
@@ -200,12 +201,14 @@ def test_corner_of_a_rounded_and_a_sharp_edge_is_sharp():
     assert cycle.edge_is_rounded[cycle.edge_pressure_error < 1.0].all()
 
 
+@pytest.mark.thorough
 def test_slice_pressure_sees_the_curvature_of_the_sharp_flank():
     """With that of an arc, 1/0.2 mm, it would be tenfold."""
     sharp, blunt = (analysed("misaligned", radii)[0] for radii in ((), rounded(0.2)))
     assert_allclose(np.nanmax(blunt.peak_pressure), np.nanmax(sharp.peak_pressure), rtol=0.15)
 
 
+@pytest.mark.thorough
 def test_spur_line_keeps_its_hertz_pressure():
     sharp, blunt = (analysed("fzg_c14", radii, positions=1)[0] for radii in ((), rounded(0.2)))
     assert_array_equal(blunt.path.on_line, sharp.path.on_line)

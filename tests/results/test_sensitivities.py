@@ -66,6 +66,7 @@ REAL = [
 ]
 
 
+@pytest.mark.quick_cases("mesh_cycle_bevel-pinion.modifications.helix_slope_um-1.0-False")
 @pytest.mark.parametrize(
     ("name", "key", "step", "bends"),
     [
@@ -79,6 +80,7 @@ def test_transmission_error_of_real_pairs_changes_as_whole_analyses_do(name, key
     assert_allclose(found, expected, rtol=0, atol=REAL_PAIRS * np.abs(expected).max())
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "agreement"), [("transmission_error", 5e-3), ("line_load", 5e-3), ("face_load_factor", REAL_PAIRS)]
 )
@@ -105,6 +107,7 @@ def test_load_shares_of_all_pairs_change_by_nothing_together():
     assert_allclose(np.nansum(found, axis=2), 0.0, atol=SOLVED)
 
 
+@pytest.mark.thorough
 def test_transmission_error_changes_with_the_torque_as_between_two_analyses():
     one = analysed("mesh_cycle_helical", False)
     step = 2.0
@@ -207,6 +210,12 @@ def test_pressure_norm_grows_with_the_torque_as_between_two_analyses():
     assert_allclose(found, (norms[1] - norms[0]) / (2.0 * step), rtol=REAL_PAIRS)
 
 
+@pytest.mark.quick_cases(
+    "mesh_cycle_helical-changes0-flanks alone",
+    "mesh_cycle_bevel-changes1-flanks alone",
+    "spur-changes2-flanks alone",
+    "spur-changes2-bending",
+)
 @pytest.mark.parametrize("bends", [False, True], ids=["flanks alone", "bending"])
 @pytest.mark.parametrize(
     ("name", "changes"), [("mesh_cycle_helical", {}), ("mesh_cycle_bevel", {}), ("spur", ONE_PAIR)]

@@ -292,6 +292,7 @@ def test_every_picture_of_a_shared_load_is_drawn_and_those_on_request_go_without
     assert not {path.stem for path in tmp_path.iterdir()} & set(MORE_PICTURES)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_one_torque_has_every_picture_but_those_over_torques(tmp_path):
     """The tests of its report draw them."""
@@ -391,6 +392,7 @@ def test_flanks_that_deform_alone_have_no_body_torsion():
     assert "tangent, without body torsion" not in result.summary()
 
 
+@pytest.mark.thorough
 def test_progress_is_told_after_every_torque_and_position():
     told = []
     scene = read_scene(SCENES / "mesh_cycle_spur.toml")

@@ -57,6 +57,7 @@ def test_roll_angle_of_a_relief_start_has_a_tolerance_of_its_own():
     assert default_tolerances(scene("mesh_cycle_spur"), [key]) == {key: 0.1}
 
 
+@pytest.mark.quick_cases("face_milled_19x62_matched")
 @pytest.mark.parametrize("name", ["mesh_cycle_helical", "mesh_cycle_bevel", "face_milled_19x62_matched"])
 def test_every_default_key_is_one_that_a_result_can_be_derived_by(name):
     cycle = result(name, positions=2, torques=(50.0,))

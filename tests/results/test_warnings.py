@@ -68,6 +68,7 @@ def test_contacts_of_the_helical_mesh_cycle_do_not_reach_their_boxes():
             assert not one.pressure[:, [0, -1]].any()
 
 
+@pytest.mark.thorough
 def test_twist_about_a_thin_bore_is_told():
     scene = "mesh_cycle_finite_elements"
     thin, sentences = told(scene, **{"pinion.bore_diameter_mm": 6.0})

@@ -72,6 +72,7 @@ def test_contact_of_the_scene_is_as_its_settings_ask(example):
     assert row(example, "contact at the mean point, flanks of the pinion") == ["concave", "convex"]
 
 
+@pytest.mark.thorough
 def test_scene_of_few_keys_is_analysed_as_a_hertzian_contact():
     """At the mean point under a small torque, of an ellipse 3 mm long: the asked accuracy of its peak is 1 %."""
     scene = parse_scene(SHORT).with_changes({"load.pinion_torque_Nm": 2.0, "analysis.positions": 1})
@@ -113,6 +114,7 @@ def test_scene_without_its_blank_needs_all_settings(example):
         example.with_changes({"pair.blank": None})
 
 
+@pytest.mark.thorough
 def test_coast_side_is_the_other_flank_of_the_same_cut(example):
     """What is asked for belongs to the flank that the scene names; the other side of the teeth is cut with it."""
     asked = example.with_changes({"pair.settings.both_flanks": True})
@@ -124,6 +126,7 @@ def test_coast_side_is_the_other_flank_of_the_same_cut(example):
         assert_allclose(sum(path), 180.0, rtol=1e-6)
 
 
+@pytest.mark.thorough
 def test_usual_contact_of_the_convex_flank_is_the_mirror_image(example):
     usual = {"pair.settings.path_angle_deg": None, "pair.settings.motion_fall_arcsec": None}
     usual["pair.settings.contact_length_mm"] = None

@@ -145,6 +145,7 @@ def test_forces_of_pinion_and_wheel_are_in_equilibrium(scene, flank):
     assert_allclose(wheel_tangential * radii[1], tangential * radii[0] * 42 / 13, rtol=2e-3)
 
 
+@pytest.mark.thorough
 def test_example_is_what_its_script_makes():
     import importlib.util
 

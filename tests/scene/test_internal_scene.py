@@ -94,6 +94,7 @@ def test_teeth_apart_make_the_centre_distance_smaller():
     assert list(scene.interferences()) == []
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
 def test_load_is_shared_and_teeth_bend(scene):
     result = analyse(scene)

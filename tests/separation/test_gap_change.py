@@ -107,6 +107,7 @@ CASES = {
 }
 
 
+@pytest.mark.quick_cases("spiral bevel")
 @pytest.mark.parametrize("name", CASES)
 def test_gap_change_of_every_key_is_the_difference_of_gaps_on_the_held_grid(name):
     file, changes, errors = CASES[name]

@@ -73,6 +73,7 @@ def brute_force_gap(pair, contact, separation, i, j):
 # The gap
 
 
+@pytest.mark.thorough
 @given(pairs(), st.floats(-0.4, 0.4))
 @settings(max_examples=12)
 def test_gap_equals_the_distance_found_by_bracketing(pair, turn):
@@ -85,6 +86,7 @@ def test_gap_equals_the_distance_found_by_bracketing(pair, turn):
             assert_allclose(separation.gap[i, j], expected, atol=GAP)
 
 
+@pytest.mark.thorough
 @given(pairs(), st.floats(-0.4, 0.4))
 @settings(max_examples=12)
 def test_gap_is_nothing_at_the_contact_point_and_nowhere_negative(pair, turn):

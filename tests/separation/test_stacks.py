@@ -68,12 +68,8 @@ def assert_same(one, other):
             np.testing.assert_array_equal(getattr(first, name), getattr(second, name), name)
 
 
-QUICK = ("base circle", "helical", "measured_flank")
-
-
-@pytest.mark.parametrize(
-    "name", [*QUICK, *(pytest.param(name, marks=pytest.mark.thorough) for name in PAIRS if name not in QUICK)]
-)
+@pytest.mark.quick_cases("base circle", "helical")
+@pytest.mark.parametrize("name", PAIRS)
 def test_gap_does_not_depend_on_what_is_sampled_with_it(name):
     """Not by rounding either: alone, in another order, in other company."""
     pair = PAIRS[name]()

@@ -33,6 +33,8 @@ CROWNING, SLOPE = "pinion.modifications.lead_crowning_um", "wheel.modifications.
 RELIEF = "pinion.modifications.tip_relief_um"
 COARSE = SCENE.with_changes({"analysis.positions": 4})
 """For searches of which the way is judged, not the design: on few cells."""
+FEW = {"scene": SCENE.with_changes({"analysis.positions": 2}), "cells": (8, 12)}
+"""Of models whose numbers are not judged."""
 FEW_STEPS = 6
 ENOUGH = (16, 48)
 """Cells on which the face load factor of a misaligned pair is that of the analysis to 2 %; on 16 x 24 to 9 %."""
@@ -50,7 +52,7 @@ def beside():
     """A design, and those a step of 5e-4 um below and above it in each key: no cell enters or leaves between them."""
     with coarsely():
         one, x = (
-            model(scene=SCENE.with_changes({"analysis.root_stress": True}), tolerance=1e-11),
+            model(scene=SCENE.with_changes({"analysis.root_stress": True, "analysis.positions": 3}), tolerance=1e-11),
             np.array([5.3, 2.1, 9.0]),
         )
     steps = 5e-4 * np.eye(3)
@@ -97,6 +99,7 @@ def test_a_helix_slope_makes_up_for_misalignment():
     assert_allclose(turned[1], straight[0], rtol=0.02)
 
 
+@pytest.mark.quick_cases("flanks alone")
 @pytest.mark.parametrize(
     ("changes", "allowed"),
     [
@@ -163,11 +166,12 @@ def test_machine_settings_shape_flanks_too():
 
 
 def test_scatter_of_a_variable_deviates_from_the_design():
-    one = model(scatter={CROWNING: [-1.0, 1.0]})
+    scene = FEW["scene"]
+    one = model(scatter={CROWNING: [-1.0, 1.0]}, scene=scene)
     design = {CROWNING: 4.0, SLOPE: 0.0, RELIEF: 8.0}
     assert [value_at(scene, CROWNING) for scene in one.scenes(design)] == [3.0, 5.0]
     figures = one.evaluate(design).figure("mean_transmission_error_um")
-    alone = model(scatter=None)
+    alone = model(scatter=None, scene=scene)
     for sample, crowning in enumerate((3.0, 5.0)):
         wanted = alone.evaluate({CROWNING: crowning, SLOPE: 0.0, RELIEF: 8.0}).figure("mean_transmission_error_um")
         assert_allclose(figures[sample], wanted[0], atol=5e-3)
@@ -175,7 +179,7 @@ def test_scatter_of_a_variable_deviates_from_the_design():
 
 def test_samples_of_distributions_are_those_of_a_study_about_their_medians():
     scatter = {MISALIGNMENT: norm(1.0, 5.0)}
-    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=scatter, samples=4, seed=3)
+    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=scatter, samples=4, seed=3, **FEW)
     study = Study(SCENE, distributions=scatter, samples=4, seed=3)
     drawn = [study.changes(k)[MISALIGNMENT] for k in range(4)]
     assert_allclose([each[MISALIGNMENT] for each in one.deviations], drawn)
@@ -185,8 +189,9 @@ def test_samples_of_distributions_are_those_of_a_study_about_their_medians():
 
 def test_gears_of_a_tolerance_class_deviate_from_the_slopes_of_the_design():
     """f_HbetaT of class 6: 9.0 um of the pinion, a standard deviation of 3 um; two of four samples are below."""
-    sloped = SCENE.with_changes({SLOPE: 4.0})
-    one = model(scene=sloped, scatter=sloped.scatter_of_class(6, deviations=True), samples=4, seed=3)
+    sloped = FEW["scene"].with_changes({SLOPE: 4.0})
+    scatter = sloped.scatter_of_class(6, deviations=True)
+    one = model(scene=sloped, scatter=scatter, samples=4, seed=3, cells=FEW["cells"])
     pinion, wheel = "pinion.modifications.helix_slope_um", SLOPE
     assert sorted(each[pinion] > 0.0 for each in one.deviations) == [False, False, True, True]
     assert max(abs(each[pinion]) for each in one.deviations) < 9.0
@@ -239,7 +244,8 @@ def test_a_result_tells_ranges_scatter_and_warnings(found):
 
 
 def test_a_model_tells_its_distributions_and_their_seed():
-    one = model(variables={CROWNING: (1.0, 12.0)}, scatter={MISALIGNMENT: norm(1.0, scale=5.0)}, samples=2, seed=3)
+    scatter = {MISALIGNMENT: norm(1.0, scale=5.0)}
+    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=scatter, samples=2, seed=3, **FEW)
     assert one.told_scatter == [f"{MISALIGNMENT}: norm(1.0, scale=5.0)"]
     assert one.told_seed == ["3 of the samples"]
     assert one.with_scatter(2.0).told_scatter[0].endswith("2 times as far from its median")
@@ -295,7 +301,7 @@ def test_starts_and_analyses_on_an_executor(found):
 
 
 def test_a_model_is_made_again_elsewhere():
-    one = model(variables={CROWNING: (1.0, 12.0)})
+    one = model(variables={CROWNING: (1.0, 12.0)}, **FEW)
     again = pickle.loads(pickle.dumps(one))
     # the same analysis once more
     assert_allclose(again.evaluate([5.0]).transmission_error, one.evaluate([5.0]).transmission_error, rtol=1e-12)

@@ -44,6 +44,7 @@ ENGINES = {
 
 
 # Since Python 3.12 a fork of a process with threads is told, whether or not they matter; another test has used them.
+@pytest.mark.quick_cases("threads")
 @pytest.mark.filterwarnings(r"ignore:This process .* is multi-threaded:DeprecationWarning")
 @pytest.mark.parametrize(
     "engine", ["threads", "fork", *(pytest.param(name, marks=pytest.mark.thorough) for name in [*ENGINES][2:])]
@@ -69,6 +70,7 @@ def test_numbers_do_not_depend_on_the_engine_under_mpi(tmp_path):
     assert bits(load_study(out)) == expected()
 
 
+@pytest.mark.thorough
 def test_numbers_do_not_depend_on_the_order():
     study = unlike_variants()
     backwards = Study(study.scene, table={key: column[::-1] for key, column in study.table.items()})

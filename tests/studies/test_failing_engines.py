@@ -93,6 +93,7 @@ with LocalCluster(n_workers=1, processes=False, protocol="tcp", dashboard_addres
 """
 
 
+@pytest.mark.thorough
 def test_scheduler_that_goes_away_ends_the_study_and_costs_no_row(tmp_path):
     study, out = in_folder(tmp_path, *range(1, 10)), tmp_path / "study.nc"
     command = [sys.executable, "-c", CLUSTER]
@@ -115,6 +116,7 @@ def test_scheduler_that_goes_away_ends_the_study_and_costs_no_row(tmp_path):
     run_study(study, None, out, figures=asked)
 
 
+@pytest.mark.quick_cases("kill")
 @pytest.mark.parametrize(
     "how",
     [

@@ -12,7 +12,7 @@ from loaded_tca.plots import plot_study
 from loaded_tca.reports import write_html_report
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene.keys import Number
-from loaded_tca.stages import Stage, analyse_stage, read_stage
+from loaded_tca.stages import Stage, analyse_stage
 from loaded_tca.studies import (
     Study,
     load_study,
@@ -26,23 +26,17 @@ from loaded_tca.studies import (
 from loaded_tca.studies import stage as of_stage
 from loaded_tca.studies.ranking import main_figures, nominal_variant
 from tests.refusals import refused_calls
+from tests.samples.stages import analysed, stage_of_few_cells
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PIN = "stage.pin_tangential_um.{}"
-FEW = {
-    "analysis.compliance": "contact",
-    "analysis.free_edges": False,
-    "analysis.cells": [12, 16],
-    "analysis.positions": 5,
-    "analysis.torques_Nm": [300.0],
-}
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
 
 
 @pytest.fixture(scope="module")
 def stage():
-    return read_stage(EXAMPLES / "stages" / "helical_automotive.toml").with_changes(FEW)
+    return stage_of_few_cells()
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +58,7 @@ def test_pin_of_one_planet_changes_alone(stage):
     assert isinstance(Stage.key_at(PIN.format(2)).kind, Number)
 
 
+@pytest.mark.thorough
 def test_figures_are_those_of_whole_analyses(stage, study, found):
     assert (found["status"] == "ok").all()
     whole = analyse_stage(stage.with_changes(study.changes(5))).key_figures()[0]
@@ -75,7 +70,7 @@ def test_figures_are_those_of_whole_analyses(stage, study, found):
 
 def test_mesh_cycles_are_made_once(stage, monkeypatch):
     calls = []
-    monkeypatch.setattr(of_stage, "analyse_stage", lambda one: calls.append(one) or analyse_stage(one))
+    monkeypatch.setattr(of_stage, "analyse_stage", lambda one: calls.append(one) or analysed()[0])
     of_stage._meshes_of.cache_clear()
     first, second = (stage_figures(stage.with_changes({PIN.format(0): pin})) for pin in (2.0, 8.0))
     assert len(calls) == 1

@@ -3,6 +3,7 @@
 import warnings
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, analyse
@@ -39,6 +40,7 @@ def test_studies_rank_variants_by_loss_and_film():
     assert_allclose(study["least_film_ratio"].values[1], expected.least_film_ratio, rtol=1e-9)
 
 
+@pytest.mark.thorough
 def test_design_has_the_loss_factor_of_the_analysis():
     """On cells of its own, and with the positions but the last, which is the first again."""
     scene = shared("mesh_cycle_helical").scene.with_changes({"analysis.accuracy": None, "analysis.cells": (24, 48)})

@@ -53,6 +53,7 @@ def on(scene: Scene, pinion: Array | None, wheel: Array | None) -> Scene:
     return scene.with_changes(changes)
 
 
+@pytest.mark.quick_cases("mesh_cycle_spur-size0")
 @pytest.mark.parametrize(
     ("name", "size"),
     [
@@ -90,6 +91,7 @@ def test_supports_couple_tooth_pairs_that_no_model_of_teeth_has_together() -> No
     assert_allclose(result.load_share.sum(axis=-1), 1.0, rtol=1e-9)
 
 
+@pytest.mark.thorough
 def test_torque_between_others_is_that_by_itself() -> None:
     """Cycles of few positions do not check the mean load that would follow from the smallest and largest torque."""
     scene = on(scene_of("helical", **{"analysis.positions": 2}), matrix(4e-6, 3e-9, 1e-9, seed=1), None)
@@ -130,6 +132,7 @@ def test_forces_on_both_gears_are_equal_and_opposite() -> None:
     assert_allclose(result.pinion_motion[..., :3], -result.wheel_motion[..., :3], rtol=1e-9, atol=1e-15)
 
 
+@pytest.mark.thorough
 def test_straight_teeth_that_do_not_tilt_take_no_axial_force_from_a_tilted_pinion() -> None:
     none = {"wheel.modifications.lead_crowning_um": 0.0, "pinion.modifications.lead_crowning_um": 8.0}
     result = analyse(
@@ -140,6 +143,7 @@ def test_straight_teeth_that_do_not_tilt_take_no_axial_force_from_a_tilted_pinio
     assert abs(result.wheel_motion[0, 0, 2]) < 1e-9 * 1e-6 * force * tilt
 
 
+@pytest.mark.thorough
 def test_supports_next_to_rigid_change_nothing() -> None:
     scene = scene_of("helical")
     result, held = analyse(on(scene, 1e-14 * np.eye(6), None)), analyse(scene)
@@ -278,6 +282,7 @@ def test_pair_mirrored_in_its_face_moves_mirrored() -> None:
     assert_allclose(other.misalignment, -one.misalignment, rtol=1e-3)
 
 
+@pytest.mark.thorough
 def test_one_pair_alone_on_supports_agrees_with_shared_load_where_one_carries() -> None:
     scene = on(scene_of("mesh_cycle_spur"), matrix(1e-6, 1e-9, 1e-9, 1), None)
     alone = analyse(scene.with_changes({"analysis.load_sharing": False}))
@@ -299,6 +304,7 @@ def test_teeth_bend_beside_supports() -> None:
     assert_allclose(held.transmission_error - result.transmission_error, wind_up, rtol=2e-4)
 
 
+@pytest.mark.thorough
 def test_edges_are_those_of_the_gears_where_they_stand() -> None:
     """The pinion is pressed along its axis by more than a row of cells: contacts at an edge still name one."""
     scene = read_scene("examples/scenes/mesh_cycle_helical.toml").with_changes(

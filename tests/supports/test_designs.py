@@ -32,6 +32,7 @@ def model() -> DesignModel:
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("far", [False, True])
 def test_held_contacts_of_gears_on_supports_are_those_of_analyses(model: DesignModel, far: bool) -> None:
     """The gears stand where the first design moves them under each torque: what a design changes is coupled."""
@@ -107,6 +108,7 @@ def test_a_search_goes_on_where_its_optimum_has_other_contact_points(monkeypatch
     assert_allclose(result.optimum[KEYS[1]], made[-1].item(), atol=0.5)  # it hardly moves any more
 
 
+@pytest.mark.thorough
 def test_stiffness_of_a_bearing_is_varied_in_a_study() -> None:
     key, values = "pinion.shaft.bearings.0.radial_stiffness_N_per_um", [100.0, 400.0]
     rows = run_study(Study(scene_of("spur"), table={key: values}))
@@ -116,6 +118,7 @@ def test_stiffness_of_a_bearing_is_varied_in_a_study() -> None:
     assert by_study[0] != by_study[1]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("changes", "names"),
     [

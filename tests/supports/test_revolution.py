@@ -32,6 +32,7 @@ def both(name: str, torques: tuple[float, ...], compliance: str) -> tuple[MeshCy
     return analyse(scene), analyse_revolution(scene)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "torques", "compliance"),
     [
@@ -72,6 +73,7 @@ def test_forces_on_bearings_follow_teeth_that_stand_apart() -> None:
     assert_allclose(apart.dataset["load_share"].values.sum(axis=-1), 1.0, atol=1e-9)
 
 
+@pytest.mark.thorough
 def test_revolution_on_supports_is_saved_and_read(tmp_path: Any) -> None:
     _, turn = both("spur", (60.0, 130.0), "contact+tooth")
     turn.save(tmp_path / "turn.nc")

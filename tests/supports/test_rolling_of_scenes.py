@@ -66,6 +66,7 @@ def test_coupled_analysis_equals_rigid_ones_with_gears_moved_by_their_shafts(
     assert (np.abs(motions - expected.motions) < MOTIONS_AGREE * largest).all()
 
 
+@pytest.mark.thorough
 def test_teeth_along_a_shaft_on_rolling_bearings_move_about_as_a_rigid_gear(scene: Scene, result: MeshCycle) -> None:
     along = analyse(scene.with_changes({"pinion.shaft.gear": "along", "analysis.torques_Nm": [130.0]}))
     assert_allclose(along.pinion_motion[0, :, :3], result.pinion_motion[1, :, :3], rtol=0.05)
@@ -151,6 +152,7 @@ def test_saved_result_has_all_of_it(result: MeshCycle, tmp_path: Path) -> None:
     assert back.key_figures()[0]["pinion_bearing_life_Mrev"] == result.key_figures()[0]["pinion_bearing_life_Mrev"]
 
 
+@pytest.mark.thorough
 def test_linear_bearings_have_no_elements(scene: Scene) -> None:
     linear = [
         {"at_mm": -60.0, "radial_stiffness_N_per_um": 400.0, "axial_stiffness_N_per_um": 150.0},
@@ -185,6 +187,7 @@ def test_designs_have_the_stiffness_of_rolling_bearings_under_each_torque(scene:
     assert_allclose(length * held.transmission_error[0], length * whole.transmission_error[:, :-1], atol=0.02, rtol=0.0)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("key", "step"),
     [

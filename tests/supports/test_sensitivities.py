@@ -109,6 +109,7 @@ BENDING = {
 """Where teeth bend, too: a load, a position and a shape, each of another pair."""
 
 
+@pytest.mark.quick_cases("spur-pinion.shaft.torque_at_mm-1.0-0.002")
 @pytest.mark.parametrize(
     ("name", "key", "step", "agreement"),
     [
@@ -138,6 +139,7 @@ def changes_alike(name: str, key: str, step: float, agreement: float, compliance
     assert_allclose(found, expected, rtol=0.0, atol=agreement * np.abs(expected).max())
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("key", "step", "agreement"),
     [
@@ -155,6 +157,7 @@ def test_directions_of_forces_turn_with_the_contacts(key: str, step: float, agre
     changes_alike("hypoid", key, step, agreement, "contact")
 
 
+@pytest.mark.thorough
 def test_gears_stand_elsewhere_by_a_key() -> None:
     """With the motions held the curve under another torque is 4 % off, its peak pressure 5 %."""
     expected, found = slopes("bevel", TORQUE, 0.02), analysed("bevel").sensitivities([TORQUE])
@@ -168,6 +171,7 @@ def test_gears_stand_elsewhere_by_a_key() -> None:
     assert_allclose(found.face_load_factor[0], expected["face_load_factor"], rtol=AGREES)
 
 
+@pytest.mark.thorough
 def test_load_along_the_face_changes_as_in_whole_analyses() -> None:
     key = "pinion.modifications.lead_crowning_um"
     expected, found = slopes("helical", key, 1.0), analysed("helical").sensitivities([key])

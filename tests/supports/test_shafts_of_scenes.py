@@ -80,6 +80,7 @@ def test_soft_bearing_beside_the_gear_makes_misalignment(scene: Scene, result: M
     assert (np.abs(soft.misalignment) > 1.5 * np.abs(result.misalignment)).all()
 
 
+@pytest.mark.thorough
 def test_teeth_along_a_shaft_twist_with_it(scene: Scene, result: MeshCycle) -> None:
     along = analyse(scene.with_changes({"pinion.shaft.gear": "along"}))
     assert_allclose(along.pinion_motion[..., :3], result.pinion_motion[..., :3], rtol=0.05)

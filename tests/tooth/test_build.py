@@ -173,6 +173,7 @@ def test_random_cylindrical_teeth_are_closed(mesh, crowning):
         assert solid.volume > 0.0
 
 
+@pytest.mark.thorough
 @given(
     teeth=st.tuples(st.integers(10, 50), st.integers(15, 60)),
     shaft=st.floats(45.0, 120.0),

@@ -90,6 +90,7 @@ def test_standard_is_low_for_lines_that_overlap():
     assert 0.8 < standard / even < 0.95
 
 
+@pytest.mark.thorough
 def test_standard_is_that_of_spur_pairs_that_share_evenly():
     mesh = shared("mesh_cycle_spur").scene.mesh()
     path, pitch = mesh.path_of_contact, mesh.pinion.base_pitch

@@ -57,6 +57,7 @@ def test_extremes_at_sharp_edges_do_not_depend_on_the_grid():
     assert_allclose(fine.loss_factor, coarse.loss_factor, rtol=2e-3)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("radius", "torque"), [pytest.param(0.8, 300.0, marks=pytest.mark.thorough), (0.8, 50.0)])
 def test_slices_on_a_rounded_tip_have_the_radius_of_the_arc(radius, torque):
     """The arc bends away from the flank by 1/r: 1/r + 1/rho_1 + 1/rho_2, and film and flash follow from that.

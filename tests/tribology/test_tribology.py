@@ -265,6 +265,7 @@ def test_extremes_on_the_arc_of_a_rounded_tip_are_marked_and_warned_of():
     assert any("the least film thickness lies at an edge of a flank" in str(one.message) for one in caught)
 
 
+@pytest.mark.thorough
 def test_a_loss_factor_of_few_positions_is_doubted():
     flanks = {"pinion__modifications": None, "wheel__modifications": None}
     with pytest.warns(AccuracyWarning) as caught:

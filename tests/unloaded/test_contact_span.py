@@ -24,6 +24,7 @@ def test_crowned_involutes_are_in_contact_as_long_as_iso_21771_says(helix_deg, d
     assert_allclose([found[letter] for letter in wanted], list(wanted.values()), atol=FOUND)
 
 
+@pytest.mark.thorough
 def test_tip_relief_of_the_wheel_begins_contact_higher_on_the_pinion():
     crowned = FlankModifications(lead_crowning=0.005)
     relieved = FlankModifications(tip_relief=0.012, tip_relief_start=174.6)

@@ -54,6 +54,7 @@ def tensor_of_both_flanks(pair, contact, axes):
     return pinion + wheel
 
 
+@pytest.mark.thorough
 @given(pairs(), st.floats(-0.5, 0.5))
 @settings(max_examples=40)
 def test_relative_curvature_is_the_sum_of_the_curvatures_of_both_flanks(pair, turn):
@@ -137,6 +138,7 @@ def test_crowning_over_the_face_width_curves_a_spur_flank_along_its_contact_line
     assert_allclose(found.along, 8.0 * amount / 25.0**2, rtol=1e-6)  # second order: slope of the crowning is zero there
 
 
+@pytest.mark.thorough
 @given(pairs(), st.floats(-0.5, 0.5))
 @settings(max_examples=12)
 def test_axes_are_right_handed_with_the_normal_out_of_the_pinion_and_the_second_towards_positive_z(pair, turn):
@@ -166,6 +168,7 @@ def test_heelwards_is_the_axis_of_a_cylindrical_pinion():
     assert_allclose(heelwards(pair, trace_contact(pair, [0.1])[0]), [0.0, 0.0, 1.0], atol=0)
 
 
+@pytest.mark.thorough
 def test_curvature_is_kept_for_as_long_as_its_contact_point():
     pair, other = sam_paper(), sam_paper(15.0)
     contact = trace_contact(pair, [0.1])[0]

@@ -52,6 +52,7 @@ def smooth_there(pair, field, phi1, rho, z):
     return True
 
 
+@pytest.mark.thorough
 @given(pairs(), shares, turns)
 @settings(max_examples=60)
 def test_gradient_and_hessian_agree_with_differences(pair, share, turn):

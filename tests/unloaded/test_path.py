@@ -192,6 +192,7 @@ def test_axial_offset_turns_the_wheel_by_its_helix(helix_deg):
 # Symmetries
 
 
+@pytest.mark.thorough
 @given(st.data(), meshes(), st.sampled_from(["pinion", "wheel"]))
 @settings(max_examples=20)
 def test_negative_sense_is_the_mirror_image_of_the_positive_one(data, mesh, driving):

@@ -66,6 +66,7 @@ def bevel_pairs(draw):
     )
 
 
+@pytest.mark.thorough
 @given(st.data(), TURNS)
 @settings(max_examples=PAIRS)
 def test_every_position_of_a_random_bevel_pair_is_certified_or_refused_with_a_reason(data, turns):

@@ -130,6 +130,7 @@ def test_revolution_that_begins_with_later_teeth_finds_the_gears_turned_as_far(g
     assert np.ptp(whole.transmission_error[::2]) * scale > 1e-3
 
 
+@pytest.mark.thorough
 def test_deviations_that_bring_a_farther_pair_into_reach_are_seen():
     """All but one tooth of the wheel are set back by nearly as much as allowed: its edges go on touching long after."""
     pair = gear_pair(teeth=(17, 24))

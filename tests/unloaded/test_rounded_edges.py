@@ -139,6 +139,7 @@ def test_curvature_on_an_arc_is_that_of_the_sharp_flanks():
     assert abs(of_rounded.axes[1] @ of_sharp.axes[1]) > 0.9999, "across and along do not change places"
 
 
+@pytest.mark.thorough
 def test_mesh_and_its_span_are_traced_over_rounded_edges():
     """Of a pair that transfers over its tips, whose arcs shorten the flank and smooth the envelope."""
     pair = gear_pair(helix_deg=15.0)

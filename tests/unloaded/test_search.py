@@ -38,6 +38,7 @@ def test_no_point_of_both_flanks_touches_before_the_contact_point(pair, turn):
             assert path.residual[row] < STATIONARY
 
 
+@pytest.mark.thorough
 @given(pairs(), st.floats(-0.5, 0.5))
 @settings(max_examples=20)
 def test_contact_point_lies_on_both_flanks(pair, turn):

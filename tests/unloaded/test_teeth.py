@@ -43,6 +43,7 @@ def with_error(pair, function):
 # The envelope
 
 
+@pytest.mark.quick_cases("mesh0-pinion", "mesh1-wheel")
 @drives
 @kinds
 def test_envelope_is_the_first_touch_over_many_teeth(mesh, driving):
@@ -115,6 +116,7 @@ def test_pairs_are_nan_exactly_where_they_lag_beyond_the_reach():
         assert_allclose(path.transmission_error[near], own[near], atol=ROUNDING)
 
 
+@pytest.mark.quick_cases("0.0-pinion")
 @drives
 @pytest.mark.parametrize("axial_offset", [0.0, 24.9])
 def test_one_position_alone_has_the_teeth_of_many(axial_offset, driving):
@@ -139,6 +141,7 @@ def test_leading_contact_is_that_of_the_leading_pair():
 # Conjugate gears
 
 
+@pytest.mark.quick_cases("mesh0-pinion", "mesh2-wheel")
 @drives
 @kinds
 def test_unmodified_aligned_pair_has_no_transmission_error_and_no_jump(mesh, driving):
@@ -149,6 +152,7 @@ def test_unmodified_aligned_pair_has_no_transmission_error_and_no_jump(mesh, dri
     assert_allclose(traced.harmonics(5).amplitude, 0.0, atol=ROUNDING)
 
 
+@pytest.mark.quick_cases("mesh2")
 @pytest.mark.parametrize("mesh", [{}, {"teeth": (20, 60), "shifts": (0.3, -0.1)}, {"helix_deg": 15.0}])
 def test_contact_ratio_of_unmodified_gears_is_the_geometric_one(mesh):
     """Beyond the path of contact the corner contact lags with the square of the way: by 1 nm after 1/1000 pitch."""
@@ -175,6 +179,7 @@ def test_contact_ratio_of_parabolas_follows_from_their_coefficient():
     assert_allclose(trace_teeth(pair).contact_ratio(1e-3), 1.0 + 1e-3 / drop, rtol=5e-3)
 
 
+@pytest.mark.thorough
 @given(pairs(), st.sampled_from([0.0, 1e-6, 1e-3, 2e-2]))
 @settings(max_examples=3, deadline=None)
 def test_contact_ratio_is_never_below_one_and_does_not_depend_on_the_positions(pair, tolerance):
@@ -185,6 +190,7 @@ def test_contact_ratio_is_never_below_one_and_does_not_depend_on_the_positions(p
 # Transfers and jumps
 
 
+@pytest.mark.quick_cases("15.0-wheel")
 @drives
 @pytest.mark.parametrize("helix_deg", [0.0, 15.0])
 def test_curves_cross_at_the_transfer_point(helix_deg, driving):
@@ -230,6 +236,7 @@ def test_one_transfer_per_pitch_where_it_lies_on_the_ends():
     assert abs(transfer.pinion_angle) == pytest.approx(0.5 * mesh.pair.pitch)
 
 
+@pytest.mark.quick_cases("pinion")
 @drives
 def test_lead_crowning_alone_leaves_a_straight_line_with_a_jump_under_misalignment(driving):
     pair = gear_pair(LEAD, mounting=TILTED, driving=driving, helix_deg=15.0)
@@ -242,6 +249,7 @@ def test_lead_crowning_alone_leaves_a_straight_line_with_a_jump_under_misalignme
     assert_allclose(jump, -line.coef[1] * (pair.pitch - bridged), rtol=0.01)  # two positions
 
 
+@pytest.mark.quick_cases("pinion")
 @drives
 def test_profile_crowning_makes_the_transmission_error_continuous(driving):
     """Parabolas c x^2 on a line of slope s cross inside the path if c > s/(2 x_end - pitch)."""
@@ -340,6 +348,7 @@ CASES = [
 ]
 
 
+@pytest.mark.quick_cases("case0-wheel")
 @drives
 @pytest.mark.parametrize("case", [CASES[0], *(pytest.param(case, marks=pytest.mark.thorough) for case in CASES[1:])])
 def test_peak_to_peak_does_not_depend_on_the_positions(case, driving):
@@ -348,6 +357,7 @@ def test_peak_to_peak_does_not_depend_on_the_positions(case, driving):
     assert_allclose(found, found[0], rtol=1e-9)
 
 
+@pytest.mark.quick_cases("case0-pinion")
 @drives
 @pytest.mark.parametrize("case", [CASES[1], pytest.param(CASES[2], marks=pytest.mark.thorough)])
 def test_peak_to_peak_is_that_of_positions_packed_about_the_highest_and_the_lowest(case, driving):

@@ -52,6 +52,7 @@ def test_transfer_is_continuous_by_the_edges_that_hold_its_contacts(smooth, befo
     assert replace(smooth, contacts=tuple(contacts)).is_continuous is continuous
 
 
+@pytest.mark.quick_cases("pinion")
 @pytest.mark.parametrize("driving", ["pinion", "wheel"])
 def test_short_teeth_hand_over_from_tip_to_tip(driving):
     """The path of contact is shorter than a pitch; the tips carry the rest, so that one pair always touches."""
@@ -76,6 +77,7 @@ def test_flanks_that_touch_along_their_sides_hand_over_continuously():
     assert mesh.jumps.tolist() == [0.0]
 
 
+@pytest.mark.thorough
 def test_continuity_belongs_to_the_pair_whatever_the_positions_and_teeth():
     for pinion, continuous in ((LEAD, False), (BOTH, True)):
         pair = gear_pair(pinion, mounting=TILTED, helix_deg=15.0)

@@ -46,6 +46,7 @@ def test_reduced_solver_reaches_the_contact_from_every_start_in_few_steps(bevel_
         assert outcome.steps <= MOST_STEPS
 
 
+@pytest.mark.thorough
 def test_conventional_share_falls_with_the_spread_of_the_wheel_angle_whatever_the_normals(bevel_cases):
     for case in bevel_cases:
         for components in COMPONENTS:
@@ -104,6 +105,7 @@ def test_lag_of_a_small_error_is_the_gap_along_the_normal_at_the_pitch_point(gea
     assert_allclose(found, first_order_error(gears, mounting), rtol=NOT_STEEPER)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["offset", "pinion_axial", "wheel_axial", "shaft_angle_error"])
 def test_error_placed_with_the_wrong_sign_fails_its_rows(monkeypatch, name):
     place = BevelMounting.place
@@ -124,6 +126,7 @@ def test_shaft_angle_leaves_the_motion_of_the_spiral_pair_even():
     assert one.pressure.max() / one.pressure.min() < 1.1
 
 
+@pytest.mark.thorough
 def test_tip_relief_on_both_gears_carries_the_straight_pair_over_the_step_of_an_axial_error():
     bare = straight_effect("ΔG", 10.0)
     relieved = straight_effect("ΔG", 10.0, relieved="both")
@@ -134,6 +137,7 @@ def test_tip_relief_on_both_gears_carries_the_straight_pair_over_the_step_of_an_
     assert relieved.peak_to_peak < bare.peak_to_peak
 
 
+@pytest.mark.thorough
 def test_weak_crowning_lets_the_offset_take_the_contact_to_the_heel():
     pair = STRAIGHT.pair(TABLE_6["ΔE"], straight_modifications(2.0))
     one = effect(STRAIGHT, pair)
@@ -142,6 +146,7 @@ def test_weak_crowning_lets_the_offset_take_the_contact_to_the_heel():
     assert_allclose(one.lengthwise, 7.0, atol=0.02)  # the heel of the wheel, moved by the offset, ends first in part
 
 
+@pytest.mark.thorough
 def test_more_lead_crowning_brings_the_path_back_and_raises_the_pressure():
     weak, strong = (spiral_effect(c1, 0.08, e=0.08, h=0.08) for c1 in (0.005, 0.02))
     assert abs(strong.place[0]) < 0.5 * abs(weak.place[0])
@@ -177,6 +182,7 @@ def test_picture_of_the_map_names_its_units(small_map):
 # Statements of the source
 
 
+@pytest.mark.thorough
 def test_pressure_rises_by_less_than_printed_with_ten_times_the_lead_crowning():
     nearer, higher, size = trends_of_strong_crowning()
     assert nearer.holds
@@ -185,6 +191,7 @@ def test_pressure_rises_by_less_than_printed_with_ten_times_the_lead_crowning():
     assert size.because.startswith("+63%")
 
 
+@pytest.mark.thorough
 def test_one_load_presses_least_where_the_profiles_fit_best():
     for error in ({"e": 0.08}, {"h": 0.08}):
         height, across, pressure = closest_fit(error)
@@ -194,6 +201,7 @@ def test_one_load_presses_least_where_the_profiles_fit_best():
         assert_allclose(pressure / pressure[1], np.sqrt(across / across[1]), rtol=0.1)
 
 
+@pytest.mark.thorough
 def test_statements_on_the_spiral_pair_do_not_hold_with_one_set_of_signs(small_map):
     table = sign_table(small_map)
     offset, pinion_root, wheel_root, amplitude, worst = (

@@ -64,6 +64,7 @@ def test_share_falls_from_all_to_few_with_the_distance_of_the_wheel_angle(spur):
     assert shares[2] == 0.0
 
 
+@pytest.mark.thorough
 def test_every_stated_draw_stands_in_the_table_beside_the_printed_share(monkeypatch):
     monkeypatch.setattr("validation.unloaded.convergence_from_random_starts.STATED_STARTS", 20)
     found = [[cell.strip() for cell in line.strip("|").split("|")] for line in stated_table()]
@@ -86,6 +87,7 @@ def test_equally_curved_forms_remove_the_same_next_to_the_middle_of_the_face(for
     assert_allclose(removed[1] - removed[0], parabola * (STEP / half) ** 2, rtol=SAME_CURVATURE)
 
 
+@pytest.mark.thorough
 def test_forms_move_the_path_alike_only_if_they_are_equally_curved():
     found = trends_of_forms()
     assert judged(found, "similar paths, if they are equally curved").holds
@@ -94,6 +96,7 @@ def test_forms_move_the_path_alike_only_if_they_are_equally_curved():
     assert judged(found, "logarithmic path is noticeably farther").holds
 
 
+@pytest.mark.thorough
 def test_logarithmic_crowning_has_no_higher_pressure_at_the_largest_angle():
     found = trends_of_helical_pressure()
     assert not judged(found, "logarithmic crowning has a significantly higher pressure").holds
@@ -110,6 +113,7 @@ def test_logarithmic_crowning_has_no_higher_pressure_at_the_largest_angle():
 # The spur pair
 
 
+@pytest.mark.thorough
 def test_no_lead_parabola_makes_the_motion_of_the_spur_pair_continuous():
     found = trends_without_relief()
     assert [trend.figure for trend in found] == ["10", "11", "15", "16"]
@@ -123,6 +127,7 @@ def test_pressure_of_the_spur_pair_rises_towards_top_and_bottom_with_and_without
     assert plain.because != relieved.because
 
 
+@pytest.mark.thorough
 def test_offset_across_the_line_of_centres_turns_the_wheel_and_leaves_the_motion_even():
     pair = SPUR.pair()
     across = np.array([0.0, 0.2, 0.0])
@@ -158,6 +163,7 @@ def test_pressure_of_the_unmodified_pair_is_that_of_a_line_over_the_face():
     assert_allclose(unmodified_pressure(), expected, rtol=1e-6)
 
 
+@pytest.mark.thorough
 def test_stress_ratios_fall_with_the_angle_at_half_the_printed_size():
     found = stress_ratios()
     parabolic = [one.computed for one in found if "parabolic" in one.quantity]

@@ -11,12 +11,14 @@ from loaded_tca.unloaded import trace_contact
 from validation.face_milled import pairs
 
 
+@pytest.mark.thorough
 def test_error_falls_to_both_sides_of_the_top():
     top, fall, path = pairs.error_from_top(face_milled_pair(*pairs.matched_spygo_gears()), (-0.5, 0.5))
     assert_allclose(fall, [-6.018, -5.711], atol=1e-3)  # pair B; its printed digits
     assert_allclose(path.pinion_angle, top)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("lever", ["pinion_lever", "wheel_lever"])
 @pytest.mark.parametrize("factor", [0.99, 1.01])
 def test_wrong_levers_give_numbers_that_miss_instead_of_an_error(lever, factor, monkeypatch):

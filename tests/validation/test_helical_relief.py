@@ -49,6 +49,7 @@ def test_setback_closes_the_gap():
     assert ahead - behind == pytest.approx(0.005, rel=1e-3)
 
 
+@pytest.mark.thorough
 def test_sections_have_one_topology_and_no_element_is_turned(ring, points):
     sections = [ring.at_height(height) for height in (-6.0, 6.0)]
     np.testing.assert_array_equal(sections[0].elements, sections[1].elements)

@@ -49,6 +49,7 @@ def test_flank_has_the_curvature_of_its_roll_length():
     assert_allclose(off, -(along**2) / 24.0, atol=2e-5)
 
 
+@pytest.mark.thorough
 def test_coarse_elements_have_nearly_the_kept_transmission_error():
     pair = PlanePair(scene_of("unmodified"), 2.0 * STEPS[0])
     for load in LINE_LOADS:

@@ -118,6 +118,7 @@ def narrow():
     return model(20.0, layers=6)
 
 
+@pytest.mark.thorough
 def test_position_agrees_with_finite_elements(narrow):
     rows = rows_of({("unmodified", 20.0): [PITCH_POINT]}, narrow)
     assert len(rows) == 5
@@ -142,6 +143,7 @@ def test_pair_whose_middle_carries_nothing_has_no_pressure_there(narrow):
     assert narrow._pair(loaded, 0.01) == PairLoad(0.01, 0.0, 0.0, False)
 
 
+@pytest.mark.thorough
 def test_relief_lets_the_wheel_lag_by_no_less(narrow):
     plain, relieved = (narrow.cycle(variant, 20.0, [pinion_angle(0)])[0] for variant in ("unmodified", "tip_relief"))
     assert relieved.transmission_error < plain.transmission_error - 2.0  # um; 1.4 and 4.6 by finite elements

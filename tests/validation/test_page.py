@@ -106,6 +106,7 @@ def test_ratios_are_of_the_same_run():
     assert median_ratio([1.0, 4.0, 30.0], [1.0, 1.0, 10.0]) == 3.0
 
 
+@pytest.mark.thorough
 def test_a_process_of_its_own_takes_the_package_of_a_checkout(tmp_path):
     (tmp_path / "loaded_tca").mkdir()
     other = tmp_path / "loaded_tca" / "__init__.py"
@@ -124,6 +125,7 @@ def held_beyond_the_peak():
     return after - before
 
 
+@pytest.mark.thorough
 def test_peak_memory_grows_by_what_is_held():
     """Of a process of its own: the peak of this one is that of all tests before."""
     assert in_a_process(held_beyond_the_peak) > 2**-5

@@ -19,6 +19,7 @@ def test_finer_mesh_is_finer_everywhere():
     assert outermost[0] == pytest.approx(0.5 * outermost[1])
 
 
+@pytest.mark.thorough
 def test_larger_roundings_lower_the_stress_down_to_a_root_that_is_all_round():
     forms = root_stress.root_forms()
     for teeth in root_stress.FORMS:
@@ -32,6 +33,7 @@ def test_larger_roundings_lower_the_stress_down_to_a_root_that_is_all_round():
     assert curve.largest(1)[0][0] == pytest.approx(forms[25, 0.6].tension, rel=1e-6)
 
 
+@pytest.mark.thorough
 def test_roots_of_face_milled_gears_follow_the_edge_radius_of_the_blades():
     """From 0.3 to 1 mm the notch factor of ISO 6336-3 alone falls to 0.67 to 0.77, for teeth as thick as their lever
     to 1.3 times to 0.7 times; and roots become thicker."""

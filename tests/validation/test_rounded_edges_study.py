@@ -15,6 +15,7 @@ SPUR_TIP, SHARP_ENDS = (
 refined = cache(rounded_edges.refined)
 
 
+@pytest.mark.thorough
 def test_estimates_cover_the_errors_of_a_spur_tip():
     """Without what all cells leave, two of four had an estimate below their error (0.79 %, estimated 0.52 %)."""
     contacts = refined(SPUR_TIP)
@@ -23,11 +24,13 @@ def test_estimates_cover_the_errors_of_a_spur_tip():
         assert abs(one.error) <= one.found.error < rounded_edges.ASKED
 
 
+@pytest.mark.thorough
 def test_pressure_at_a_sharp_corner_has_no_estimate_and_grows_with_the_rows():
     assert all(one.found.error == math.inf for one in refined(SHARP_ENDS))
     assert rounded_edges.row_of_corner().holds
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "change"), [("above its estimate", {"error": 1e-4}), ("without an estimate", {"error": math.inf})]
 )

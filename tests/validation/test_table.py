@@ -35,6 +35,41 @@ LEAST |= {"loaded.root_face_load": 5, "calculix.mesh_cycle": 14, "calculix.helic
 short_rows = cache(partial(run_case, short=True))
 
 
+DEAR = {
+    "loaded.error_estimates",
+    "unloaded.convergence_from_random_starts",
+    "unloaded.involute_pairs",
+    "unloaded.internal_pairs",
+    "bevel.convergence",
+    "bevel.miter_gear_paper",
+    "bevel.pressure",
+    "face_milled.settings",
+    "face_milled.swept_cutter",
+    "face_milled.duplex_paper",
+    "face_milled.hypoid_pair",
+    "face_milled.synthesis",
+    "loaded.limits",
+    "loaded.revolution",
+    "loaded.rolling_bearings",
+    "loaded.cut_contacts",
+    "loaded.mesh_stiffness",
+    "loaded.local_term",
+    "loaded.ring_teeth",
+    "loaded.internal_cycle",
+    "loaded.root_stress",
+    "loaded.root_stress_cycle",
+    "loaded.root_stress_space",
+    "loaded.root_stress_precision",
+    "loaded.root_face_load",
+    "loaded.numbers_to_copy",
+    "calculix.mesh_cycle",
+    "contact.free_block",
+    "contact.wedge",
+}
+"""Of a second or more each: quicker tests see the faults of what they judge, and make validate has all their rows."""
+
+
+@pytest.mark.quick_cases(*(case for case in programme.CASES if case not in DEAR))
 @pytest.mark.parametrize("case", programme.CASES)
 def test_validation_rows_hold(case):
     outcome = short_rows(case)
@@ -105,6 +140,7 @@ def test_cases_in_two_processes_have_the_rows_of_one(capsys):
     assert "Traceback" in told
 
 
+@pytest.mark.thorough
 def test_command_runs_the_named_cases_in_two_processes():
     names = ["cylindrical.fzg_c14_geometry", "cylindrical.fzg_c14_root_stress"]
     done = subprocess.run([sys.executable, "-m", "validation", *names], cwd=ROOT, capture_output=True, text=True)
@@ -216,6 +252,7 @@ def test_logarithmic_steepness_is_judged(monkeypatch):
     assert not row.holds
 
 
+@pytest.mark.thorough
 def test_maxima_of_tables_3_and_4_say_what_they_judge():
     rows = [row for row in short_rows("unloaded.reduced_tca_tables").rows if "TE(0)" in row.quantity]
     judged = [row for row in rows if row.tolerance is not None]
@@ -226,6 +263,7 @@ def test_maxima_of_tables_3_and_4_say_what_they_judge():
         assert "(inferred)" in row.assumed
 
 
+@pytest.mark.thorough
 def test_start_values_that_are_given_are_not_judged():
     assert not any("theta_p" in row.quantity for row in short_rows("face_milled.duplex_paper").rows)
 
