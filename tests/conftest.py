@@ -15,12 +15,23 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from loaded_tca import cli
 
 matplotlib.use("Agg")
-hypothesis.settings.register_profile("suite", deadline=None, max_examples=50, derandomize=True)
+hypothesis.settings.register_profile("suite", deadline=None, max_examples=20, derandomize=True)
 hypothesis.settings.register_profile("nightly", deadline=None, max_examples=2000)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
 
 LONG = ("tests/test_site.py", "tests/test_examples.py", "tests/test_release.py", "tests/results/test_sensitivities.py")
 """Files with tests of several seconds."""
+DEAR_EXAMPLES = (
+    "loaded_tca.baselines.golden_section.search_golden_section",
+    "loaded_tca.compliance.root_stress.root_stress_model",
+    "loaded_tca.flanks.hypoid_synthesis.synthesised_gears",
+    "loaded_tca.reports.report.write_html_report",
+    "loaded_tca.scene.face_milled.hypoid_table",
+    "loaded_tca.studies.run.process_pool",
+)
+"""Of docstrings, of more than a second: thorough."""
+TESTS = pytest.StashKey[dict[str, bool]]()
+"""Of each test that is collected whether make test runs a case of it."""
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -28,18 +39,22 @@ def pytest_collection_modifyitems(items, config):
     """Mark cases beside quick ones; put long tests first: none is the last, for which other workers wait."""
     cases = collections.defaultdict(list)
     for item in items:
-        if item.get_closest_marker("quick_cases"):
-            cases[item.nodeid.partition("[")[0]].append(item)
-    for test, of_test in cases.items():
-        quick = of_test[0].get_closest_marker("quick_cases").args
-        if not any("::" in path for path in config.args) and (
-            missing := {*quick} - {case.callspec.id for case in of_test}
-        ):
-            raise pytest.UsageError(f"{test}: no case {', '.join(sorted(missing))}")
-        for case in of_test:
-            if case.callspec.id not in quick:
-                case.add_marker(pytest.mark.thorough)
+        if item.name in DEAR_EXAMPLES:
+            item.add_marker(pytest.mark.thorough)
+        if mark := item.get_closest_marker("quick_cases"):
+            cases[item.nodeid.partition("[")[0]].append((item, mark))
+    for test, marked in cases.items():
+        ids = [item.callspec.id for item, _ in marked]
+        for (item, mark), case in zip(marked, ids, strict=True):
+            quick = mark.args or ids[:: mark.kwargs["every"]]
+            if not ({*quick} <= {*ids} or any("::" in path for path in config.args)):
+                raise pytest.UsageError(f"{test}: no case {', '.join(sorted({*quick} - {*ids}))}")
+            if case not in quick:
+                item.add_marker(pytest.mark.thorough)
     items.sort(key=lambda item: not item.nodeid.startswith(LONG))
+    config.stash[TESTS] = collections.defaultdict(bool)
+    for item in items:
+        config.stash[TESTS][item.nodeid.partition("[")[0]] |= not item.get_closest_marker("thorough")
 
 
 def pytest_collection_finish():
@@ -57,6 +72,12 @@ def pytest_configure():
 def _nan_stops():
     with np.errstate(all="raise", under="ignore"):
         yield
+
+
+@pytest.fixture
+def collected(request):
+    """Of each test of this run, by its file and name, whether make test runs a case of it."""
+    return request.config.stash[TESTS]
 
 
 @pytest.fixture

@@ -199,6 +199,7 @@ def test_bevel_scene_is_run_and_drawn_as_any_other(run, name, request):
     assert set(os.listdir("again")) == PICTURES
 
 
+@pytest.mark.thorough
 def test_check_of_a_spur_pair_names_no_hand(run):
     assert "none          none" in run("check", SCENES / "spur.toml")[1]
 
@@ -368,6 +369,7 @@ def test_failure_while_drawing_again_keeps_the_pictures(run, monkeypatch):
         assert {name: Path("out", name).read_bytes() for name in os.listdir("out")} == before
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_parts_of_a_result_do_not_replace_the_files_of_the_whole(run):
     run("run", scene(), "--out", "out")
@@ -393,6 +395,7 @@ class Terminal(io.StringIO):
         return True
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_progress_is_shown_on_a_terminal_only(run, monkeypatch):
     assert run("run", scene(), "--out", "out")[2] == []
@@ -477,6 +480,7 @@ def command(*arguments, **environment):
     )
 
 
+@pytest.mark.thorough
 def test_title_that_the_terminal_cannot_show_is_no_failure():
     title = {'title = "Crowned helical pair 34/57"': 'title = "歯車"'}
     done = command("check", str(scene(**title)), PYTHONIOENCODING="ascii")
@@ -514,6 +518,7 @@ def in_a_shell(redirected, *arguments):
     return done.returncode, done.stderr.splitlines()
 
 
+@pytest.mark.quick_cases("arguments1")
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
 @pytest.mark.parametrize("arguments", [["check", HELICAL], ["--version"]])
 def test_full_standard_output_is_told(arguments):

@@ -39,6 +39,7 @@ def test_compare_writes_table_and_pictures_and_tells_the_differences(run):
     assert compared()["titles"].keys() == {"plain", "crowned"}
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_compare_names_results_by_what_differs_in_their_paths_or_as_told(run):
     paths = [saved(f"{first}/{second}") for first in ("old", "new") for second in ("a", "b")]

@@ -30,6 +30,7 @@ def rows_of(path):
         return list(csv.DictReader(file))
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_revolution_is_written_with_its_tables_and_pictures(tmp_path, capsys):
     assert main(["revolution", SCENE, "--out", str(tmp_path), *options(*QUICK)]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(TABLES + PICTURES)

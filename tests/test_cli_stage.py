@@ -8,14 +8,9 @@ import pytest
 from loaded_tca.cli import main
 from loaded_tca.plots import STAGE_PICTURES
 from loaded_tca.stages import StageResult
+from tests.samples.stages import FEW, analysed, stage_of_few_cells
 
-QUICK = [
-    "analysis.cells=[12, 16]",
-    "analysis.compliance=contact",
-    "analysis.free_edges=false",
-    "analysis.positions=5",
-    "analysis.torques_Nm=[300.0]",
-]
+QUICK = [f"{key}={str(value).lower() if value is False else value}" for key, value in FEW.items()]
 STAGE = "examples/stages/helical_automotive.toml"
 FILES = ["ring_mesh.nc", "stage.csv", "stage.json", "stage.nc", "sun_mesh.nc"]
 
@@ -26,12 +21,15 @@ def options(*changes):
 
 @pytest.mark.usefixtures("blank_pictures")
 @pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
-def test_stage_is_written_with_its_tables_and_pictures(tmp_path, capsys):
+def test_stage_is_written_with_its_tables_and_pictures(tmp_path, capsys, monkeypatch):
+    asked = []
+    monkeypatch.setattr("loaded_tca.stages.analyse_stage", lambda stage, **_: asked.append(stage) or analysed()[0])
     assert main(["stage", STAGE, "--out", str(tmp_path), *options(*QUICK)]) == 0
     pictures = [f"{name}.png" for name in STAGE_PICTURES]
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(FILES + pictures)
     assert "orders that equal planets cancel" in capsys.readouterr().out
     result = StageResult.load(tmp_path)
+    assert asked == [stage_of_few_cells()]
     figures = json.loads((tmp_path / "stage.json").read_text())
     assert figures["torques"][0]["mesh_load_factor"] == pytest.approx(float(result.mesh_load_factor[0]))
     assert figures["ring_mesh_phase"] == pytest.approx(result.ring_mesh_phase.tolist())

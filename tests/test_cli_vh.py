@@ -35,6 +35,7 @@ def test_vh_writes_a_row_for_each_pair_of_errors(run):
     assert shifts[0] * shifts[2] < 0.0
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_vh_takes_steps_of_its_own_and_the_other_gear(run):
     assert run("vh", SCENES / "straight_bevel.toml", "--out", "out", "--gear", "wheel")[0] == 0

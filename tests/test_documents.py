@@ -3,6 +3,7 @@
 import ast
 import doctest
 import importlib.util
+import pkgutil
 import re
 import subprocess
 import tomllib
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.conftest import DEAR_EXAMPLES
 from validation.__main__ import CASES, LONG
 
 ROOT = Path(__file__).parents[1]
@@ -105,3 +107,8 @@ def test_cases_that_the_table_of_errors_names_are_there():
     named = set(re.findall(r"`(\w+\.\w+)`", "".join(line for line in table.splitlines() if line.startswith("|"))))
     assert named, "the table names no case"
     assert named - {*CASES, *LONG} == set()
+
+
+@pytest.mark.parametrize("name", DEAR_EXAMPLES)
+def test_dear_example_is_there(name):
+    assert ">>> " in pkgutil.resolve_name(name).__doc__

@@ -17,13 +17,15 @@ def text_of(path):
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.what)
-def test_fault_has_its_place_in_the_package_and_a_test(fault):
+def test_fault_has_its_place_in_the_package_and_a_test_that_make_test_runs(fault, collected):
+    """The tests are told by their files; where these are among the tests of this run, their cases by their marks."""
     assert text_of(PACKAGE / fault.file).count(fault.text) == 1
     assert fault.wrong != fault.text
     file, _, name = fault.test.partition("::")
     assert re.search(rf"^(def {name}\(|{name} = )", text_of(TESTS / file), re.MULTILINE)
     marked = re.search(rf"^@pytest\.mark\.thorough\n(@.*\n)*def {name}\(", text_of(TESTS / file), re.MULTILINE)
-    assert not marked, "make test leaves this test out"
+    assert not marked
+    assert collected.get(f"tests/{fault.test}", True)
 
 
 def test_faults_are_told_apart():

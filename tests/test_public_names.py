@@ -67,6 +67,7 @@ def test_reading_a_scene_loads_no_analysis():
     assert not {"matplotlib", "pyfftw", "xarray", "skfem"} & loaded
 
 
+@pytest.mark.thorough
 def test_folders_are_attributes_of_the_package():
     modules_after("import loaded_tca; loaded_tca.unloaded.trace_teeth; loaded_tca.reference.hertz.point_contact")
 

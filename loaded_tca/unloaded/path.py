@@ -335,23 +335,25 @@ def contact_span(pair: GearPair) -> tuple[ContactPoint | None, ContactPoint | No
     (1.73, 1.73)
     """
     farthest = FARTHEST * pair.driving * pair.pitch
-    return _end_of_contact(pair, -farthest), _end_of_contact(pair, farthest)
-
-
-def _end_of_contact(pair: GearPair, farthest: float) -> ContactPoint | None:
-    """Last contact before the contact point comes to an edge, between the pitch point and an angle [rad]."""
-    low, high, last = 0.0, farthest, None
+    brackets = {"root": (0.0, -farthest), "tip": (0.0, farthest)}
+    last: dict[str, ContactPoint | None] = dict.fromkeys(brackets)
     for _ in range(ROUNDS):
+        angles = [np.linspace(*bracket, FINENESS) for bracket in brackets.values()]
         try:
-            path = trace_contact(pair, np.linspace(low, high, FINENESS), warn=False)
-        except GeometryError:  # nothing is in contact on that side
-            return None
-        outside = path.on_edge | ~path.in_contact
-        if not outside.any() or outside[0]:
-            return None
-        first = int(np.argmax(outside))
-        low, high, last = path.pinion_angle[first - 1], path.pinion_angle[first], path[first - 1]
-    return last
+            path = trace_contact(pair, np.concatenate(angles), warn=False)
+        except GeometryError:  # nothing is in contact
+            break
+        for number, end in enumerate(tuple(brackets)):
+            part = path[number * FINENESS : (number + 1) * FINENESS]
+            outside = part.on_edge | ~part.in_contact
+            first = int(np.argmax(outside))
+            if first:
+                brackets[end], last[end] = tuple(part.pinion_angle[first - 1 : first + 1]), part[first - 1]
+            else:  # all the way, or nowhere: no end
+                del brackets[end], last[end]
+        if not brackets:
+            break
+    return last.get("root"), last.get("tip")
 
 
 def path_letters(at_root: float, at_tip: float, pitch: float) -> dict[str, float]:

@@ -165,6 +165,7 @@ def test_mirrored_pair_has_the_mirrored_start():
     assert_allclose(one.pinion_angle, two.pinion_angle, rtol=0, atol=1e-10)
 
 
+@pytest.mark.quick_cases(every=5)
 @pytest.mark.parametrize("kind", ["forward", "reverse", "mean"])
 @pytest.mark.parametrize("components", [(1, 2), (0, 2)])
 @pytest.mark.parametrize(

@@ -40,6 +40,7 @@ def answer(path):
     return np.stack(parts, axis=-1)
 
 
+@pytest.mark.quick_cases(every=5)
 @every_pair
 @solvers
 @components

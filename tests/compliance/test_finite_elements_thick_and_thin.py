@@ -76,6 +76,7 @@ def test_faces_are_found_around_the_ring():
     assert hanging.tolist() == [[0, 0, 0, 0], [1, 0, 0, 0], [2, 0, 0, 0]]
 
 
+@pytest.mark.thorough
 def test_thick_layers_beside_the_tooth_change_little(monkeypatch):
     gear, found = pinion(), []
     for bricks in (RingLayout.bricks, property(_thin)):

@@ -162,6 +162,7 @@ def test_a_valid_file_with_other_numbers_is_made_anew(other, made, folder):
     assert len(made) == 2
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize("damage", [b"", b"no archive", "cut", "changed", "foreign", "renamed", "not finite"])
 def test_a_damaged_file_is_made_anew(damage, made, folder):
     first = kept_flexibility(frame_of())

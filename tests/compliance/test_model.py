@@ -43,6 +43,7 @@ def test_model_of_flanks_alone_is_none():
     assert model_of(scene, scene.pair(), 1) is None
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("twice_as_soft")
 def test_parts_bend_together_by_the_sum_of_each():
     pair = SCENE.pair()

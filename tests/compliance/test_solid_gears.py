@@ -42,6 +42,7 @@ def test_nodes_are_held_on_both_faces_within_the_journals_alone():
     assert_allclose(held, on_face & (rho < JOURNAL * (1.0 + 1e-9)))
 
 
+@pytest.mark.thorough
 def test_a_solid_gear_is_softer_than_one_on_a_rigid_shaft_as_thick_as_its_journals():
     """Its core deforms and is held at its ends alone; a shaft a quarter as thick is softer still."""
     for height in (0.1, 0.5, 0.9):
@@ -72,6 +73,7 @@ def test_the_local_term_is_that_of_the_ring():
         assert_allclose(solid, ring, rtol=1e-12)  # the same teeth, the same operations: none seen
 
 
+@pytest.mark.thorough
 def test_compliance_of_a_solid_spiral_bevel_gear_is_symmetric_and_softer_than_that_of_the_ring():
     mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0, spiral_angle=math.radians(30.0))
     solid = replace(mesh, pinion=replace(mesh.pinion, bore_diameter=0.0))

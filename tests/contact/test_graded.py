@@ -185,6 +185,7 @@ def test_iterations_are_some_tens_at_most_whatever_the_columns():
         assert graded(borders=borders, tolerance=1e-6).iterations <= 40
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize(("rows", "finest", "start"), [(46, 1e-3, 0.05), (55, 3e-4, 0.02), (12, 1e-3, 1.0)])
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-5, 1e-6])
 def test_pressures_of_fine_cells_are_known_as_closely_as_those_that_carry_the_load(rows, finest, start, tolerance):

@@ -265,6 +265,7 @@ def test_grids_of_one_row(n):
     assert_allclose(one.pressure, other.pressure.T, rtol=1e-5, atol=1e-6 * one.pressure.max())
 
 
+@pytest.mark.thorough
 @given(
     seed=st.integers(0, 2**32 - 1),
     shape=st.tuples(st.integers(1, 50), st.integers(1, 50)),

@@ -96,6 +96,7 @@ def test_edge_that_meets_a_sharp_end_has_no_limit():
     assert crowned[0].error < 0.01
 
 
+@pytest.mark.thorough
 def test_estimate_covers_the_error_at_a_face_end():
     exact = peak(cells_on_arc=FINE).pressure
     for cells_on_arc in (3.0, 5.0, 7.0):
@@ -162,6 +163,7 @@ def test_slices_along_the_edge_have_the_rows():
     assert_allclose(x.mean(), 0.0, atol=1e-15)  # columns within 0.15 mm that cancel: 2e-18 seen
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("sine", [0.1, pytest.param(0.5, marks=pytest.mark.thorough)])
 def test_oblique_edge_has_an_estimate_that_covers_its_error(sine):
     normal = np.array([sine, math.sqrt(1.0 - sine**2)])

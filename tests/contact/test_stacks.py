@@ -60,6 +60,7 @@ def assert_same(one, other):
         assert one.coarser.approach_change == other.coarser.approach_change
 
 
+@pytest.mark.thorough
 @settings(max_examples=15, deadline=None)
 @given(
     kinds=st.lists(st.sampled_from(KINDS), min_size=2, max_size=12),

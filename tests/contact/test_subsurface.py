@@ -49,6 +49,7 @@ def test_axis_stresses_below_a_hertz_circle(circle):
     assert_allclose(below.max_shear[:, 40, 40], 0.5 * (radial - vertical), atol=HERTZ_ERROR * P0)
 
 
+@pytest.mark.thorough
 def test_greatest_shear_below_a_hertz_circle(circle):
     """0.310 p0 at 0.48 a for nu = 0.3 (Johnson 1985, section 4.2(a)); on the axis."""
     pressure, step = circle

@@ -30,6 +30,7 @@ CONTENTS = {
 }
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize("content", CONTENTS.values(), ids=CONTENTS)
 def test_every_format_gives_the_same_scenes(content: bytes) -> None:
     for stage in ("10", "11"):
@@ -264,6 +265,7 @@ UNITS = {
 }
 
 
+@pytest.mark.quick_cases(every=4)
 @pytest.mark.parametrize(
     ("path", "value"), [(path, value) for path, values in UNITS.items() for value in values], ids=str
 )

@@ -50,6 +50,7 @@ def own_removal(pair, gear, found):
     return off - off.min()
 
 
+@pytest.mark.quick_cases(every=5)
 @pytest.mark.parametrize("sense", ["positive", "negative"])
 @pytest.mark.parametrize("driving", BOTH)
 @pytest.mark.parametrize("gear", BOTH)
@@ -122,6 +123,7 @@ def test_modifications_of_both_gears_add_up_to_first_order(gear):
     assert_allclose(np.divide(left[:-1], left[1:]), 4.0, rtol=0.1)
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize("gear", BOTH)
 @pytest.mark.parametrize(("driving", "side"), [("pinion", 1.0), ("wheel", -1.0)])
 @pytest.mark.parametrize("error", ["in_plane", "out_of_plane"])
@@ -196,6 +198,7 @@ test_ease_off_map_refuses = refused_calls(
 )
 
 
+@pytest.mark.thorough
 def test_mounting_errors_that_leave_a_hole_in_the_map_are_refused():
     """Half a module: the tip of the wheel reaches below the base cone of the pinion, where no flank is left."""
     mesh = bevel_mesh((17, 17), outer_module=1.0, face_width=4.8, spiral_angle=math.radians(35.0))

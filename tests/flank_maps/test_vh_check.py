@@ -67,6 +67,7 @@ def test_large_error_runs_onto_the_edge():
     assert pushed.centre[0, 1, 0] > 10.0
 
 
+@pytest.mark.thorough
 def test_offset_and_displacement_of_a_spiral_pair_act_to_first_order():
     found = vh_check(spiral, [-0.02, 0.0, 0.02], [-0.02, 0.0, 0.02], positions=POSITIONS, grid=(21, 31))
     for one, other in ((found.shift[0, 1], found.shift[2, 1]), (found.shift[1, 0], found.shift[1, 2])):

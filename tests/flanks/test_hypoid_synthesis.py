@@ -152,6 +152,7 @@ def test_formate_wheel_is_cut_at_rest_and_mates_on_both_sides(flank):
     assert ((error[[0, 2]] < -3.0) & (error[[0, 2]] > -15.0)).all()
 
 
+@pytest.mark.thorough
 def test_pinion_of_a_formate_wheel_is_cut_by_a_tilted_cutter():
     """It stands for the wheel, whose cutter stands 24 deg off its axis; the cradle nearly for the wheel's axis."""
     machine = hypoid_gears(wheel="formate")[0].machine

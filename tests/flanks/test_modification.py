@@ -282,6 +282,7 @@ def test_amount_is_the_distance_along_the_normal_in_the_limit_of_small_amounts(d
     assert_allclose(low, removed(flank, rho, z), rtol=1e-2 * amount / 1e-3)
 
 
+@pytest.mark.thorough
 @given(st.data(), st.floats(0.02, 0.98), st.floats(-0.49, 0.49))
 @settings(max_examples=60)
 def test_derivatives_of_every_modified_flank_agree_with_differences(data, height, place):

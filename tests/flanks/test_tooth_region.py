@@ -81,6 +81,7 @@ def test_profile_coordinate_runs_from_the_form_line_to_the_tip():
     assert_allclose(flank.mean_height, flank.mean_cone_distance * (tip - foot))
 
 
+@pytest.mark.thorough
 @given(st.floats(0.25, 0.36), st.floats(90.0, 140.0))
 def test_derivatives_of_coordinates_and_edges_are_those_of_their_values(angle, distance):
     flank, rho, z = region(), np.array(distance * math.sin(angle)), np.array(distance * math.cos(angle))

@@ -87,6 +87,7 @@ def test_excess_material_makes_the_wheel_lead():
     assert_allclose(lead, 0.002, rtol=1e-9)
 
 
+@pytest.mark.quick_cases(every=5)
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("azimuth", [0.0, 2.9, -1.3])
 def test_contact_of_measured_points_does_not_depend_on_where_the_tooth_stood(kind, azimuth):

@@ -27,6 +27,7 @@ def solved(pair, turn, load, cells):
     return solve_under_load(pair, contact, load, GridChoice(cells=(cells, cells), tolerance=1e-7))
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize(("name", "turn", "load"), CASES)
 def test_contact_deformation_converges_without_scatter(name, turn, load):
     """Of first order in the cells, as the pressure at an end is singular: a straight line over their width."""
@@ -37,6 +38,7 @@ def test_contact_deformation_converges_without_scatter(name, turn, load):
     assert_allclose(found, np.polyval(np.polyfit(widths, found, 1), widths), rtol=SCATTER)
 
 
+@pytest.mark.quick_cases("one end of the face-0.0-9000.0")
 @pytest.mark.parametrize(("name", "turn", "load"), CASES)
 def test_contact_deformation_grows_smoothly_with_the_load(name, turn, load):
     pair, over = PAIRS[name](), np.linspace(0.96, 1.04, 9)

@@ -220,6 +220,7 @@ def test_small_torques_of_point_contacts_are_those_of_large_ones_scaled(torque):
     assert_allclose(large.rotation / small.rotation, 100.0, rtol=1e-3)
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize("cap", [50.0, 70.0, 85.0, 100.0, 120.0])
 @pytest.mark.parametrize("bending", [None, (2e-6, 3e-7)])
 def test_pairs_at_their_cap_share_the_torque(cap, bending):
@@ -351,6 +352,7 @@ class Restless(BendingModel):
         return np.zeros((len(at[1].y), len(under[1].y)))
 
 
+@pytest.mark.thorough
 def test_balance_that_is_never_found_is_told_with_the_last_one(monkeypatch):
     monkeypatch.setattr("loaded_tca.loaded.load_sharing.SAME_BOX", (2.0, 3.0))  # every force on a grid of its own
     pair = spur()

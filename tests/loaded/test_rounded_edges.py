@@ -208,6 +208,7 @@ def test_share_of_a_gear_in_the_compliance_is_that_of_its_material(materials):
         assert_allclose([line.share for line in edge.lines], np.array(compliances) / sum(compliances), rtol=1e-12)
 
 
+@pytest.mark.thorough
 def test_cap_is_respected():
     cap, steel = 1500.0, Material()
     pair, one = loaded(materials=(replace(steel, max_pressure=cap), steel))

@@ -206,6 +206,7 @@ def test_force_of_a_cell_at_the_cap_grows_with_its_part_of_material_and_no_other
     assert_allclose(found[0], expected, rtol=1e-9)  # a difference over 1e-3 of numbers rounded at 1e-16
 
 
+@pytest.mark.quick_cases("capped")
 def test_forces_change_with_gaps_and_torque_as_in_the_dense_problem(pairs):
     change, (below, above), active, step = changed(pairs)
     expected, tangent = ((above[0] - below[0]) / step)[active], pairs.tangent()
@@ -240,6 +241,7 @@ def test_share_of_a_pair_changes_as_the_dense_problem_solved_anew(pairs):
     assert_allclose(found, expected, rtol=OTHERS)
 
 
+@pytest.mark.quick_cases("elastic")
 def test_torque_stays_under_changes_of_the_gaps(pairs):
     change, _, active, _ = changed(pairs)
     tangent = pairs.tangent()

@@ -92,6 +92,7 @@ def test_pair_without_backlash_shows_none_and_no_note():
     assert notes(described()) == []
 
 
+@pytest.mark.thorough
 def test_profile_shift_sum_that_a_centre_distance_needs_is_shown_beside_the_given_one():
     """sum = (z1 + z2)(inv alpha_wt - inv alpha_t)/(2 tan alpha_n); FZG C pair: published x = 0.1817 and 0.1715."""
     text = described("fzg_c14", pair__centre_distance_mm=91.6)

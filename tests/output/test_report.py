@@ -261,6 +261,7 @@ def test_every_key_figure_is_in_the_reference():
     assert [key for key in sorted(keys - orders) if f"`{key}`" not in page] == []
 
 
+@pytest.mark.quick_cases("misaligned-changes1")
 @pytest.mark.parametrize(
     ("name", "changes"),
     [

@@ -79,6 +79,7 @@ def test_names_and_units_are_those_of_the_version(result, version: str, unit: st
     assert ("meshing_stiffness_characteristic" in attributes) == stiffness
 
 
+@pytest.mark.thorough
 def test_deflection_of_a_shaft_is_along_its_own_axes(result) -> None:
     """The wheel is at +w of its pinion: x = w, y = -v, z = u."""
     attributes = rexs_results(result, example(), "10")["3"]

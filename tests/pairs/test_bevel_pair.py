@@ -85,6 +85,7 @@ def test_pair_knows_its_sizes():
 # Conjugate action
 
 
+@pytest.mark.quick_cases(every=5)
 @pytest.mark.parametrize("spiral", [0.0, SPIRAL])
 @pytest.mark.parametrize("shaft_deg", [60.0, 90.0, 120.0])
 @pytest.mark.parametrize("teeth", [(17, 17), (20, 40), (24, 72)])
@@ -97,6 +98,7 @@ def test_unmodified_pair_turns_evenly_and_touches_in_lines(teeth, shaft_deg, spi
         assert not path.on_edge.any()
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize("sense", ["positive", "negative"])
 @pytest.mark.parametrize("spiral", [0.0, SPIRAL])
 def test_contact_ratio_is_the_turn_over_which_the_unmodified_pair_stays_conjugate(spiral, sense):

@@ -55,6 +55,7 @@ def test_transmission_error_of_the_matched_pair_is_that_of_the_five_equations(ex
     assert_allclose(error, expected, atol=1e-3)
 
 
+@pytest.mark.thorough
 def test_mean_point_curvatures_and_pressure_of_the_matched_pair():
     pair = matched(exact=True)
     path, _ = from_top(pair, [0.0])
@@ -69,6 +70,7 @@ def test_mean_point_curvatures_and_pressure_of_the_matched_pair():
     assert_allclose(point.max_pressure, 1466.36, atol=0.01)
 
 
+@pytest.mark.thorough
 def test_published_pair_touches_on_the_tip_of_the_wheel():
     pair = face_milled_pair(published_pinion(), published_wheel())
     path, error = from_top(pair, [-0.5, -0.25, 0.0, 0.25, 0.5])
@@ -134,6 +136,7 @@ def test_mirrored_pair_has_the_same_transmission_error():
     assert_allclose(first.point, second.point * [1.0, -1.0, 1.0], atol=1e-9)
 
 
+@pytest.mark.thorough
 def test_spline_pair_is_the_exact_pair():
     angles = np.linspace(-0.15, 0.15, 5)
     fast, exact = (trace_contact(matched(exact=exact), angles) for exact in (False, True))

@@ -16,6 +16,7 @@ def mated(name, sense="positive", modifications=CROWNED, resolution=COARSE, **ch
     return mating_teeth(pair_of(MESHES[name], sense, modifications, **changes), resolution)
 
 
+@pytest.mark.quick_cases(every=5)
 @pytest.mark.parametrize("driving", ["pinion", "wheel"])
 @pytest.mark.parametrize("sense", ["positive", "negative"])
 @pytest.mark.parametrize("name", ["helical", "miter gear", "spiral bevel"])

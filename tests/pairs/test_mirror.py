@@ -109,6 +109,7 @@ def test_wheel_tip_takes_over_before_the_base_circle(driving, sense):
 # Mirrors
 
 
+@pytest.mark.quick_cases(every=5)
 @cases
 @helices
 @drives
@@ -146,6 +147,7 @@ def test_turning_back_with_the_wheel_driving_passes_through_the_same_contacts_at
     assert_array_equal(reverse.edges, forth.edges)
 
 
+@pytest.mark.quick_cases(every=5)
 @cases
 @helices
 @drives

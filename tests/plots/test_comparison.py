@@ -25,6 +25,7 @@ def panels(figure):
     return dict(zip(PANELS, figure.axes, strict=True))
 
 
+@pytest.mark.thorough
 def test_curves_are_those_of_each_result_under_the_shared_torque():
     named = {"spur": spur(), "helical": helical()}
     drawn = panels(plot_comparison(named))
@@ -89,6 +90,7 @@ def test_names_are_taken_literally():
         assert png_of(drawn)
 
 
+@pytest.mark.thorough
 def test_titles_that_differ_give_way_to_the_names():
     other = changed_scene(helical(), {"title": "another"})
     assert f"; {helical().scene.title}; " in told(plot_comparison([helical(), helical()]))
@@ -141,6 +143,7 @@ def test_maps_of_a_position_are_those_at_the_nearest_part_of_a_pitch():
     assert all(title.endswith("pinion angle 2.647 deg") for title in titles)
 
 
+@pytest.mark.thorough
 def test_maps_where_nothing_touches_or_is_loaded_say_so():
     gap = with_a_gap()
     figure = plot_compared_maps([result(torques=(20.0, 80.0)), gap], position=1)

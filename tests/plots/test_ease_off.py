@@ -51,6 +51,7 @@ def test_conjugate_pair_is_drawn_flat_not_as_rounding():
     assert figure.axes[0].collections[0].get_clim()[1] >= 0.009
 
 
+@pytest.mark.thorough
 def test_part_that_the_mate_does_not_cover_is_hatched():
     covered, slanted = (
         plot_ease_off(ease_off_map(gear_pair(TWISTED, mounting=Mounting(out_of_plane=angle)))) for angle in (0.0, 2e-3)
@@ -72,6 +73,7 @@ def panels(figure, check):
     return np.reshape(figure.axes[: check.edge_share.size], check.edge_share.shape)
 
 
+@pytest.mark.thorough
 def test_vh_picture_has_a_cell_for_each_pair_of_errors_in_their_order(check, tmp_path):
     figure = plot_vh_check(check, ("in-plane [rad]", "out-of-plane [rad]"), "A pair")
     cells = panels(figure, check)

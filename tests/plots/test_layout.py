@@ -40,6 +40,7 @@ def test_panels_lie_where_two_measured_passes_put_them():
     np.testing.assert_allclose(positions(estimated), positions(measured), atol=PIXEL)
 
 
+@pytest.mark.thorough
 def test_each_panel_is_measured_in_one_pass_of_two():
     """Colour bars are measured twice in a pass; what is in space is measured always."""
     figure, calls = panels(), []
@@ -54,6 +55,7 @@ def test_each_panel_is_measured_in_one_pass_of_two():
     assert calls.count(space) == 2
 
 
+@pytest.mark.thorough
 def test_estimates_are_near_what_is_measured():
     figure = panels()
     canvas = FigureCanvasAgg(figure)

@@ -51,6 +51,7 @@ def test_variants_lie_where_their_errors_say():
     assert len(png_of(figure)) > 10_000
 
 
+@pytest.mark.thorough
 def test_legend_below_the_panels_tells_what_frames_and_dots_are():
     for on_edge, told_there in ((True, ["edge contact within the pitch"]), (False, [])):
         one = changed(cycle(), on_edge=np.full_like(cycle().on_edge, on_edge))
@@ -81,6 +82,7 @@ def test_pattern_lies_around_the_centre_of_the_force(gear):
     assert f"loaded contact pattern on the {gear}, pinion torque 0.8 N m" in title
 
 
+@pytest.mark.thorough
 def test_smaller_torque_has_a_smaller_pattern():
     def size(torque):
         figure = plot_loaded_vh_check(study(), dict.fromkeys(range(6), cycle()), torque=torque)
@@ -104,6 +106,7 @@ def test_cells_without_a_load_are_empty():
     assert not found[0, 0].collections
 
 
+@pytest.mark.thorough
 def test_kept_results_are_drawn_from_their_directory(tmp_path):
     few = {"analysis.positions": 2, "analysis.torques_Nm": [0.8]}
     grid = vh_study(cycle().scene.with_changes(few), v=[0.0], h=[0.0, 0.01])

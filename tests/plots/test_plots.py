@@ -76,6 +76,7 @@ def test_every_case_gives_every_picture(case, tmp_path):
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in paths)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_map_with_the_ellipse_is_drawn_too_where_the_highest_pressure_has_none(tmp_path):
     hertz = result().hertz_pressure.copy()
@@ -134,6 +135,7 @@ def test_pictures_tell_load_position_and_units(plot):
     assert "[mm]" in shown or "[deg]" in shown
 
 
+@pytest.mark.thorough
 def test_transmission_error_is_drawn_in_arcsec_and_micrometres():
     figure = plot_transmission_error(result())
     absolute, _ = figure.axes
@@ -219,6 +221,7 @@ def test_rounded_edges_have_filled_markers_that_the_axis_follows():
     assert "mesh-dependent" not in " ".join(all_rounded.get_legend_handles_labels()[1])
 
 
+@pytest.mark.thorough
 def test_labels_of_many_torques_stay_few():
     cycle = result(torques=tuple(float(torque) for torque in range(1, 31)), positions=1)
     labels = plot_peak_pressure(cycle).axes[0].get_legend_handles_labels()[1]
@@ -274,6 +277,7 @@ def test_contact_areas_lie_around_the_path_within_the_flank():
             assert abs(corners[:, 0]).max() < 13.5  # half of the face, and a part of a cell
 
 
+@pytest.mark.quick_cases("straight_bevel")
 @pytest.mark.parametrize("name", ["helical", "straight_bevel", "spiral_bevel"])
 def test_flanks_are_drawn_with_the_part_that_the_mate_reaches(name):
     """The outline is the edge of the flank in its frame; the tip is common, the bottom of the reached part higher."""
@@ -324,6 +328,7 @@ def test_pictures_of_one_torque_say_which_of_several():
         assert "pinion torque 20 N m (number 1 of 2)" in texts(plot(cycle, torque=0))
 
 
+@pytest.mark.thorough
 def test_pictures_without_load_say_so():
     cycle = result(torques=(0.0,), positions=2)
     figure = plot_pressure_map(cycle)

@@ -74,6 +74,7 @@ def test_lines_stand_where_the_number_of_loaded_pairs_changes():
     assert_allclose(upright, 0.5 * (angle[changes] + angle[changes + 1]))
 
 
+@pytest.mark.thorough
 def test_curves_over_the_torque_rise_with_it():
     cycle = result(**{"analysis.torques_Nm": (200.0, 100.0)})
     axes = plot_root_stress_over_torque(cycle).axes[0]
@@ -86,6 +87,7 @@ def test_curves_over_the_torque_rise_with_it():
     assert not [line for line in bevel.lines if "ISO" in line.get_label()]
 
 
+@pytest.mark.quick_cases("plot_root_stress_over_torque")
 @pytest.mark.parametrize("plot", [plot_root_stress, plot_root_stress_cycle, plot_root_stress_over_torque])
 def test_pictures_are_drawn_without_load_too(plot):
     assert png_of(plot(result(**{"analysis.torques_Nm": (0.0, 0.001)})))

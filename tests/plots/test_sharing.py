@@ -124,6 +124,7 @@ def test_path_has_the_peak_pressure_of_every_contact():
         assert_allclose(sorted(line.get_ydata()), sorted(peaks[np.isfinite(peaks)]))
 
 
+@pytest.mark.thorough
 def test_table_of_the_path_has_lengths_roll_angles_and_diameters_beside_those_of_iso():
     """Without modifications both are those of the involutes: E is the tip of the pinion, A that of the wheel."""
     changes = {f"{gear}.modifications.tip_relief_um": 0.0 for gear in ("pinion", "wheel")}
@@ -165,12 +166,14 @@ def test_orders_of_the_tooth_mesh_are_whole_numbers():
     assert axes.get_xticks().tolist() == [1, 2]
 
 
+@pytest.mark.thorough
 def test_positions_too_few_for_any_order_are_told():
     for positions, expected in ((3, True), (4, False)):
         axes = plot_harmonics(result("mesh_cycle_spur", positions=positions, torques=(40.0,))).axes[0]
         assert any("the first needs 4 positions" in text.get_text() for text in axes.texts) is expected
 
 
+@pytest.mark.thorough
 def test_legend_of_the_load_shares_covers_no_curve():
     figure = plot_load_share(shared(torques=(40.0, 260.0)))
     assert all(axes.get_legend() is None for axes in figure.axes)
@@ -231,6 +234,7 @@ def test_envelope_reaches_the_highest_pressure_of_every_map_and_none_above(name)
         assert around.max() >= cycle.maps[0][n][k].pressure.max()
 
 
+@pytest.mark.thorough
 def test_scale_of_the_envelope_ends_at_the_highest_peak_pressure():
     cycle = shared()
     assert np.nanmax(cycle.edge_pressure) > 1.2 * np.nanmax(cycle.peak_pressure)
@@ -240,6 +244,7 @@ def test_scale_of_the_envelope_ends_at_the_highest_peak_pressure():
     assert envelope(shared("mesh_cycle_spur", torques=(40.0,)))[2]._colorbar.extend == "neither"
 
 
+@pytest.mark.thorough
 def test_contact_patterns_are_the_envelopes_of_their_torques_on_one_scale():
     cycle = shared("mesh_cycle_spur", torques=(40.0, 130.0))
     *panels, bar = plot_contact_patterns(cycle).axes
@@ -255,6 +260,7 @@ def test_contact_patterns_are_the_envelopes_of_their_torques_on_one_scale():
     assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.peak_pressure), rtol=ROUNDING)
 
 
+@pytest.mark.thorough
 def test_contact_patterns_of_many_torques_stay_few():
     cycle = shared(torques=tuple(float(torque) for torque in range(10, 80, 10)))
     *panels, _ = plot_contact_patterns(cycle).axes
@@ -304,6 +310,7 @@ def test_rings_mark_positions_at_which_the_contact_of_the_path_reaches_an_edge()
     assert any("reaches an edge" in label for label in axes.get_legend_handles_labels()[1])
 
 
+@pytest.mark.thorough
 def test_letters_that_are_not_drawn_are_not_explained():
     """Of the spiral bevel pair more than one pair is in contact all the time: no B, no D."""
     figure = plot_path_pressure(result("mesh_cycle_bevel", positions=3))

@@ -164,6 +164,7 @@ def test_colour_bar_of_a_single_value_shows_that_value_alone():
     assert [tick.get_text() for tick in figure.axes[-1].get_yticklabels()] == ["540"]
 
 
+@pytest.mark.quick_cases("lead1")
 @pytest.mark.parametrize("lead", [(1.0,), (1.0, 2.0), (1.0, 2.0, 3.0)])
 def test_titles_fit_into_narrow_pictures(lead):
     status = ["refused", *["ok"] * (len(lead) - 1)]
@@ -459,6 +460,7 @@ def test_pictures_fit_what_varies():
     assert names(sampled(16, (80.0,))) == [f"histogram_{SPAN}", "scatter_matrix", "ranking"]
 
 
+@pytest.mark.thorough
 def test_pictures_of_factors_under_scatter_show_both():
     lead, other = (np.array(column) for column in zip(*itertools.product([0.0, 4.0], np.arange(8.0)), strict=True))
     study = dataset({LEAD: lead, MISALIGNMENT: other}, {PRESSURE: other})
@@ -466,6 +468,7 @@ def test_pictures_of_factors_under_scatter_show_both():
     assert names(study) == ["lines_peak_pressure_MPa", "histogram_peak_pressure_MPa", "ranking"]
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_table_of_repeated_values_is_a_grid_and_of_others_a_cloud(rng):
     study = grid()

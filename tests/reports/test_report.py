@@ -14,12 +14,14 @@ from string import Formatter
 import numpy as np
 import pytest
 import xarray
+from matplotlib.figure import Figure
 
 from loaded_tca import analyse, cli, load_result, read_scene, warning_kinds
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.plots import plot_pressure_map, plot_transmission_error
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports import page as report_page
+from loaded_tca.reports import report as report_module
 from loaded_tca.reports import result_page, write_html_report
 from loaded_tca.reports.page import Table, parts_of, tables_of
 from loaded_tca.results.figure import COMPARED
@@ -103,12 +105,16 @@ def page(path):
 
 DRAWN = ("load-share", "peak-pressure", "pressure-map")
 """Of the report of a mesh cycle: curves, and two of an image."""
+STUDY_PICTURES = ("study_ranking", "study_lines_peak_pressure_MPa")
 
 
 @pytest.fixture
 def with_one_picture(monkeypatch):
-    """Of a result; none is drawn."""
+    """Of a result; of studies and designs they are empty, and none is drawn."""
     monkeypatch.setattr(report_page, "svg_of", undrawn)
+    monkeypatch.setattr(report_module, "plot_study", lambda *_, **__: dict.fromkeys(STUDY_PICTURES, Figure()))
+    for name in ("plot_before_and_after", "plot_peak_to_peak_over_torque"):
+        monkeypatch.setattr(report_module, name, lambda _: Figure())
     monkeypatch.setattr(
         result_page, "result_figures", lambda result, **_: {"transmission_error": plot_transmission_error(result)}
     )
@@ -421,6 +427,7 @@ def test_report_has_the_date_and_the_version_of_the_analysis(written):
     assert "some day" in written(dated, date="some day").words
 
 
+@pytest.mark.thorough
 def test_one_position_and_no_load_have_reports(written):
     assert written(result("spur", 1)).rows("peak pressure [MPa]")
     assert written(result("spur", 1, (0.0,))).rows("peak pressure [MPa]")

@@ -42,6 +42,7 @@ def bending():
     return analyse(scene().with_changes({"analysis.compliance": "contact+tooth", "analysis.cells": (24, 24)}))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("result", [cycle, pytest.param(bending, marks=pytest.mark.thorough)])
 def test_pressures_on_both_flanks_carry_the_torque(result):
     """Each cell with the normal of the flank there: contacts have the lever of their contact point for all cells."""

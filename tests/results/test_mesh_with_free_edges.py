@@ -26,6 +26,7 @@ def solved(name, torque, free_edges):
     return analyse(read_scene(SCENES / f"{name}.toml").with_changes(changes))
 
 
+@pytest.mark.quick_cases("mesh_cycle_spur-130.0-True", "straight_bevel-50.0-False")
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts reach tips and face ends
 @pytest.mark.parametrize("free_edges", [False, True])
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ def figures(**changes):
     return result(**changes).key_figures()
 
 
+@pytest.mark.thorough
 def test_figures_are_the_extremes_over_the_positions_and_their_places():
     cycle = result()
     for t, found in enumerate(cycle.key_figures()):

@@ -54,6 +54,7 @@ def test_root_stress_follows_modifications_as_analyses_do(key, step, bends):
         assert_allclose(found[0, ..., 0][steady], slopes[steady], rtol=0, atol=REAL_PAIRS * np.abs(slopes).max())
 
 
+@pytest.mark.thorough
 def test_root_stress_follows_the_torque_as_analyses_do():
     cycle = result(**{"analysis.torques_Nm": tuple(np.linspace(120.0, 160.0, 9))})
     _, tension, compression = sensitivities(cycle, [TORQUE])

@@ -245,6 +245,7 @@ def test_command_writes_files_and_tells_the_largest(run, directory):
     assert all(name in out for name in FILES)
 
 
+@pytest.mark.thorough
 def test_command_takes_the_place_it_is_told(run, directory):
     elsewhere = directory / "new" / "place"
     options = ("--torque", 40, "--position", 1, "--pair", -1, "--gear", "wheel", "--out", elsewhere)

@@ -52,6 +52,7 @@ def row(scene, label):
     return next(cells for name, *cells in scene.geometry_rows() if name.strip() == label)
 
 
+@pytest.mark.thorough
 def test_contact_of_the_scene_is_as_its_settings_ask(example):
     """Second derivative of the motion curve by differences, whose fourth derivative leaves 1e-3; curvature exactly."""
     pair, settings = example.pair(), example.geometry.settings
@@ -228,6 +229,7 @@ def test_command_synthesises_settings_of_a_spiral_bevel_scene(run, tmp_path):
     assert_allclose(path.transmission_error, 0.0, atol=1e-9)
 
 
+@pytest.mark.thorough
 def test_normals_of_basic_settings_are_told_apart(example):
     """Blades of a group bring both flanks near to each other; a uniform depth has no such settings: degrees apart."""
     basic = {"pair.settings": {"method": "duplex_spread_blade"}}

@@ -565,6 +565,7 @@ SETTINGS = st.fixed_dictionaries(
 )
 
 
+@pytest.mark.thorough
 @hypothesis.settings(max_examples=30)
 @hypothesis.given(SETTINGS)
 def test_any_settings_make_a_pair_or_say_why_not(changes):

@@ -69,6 +69,7 @@ def test_measured_gear_of_the_guide_has_the_allowance_that_it_says():
     assert round(2.0 * gear.tip_radius, 2) == 380.75
 
 
+@pytest.mark.thorough
 def test_sheet_of_the_guide_is_a_scene_whose_contact_can_be_changed():
     page = (ROOT / "docs" / "guide" / "bevel_blanks.md").read_text(encoding="utf-8")
     (sheet,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)

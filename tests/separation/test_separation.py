@@ -187,6 +187,7 @@ CONTACTS = {
 }
 
 
+@pytest.mark.quick_cases(every=5)
 @pytest.mark.filterwarnings("ignore:pinion.modifications.lead_crowning")
 @pytest.mark.parametrize("name", CONTACTS)
 @pytest.mark.parametrize("load", [1e-3, 1.0, 1e3, 1e5])
@@ -203,6 +204,7 @@ def test_box_holds_the_contact_and_is_not_much_larger(name, load):
     assert solution.cells_across[1] >= (4 if name == "misaligned edge" else 36)
 
 
+@pytest.mark.quick_cases(every=5)
 @pytest.mark.filterwarnings("ignore:pinion.modifications.lead_crowning")
 @pytest.mark.parametrize("name", CONTACTS)
 @pytest.mark.parametrize("factor", [1e-3, 0.4, 2.5, 1e3])

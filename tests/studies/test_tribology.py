@@ -23,6 +23,7 @@ def test_scenes_without_the_sections_have_none():
     assert tribology_figures(shared("mesh_cycle_spur")) == {}
 
 
+@pytest.mark.thorough
 def test_studies_rank_variants_by_loss_and_film():
     """Tip relief takes load off where flanks slide most: less loss, a thicker film."""
     scene = shared("mesh_cycle_spur").scene.with_changes(OPERATION)

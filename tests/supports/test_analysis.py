@@ -125,6 +125,7 @@ def test_rotation_about_the_axis_alone_is_wind_up() -> None:
     assert_allclose(result.secant_stiffness, held.secant_stiffness, rtol=1e-3)
 
 
+@pytest.mark.thorough
 def test_forces_on_both_gears_are_equal_and_opposite() -> None:
     scene = scene_of("helical")
     same = np.diag([1e-6, 1e-6, 1e-6, 0.0, 0.0, 0.0])
@@ -157,6 +158,7 @@ def test_mesh_stiffness_is_that_on_rigid_supports(soft: MeshCycle, rigid: MeshCy
     assert_allclose(soft.secant_stiffness, rigid.secant_stiffness, rtol=0.05)
 
 
+@pytest.mark.thorough
 def test_drive_stiffness_is_the_slope_of_the_torque(soft: MeshCycle) -> None:
     near = analyse(soft.scene.with_changes({"analysis.torques_Nm": [59.7, 60.3]}))
     pair = soft.gear_pair

@@ -43,6 +43,7 @@ def test_held_contacts_of_gears_on_supports_are_those_of_analyses(model: DesignM
     assert_allclose(held.figure("face_load_factor")[0], whole.face_load_factor, rtol=3e-3)
 
 
+@pytest.mark.thorough
 def test_gradients_of_designs_on_supports_are_slopes(model: DesignModel) -> None:
     step, evaluation = 0.05, model.evaluate(model.start)
     for name, agreement in (("mean_transmission_error_um", 2e-3), ("face_load_factor", 1e-2), ("pressure_MPa", 0.02)):

@@ -56,6 +56,7 @@ def test_revolution_of_alike_teeth_on_supports_is_the_analysis_of_one_pitch(
     assert_allclose(data["wheel_support_load"].values, one.wheel_support_load, rtol=1e-6, atol=1e-6)
 
 
+@pytest.mark.thorough
 def test_forces_on_bearings_follow_teeth_that_stand_apart() -> None:
     index = [0.0] * 57
     index[1] = 6.0

@@ -50,6 +50,7 @@ def exact(support: Support, load: Array) -> Array:
     return support.at_middle(support.under(load).moved(load))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("torque", "position"), [(1, 1)])
 def test_coupled_analysis_equals_rigid_ones_with_gears_moved_by_their_shafts(
     scene: Scene, result: MeshCycle, torque: int, position: int
@@ -306,6 +307,7 @@ def test_rolling_bearings_that_do_not_hold_are_refused_before_anything_is_solved
         analyse(scene.with_changes({"pinion.shaft.bearings": bearings, "wheel.shaft": None}))
 
 
+@pytest.mark.thorough
 def test_command_shows_elements_pressures_and_lives(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["shaft", SCENE, "--out", str(tmp_path / "out")]) == 0
     line = shaft_lines(read_scene(SCENE))[0]

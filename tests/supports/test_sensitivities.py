@@ -63,7 +63,7 @@ CHANGES["hypoid"] = (
         "analysis.free_edges": False,
     },
 )
-POSITIONS = {"spur": 5, "helical": 4, "bevel": 4, "hypoid": 1}
+POSITIONS = {"spur": 3, "helical": 4, "bevel": 4, "hypoid": 1}
 TORQUES = {"spur": 130.0, "helical": 130.0, "bevel": 0.8, "hypoid": 250.0}
 
 

@@ -63,6 +63,7 @@ def test_units_of_bearings_are_those_of_their_names(scene: Scene) -> None:
     assert_allclose(loaded.loads[0].load, [10.0, 20.0, 30.0, 1e3, 2e3, 3e3])
 
 
+@pytest.mark.thorough
 def test_forces_on_bearings_are_those_of_the_teeth(result: MeshCycle) -> None:
     on_pinion, on_wheel = (
         getattr(result, f"{gear}_bearing_force")[..., :3].sum(axis=2) for gear in ("pinion", "wheel")
@@ -97,6 +98,7 @@ def test_saved_result_has_bearing_forces(result: MeshCycle, tmp_path: Any) -> No
     assert_allclose(load_result(tmp_path / "result.nc").wheel_bearing_force, result.wheel_bearing_force, rtol=0.0)
 
 
+@pytest.mark.thorough
 def test_other_loads_move_the_unloaded_gears(scene: Scene) -> None:
     load = {"at_mm": -90.0, "force_N": [0.0, 2000.0, 0.0]}
     loaded = scene.with_changes({"pinion.shaft.loads": [load], "wheel.shaft": None})

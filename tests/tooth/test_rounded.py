@@ -33,6 +33,7 @@ def test_surface_is_fine_where_the_arc_bends():
     assert on.sum() >= 7, "an even grid has one"
 
 
+@pytest.mark.thorough
 def test_teeth_whose_corners_have_no_room_for_all_arcs_are_built():
     """The toe of a spiral bevel tooth: arcs of tip and side of both flanks meet on a land of 0.4 mm."""
     scene = read_scene(SCENES / "spiral_bevel.toml")

@@ -19,6 +19,7 @@ def shoelace(points):
     return 0.5 * float((x[:-1] * y[1:] - x[1:] * y[:-1]).sum())
 
 
+@pytest.mark.quick_cases(every=5)
 @pytest.mark.parametrize("copies", [1, 3, None])
 @pytest.mark.parametrize("name", MESHES)
 def test_closed_teeth_have_no_open_edge(name, copies):

@@ -46,6 +46,7 @@ def test_pressure_of_slices_is_that_of_cells_where_contacts_keep_off_edges(name)
     assert_allclose(peaks[smooth], result.peak_pressure[0][loaded][smooth], rtol=0.06)
 
 
+@pytest.mark.thorough
 def test_extremes_at_sharp_edges_do_not_depend_on_the_grid():
     """Single cells at a sharp tip grow without a limit as grids are refined; slices keep their line load."""
     coarse, fine = (
@@ -114,6 +115,7 @@ def test_teeth_on_axes_that_cross_at_a_distance_slide_along_their_contacts_too()
     assert (np.abs(along) > 0.1 * slices["sliding"]).all()
 
 
+@pytest.mark.thorough
 def test_flanks_of_a_ring_gear_roll_the_same_way():
     """Inside a ring the curvatures count against each other, and the ring's roll lengths begin before the pinion's."""
     result = shared("planet_ring", pinion__modifications__tip_relief_um=0.0, wheel__modifications__tip_relief_um=0.0)

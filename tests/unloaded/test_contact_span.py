@@ -13,6 +13,7 @@ FOUND = 2e-3
 """Of a base pitch, 8.9 mm, the last round is an 8th part of 1e-3."""
 
 
+@pytest.mark.quick_cases("pinion-0.0")
 @pytest.mark.parametrize("helix_deg", [0.0, 15.0])
 @pytest.mark.parametrize("driving", ["pinion", "wheel"])
 def test_crowned_involutes_are_in_contact_as_long_as_iso_21771_says(helix_deg, driving):

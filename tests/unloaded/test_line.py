@@ -27,6 +27,7 @@ def edge_distances(pair, point):
     return np.array([float(jet.value) for jet in jets])
 
 
+@pytest.mark.quick_cases(every=5)
 @helices
 @drives
 @pytest.mark.parametrize("offset", [0.0, 2.0, -3.0])
@@ -97,6 +98,7 @@ def test_point_contact_has_no_line_ends():
     assert not path.on_line.any()
 
 
+@pytest.mark.quick_cases(every=3)
 @helices
 @pytest.mark.parametrize("length", [4.0, 8.0])
 def test_contact_on_a_flat_stretch_between_end_reliefs_is_its_middle(helix_deg, length):

@@ -39,6 +39,7 @@ senses = pytest.mark.parametrize("sense", ["positive", "negative"])
 # Conjugate gears
 
 
+@pytest.mark.quick_cases(every=5)
 @drives
 @senses
 @pytest.mark.parametrize(
@@ -275,6 +276,7 @@ def edges(pair, path):
     return np.stack([jet.value for jet in (*own, *other)], axis=-1)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("helix_deg", "driving"), [pytest.param(15.0, "pinion", marks=pytest.mark.thorough), (0.0, "wheel")]
 )

@@ -88,6 +88,7 @@ def from_everywhere(teeth, module, face_width, spiral_deg, shaft_deg, mounting):
     return pair, climb(EaseOff(pair), np.zeros(STARTS), rho, z)
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize("mounting", [BevelMounting(), BevelMounting(-0.1, -0.2, 0.25)])
 @pytest.mark.parametrize(
     ("teeth", "module", "face_width", "spiral_deg", "shaft_deg"),

@@ -63,6 +63,7 @@ def random_pair(rng):
     return pair.rounded(*(EdgeRounding(*both) for both in radii))
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize("seed", range(12))
 def test_positions_of_random_misaligned_pairs_are_certified(seed):
     rng = np.random.default_rng(seed)

@@ -52,6 +52,7 @@ def test_contact_point_lies_on_both_flanks(pair, turn):
     assert pair.wheel.flank.inside(path.wheel_radius, path.wheel_axial, tolerance=1e-7).all()
 
 
+@pytest.mark.quick_cases(every=9)
 @pytest.mark.parametrize("helix_deg", [0.0, 15.0])
 @pytest.mark.parametrize("crowning", [1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 1e-2, 1.0])
 @pytest.mark.parametrize("tilt", [0.0, 1e-12, 1e-9, 1e-6, 1e-3])
@@ -65,6 +66,7 @@ def test_contact_is_found_from_a_picometre_to_a_millimetre_of_crowning(helix_deg
     assert path.residual.max() < 2e-9  # the tilt itself where it is too small to be called an edge contact
 
 
+@pytest.mark.quick_cases(every=5)
 @pytest.mark.parametrize("tilt", [0.0, 1e-13, 1e-10, 1e-7, 1e-4, 1e-2])
 @pytest.mark.parametrize("width", [10.0, 40.0])
 def test_contact_of_an_unmodified_helical_pair_is_found_however_small_its_misalignment(tilt, width):

@@ -206,6 +206,7 @@ def test_curves_cross_at_the_transfer_point(helix_deg, driving):
     assert transfer.is_continuous
 
 
+@pytest.mark.thorough
 def test_transfer_does_not_depend_on_the_positions():
     pair = gear_pair(BOTH, mounting=TILTED, helix_deg=15.0)
     found = [trace_teeth(pair, pitch(pair, count, 0.0)).transfers[0].pinion_angle for count in (3, 21, 64)]
@@ -271,6 +272,7 @@ def test_profile_crowning_makes_the_transmission_error_continuous(driving):
     assert found == [False, False, True, True]
 
 
+@pytest.mark.thorough
 def test_linear_tip_and_root_relief_make_it_continuous_too():
     relief = FlankModifications(
         lead_crowning=0.02, tip_relief=0.02, tip_relief_start=108.0, root_relief=0.02, root_relief_start=102.0
@@ -280,6 +282,7 @@ def test_linear_tip_and_root_relief_make_it_continuous_too():
     assert_allclose(mesh.jumps, 0.0)
 
 
+@pytest.mark.thorough
 def test_corner_contact_belongs_to_the_envelope():
     mesh = trace_teeth(gear_pair(LEAD, mounting=TILTED, helix_deg=15.0), pitch(gear_pair(LEAD, helix_deg=15.0), 81))
     lead = mesh.leading_contact
@@ -301,6 +304,7 @@ def test_equal_gears_may_be_exchanged():
     assert mesh.mean < 0.0
 
 
+@pytest.mark.thorough
 @given(st.floats(-1e-3, 1e-3), st.sampled_from([0.0, 12.0]))
 @settings(max_examples=4)
 def test_sense_of_rotation_mirrors_the_pair(angle, helix_deg):
@@ -382,6 +386,7 @@ def test_peak_to_peak_of_part_of_a_pitch_is_that_of_its_ends_where_the_error_onl
     assert trace_teeth(pair, [0.1]).peak_to_peak == 0.0
 
 
+@pytest.mark.thorough
 def test_peak_to_peak_of_some_pitches_is_that_of_one():
     pair = gear_pair(BOTH, mounting=TILTED)
     found = [

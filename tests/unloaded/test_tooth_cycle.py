@@ -43,6 +43,7 @@ def test_slope_of_surface_contact_is_the_ratio_of_the_levers_less_that_of_the_ge
     assert_allclose(slope[free], levers[free], atol=1e-7)
 
 
+@pytest.mark.quick_cases("pair0")
 @kinds
 def test_every_tooth_outside_the_reach_lags_beyond_it(pair):
     low, high = reach(pair)
@@ -60,6 +61,7 @@ def test_sampled_heights_are_those_of_the_teeth(pair):
     assert_allclose(cycle.sampled(index, teeth), cycle.heights(index * cycle.step, teeth), atol=1e-11)
 
 
+@pytest.mark.quick_cases("pair0")
 @kinds
 def test_summits_are_level_and_between_lower_heights(pair):
     cycle = tooth_cycle(pair)

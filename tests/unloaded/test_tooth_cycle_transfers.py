@@ -86,6 +86,7 @@ def test_continuity_belongs_to_the_pair_whatever_the_positions_and_teeth():
         assert [mesh.is_continuous for mesh in meshes] == [continuous] * 4
 
 
+@pytest.mark.thorough
 def test_jump_is_the_step_between_the_ends_of_surface_contact():
     pair = gear_pair(LEAD, mounting=TILTED, helix_deg=15.0)
     mesh = trace_teeth(pair)
@@ -98,6 +99,7 @@ def test_jump_is_the_step_between_the_ends_of_surface_contact():
     assert_allclose(jump, ends[1] - ends[0], rtol=2e-3)  # a position or two
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore:fillet interference")
 def test_jump_is_nan_where_no_surface_contact_is_within_a_pitch():
     sloped = FlankModifications(lead_crowning=0.02, profile_slope=1.0)

@@ -162,16 +162,19 @@ def test_curve_of_one_tooth_pair_falls_more_than_that_of_the_gears():
 # Two errors together
 
 
+@pytest.mark.thorough
 def test_map_is_one_where_the_pair_is_aligned(small_map):
     assert small_map.ratio[1, 1] == 1.0
     assert small_map.deviation[1, 1] == 0.0
 
 
+@pytest.mark.thorough
 def test_offset_moves_the_path_farther_than_the_axial_error(small_map):
     offset, axial = np.abs(small_map.deviation[[0, 2], 1]), np.abs(small_map.deviation[1, [0, 2]])
     assert offset.min() > 2.0 * axial.max()
 
 
+@pytest.mark.thorough
 def test_picture_of_the_map_names_its_units(small_map):
     labels = [label for axes in draw_error_map(small_map).axes for label in (axes.get_xlabel(), axes.get_ylabel())]
     assert "ΔE [mm]" in labels

@@ -22,6 +22,7 @@ def test_shape_functions_are_those_of_a_quadratic_quadrilateral():
         np.testing.assert_allclose(field @ slope, along, atol=ROUNDING)
 
 
+@pytest.mark.thorough
 def test_load_is_the_line_load_along_the_line_of_action():
     model, form = plane_ring.ring(COARSE), plane_ring.pinion()
     for radius in plane_ring.loaded_radii().values():
