@@ -67,6 +67,7 @@ def test_demo_needs_no_file_and_tells_what_to_try_next(run):
     assert run("demo")[0] == 0
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_demo_goes_where_it_is_told(run):
     code, out, _ = run("demo", "--out", "else/where")
@@ -185,7 +186,7 @@ def test_check_tells_teeth_that_overlap(run):
     assert "(at the centre distance of 141.3000 mm by 0.01" in run("check", scene(**changes))[1]
 
 
-@pytest.mark.quick_cases("straight_bevel")
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
 def test_bevel_scene_is_run_and_drawn_as_any_other(run, name, request):
     text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
@@ -359,6 +360,7 @@ def test_failure_while_drawing_leaves_the_numbers_without_old_pictures(run, monk
     assert set(os.listdir("out")) == REPORT | PICTURES
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_failure_while_drawing_again_keeps_the_pictures(run, monkeypatch):
     run("run", scene(), "--out", "out")
@@ -419,6 +421,7 @@ def test_progress_counts_torques_and_positions(monkeypatch):
     assert "6/6" in shown
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_estimate_is_told_on_a_terminal_and_where_an_analysis_is_long(run, monkeypatch):
     assert run("run", scene(), "--out", "out")[2] == []

@@ -67,6 +67,7 @@ def test_keys_have_the_tolerances_given_or_the_usual_ones(run, out):
     assert float(found[0]["peak_pressure_MPa_per_tolerance"]) == pytest.approx(0.05 * slope, rel=1e-6)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("blank_pictures")
 def test_those_of_a_torque_go_to_a_directory_of_their_own(run, out):
     assert run("sensitivities", out, "--keys", CROWNING, "--torque", 40)[0] == 0

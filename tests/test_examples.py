@@ -203,6 +203,7 @@ def test_example_study_is_that_of_its_script(name, example):
     assert [read.changes(k) for k in range(len(read))] == [made.changes(k) for k in range(len(made))]
 
 
+@pytest.mark.thorough
 def test_measured_flank_is_what_its_script_makes():
     stored = (EXAMPLES / "scenes" / "measured_flank.csv").read_text(encoding="utf-8")
     made = loaded(EXAMPLES / "make_measured_flank.py").main()

@@ -95,6 +95,7 @@ def test_slope_to_the_deviation_of_one_tooth_is_its_share_of_the_tangent_stiffne
             assert slope == pytest.approx(-expected, abs=SLOPES)
 
 
+@pytest.mark.thorough
 def test_eccentricity_changes_no_share_and_adds_one_order():
     scene = helical()
     alike, eccentric = (revolution_of(scene, "wheel", 2, **more) for more in ({}, {"wheel.pitch.runout_um": 10.0}))
@@ -309,7 +310,7 @@ def test_all_teeth_with_flanks_of_their_own_are_a_gear_with_these_flanks(gear):
 FULL = {"lead_crowning_um": 0.0, "profile_crowning_um": 0.0} | CROWNED
 
 
-@pytest.mark.quick_cases("flanks alone")
+@pytest.mark.thorough
 @pytest.mark.parametrize("changes", [CONTACT, COARSE], ids=["flanks alone", "bending"])
 def test_tooth_with_less_material_all_over_is_one_that_is_set_back(changes):
     """An amount along the normal is 1/cos(beta_b) of it along the transverse line of action."""

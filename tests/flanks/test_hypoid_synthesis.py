@@ -54,7 +54,7 @@ def test_cut_is_as_deep_as_the_blank(member):
     assert_allclose(np.mean(heights), depth[0], atol=MET)
 
 
-@pytest.mark.quick_cases("concave-convex")
+@pytest.mark.thorough
 @pytest.mark.parametrize(("flank", "mating"), [("concave", "convex"), ("convex", "concave")])
 def test_slopes_of_the_pinion_are_those_of_the_conjugate(flank, mating):
     pinion, wheel = hypoid_gears("right")

@@ -77,7 +77,7 @@ def test_edges_are_where_the_arcs_begin():
         assert line.radius == 0.2
 
 
-@pytest.mark.quick_cases("False")
+@pytest.mark.thorough
 @pytest.mark.parametrize("free_edges", [False, True])
 def test_force_is_kept(solutions, free_edges):
     pair, one = loaded(free_edges=free_edges)

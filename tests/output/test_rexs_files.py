@@ -130,6 +130,7 @@ def test_bearings_that_the_scene_has_elsewhere_get_no_forces(result) -> None:
     assert "92" not in results
 
 
+@pytest.mark.thorough
 def test_rows_of_a_bearing_hold_as_one(result) -> None:
     """Bearing 92 as two rows 10 mm apart, of half its stiffness each: their sum, and the moment of their difference."""
     rows = {"stiffness": None, "radial_stiffness_N_per_um": 150.0, "axial_stiffness_N_per_um": 0.0}

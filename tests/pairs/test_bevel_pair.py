@@ -168,7 +168,7 @@ def test_golden_section_agrees_with_the_reduced_solver():
     assert_allclose(golden.point, path.point, atol=1e-4)
 
 
-@pytest.mark.quick_cases("teeth0-0.0")
+@pytest.mark.thorough
 @pytest.mark.parametrize(("teeth", "spiral"), [((39, 32), 0.0), ((42, 14), SPIRAL)])
 def test_teeth_take_over_from_each_other_along_the_whole_path(teeth, spiral):
     mesh = trace_teeth(crowned(teeth=teeth, spiral=spiral, shaft_deg=120.0 if spiral else 90.0))

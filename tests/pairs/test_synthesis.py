@@ -211,6 +211,7 @@ def test_flanks_that_do_not_carry_have_no_mean_contact():
         mean_contact(basic, wheel, "concave")
 
 
+@pytest.mark.thorough
 def test_angles_of_the_example_are_in_the_right_sense():
     """A path that leans to the toe on its way to the tip lies above 90 deg: the contact moves to smaller z."""
     basic, wheel = start()

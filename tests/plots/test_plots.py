@@ -294,7 +294,7 @@ def test_flanks_are_drawn_with_the_part_that_the_mate_reaches(name):
         assert (axes.get_xlabel(), axes.get_ylabel()) == flank.frame.labels
 
 
-@pytest.mark.quick_cases("spiral_bevel")
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
 def test_pictures_of_bevel_pairs_speak_of_toe_and_heel(name):
     cycle = result(name, positions=3)

@@ -140,7 +140,7 @@ def test_band_of_one_torque_is_that_one():
     assert "40 N m" in told(figure)
 
 
-@pytest.mark.quick_cases("pinion")
+@pytest.mark.thorough
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 def test_removal_over_a_whole_flank_counts_as_much_as_its_height(gear):
     """1 um off everywhere: 1 um along the normal, 1/cos(beta_b) at the base circle.

@@ -106,6 +106,7 @@ def test_load_shares_of_all_torques_have_a_panel_each():
     assert len(plot_load_share(cycle, 1).axes) == 2
 
 
+@pytest.mark.thorough
 def test_load_shares_of_many_torques_stay_few():
     cycle = shared(torques=tuple(float(torque) for torque in range(10, 80, 10)))
     *panels, _ = plot_load_share(cycle).axes

@@ -419,6 +419,7 @@ def test_report_of_the_same_result_is_the_same_file_but_for_its_date(tmp_path, m
     assert first.replace("2026-03-04 05:06 UTC", "X") == second.replace("2027-01-01 00:00", "X")
 
 
+@pytest.mark.thorough
 def test_report_has_the_date_and_the_version_of_the_analysis(written):
     dated = replace(cycle(), dataset=cycle().dataset.assign_attrs(date=WHEN, version="9.8.7"))
     assert "analysed2026-03-04 05:06 UTC, with loaded_tca 9.8.7" in written(dated).words.replace(

@@ -91,6 +91,7 @@ def test_bending_follows_a_contact_that_a_relief_moves_up_the_tooth(name, agreem
     assert_allclose(np.nan_to_num(found), np.nan_to_num(expected), rtol=0, atol=agreement * np.nanmax(np.abs(expected)))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["load_share", "line_load", "peak_pressure"])
 def test_figures_of_tooth_pairs_of_a_helical_pair_change_as_whole_analyses_do(name):
     same, first = analysed("mesh_cycle_helical", False), (0, 0)  # in the middle a corner carries 2 % on a few cells

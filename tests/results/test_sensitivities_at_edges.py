@@ -122,14 +122,14 @@ def test_contact_points_on_the_start_of_a_linear_relief_move_as_by_whole_analyse
 def test_contacts_on_a_relief_start_that_an_edge_cuts_follow_the_start_and_leave_the_edge():
     """The grid goes with the start: the tips and face ends that cut its cells, and free them, move in it."""
     key = "wheel.modifications.tip_relief_start_mm"
-    scene = random_scene(13, compliance="contact+tooth", positions=2, cells=(32, 64), accuracy=None)
+    scene = random_scene(13, compliance="contact", positions=2, cells=(32, 64), accuracy=None)
     result, value = analyse(scene), value_at(scene, key)
     held = [grid for grid in result.states[1][0].grids[0] if grid.contact.on_relief_start]
     assert any((grid.separation.cover < 1.0)[grid.pressure > 0.0].any() for grid in held)
     low, high = (analyse(scene.with_changes({key: value + by})).transmission_error[0] for by in (-0.02, 0.02))
     length = MICROMETRES * result.gear_pair.base_radii[1]
     told = result.sensitivities([key]).transmission_error[0, :, 0] * length
-    # 0.245; steps of 0.005 to 0.04 mm give 0.231 to 0.252. Without the edges it is 0.60
+    # 0.22, by analyses 0.245
     assert_allclose(told, (high - low) / 0.04 * length, rtol=0, atol=0.1)
 
 
@@ -157,7 +157,7 @@ def test_contacts_between_two_face_ends_stay_where_they_are_though_their_point_m
 )
 def test_peaks_follow_relief_starts_and_the_length_of_contacts(seed, position, pair, key, step, allowed):
     compliance = "contact+tooth" if seed % 2 else "contact"
-    scene = random_scene(seed, compliance=compliance, positions=5, cells=(32, 64), accuracy=None)
+    scene = random_scene(seed, compliance=compliance, positions=5, cells=(48, 96), accuracy=None)
     told = analyse(scene).sensitivities([key]).peak_pressure[0, position, pair, 0]
     low, high = (analyse(scene.with_changes({key: by})).peak_pressure[0, position, pair] for by in (-step, step))
     assert_allclose(told, (high - low) / (2.0 * step), rtol=allowed)
@@ -201,13 +201,14 @@ def test_kinks_are_told_by_their_part_of_what_changes_over_the_positions(spread,
     assert len(sentences) == count
 
 
+@pytest.mark.thorough
 def test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error():
     at = {"mounting.misalignment_um": 20.0}
-    result, length = solved("helical", 32, 5, **at)
+    result, length = solved("helical", 48, 5, **at)
     found = result.sensitivities([OFFSET, CROWNING])
     with pytest.warns(AccuracyWarning, match=rf"edges of both gears end .* um per mm .*{OFFSET}; 1 of 2 keys"):
         slopes = found.transmission_error[0, :, 0]
-    low, high = (solved("helical", 32, 5, **at, **{OFFSET: by})[0].transmission_error[0] for by in (-0.05, 0.05))
+    low, high = (solved("helical", 48, 5, **at, **{OFFSET: by})[0].transmission_error[0] for by in (-0.05, 0.05))
     middle = result.transmission_error[0]
     kinks = (high - 2.0 * middle + low) / 0.05
     assert (kinks[[0, 2, 3, 4]] > 0.0).all()

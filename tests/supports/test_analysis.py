@@ -298,6 +298,7 @@ def test_supports_that_give_way_too_far_are_told() -> None:
         analyse(scene)
 
 
+@pytest.mark.thorough
 def test_teeth_bend_beside_supports() -> None:
     bends = scene_of("mesh_cycle_spur", **{"analysis.compliance": "contact+tooth"})
     torsion = np.diag([0.0, 0.0, 0.0, 0.0, 0.0, 1e-9])

@@ -361,6 +361,7 @@ def test_load_over_the_face_is_drawn_beside_that_of_rigid_supports(scene: Scene,
     assert [problem[:20] for problem in refused.value.problems] == ["rigid: other torques", "face load: a mean ov"]
 
 
+@pytest.mark.thorough
 def test_pictures_of_what_a_result_lacks_are_refused(scene: Scene) -> None:
     support = {"pinion.support.compliance": np.diag([1e-6] * 3 + [0.0] * 3).tolist()}
     rigid = scene.with_changes({"pinion.shaft": None, "wheel.shaft": None, "analysis.positions": 1})

@@ -76,6 +76,7 @@ def test_forces_on_bearings_are_those_of_the_teeth(result: MeshCycle) -> None:
     assert_allclose(on_pinion[..., 1], -np.broadcast_to(tangential, on_pinion.shape[:2]), rtol=2e-3)
 
 
+@pytest.mark.thorough
 def test_soft_bearing_beside_the_gear_makes_misalignment(scene: Scene, result: MeshCycle) -> None:
     soft = analyse(scene.with_changes({"pinion.shaft.bearings.1.radial_stiffness_N_per_um": 40.0}))
     assert (np.abs(soft.misalignment) > 1.5 * np.abs(result.misalignment)).all()

@@ -32,7 +32,7 @@ def test_loss_is_the_same_whichever_gear_drives(name):
     assert_allclose(power[1], power[0], rtol=SAME, atol=1e-9)
 
 
-@pytest.mark.quick_cases("mesh_cycle_helical")
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["mesh_cycle_helical", "mesh_cycle_bevel"])
 def test_a_mirrored_pair_has_the_same_tribology(name):
     own = shared(name)

@@ -265,12 +265,15 @@ def test_extremes_on_the_arc_of_a_rounded_tip_are_marked_and_warned_of():
     assert any("the least film thickness lies at an edge of a flank" in str(one.message) for one in caught)
 
 
-@pytest.mark.thorough
 def test_a_loss_factor_of_few_positions_is_doubted():
     flanks = {"pinion__modifications": None, "wheel__modifications": None}
     with pytest.warns(AccuracyWarning) as caught:
         shared("mesh_cycle_spur", positions=5, **flanks).tribology()
     assert any("with every second position the loss factor is another one by" in str(one.message) for one in caught)
+
+
+@pytest.mark.thorough
+def test_loss_factor_of_half_the_positions_is_that_of_an_analysis_of_as_many():
     few = known(shared("mesh_cycle_spur", positions=6))
     assert np.isnan(few.loss_factor_of_half).all()
     halved = known(shared("mesh_cycle_spur", positions=17)).loss_factor_of_half

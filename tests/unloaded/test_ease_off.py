@@ -95,6 +95,7 @@ def test_slope_of_the_field_is_the_tilt_of_the_normals_over_the_lever(pair, shar
     assert_allclose(found, expected, rtol=1e-9, atol=1e-14)  # atol: rad, an angle that is none
 
 
+@pytest.mark.thorough
 @given(pairs(), shares, turns)
 @settings(max_examples=25)
 def test_tangents_and_second_derivatives_of_the_point_agree_with_differences(pair, share, turn):
@@ -120,6 +121,7 @@ def test_edge_gradients_agree_with_differences(pair, share, turn):
     assert_allclose(values, field.heights(phi1, rho, z)[1], atol=1e-12)
 
 
+@pytest.mark.thorough
 @given(pairs(), shares, turns, st.integers(0, 7))
 @settings(max_examples=25)
 def test_edge_normal_is_the_gradient_of_the_edge_in_space(pair, share, turn, edge):

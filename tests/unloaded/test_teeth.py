@@ -152,7 +152,7 @@ def test_unmodified_aligned_pair_has_no_transmission_error_and_no_jump(mesh, dri
     assert_allclose(traced.harmonics(5).amplitude, 0.0, atol=ROUNDING)
 
 
-@pytest.mark.quick_cases("mesh2")
+@pytest.mark.thorough
 @pytest.mark.parametrize("mesh", [{}, {"teeth": (20, 60), "shifts": (0.3, -0.1)}, {"helix_deg": 15.0}])
 def test_contact_ratio_of_unmodified_gears_is_the_geometric_one(mesh):
     """Beyond the path of contact the corner contact lags with the square of the way: by 1 nm after 1/1000 pitch."""
@@ -314,6 +314,7 @@ def test_sense_of_rotation_mirrors_the_pair(angle, helix_deg):
     assert_allclose(trace_teeth(other).transmission_error, one.transmission_error, atol=ROUNDING)
 
 
+@pytest.mark.thorough
 def test_wheel_driving_mirrors_equal_gears():
     """Exchange the two gears and turn time round: driving by the wheel is the negative of driving by the pinion."""
     crowned = FlankModifications(lead_crowning=0.02, profile_crowning=0.01)
@@ -352,7 +353,7 @@ CASES = [
 ]
 
 
-@pytest.mark.quick_cases("case0-wheel")
+@pytest.mark.thorough
 @drives
 @pytest.mark.parametrize("case", [CASES[0], *(pytest.param(case, marks=pytest.mark.thorough) for case in CASES[1:])])
 def test_peak_to_peak_does_not_depend_on_the_positions(case, driving):
@@ -361,7 +362,7 @@ def test_peak_to_peak_does_not_depend_on_the_positions(case, driving):
     assert_allclose(found, found[0], rtol=1e-9)
 
 
-@pytest.mark.quick_cases("case0-pinion")
+@pytest.mark.thorough
 @drives
 @pytest.mark.parametrize("case", [CASES[1], pytest.param(CASES[2], marks=pytest.mark.thorough)])
 def test_peak_to_peak_is_that_of_positions_packed_about_the_highest_and_the_lowest(case, driving):
