@@ -6,6 +6,7 @@ import itertools
 import os
 import signal
 
+import dask  # noqa: F401  # commands hide it where nobody has imported it; xarray may know by then that it is there
 import hypothesis
 import matplotlib
 import numpy as np

@@ -1474,6 +1474,13 @@ FAULTS = (
         "means = np.nanmean(values, axis=1)",
         "supports/test_rolling_of_scenes.py::test_picture_of_the_misalignment_has_the_means_of_the_summary",
     ),
+    Fault(
+        "sensitivities: contacts count in the norm of the pressure by a power too much",
+        "results/sensitivities.py",
+        "weights = (parts / whole ** (1.0 / exponent)) ** (exponent - 1.0)",
+        "weights = (parts / whole ** (1.0 / exponent)) ** exponent",
+        "results/test_sensitivities.py::test_pressure_norm_grows_with_the_torque_as_between_two_analyses",
+    ),
 )
 
 

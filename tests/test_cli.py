@@ -110,6 +110,7 @@ def test_run_takes_single_changes_of_the_scene(run):
     assert read_scene("quick.toml").pinion.modifications.lead_crowning_um != 6.0
 
 
+@pytest.mark.quick_cases("command0")
 @pytest.mark.parametrize("command", [["check"], ["ease-off", "--out", "maps"]])
 def test_other_commands_take_changes_of_the_scene_too(run, command):
     code, out, err = run(*command, scene(), "--set", "pinion.teeth=33", "--set", "title=another pair")
@@ -559,7 +560,7 @@ def test_file_that_the_system_does_not_give_is_no_fault(run, monkeypatch):
 # Ease-off
 
 
-@pytest.mark.quick_cases("pinion")
+@pytest.mark.thorough
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 def test_ease_off_of_a_scene_is_drawn(run, gear):
     code, out, err = run("ease-off", scene(), "--out", "maps", "--gear", gear)

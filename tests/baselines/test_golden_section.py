@@ -131,6 +131,7 @@ def test_positions_without_a_common_region_are_not_a_number():
     assert repr(found) == f"GoldenSectionResult(2 positions, 1 touch, {found.evaluations} gaps each)"
 
 
+@pytest.mark.thorough
 def test_every_gap_is_counted():
     """A search of m sections along both directions takes (m + 2)^2 gaps, and m + 2 for the place of the last."""
     found = search_golden_section(sam_paper(), [0.0], sections=20)

@@ -143,12 +143,14 @@ def test_face_milled_teeth_bend_more_at_their_ends_and_under_the_modulus_of_half
     assert_allclose(within(tooth_compliance(soft, density=COARSE).wheel, 0.5), 2.0 * within(gear, 0.5), rtol=ROUNDING)
 
 
+@pytest.mark.thorough
 def test_compliance_of_the_other_sense_is_the_same():
     both = made(20.0), made(20.0, "negative")
     found = [matrix(one, dict(enumerate(grids(one, 0.4, -0.4)))) for one in both]
     assert_allclose(found[1], found[0], rtol=1e-4)  # the meshes and grids are no exact mirror images
 
 
+@pytest.mark.thorough
 def test_a_smaller_bore_makes_the_pair_softer():
     mesh = spur_mesh(bore_diameters=(15.0, None))
     small = tooth_compliance(cylindrical_pair(mesh), density=COARSE)

@@ -162,6 +162,7 @@ def test_places_beyond_the_flank_count_as_its_edge():
     assert_allclose(gear.between(beyond, beyond), gear.between(top, top), rtol=1e-9)
 
 
+@pytest.mark.quick_cases("bores0")
 @pytest.mark.parametrize("bores", [(40.0, 30.0), (10.0, 6.0)])
 def test_body_torsion_is_that_of_a_ring(bores):
     """All teeth loaded alike: a pure torque, of which two bores take the ring between them differently."""

@@ -183,7 +183,7 @@ CUT_AREAS = {
 }
 
 
-@pytest.mark.quick_cases("side of the wheel")
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", CUT_AREAS)
 def test_area_cut_by_edges_is_that_of_a_dense_grid(case):
     arguments, angle = CUT_AREAS[case]

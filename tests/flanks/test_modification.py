@@ -233,6 +233,7 @@ def test_derivatives_of_the_polynomial_agree_with_differences(coefficients, heig
     assert_allclose(here[3:], np.array(seconds) / (2 * step), rtol=1e-6, atol=1e-8)
 
 
+@pytest.mark.thorough
 @given(st.data(), meshes())
 @settings(max_examples=40)
 def test_modifications_add_up(data, mesh):

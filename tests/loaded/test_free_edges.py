@@ -392,6 +392,7 @@ def test_lightest_contact_beside_a_tip_is_solved():
     assert_allclose(loaded.solution.load, 1e-6, rtol=1e-9)
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize("name", ["helical", "straight_bevel", "spiral_bevel", "face_milled_19x62"])
 def test_free_edges_of_every_kind_of_gear_leave_a_positive_definite_contact(name):
     """Through mesh, on edges and off: the slices of the half-space alone, in closed form, and what is added."""

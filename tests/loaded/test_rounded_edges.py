@@ -92,7 +92,7 @@ def test_force_is_kept(solutions, free_edges):
         assert not border.any(), "the last box holds the contact"
 
 
-@pytest.mark.quick_cases("False")
+@pytest.mark.thorough
 @pytest.mark.parametrize("free_edges", [False, True])
 def test_both_ends_of_a_symmetric_contact_have_the_same_peak(free_edges):
     pair, one = loaded(free_edges=free_edges)

@@ -73,6 +73,7 @@ def test_many_torques_are_shown_by_their_ends():
     assert cells(text, "7 pinion torques from, to [N m]") == ["1", "7"]
 
 
+@pytest.mark.thorough
 def test_what_departs_from_nominal_is_shown_by_its_key():
     text = described("misaligned", pinion__modifications__lead_crowning_form="circular")
     assert cells(text, "mounting.out_of_plane_deg") == ["0.08"]

@@ -126,6 +126,7 @@ def test_nothing_touching_gives_all_but_the_pressure_map(tmp_path):
     assert "pressure_map" not in {path.stem for path in plot_all(nothing_touches(), tmp_path)}
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize("plot", PLOTS)
 def test_pictures_tell_load_position_and_units(plot):
     shown = texts(plot(result()))
@@ -413,6 +414,7 @@ def test_pressure_maps_of_several_torques_have_one_scale(position):
     assert high >= np.nanmax(cycle.peak_pressure)
 
 
+@pytest.mark.quick_cases(every=3)
 @pytest.mark.parametrize("plot", [plot_contact_path, plot_full_mesh, plot_pressure_envelope, plot_teeth])
 def test_pressures_on_the_flanks_have_one_scale_for_all_torques(plot):
     cycle = result("mesh_cycle_helical", positions=3, torques=(40.0, 260.0))

@@ -1,7 +1,6 @@
 """Pictures of a revolution: curves and orders that they show are those of the result."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -18,6 +17,7 @@ from loaded_tca.plots import (
 )
 from loaded_tca.plots.revolution import revolution_figures
 from loaded_tca.plots.style import png_of
+from tests.samples.shared import made_once
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
 CHANGES = {
@@ -29,7 +29,7 @@ CHANGES = {
 }
 
 
-@cache
+@made_once
 def turn():
     return analyse_revolution(read_scene("examples/scenes/revolution_helical.toml").with_changes(CHANGES))
 

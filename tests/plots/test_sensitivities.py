@@ -177,10 +177,8 @@ CASES = {
 
 
 @pytest.mark.quick_cases(
-    "plot_removal_weights-one pair alone",
     "plot_tornado-one pair alone",
     "plot_transmission_error_band-one position",
-    "plot_sensitivity_curves-one pair alone",
 )
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize(

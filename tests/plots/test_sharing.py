@@ -147,7 +147,7 @@ def test_table_of_the_path_has_lengths_roll_angles_and_diameters_beside_those_of
             assert_allclose(float(own), value, atol=5e-3)  # to 5e-5 of four pitches, and three digits
 
 
-@pytest.mark.quick_cases("plot_harmonics")
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "plot", [plot_harmonics, plot_load_share, plot_path_pressure, sharing.plot_mesh_stiffness, plot_peak_pressure]
 )
@@ -302,6 +302,7 @@ def test_full_mesh_without_load_says_so():
     assert len(figure.axes) == 2  # no bar of colours
 
 
+@pytest.mark.thorough
 def test_rings_mark_positions_at_which_the_contact_of_the_path_reaches_an_edge():
     cycle = result("misaligned", positions=2)
     axes = plot_path_pressure(cycle).axes[0]

@@ -32,7 +32,7 @@ def series(dynamics, name, unit):
 CURVES = [("transmission_error", "_m"), ("mesh_stiffness", "_N_per_m"), ("loaded_pairs", "")]
 
 
-@pytest.mark.quick_cases("8")
+@pytest.mark.thorough
 @pytest.mark.parametrize("positions", [2, 5, 8, 9])
 def test_pitch_has_every_place_once_from_phase_zero(positions):
     dynamics, whole = cycle(positions).to_dynamics(), cycle(positions)

@@ -43,6 +43,7 @@ def test_sound_gears_are_not_warned_of():
         assert sentences(read_scene(SCENES / f"{name}.toml")) == []
 
 
+@pytest.mark.thorough
 def test_gears_that_jam_are_warned_of_in_every_output(monkeypatch):
     scene = spur(**NEAR)
     (sentence,) = sentences(scene)

@@ -304,6 +304,7 @@ def test_names_of_the_result_are_listed():
         _ = result().root_strain
 
 
+@pytest.mark.quick_cases("contact")
 @pytest.mark.parametrize("compliance", ["contact", "contact+tooth"])
 def test_models_beyond_the_memory_are_refused_before_the_analysis_starts(compliance, monkeypatch):
     wanted, done = scene(**{"analysis.compliance": "contact", "pinion.face_width_mm": 19.5}), []

@@ -249,6 +249,7 @@ def test_scene_can_be_sent_to_another_process(example):
     assert again.cut == example.cut
 
 
+@pytest.mark.thorough
 def test_what_is_cut_and_the_sheet_agree_in_one_name_each(example):
     """s_mn as cut is that of the sheet, what it leaves of the pitch is j_mn over cos(alpha_n); depths stand once."""
     sheet = [float(cell) for cell in row(example, "mean normal thickness s_mn [mm]")]

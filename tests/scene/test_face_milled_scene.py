@@ -521,6 +521,7 @@ def test_teeth_that_would_jam_are_warned_of(scene):
     assert scene.interferences() == []
 
 
+@pytest.mark.thorough
 def test_one_blade_is_enough_for_contact_and_told_in_the_overview(scene):
     single = scene.with_changes({"pinion.cutter.convex": None, "analysis.compliance": "contact"})
     assert told(single)["normal tooth thickness s_mn as cut"][0] == "one flank"

@@ -288,6 +288,7 @@ bevel_gears = st.fixed_dictionaries(
 )
 
 
+@pytest.mark.thorough
 @given(bevel_gears)
 def test_bevel_scene_makes_a_pair_or_says_why_not(changes):
     nominal = parse_scene((SCENES / "spiral_bevel.toml").read_text(encoding="utf-8"))

@@ -150,6 +150,7 @@ def test_gap_change_with_relief_starts_of_every_kind_is_the_difference_of_gaps(n
     check(scene, [f"pinion.modifications.{one}" for one in names])
 
 
+@pytest.mark.thorough
 def test_gap_change_with_machine_settings_is_the_difference_of_gaps():
     scene = scene_of("face_milled_19x62")
     keys = ["pinion.machine.radial_mm", "wheel.machine.sliding_base_mm", "wheel.cutter.convex.blade_angle_deg"]

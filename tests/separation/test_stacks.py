@@ -68,7 +68,7 @@ def assert_same(one, other):
             np.testing.assert_array_equal(getattr(first, name), getattr(second, name), name)
 
 
-@pytest.mark.quick_cases("base circle", "helical")
+@pytest.mark.quick_cases("helical")
 @pytest.mark.parametrize("name", PAIRS)
 def test_gap_does_not_depend_on_what_is_sampled_with_it(name):
     """Not by rounding either: alone, in another order, in other company."""

@@ -44,7 +44,7 @@ ENGINES = {
 
 
 # Since Python 3.12 a fork of a process with threads is told, whether or not they matter; another test has used them.
-@pytest.mark.quick_cases("threads")
+@pytest.mark.thorough
 @pytest.mark.filterwarnings(r"ignore:This process .* is multi-threaded:DeprecationWarning")
 @pytest.mark.parametrize(
     "engine", ["threads", "fork", *(pytest.param(name, marks=pytest.mark.thorough) for name in [*ENGINES][2:])]

@@ -22,7 +22,7 @@ TWO_PITCHES = {"revolution.pitches": 2, "revolution.positions_per_pitch": 4}
 
 
 def small(name: str, torques: tuple[float, ...], **changes: Any) -> Scene:
-    cells = {"analysis.positions": 5, "analysis.cells": [12, 16], "analysis.torques_Nm": list(torques)}
+    cells = {"analysis.positions": 5, "analysis.cells": [16, 24], "analysis.torques_Nm": list(torques)}
     return scene_of(name).with_changes(cells | TWO_PITCHES | changes)
 
 

@@ -208,6 +208,7 @@ def test_bevel_gears_need_a_friction_and_a_bulk_temperature():
         known(result, friction="ISO/TS 6336-22")
 
 
+@pytest.mark.thorough
 def test_one_tooth_pair_and_one_position_have_no_mean():
     for few in (1, 2, 4):
         with pytest.raises(NotAskedError, match=r"analysis\.positions"):

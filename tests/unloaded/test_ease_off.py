@@ -110,6 +110,7 @@ def test_tangents_and_second_derivatives_of_the_point_agree_with_differences(pai
     assert_allclose(second, bends, rtol=1e-5, atol=SECOND)
 
 
+@pytest.mark.thorough
 @given(pairs(), shares, turns)
 @settings(max_examples=25)
 def test_edge_gradients_agree_with_differences(pair, share, turn):

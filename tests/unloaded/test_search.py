@@ -160,6 +160,7 @@ def test_contact_on_a_relief_start_is_the_maximum_of_a_grid_that_holds_the_relie
         assert 0.0 <= pair.driving * path.transmission_error[row] - best + ROUNDING < 4e-6
 
 
+@pytest.mark.thorough
 def test_contact_is_found_across_relief_starts_in_whatever_order_they_lie():
     """Linear tip and root relief that overlap, and the mating gear's: the way up may cross the later start first."""
     mesh = cylindrical_mesh((19, 58), width=8.87, shifts=(0.3, 0.3))

@@ -237,7 +237,7 @@ def test_one_transfer_per_pitch_where_it_lies_on_the_ends():
     assert abs(transfer.pinion_angle) == pytest.approx(0.5 * mesh.pair.pitch)
 
 
-@pytest.mark.quick_cases("pinion")
+@pytest.mark.thorough
 @drives
 def test_lead_crowning_alone_leaves_a_straight_line_with_a_jump_under_misalignment(driving):
     pair = gear_pair(LEAD, mounting=TILTED, driving=driving, helix_deg=15.0)
@@ -250,7 +250,7 @@ def test_lead_crowning_alone_leaves_a_straight_line_with_a_jump_under_misalignme
     assert_allclose(jump, -line.coef[1] * (pair.pitch - bridged), rtol=0.01)  # two positions
 
 
-@pytest.mark.quick_cases("pinion")
+@pytest.mark.thorough
 @drives
 def test_profile_crowning_makes_the_transmission_error_continuous(driving):
     """Parabolas c x^2 on a line of slope s cross inside the path if c > s/(2 x_end - pitch)."""
