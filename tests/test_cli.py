@@ -530,13 +530,13 @@ def test_full_standard_output_is_told(arguments):
     assert in_a_shell("> /dev/full", *arguments) == (2, told)
 
 
-@pytest.mark.quick_cases(">&-")
+@pytest.mark.thorough
 @pytest.mark.parametrize("redirected", [">&-", "2>&- > /dev/null"])
 def test_closed_standard_output_or_error_is_no_failure(redirected):
     assert in_a_shell(redirected, "check", HELICAL) == (0, [])
 
 
-@pytest.mark.quick_cases("2>&-")
+@pytest.mark.thorough
 @pytest.mark.parametrize("redirected", ["2>&-", "2> /dev/full"])
 def test_standard_error_that_cannot_be_written_leaves_the_exit_code(redirected):
     assert in_a_shell(redirected, "check", "absent.toml") == (2, [])

@@ -73,7 +73,7 @@ def test_interrupt_while_a_module_is_imported_is_one_line(tmp_path, name):
     assert done.returncode == 130
 
 
-@pytest.mark.quick_cases("between positions")
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("compliance", "shown"),
     [

@@ -92,6 +92,7 @@ def classical(generation, rho, z, height, phi):
     return math.atan2(point[1], point[0])
 
 
+@pytest.mark.quick_cases("convex")
 @pytest.mark.parametrize("flank", FLANKS)
 def test_azimuth_is_that_of_the_classical_equations_with_every_setting(flank):
     generation = CradleGeneration(HOLLOW, flank, EVERY_SETTING)

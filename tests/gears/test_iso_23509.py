@@ -79,7 +79,6 @@ def blank_of(pair):
     )
 
 
-@pytest.mark.quick_cases("standard")
 @pytest.mark.parametrize("taper", TAPERS)
 def test_blanks_of_random_pairs_are_those_of_the_formulas(taper):
     """Pairs that cannot exist are left out; at least half of them can."""

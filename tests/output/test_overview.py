@@ -46,6 +46,7 @@ def test_no_single_contact_where_two_pairs_touch_always():
     assert "single tooth contact" not in text
 
 
+@pytest.mark.thorough
 def test_estimate_is_shown_and_noted_where_it_exceeds_the_memory(monkeypatch):
     label = "analysis, roughly: time [s], memory [GiB]"
     few, many = (described(analysis__compliance="contact", analysis__positions=count) for count in (20, 2000))

@@ -66,7 +66,7 @@ def texts(figure):
     return "\n".join(found)
 
 
-@pytest.mark.quick_cases("positions without contact", "no load")
+@pytest.mark.quick_cases("no load")
 @pytest.mark.parametrize("case", CASES)
 def test_every_case_gives_every_picture(case, tmp_path):
     paths = plot_all(CASES[case](), tmp_path)

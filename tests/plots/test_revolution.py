@@ -43,6 +43,7 @@ def test_orders_over_the_torque_need_two_torques():
         plot_revolution_waterfall(one)
 
 
+@pytest.mark.quick_cases("revolution_error")
 @pytest.mark.parametrize("name", REVOLUTION_PICTURES)
 def test_picture_is_drawn(name):
     assert png_of(REVOLUTION_PICTURES[name](turn())).startswith(b"\x89PNG")

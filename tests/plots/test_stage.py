@@ -15,6 +15,7 @@ def result():
     return analysed()[0]
 
 
+@pytest.mark.quick_cases("stage_phases")
 @pytest.mark.parametrize("name", STAGE_PICTURES)
 def test_picture_has_a_title_and_named_axes(name, result):
     figure = STAGE_PICTURES[name](result)

@@ -50,6 +50,7 @@ def test_report_has_phases_figures_and_pictures(result, tmp_path):
     assert set(STAGE_CAPTIONS) == set(STAGE_PICTURES)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("_blank_pictures")
 def test_command_writes_the_report_of_a_directory(result, tmp_path, capsys):
     result.save(tmp_path)

@@ -249,6 +249,7 @@ def test_a_result_tells_ranges_scatter_and_warnings(found):
     assert all(re.search(r" \(in [1-4] of 4 analyses\)$", line) for line in told)
 
 
+@pytest.mark.thorough
 def test_a_model_tells_its_distributions_and_their_seed():
     scatter = {MISALIGNMENT: norm(1.0, scale=5.0)}
     one = model(variables={CROWNING: (1.0, 12.0)}, scatter=scatter, samples=2, seed=3, **FEW)
@@ -306,6 +307,7 @@ def test_starts_and_analyses_on_an_executor(found):
     assert result.evaluations > found[0].evaluations
 
 
+@pytest.mark.thorough
 def test_a_model_is_made_again_elsewhere():
     one = model(variables={CROWNING: (1.0, 12.0)}, **FEW)
     again = pickle.loads(pickle.dumps(one))

@@ -36,6 +36,7 @@ def test_lines_grow_with_the_torque_and_end_at_the_ends_of_the_shaft() -> None:
     assert first.motions[0, 5] == 0.0  # where the torque enters
 
 
+@pytest.mark.thorough
 def test_command_writes_tables_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["shaft", SCENE, "--out", str(tmp_path / "out")]) == 0
     out = capsys.readouterr().out

@@ -40,6 +40,7 @@ DEAR = {
     "unloaded.convergence_from_random_starts",
     "unloaded.involute_pairs",
     "unloaded.internal_pairs",
+    "unloaded.reduced_tca_tables",
     "bevel.convergence",
     "bevel.miter_gear_paper",
     "bevel.pressure",
@@ -64,6 +65,7 @@ DEAR = {
     "loaded.numbers_to_copy",
     "calculix.mesh_cycle",
     "contact.free_block",
+    "contact.rounded_edge",
     "contact.wedge",
 }
 """Of a second or more each: quicker tests see the faults of what they judge, and make validate has all their rows."""
