@@ -75,7 +75,6 @@ def test_shares_add_up_and_orders_of_equal_planets_cancel(result):
     assert_allclose(result.mesh_load_factor, len(result.planet) * result.planet_share.max(axis=(1, 2)))
 
 
-@pytest.mark.thorough
 def test_stage_in_phase_has_the_ripple_of_one_path():
     stage = read_stage(EXAMPLES / "wind_spur.toml").with_changes(
         {**QUICK, "stage.pin_tangential_um": None, "analysis.positions": 7, "analysis.torques_Nm": [100e3]}
