@@ -1481,6 +1481,20 @@ FAULTS = (
         "weights = (parts / whole ** (1.0 / exponent)) ** exponent",
         "results/test_sensitivities.py::test_pressure_norm_grows_with_the_torque_as_between_two_analyses",
     ),
+    Fault(
+        "stages: mesh cycles begin at the pitch point",
+        "stages/analyse.py",
+        'start = float(cycle.dataset["pinion_angle"].values[0]) / pair.pitch',
+        "start = 0.0",
+        "stages/test_stage.py::test_phases_of_mesh_cycles_count_from_the_pitch_point",
+    ),
+    Fault(
+        "stages: pressures are those of even shares",
+        "stages/analyse.py",
+        "largest = factor * torques / base_radius / planets",
+        "largest = torques / base_radius / planets",
+        "stages/test_stage.py::test_peak_pressure_is_that_of_the_mesh_under_the_largest_share_of_unequal_ones",
+    ),
 )
 
 

@@ -13,6 +13,7 @@ from loaded_tca.gears.internal_mesh import internal_interferences
 from loaded_tca.results.summary import shown
 from loaded_tca.scene import InternalScene
 from loaded_tca.stages import StageResult, analyse_stage, parse_stage, read_stage, rebalanced
+from loaded_tca.stages.analyse import deflections_of
 from tests.refusals import refused_calls
 from tests.samples.root_stress import coarsely
 
@@ -135,6 +136,22 @@ def test_edge_pressure_is_that_of_the_mesh_under_the_largest_share(result):
         assert 0.0 < below <= own < above  # the largest share is up to 1.05 even ones
     line = next(line for line in result.summary().splitlines() if "at a sharp edge, mesh-dependent" in line)
     assert line.split()[-1] == shown(result.key_figures()[1]["sun_mesh_edge_pressure_MPa"], "")
+
+
+def test_peak_pressure_is_that_of_the_mesh_under_the_largest_share_of_unequal_ones(result):
+    """Two slack planets leave half of 300 N m to each of the others; 75 N m are an even share."""
+    slack = rebalanced(result, {"stage.pin_tangential_um": [500.0, 0.0, 500.0, 0.0], "stage.floating_sun": False})
+    cycle = slack.sun_mesh
+    above = int(np.searchsorted(cycle.torque, 300e3 * slack.planet_share[1].max()))
+    assert cycle.torque[above - 1] > 75e3
+    low, high = (np.nanmax(cycle.peak_pressure[k]) for k in (above - 1, above))
+    assert low < slack.key_figures()[1]["sun_mesh_peak_pressure_MPa"] <= high
+
+
+def test_phases_of_mesh_cycles_count_from_the_pitch_point(result):
+    """Which lies in the middle of the pitch that was analysed."""
+    for cycle in (result.sun_mesh, result.ring_mesh):
+        assert deflections_of(cycle, np.array(cycle.torque)).start == pytest.approx(-0.5)
 
 
 def test_result_of_a_file_without_edge_pressures_is_read(result, tmp_path):
