@@ -1495,6 +1495,20 @@ FAULTS = (
         "largest = torques / base_radius / planets",
         "stages/test_stage.py::test_peak_pressure_is_that_of_the_mesh_under_the_largest_share_of_unequal_ones",
     ),
+    Fault(
+        "stages: a planet has the torque of the sun",
+        "stages/analyse.py",
+        "force * sun.wheel.base_radius",
+        "force * sun.pinion.base_radius",
+        "stages/test_stage.py::test_planet_has_the_torque_of_its_own_radius_under_the_force_of_the_sun",
+    ),
+    Fault(
+        "stages: orders have half their amplitude",
+        "stages/result.py",
+        "2.0 / len(curve) * np.abs(np.fft.rfft(curve))",
+        "1.0 / len(curve) * np.abs(np.fft.rfft(curve))",
+        "stages/test_stage.py::test_amplitude_of_an_order_is_that_of_its_wave",
+    ),
 )
 
 

@@ -13,7 +13,7 @@ from loaded_tca.gears.internal_mesh import internal_interferences
 from loaded_tca.results.summary import shown
 from loaded_tca.scene import InternalScene
 from loaded_tca.stages import StageResult, analyse_stage, parse_stage, read_stage, rebalanced
-from loaded_tca.stages.analyse import deflections_of
+from loaded_tca.stages.analyse import _largest_loads, deflections_of
 from tests.refusals import refused_calls
 from tests.samples.root_stress import coarsely
 
@@ -152,6 +152,22 @@ def test_phases_of_mesh_cycles_count_from_the_pitch_point(result):
     """Which lies in the middle of the pitch that was analysed."""
     for cycle in (result.sun_mesh, result.ring_mesh):
         assert deflections_of(cycle, np.array(cycle.torque)).start == pytest.approx(-0.5)
+
+
+def test_planet_has_the_torque_of_its_own_radius_under_the_force_of_the_sun(result):
+    arrays = {name: result.dataset[name].values for name in ("planet_share", "torque")}
+    force, (of_sun, of_planet) = _largest_loads(result.stage, arrays)
+    assert of_sun == pytest.approx(force * float(result.dataset["sun_base_radius"]))
+    assert of_planet / of_sun == pytest.approx(result.stage.planet.teeth / result.stage.sun.teeth)
+
+
+def test_amplitude_of_an_order_is_that_of_its_wave(result):
+    error, radius = result.dataset["one_path_transmission_error"], float(result.dataset["sun_base_radius"])
+    wave = 1e-6 * np.cos(4.0 * np.pi * np.arange(error.shape[-1]) / error.shape[-1])
+    waves = {"one_path_transmission_error": (error.dims, np.broadcast_to(wave, error.shape))}
+    first, second, *_ = replace(result, dataset=result.dataset.assign(waves)).orders()
+    assert second.one_path == pytest.approx(1e-3 * radius)
+    assert first.one_path == pytest.approx(0.0, abs=1e-9 * radius)
 
 
 def test_result_of_a_file_without_edge_pressures_is_read(result, tmp_path):
