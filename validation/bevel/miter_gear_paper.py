@@ -183,18 +183,12 @@ def _method_rows() -> list[Row]:
 def _edge_rows() -> list[Row]:
     gears, place = pair(mounting=EDGE), f"E {EDGE.offset:g} mm"
     path = path_of(gears)
-    searched = golden(gears, path_of(gears, FEW))
+    off = golden(gears, path_of(gears, FEW)).largest
     tangent = five_equations(gears, path, from_answer=True).found
     return [
         _row("all on the heel", f"{place}: positions on an edge", POSITIONS, path.on_edge.sum(), 1e-9),
-        _row(
-            "ease-off",
-            f"{place}, golden section: TE, largest difference [arcsec]",
-            0.0,
-            searched.largest[0],
-            SEARCHED[1],
-        ),
-        _row("ease-off", f"{place}, golden section: path, largest distance [mm]", 0.0, searched.largest[1], 1e-3),
+        _row("ease-off", f"{place}, golden section: TE, largest difference [arcsec]", 0.0, off[0], SEARCHED[1]),
+        _row("ease-off", f"{place}, golden section: path, largest distance [mm]", 0.0, off[1], 1e-3),
         _row("no tangency on an edge", f"{place}, five equations: positions found", 0, tangent, 1e-9),
     ]
 

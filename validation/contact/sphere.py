@@ -38,7 +38,7 @@ def _steel_on_bronze() -> list[Row]:
 
 
 def _steel_on_steel() -> list[Row]:
-    """Closed form to the printed digits; the map on 64 x 64 cells within three times its discretisation error (6e-5)."""
+    """Closed form to the printed digits; the map on 64 x 64 cells within three times its error (6e-5)."""
     modulus = contact_modulus(Material(), Material())
     hertz = point_contact(LOAD, (CURVATURE, CURVATURE), modulus)
     step = 2.5 * hertz.semi_major / CELLS

@@ -30,7 +30,7 @@ CONSTRUCTED = 714.93
 
 
 def rows() -> list[Row]:
-    """Hertz to the digits computed, the pressure map within 0.2 %; the printed values and the torques that they ask for."""
+    """Hertz to its digits, the pressure map within 0.2 %; the printed values and the torques that they ask for."""
     return [*_pair("spur"), *_pair("helical"), *_construction()]
 
 

@@ -36,7 +36,7 @@ DIGITS = 1e-4
 
 
 def rows() -> list[Row]:
-    """Slopes to the printed digits (5e-4 of 16), and the slope at a tenth of the crowning as a check that it does not matter."""
+    """Slopes to the digits computed, and at a tenth of the crowning, which does not matter."""
     found = []
     for (name, angle), expected in SLOPES.items():
         for c1 in (C1, 0.1 * C1):
