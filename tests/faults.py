@@ -1509,6 +1509,13 @@ FAULTS = (
         "1.0 / len(curve) * np.abs(np.fft.rfft(curve))",
         "stages/test_stage.py::test_amplitude_of_an_order_is_that_of_its_wave",
     ),
+    Fault(
+        "search: an ascent that creeps by hardly anything goes on by its model",
+        "unloaded/reduced.py",
+        "        stuck[rows] = share < HARDLY\n",
+        "        stuck[rows] = stays\n",
+        "unloaded/test_search.py::test_ascent_of_which_hardly_a_step_is_accepted_rises_along_its_slope_instead",
+    ),
 )
 
 

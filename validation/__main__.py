@@ -27,7 +27,6 @@ CASES = (
     "unloaded.convergence_from_random_starts",
     "bevel.convergence",
     "unloaded.mounting_errors",
-    "unloaded.mounting_error_map",
     "bevel.mounting_errors",
     "bevel.miter_gear_paper",
     "bevel.pressure",

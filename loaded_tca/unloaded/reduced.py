@@ -39,6 +39,8 @@ FORGOTTEN = 0.1
 the way along any bent edge ever after."""
 CREEPING = 2.0**-6
 """Share of a step; if no more of it is accepted outside the region, the field there is no guide, the edges are."""
+HARDLY = 2.0**-20
+"""Share of a step below which an ascent counts as stuck: from beside a base cone it would creep on in hundreds."""
 INWARDS = 1e6
 """Weight of the violation against the ease-off on the way back into the region."""
 RIDGE_CORRECTIONS = 3
@@ -266,7 +268,7 @@ def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
         creeps = outside & ((share < CREEPING) | (longest <= SHORT_STEP))
         ended = settled | (stays & stuck[rows]) | (creeps & lost[rows])
         lost[rows] |= creeps & ~stays
-        stuck[rows] = stays
+        stuck[rows] = share < HARDLY
         rows = rows[~ended]
         if not rows.size:
             break

@@ -114,6 +114,19 @@ def test_every_random_start_climbs_to_the_same_maximum(seed):
     assert found.iterations.mean() < 12
 
 
+def test_ascent_of_which_hardly_a_step_is_accepted_rises_along_its_slope_instead():
+    """Conjugate flanks, from a corner near the base cone: steps halved 26 times over did not end in 300 iterations."""
+    pinion, wheel = (
+        CylindricalGear(teeth, 3.0, 25.0, helix_angle=hand * math.radians(15.0), profile_shift=shift)
+        for teeth, hand, shift in ((23, 1, 0.3), (61, -1, -0.2))
+    )
+    pair = cylindrical_pair(CylindricalMesh(pinion, wheel))
+    found = climb(EaseOff(pair), np.array([-0.45 * pair.pitch]), np.array([35.5545]), np.array([12.5]))
+    assert found.converged.all()
+    assert_allclose(found.value, 0.0, atol=1e-12)  # mm; coordinates of 100 mm
+    assert found.iterations.max() < 40  # 13 seen
+
+
 # Relief starts
 
 

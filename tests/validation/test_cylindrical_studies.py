@@ -8,10 +8,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.pairs.cylindrical import Mounting
+from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.teeth import trace_teeth
 from validation.unloaded.convergence_from_random_starts import STATED, cases, stated_table
 from validation.unloaded.helical_trends import equally_curved, trends_of_forms, trends_of_helical_pressure
 from validation.unloaded.mounting_error_figures import areas, lines, stress_ratios, unmodified_pressure
+from validation.unloaded.mounting_error_map import error_map
 from validation.unloaded.mounting_error_pairs import FORMS, HELICAL, SPUR, hertz_pressure
 from validation.unloaded.mounting_error_trends import Trend, verdicts
 from validation.unloaded.random_starts import SPREADS, Draw, conventional
@@ -136,6 +138,19 @@ def test_offset_across_the_line_of_centres_turns_the_wheel_and_leaves_the_motion
     assert max(mesh.peak_to_peak for mesh in meshes) < 1e-12  # rad; conjugate, angles of order 0.1
     turn = math.atan2(0.2, pair.wheel_origin[0])  # of the line of centres: both gears see it, z1 = z2
     assert_allclose(0.5 * (meshes[1].mean - meshes[0].mean), 2.0 * turn, rtol=1e-6)
+
+
+# Two errors together
+
+
+def test_map_whose_contacts_climb_together_has_those_of_the_search_of_a_pair_alone():
+    errors = error_map(3)
+    pair = HELICAL.pair(Mounting(errors.in_plane[2]), lead_crowning=0.005, profile_crowning=0.005)
+    contact, angles = trace_contact(pair, [0.0])[0], np.linspace(0.0, 1.0, 41) * pair.pitch
+    searched = contact.pinion_axial, hertz_pressure(pair, contact, HELICAL.load)
+    assert_allclose([errors.shift[2, 1], errors.pressure[2, 1]], searched, rtol=1e-6)  # both climb to their tolerance
+    peak_to_peak = math.degrees(3600.0 * trace_teeth(pair, angles).peak_to_peak)
+    assert_allclose(errors.peak_to_peak[2, 1], peak_to_peak, rtol=0.02)  # 21 positions, splines over kinks
 
 
 # Printed numbers

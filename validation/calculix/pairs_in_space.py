@@ -23,8 +23,9 @@ from validation.calculix.tables import CROWNED_FILE, FLAT_FILE, MESH_FILE, read_
 from validation.table import Row
 
 SOURCE = "finite elements in space (CalculiX)"
-LINE_LOAD, ERROR, PRESSURE = 3e-2, 3e-2, 2e-2
-"""Asked of the line load of the crowned pair, and held by the flat one; the others as in the plane."""
+LINE_LOAD, AT_THE_END, ERROR, PRESSURE = 2e-3, 3e-2, 6e-3, 4e-3
+"""Of line loads in the middle of the face, and towards its end; of the others three times what is seen: finite elements
+half as large change error and pressure by 0.2 and 0.1 %."""
 ONE_POSITION: dict[str, object] = {
     "analysis.positions": 1,
     "analysis.load_sharing": True,
@@ -146,7 +147,14 @@ def rows_of_flat(case: str, kept: InSpace, ours: InSpace) -> list[Row]:
     """
     places = {"at mid-face": 0, "largest": int(np.argmax(kept.line_load)), "at the end of the face": -1}
     loads = [
-        Row(case, SOURCE, f"line load {where} [N/mm]", kept.line_load[n], ours.line_load[n], LINE_LOAD)
+        Row(
+            case,
+            SOURCE,
+            f"line load {where} [N/mm]",
+            kept.line_load[n],
+            ours.line_load[n],
+            AT_THE_END if n else LINE_LOAD,
+        )
         for where, n in places.items()
     ]
     return [*loads, _row_of_transmission_error(case, kept, ours)]

@@ -45,8 +45,10 @@ LINE_LOAD, PEAK, PEAK_PLACE, MIDDLE = 174.53, 2185.0, 0.10302, 524.2
 # One cell of this length along the punch makes the problem plane [mm].
 LENGTH = 1000.0
 CLOSE = 1e-9
-# Cells on the pressed part, and what they are to reach: 3 cells 2 %, 5 cells 0.5 %.
-ALLOWED = {3: 2e-2, 5: 5e-3, 10: 2e-3, 20: 1e-3}
+# Cells on the pressed part, and what they are to reach.
+ALLOWED = {3: 1e-2, 5: 5e-3, 10: 2e-3, 20: 5e-4}
+# Of the exponent between radii of 0.001 and 0.008 mm: what is left of larger radii.
+LIMIT = 2.5e-3
 RUNS = 7
 CELLS_ON_ARC = (3.0, 4.0, 5.0, 7.0, 10.0)
 EXACT_CELLS = 15.0
@@ -87,8 +89,8 @@ def rows_of_closed_form() -> list[Row]:
             middle = float(np.interp(0.0, y, solution.pressure[0]))
             table += [
                 # Place on the arc: within a cell of it, which is 2 % of the place.
-                Row(case, SOURCE, "place of the peak, 5 cells [mm]", PEAK_PLACE, abs(place), 5e-3),
-                Row(case, SOURCE, "middle, 5 cells [MPa]", MIDDLE, middle, 5e-3),
+                Row(case, SOURCE, "place of the peak, 5 cells [mm]", PEAK_PLACE, abs(place), 3e-3),
+                Row(case, SOURCE, "middle, 5 cells [MPa]", MIDDLE, middle, 1.5e-3),
             ]
     # Errors of first order in a few cells, where the rounding and where the contact ends: 1.5 in the mean square.
     table += [
@@ -135,7 +137,7 @@ def rows_of_scaling() -> list[Row]:
         peaks.append(top(y, solution.pressure[0])[1])
     exponent = float(np.polyfit(np.log(radii), np.log(peaks), 1)[0])
     return [
-        Row("rounded punch, 100 N/mm, R 0.001 to 0.008", SOURCE, "exponent of the peak", -1.0 / 3.0, exponent, 2e-2)
+        Row("rounded punch, 100 N/mm, R 0.001 to 0.008", SOURCE, "exponent of the peak", -1.0 / 3.0, exponent, LIMIT)
     ]
 
 
@@ -154,7 +156,7 @@ def rows_of_uniform_grids() -> list[Row]:
     (found,) = edge_pressures(rounded_paraboloid, ((-0.3, 0.3), (1.5, 2.1)), [edge], 60.0, E_STAR)
     case, source = "paraboloid that ends in a rounding", "uniform grid, 96 x 2048"
     return [
-        Row("even columns, 96 x 64", "uniform grid", "largest difference of pressures", 0.0, difference, 1e-5),
+        Row("even columns, 96 x 64", "uniform grid", "largest difference of pressures", 0.0, difference, 1e3 * CLOSE),
         Row(case, source, "peak at the rounding [MPa]", float(fine.pressure.max()), found.pressure, 5e-3),
         Row(case, source, "approach [mm]", fine.approach, found.solution.approach, 1e-3),
     ]

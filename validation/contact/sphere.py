@@ -12,8 +12,9 @@ from loaded_tca.reference.hertz import point_contact
 from validation.table import Row
 
 CASE, SOURCE = "spheres R 20/20, 100 N", "Hertz; Johnson 1985"
+APPROACH = "Johnson 1985, eq. 4.23: a^2/R"
 LOAD, CURVATURE = 100.0, 2.0 / 20.0
-CELLS = 64
+CELLS, MAP = 64, 2e-4
 
 
 BRONZE = Material(110e3, 0.34)
@@ -37,7 +38,7 @@ def _steel_on_bronze() -> list[Row]:
 
 
 def _steel_on_steel() -> list[Row]:
-    """Closed form to the printed digits; the map on 64 x 64 cells within its discretisation error (1e-4)."""
+    """Closed form to the printed digits; the map on 64 x 64 cells within three times its error (6e-5)."""
     modulus = contact_modulus(Material(), Material())
     hertz = point_contact(LOAD, (CURVATURE, CURVATURE), modulus)
     step = 2.5 * hertz.semi_major / CELLS
@@ -47,8 +48,6 @@ def _steel_on_steel() -> list[Row]:
     return [
         Row(CASE, SOURCE, "closed form p0 [MPa]", 1353.415, hertz.max_pressure, 4e-7),
         Row(CASE, SOURCE, "closed form a [mm]", 0.187826, hertz.semi_major, 3e-6),
-        Row(CASE, SOURCE, "map p0 [MPa]", 1353.415, solution.peak_pressure, 5e-4),
-        Row(
-            CASE, "Johnson 1985, eq. 4.23: a^2/R", "map approach [mm]", 0.187826**2 * CURVATURE, solution.approach, 5e-4
-        ),
+        Row(CASE, SOURCE, "map p0 [MPa]", 1353.415, solution.peak_pressure, MAP),
+        Row(CASE, APPROACH, "map approach [mm]", 0.187826**2 * CURVATURE, solution.approach, MAP),
     ]

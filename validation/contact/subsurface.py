@@ -21,8 +21,10 @@ POISSON_RATIO = 0.3
 CELLS, LINE_CELLS, LINE_STEP = 40, 25, 40.0
 RECTANGLE, BELOW = ((-1.0, 1.0), (-0.5, 0.5)), (0.25, 0.75, 0.5)
 """Loaded area in x and y, and the point looked at (x, y, z); lengths in half the longer side."""
-QUADRATURE = 1e-9
-"""What is allowed, relative; a hundredth of it is asked of the quadrature."""
+ON_AXIS = 3e-4
+"""Of 40 cells over the radius, beside the closed form [p0]; 8e-5 is seen."""
+QUADRATURE = 1e-10
+"""What is allowed, relative; a tenth of it is asked of the quadrature."""
 
 
 def _circle(depths: np.ndarray) -> SubsurfaceStress:
@@ -46,7 +48,9 @@ def _on_axis_of_a_circle() -> list[Row]:
     exact = np.array([contact.axis_stresses(z * contact.semi_minor, POISSON_RATIO) for z in depths]) / scale
     found = np.stack([below.sigma_x, below.sigma_y, below.sigma_z], axis=-1)[:, CELLS, CELLS]
     worst = float(np.abs(found - exact).max())
-    return [Row("below a circle", "Hertz, Love 1929", "stresses on the axis, worst difference [p0]", 0.0, worst, 5e-3)]
+    return [
+        Row("below a circle", "Hertz, Love 1929", "stresses on the axis, worst difference [p0]", 0.0, worst, ON_AXIS)
+    ]
 
 
 def _point_force(x: float, y: float, z: float) -> dict[str, float]:
@@ -81,7 +85,7 @@ def _below_a_rectangle() -> list[Row]:
             lambda v, u, name=name: _point_force(x - u, y - v, z)[name],
             *(*RECTANGLE[0], *RECTANGLE[1]),
             epsabs=0.0,
-            epsrel=0.01 * QUADRATURE,
+            epsrel=0.1 * QUADRATURE,
         )
         obtained = float(getattr(below, name)[place])
         found.append(Row("below a rectangle", BOUSSINESQ, f"{name} [p]", exact, obtained, QUADRATURE))

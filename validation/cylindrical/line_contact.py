@@ -18,6 +18,8 @@ from validation.table import Row
 
 SOURCE = "Hertz, line contact"
 CELLS = (64, 64)
+MIDDLE = 1.5e-3
+"""Three times what is seen: the line load of a section changes along the face."""
 
 
 def rows() -> list[Row]:
@@ -55,7 +57,7 @@ def _middle(case: str, pair: GearPair, torque: float) -> list[Row]:
     hertz = line_contact(line_load, separation.curvatures[0], pair.contact_modulus)
     mean = line_contact(load / length, separation.curvatures[0], pair.contact_modulus)
     return [
-        Row(case, SOURCE, "p0 in the middle of the face [MPa]", hertz.max_pressure, columns.max(), 1e-2),
+        Row(case, SOURCE, "p0 in the middle of the face [MPa]", hertz.max_pressure, columns.max(), MIDDLE),
         Row(case, "Hertz at F/l", "p0 in the middle of the face [MPa]", mean.max_pressure, columns.max(), None),
         Row(case, "mean F/l", "line load in the middle of the face [N/mm]", load / length, line_load, None),
     ]

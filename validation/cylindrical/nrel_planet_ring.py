@@ -18,9 +18,7 @@ def rows() -> list[Row]:
     """Diameters and contact ratio of the pair."""
     mesh = read_scene(SCENE).mesh()
     ring, planet = mesh.ring, mesh.pinion
-    2.0 * mesh.wheel_active_profile.start_radius, 2.0 * mesh.pinion_active_profile.start_radius
     values = (
-        ("reference diameter of the ring d [mm]", 1953.000, 2.0 * ring.reference_radius, 5e-4),
         ("root form diameter of the ring d_Ff [mm]", 1987.879, 2.0 * ring.form_radius, 1e-3),
         (
             "start of the active profile of the ring d_Nf [mm]",

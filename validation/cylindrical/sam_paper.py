@@ -19,6 +19,8 @@ from validation.table import Row
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 CELLS = (128, 128)
+MAP = 2e-3
+"""Of the map: curvatures that change over a contact as long as the face; 6e-4 is seen."""
 COMPUTED = "computed from the geometry"
 ASSUMED = "T1 = 130 N m (inferred)"
 PUBLISHED = {"spur": (748.0, 772.2), "helical": (712.0,)}
@@ -28,7 +30,7 @@ CONSTRUCTED = 714.93
 
 
 def rows() -> list[Row]:
-    """Hertz within 0.1 %, the pressure map within 0.5 %; the printed values and the torques that they ask for."""
+    """Hertz to its digits, the pressure map within 0.2 %; the printed values and the torques that they ask for."""
     return [*_pair("spur"), *_pair("helical"), *_construction()]
 
 
@@ -43,10 +45,10 @@ def _pair(name: str) -> list[Row]:
     case = f"SAM paper, {name}"
     pressure, major, minor = EXPECTED[name]
     found = [
-        Row(case, COMPUTED, "Hertz p0 [MPa]", pressure, hertz.max_pressure, 1e-3, ASSUMED),
-        Row(case, COMPUTED, "Hertz semi-major axis [mm]", major, hertz.semi_major, 1e-3, ASSUMED),
-        Row(case, COMPUTED, "Hertz semi-minor axis [mm]", minor, hertz.semi_minor, 1e-3, ASSUMED),
-        Row(case, COMPUTED, "pressure map p0 [MPa]", pressure, solution.peak_pressure, 5e-3, ASSUMED),
+        Row(case, COMPUTED, "Hertz p0 [MPa]", pressure, hertz.max_pressure, 0.005 / pressure, ASSUMED),
+        Row(case, COMPUTED, "Hertz semi-major axis [mm]", major, hertz.semi_major, 0.0005 / major, ASSUMED),
+        Row(case, COMPUTED, "Hertz semi-minor axis [mm]", minor, hertz.semi_minor, 0.00005 / minor, ASSUMED),
+        Row(case, COMPUTED, "pressure map p0 [MPa]", pressure, solution.peak_pressure, MAP, ASSUMED),
     ]
     for printed in PUBLISHED[name]:
         torque = 1e-3 * scene.torques[0] * (printed / hertz.max_pressure) ** 3

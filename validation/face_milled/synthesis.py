@@ -3,8 +3,8 @@
 The pair of ``examples/scenes/face_milled_blank.toml``, on its axes that meet. All that the equations get are the
 numbers that ``loaded-tca settings`` writes, and the pitch cones of teeth and shaft angle; what they are compared with
 is what the scene asks for. The motion curve is a parabola at the mean point alone: its second derivative is that of
-differences over a hundredth of a pitch to either side, whose fourth derivative leaves 1e-4 of it; chords of the path
-leave 0.01 deg.
+differences over a hundredth of a pitch to either side, whose fourth derivative leaves 3e-6 of it; chords of the path
+leave 0.001 deg.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ MARKING = 0.00635
 """Approach at which the length of the contact ellipse is asked for [mm]."""
 BOTH = {"pair.settings.both_flanks": True}
 OTHER = {"concave": "convex", "convex": "concave"}
-OF_MOTION, OF_PATH, OF_LENGTH = 1e-3, 0.05, 1e-4
-"""Relative; [deg]; relative: what differences and chords leave."""
+OF_MOTION, OF_PATH, OF_LENGTH = 1e-5, 2e-3, 4e-6
+"""Relative; [deg]; relative: three times what differences and chords leave."""
 
 
 def rows() -> list[Row]:

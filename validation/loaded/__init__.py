@@ -21,7 +21,7 @@
   ``root_stress_models``: what both share;
 - ``root_stress_cycle``, ``root_stress_space``: root stress over the mesh and in space beside finite elements of another
   program; ``root_face_load``: under uneven loads, beside ISO 6336-3; ``root_stress_fem``: a page of all three;
-- ``root_stress_precision``: models whose fronts are of single precision beside those of double, of 37 bodies;
+- ``root_stress_precision``: models whose fronts are of single precision beside those of double;
 - ``numbers_to_copy``: load factors, peak pressure and free edges over misalignment, box, grid and defaults; a page;
 - ``moving_edges``: derivatives by mounting errors where contacts end at edges, beside differences of analyses;
 - ``random_sensitivities``: derivatives of random scenes of all families to every key, beside the same, in minutes;

@@ -51,19 +51,19 @@ class Slopes:
 PEAK_TO_PEAK, FIRST, FACTOR = "peak to peak [um per unit]", "order 1 [um per unit]", "K_Hbeta [1 per unit]"
 MEAN = "mean of the transmission error [um per unit]"
 KEYS = (
-    Slopes("helical", DISTANCE, 0.02, ((PEAK_TO_PEAK, 0.02), (FIRST, 0.02))),
+    Slopes("helical", DISTANCE, 0.02, ((PEAK_TO_PEAK, 0.02), (FIRST, 0.01))),
     Slopes(
         "mesh_cycle_spur",
         DISTANCE,
         0.02,
-        ((PEAK_TO_PEAK, 0.01), (FIRST, 0.01), (FACTOR, 0.02)),
+        ((PEAK_TO_PEAK, 4e-3), (FIRST, 0.01), (FACTOR, 0.02)),
         64,
         {TORQUES: (130.0,)},
     ),
     Slopes(
         "design_helical", DISTANCE, 0.04, ((PEAK_TO_PEAK, 0.11), (FIRST, 0.15), (MEAN, 3e-5)), 128, {TORQUES: (250.0,)}
     ),
-    Slopes("helical", OFFSET, 0.05, ((PEAK_TO_PEAK, 0.03), (FACTOR, 0.08)), 128, {OFFSET: 1.0, MISALIGNMENT: 20.0}),
+    Slopes("helical", OFFSET, 0.05, ((PEAK_TO_PEAK, 0.01), (FACTOR, 0.08)), 128, {OFFSET: 1.0, MISALIGNMENT: 20.0}),
     Slopes(
         "spur",
         OFFSET,
@@ -77,13 +77,14 @@ KEYS = (
             "analysis.free_edges": True,
         },
     ),
-    Slopes("spiral_bevel", "mounting.offset_mm", 5e-4, ((PEAK_TO_PEAK, 0.02), (FACTOR, 0.05))),
+    Slopes("spiral_bevel", "mounting.offset_mm", 5e-4, ((PEAK_TO_PEAK, 5e-3), (FACTOR, 0.05))),
     Slopes("straight_bevel", "mounting.pinion_axial_mm", 2e-3, ((PEAK_TO_PEAK, 0.1), (FIRST, 0.02))),
 )
-"""Allowed: 1 to 2 %; 0.01 um/mm of the straight bevel pair and of the design, whose four tooth pairs leave little of a
-mean slope of some 300 um/mm (on 64 cells analyses with three steps differ by that themselves); of the axial offset 3 %,
-and 0.002 per mm of K_Hbeta, and 3 % where both ends of every contact move apart, which no motion of a grid follows; of
-K_Hbeta of the spiral pair 5 %, twice what analyses with two steps differ by."""
+"""Allowed: 0.4 to 2 %, more than analyses with two steps differ by; 0.01 um/mm of the straight bevel pair and
+of the design, whose four tooth pairs leave little of a mean slope of some 300 um/mm (on 64 cells analyses with three
+steps differ by that themselves); of the axial offset 0.002 per mm of K_Hbeta, and 3 % where both ends of every contact
+move apart, which no motion of a grid follows; of K_Hbeta of the spiral pair 5 %, twice what analyses with two steps
+differ by."""
 
 
 def rows() -> list[Row]:

@@ -3,7 +3,8 @@
 The package draws the tooth of a ring in an inversion and computes on it with its elements, half-spaces and a local
 term. Here the same section is triangulated in its true form by Delaunay's rule, eleven teeth with their rim, fine at
 the loaded flank and the fillets, with quadratic elements; the outside is held. What is compared is the displacement of
-a strip of elliptical pressure along the force, and the largest tension at the root. Asked for: 2 % and 4 %.
+a strip of elliptical pressure along the force, and the largest tension at the root. They agree to 0.4 % and 0.1 %, as
+two kinds of meshes do.
 """
 
 import math
@@ -31,7 +32,7 @@ Array = NDArray[np.float64]
 CASE, SOURCE = "teeth of a ring", "plane-strain finite elements in their true form"
 HALF_WIDTH = 0.15  # of the strips [mm]
 HEIGHTS = 0.3, 0.55, 0.8  # of the flank, over its height
-STIFFNESS, TENSION = 0.02, 0.04
+STIFFNESS, TENSION = 0.012, 0.003
 
 
 def ring_pair(teeth: int, cutter: PinionCutter | None) -> tuple[RingGear, Gear]:

@@ -9,7 +9,7 @@
 - Factors f_c of ISO 281, tables 2 and 7: their digits.
 - The helical pair of ``examples/scenes/helical_on_rolling_bearings.toml``: rigid analyses whose wheel is set where the
   loads move both shafts by the exact law of their bearings, until nothing moves, at the middle and at an end of the
-  pitch. Asked are 1e-4 of the transmission error and 1e-3 of the motions.
+  pitch. They agree to 3e-5 of the transmission error and 2e-4 of the motions, what both repetitions end at.
 
 ``python -m validation.loaded.rolling_bearings`` writes ``docs/studies/rolling_bearings.md``.
 """
@@ -44,7 +44,7 @@ LOADS = {
 OF_PROGRAM, OF_MOMENT, OF_STRIBECK, OF_TABLES = 1e-4, 0.015, 2e-3, 1e-3
 MANY = {"at": 0.0, "elements": 200, "diameter": 1.0, "pitch_diameter": 100.0}
 TABLES = {0.05: (46.7, 74.1), 0.1: (55.5, 84.2), 0.16: (59.6, 88.5), 0.2: (59.9, 88.7)}
-OF_ERROR, OF_MOTIONS = 1e-4, 1e-3
+OF_ERROR, OF_MOTIONS = 3e-5, 2e-4
 CELLS, TORQUES = 24, (40.0, 130.0)
 
 

@@ -52,7 +52,7 @@ OTHER_LARGEST = 5e-3
 ON_GRIDS = 0.02
 FINENESSES = (0.6, 1.0, 1.6)
 RADII = (0.05, 0.1, 0.2, 0.3, 0.5)
-RUNS, MOST_TIME = 3, 3.0
+RUNS = 3
 FINER, SOURCE = "finest columns", "definition"
 
 SPUR: dict[str, Any] = {
@@ -428,19 +428,9 @@ def times() -> dict[str, float]:
         return medians(take_times(calls, RUNS, time.process_time))
 
 
-def rows_of_times() -> list[Row]:
-    """Time of a helical mesh cycle with rounded tips over that with sharp ones."""
-    sharp, most, every = times().values()
-    told = f"{most / sharp:.2f} times, {every / sharp:.2f} with all: medians of {RUNS} runs, 33 positions, 3 torques"
-    quantity = f"time over that with sharp edges, more than {MOST_TIME:g}"
-    return [
-        Row("helical tip, r 0.2", "this machine", quantity, 0.0, max(most / sharp - MOST_TIME, 0.0), 0.0, note=told)
-    ]
-
-
 def rows() -> list[Row]:
-    """Columns, grids, radii, bounds, time."""
-    return [*rows_of_columns(), *rows_of_grids(), *rows_of_radii(), *rows_of_survey(), *rows_of_times()]
+    """Columns, grids, radii, bounds."""
+    return [*rows_of_columns(), *rows_of_grids(), *rows_of_radii(), *rows_of_survey()]
 
 
 def table_of_columns() -> str:

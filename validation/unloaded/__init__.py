@@ -6,7 +6,7 @@
 - ``mounting_errors``, with ``mounting_error_pairs``, ``mounting_error_trends``, ``spur_trends``, ``helical_trends`` and
   ``mounting_error_figures``: what each error does, and which statements and numbers of the dissertation hold; writes a
   page;
-- ``mounting_error_map``: two errors together;
+- ``mounting_error_map``: two errors together, a picture;
 - ``rounded_edges``: a thousand random misaligned positions of flanks with rounded edges, certified, and their cost;
 - ``convergence_from_random_starts``, with ``random_starts``: two equations beside five; writes a page.
 """

@@ -21,6 +21,8 @@ from validation.table import Row
 CASE, SOURCE = "internal pairs", "conjugate flanks; scans of the gaps"
 PAIRS, SEED = 60, 20
 SCAN = 121, 161
+ROUNDING_um, OVERLAP = 1e-9, 1e-9
+"""Rounding over lengths of some 100 mm [um]; of the gap, which angles of contact carry to 1e-12 rad [mm]."""
 
 
 def rows(count: int = PAIRS) -> list[Row]:
@@ -32,9 +34,9 @@ def rows(count: int = PAIRS) -> list[Row]:
     untouched = sum(int(np.isnan(path.transmission_error).sum()) for path in paths)
     largest = "largest transmission error of the unmodified pairs [um]"
     return [
-        Row(CASE, SOURCE, largest, 0.0, conjugate, 1e-9, note=f"{count} pairs"),
+        Row(CASE, SOURCE, largest, 0.0, conjugate, ROUNDING_um, note=f"{count} pairs"),
         Row(CASE, SOURCE, "positions without contact of crowned, misaligned pairs", 0.0, untouched, 0.0),
-        Row(CASE, SOURCE, "deepest overlap on scans at contact [mm]", 0.0, max(map(_deepest_overlap, paths)), 1e-9),
+        Row(CASE, SOURCE, "deepest overlap on scans at contact [mm]", 0.0, max(map(_deepest_overlap, paths)), OVERLAP),
     ]
 
 

@@ -7,7 +7,7 @@ Run from the root of the repository: ``python -m validation.unloaded.mounting_er
 
 import time
 from dataclasses import dataclass, fields, replace
-from math import degrees, radians
+from math import radians
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -17,14 +17,11 @@ from scipy.interpolate import CubicSpline
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.reference.hertz import point_contact
-from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import climb
 from loaded_tca.unloaded.search import FirstTouch, first_touch
-from loaded_tca.unloaded.teeth import trace_teeth
 from validation.page import Page, write_page
-from validation.table import Row
-from validation.unloaded.mounting_error_pairs import ARCSEC, CASE, HELICAL, POSITIONS, ROUNDING, hertz_pressure
+from validation.unloaded.mounting_error_pairs import ARCSEC, HELICAL, POSITIONS, ROUNDING
 
 Array = NDArray[np.float64]
 
@@ -141,28 +138,6 @@ def _peak_pressures(field: EaseOff, rho: Array, z: Array) -> Array:
             for k, free in zip(curvatures, inside, strict=True)
         ]
     )
-
-
-def rows() -> list[Row]:
-    """One case of the map, whose contacts climb together, against the search of that case alone."""
-    errors = error_map(3)
-    pair = _map_pair(Mounting(float(errors.in_plane[2]), float(errors.out_of_plane[1])))
-    contact = trace_contact(pair, [0.0])[0]
-    height = trace_teeth(pair, np.linspace(0.0, 1.0, 201) * pair.pitch).peak_to_peak * ARCSEC
-    where = f"map at in-plane {degrees(errors.in_plane[2]):.2g} deg"
-    source = "search of this case alone"
-    return [
-        Row(CASE, source, f"{where}: shift [mm]", contact.pinion_axial, float(errors.shift[2, 1]), 1e-6),
-        Row(
-            CASE,
-            source,
-            f"{where}: Hertz pressure [MPa]",
-            hertz_pressure(pair, contact, HELICAL.load),
-            float(errors.pressure[2, 1]),
-            1e-6,
-        ),
-        Row(CASE, source, f"{where}: TE, peak to peak [arcsec]", height, float(errors.peak_to_peak[2, 1]), 0.01),
-    ]
 
 
 def draw_map(errors: ErrorMap) -> Figure:
