@@ -192,7 +192,7 @@ def _on_supports(
             torque = np.array(scene.torques[t : t + 1])
             one = _OnSupports(path.pair, path, torque, grid, roots, maps, bending=there, held=held)
             report = None if progress is None else partial(_report, progress, t, len(scene.torques))
-            for part in carried_over_revolution(path, one.torques, grid, there, report, given):
+            for part in carried_over_revolution(path, one.torques, grid, there.giving_way, report, given):
                 one.add(part)
             numbers.append(one)
         return numbers

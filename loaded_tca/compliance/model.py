@@ -121,6 +121,11 @@ class SumOfParts(BendingModel):
         parts = tuple(part for part in self.parts if not isinstance(part, SupportCompliance))
         return SumOfParts(parts) if parts else None
 
+    @property
+    def giving_way(self) -> SumOfParts | None:
+        """The parts without supports that are rigid, so that these are as none; None where none is left."""
+        return self.on_rigid_supports if self.supports is not None and self.supports.is_rigid else self
+
     def mounted(self, pair: GearPair) -> SumOfParts:
         """The same parts in a pair whose wheel stands elsewhere."""
         return SumOfParts(tuple(part.mounted(pair) for part in self.parts))

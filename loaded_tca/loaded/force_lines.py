@@ -51,7 +51,7 @@ def bending_by_shift(
     Parameters
     ----------
     grids : sequence of LoadedGrid
-        With the compliance of their slices by the same model.
+        With the compliance of their slices by the same model; without one where that is zero.
     state : (grids,) array
         That each belongs to.
     bending : BendingModel
@@ -81,10 +81,9 @@ def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel, given: GivenDi
     by_shift = np.zeros((first[-1], first[-1]))
     for i, j in product(range(len(grids)), repeat=2):
         if i == j:
-            before = grids[i].bending
-            assert before is not None
-            by_place = bending.within(grids[i].number, beyond[i][1], held[i][1])
-            by_place = by_place - before[np.ix_(loaded[i], loaded[i])]
+            by_place, before = bending.within(grids[i].number, beyond[i][1], held[i][1]), grids[i].bending
+            if before is not None:
+                by_place = by_place - before[np.ix_(loaded[i], loaded[i])]
         else:
             by_place = bending.between(beyond[i], held[j]) - bending.between(held[i], held[j])
         by_place = by_place / steps[i]

@@ -37,13 +37,14 @@ def standing_under(supports: SupportCompliance, loads: Loads) -> SupportComplian
     return supports.moved(motions) if any(one.any() for one in motions) else supports
 
 
-def moved_bending(bending: SumOfParts, near: SupportCompliance, loads: Loads) -> tuple[SumOfParts, Coupling]:
+def moved_bending(bending: SumOfParts, near: SupportCompliance, loads: Loads) -> tuple[SumOfParts, Coupling | None]:
     """Bending of the pair moved by loads of its supports, which are linear ``near`` these, and what opens its gaps.
 
-    Beside the motions by the forces: those of other loads on the shafts, less those that moved the pair.
+    Beside the motions by the forces: those of other loads on the shafts, less those that moved the pair. None opens the
+    gaps of a pair on rigid supports.
     """
     there = standing_under(near, loads)
-    given = partial(there.opened, motions=given_motions(near, loads))
+    given = None if near.is_rigid else partial(there.opened, motions=given_motions(near, loads))
     return bending.on_supports(there).mounted(there.pair), given
 
 

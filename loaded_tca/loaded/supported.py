@@ -157,7 +157,8 @@ class _MovedCycle:
         return [_told(own, self.torque) for own in self.states.steps()]
 
     def carried(self, results: Sequence[Any]) -> Carried:
-        return self.states.carried(results)
+        carried = self.states.carried(results)
+        return replace(carried, states=replace(carried.states, bending=self.bending))  # rigid supports included
 
 
 class SupportedCycle:
@@ -292,9 +293,9 @@ class SupportedCycle:
         states: OnePairsCycle | AllPairsCycle
         with _told_of(torque):
             if self.load_sharing:
-                states = AllPairsCycle(pair, trace_teeth(pair, angles), torques, grid, bending, given)
+                states = AllPairsCycle(pair, trace_teeth(pair, angles), torques, grid, bending.giving_way, given)
             else:
-                states = OnePairsCycle(pair, trace_contact(pair, angles), torques, grid, bending, given)
+                states = OnePairsCycle(pair, trace_contact(pair, angles), torques, grid, bending.giving_way, given)
         return _MovedCycle(torque, loads, bending, states)
 
 

@@ -300,7 +300,7 @@ class DesignModel:
                 there, given = moved_bending(bending, supports.under(loads), loads)
                 assert there.supports is not None
                 mesh = trace_teeth(there.supports.pair, angles)
-                held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, there, given))
+                held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, there.giving_way, given))
             return tuple(held)
 
         apart = pitches_apart(supports, torques, unmoved)

@@ -252,6 +252,11 @@ class SupportCompliance:
         return pinion, wheel
 
     @property
+    def is_rigid(self) -> bool:
+        """Whether no load moves the gears."""
+        return not any(one.compliance.any() or one.motion is not None or one.law for one in self.supports)
+
+    @property
     def is_linear(self) -> bool:
         """Whether the motions grow with the loads, whatever these are."""
         return all(support.law is None for support in self.supports)

@@ -116,6 +116,8 @@ AT_ONCE = 16
 """Positions looked at together."""
 CORNER_STEPS = 4
 """Steps of false position from a spacing of edge points to a corner: its square, three times over."""
+ON_EDGE = 1e-8
+"""Distance [mm] within which points lie on an edge: those of grids over fitted flanks are off by up to 4e-9."""
 LEVEL = 1e-11
 """Difference of heights [mm] that is rounding: on a level ridge one start is enough."""
 BETWEEN = 2.0
@@ -230,6 +232,8 @@ def inside_pinion(pair: GearPair, phi1: Array, value: Array, depth: float) -> St
     depth : float [mm]
     """
     rho, z = _points(pair.wheel.flank, WHEEL_GRID, WHEEL_EDGE)
+    there = pair.wheel.flank.inside(rho, z, ON_EDGE)  # off the arc of one edge a point may have left another one
+    rho, z = rho[there], z[there]
     own_theta = pair.wheel.flank.theta(rho, z).value
     wheel_angle = pair.driving * value / pair.base_radii[1] + pair.ratio * phi1
 

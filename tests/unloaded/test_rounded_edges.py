@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from loaded_tca import read_scene
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import EdgeRounding
@@ -149,3 +150,11 @@ def test_mesh_and_its_span_are_traced_over_rounded_edges():
     assert_allclose(mesh.transmission_error, 0.0, atol=ROUNDING)
     ends = [contact_span(one) for one in (misaligned(EdgeRounding()), misaligned(EdgeRounding(tip=0.2)))]
     assert (ends[0][0] is None) == (ends[1][0] is None)
+
+
+def test_points_off_the_arc_of_a_face_end_are_not_looked_at_beyond_the_tip():
+    """The tip of a face-milled wheel is not square to its face ends, so that they leave the flank by 0.7 um."""
+    scene = read_scene("examples/scenes/face_milled_19x62_matched.toml")
+    pairs = [scene.with_changes({"wheel.side_rounding_mm": radius}).pair() for radius in (0.0, 0.37)]
+    sharp, rounded = (pair.driving * trace_contact(pair, [-0.65], warn=False).transmission_error for pair in pairs)
+    assert -1e-4 < rounded - sharp < 0.0, "the sharp end is in contact, so that the wheel without it stands further on"
