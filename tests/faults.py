@@ -612,8 +612,8 @@ FAULTS = (
             (
                 "the ends of the common face are held",
                 "results/face_slopes.py",
-                "face_ends[key] = (high - low) / change.difference",
-                "face_ends[key] = 0.0",
+                "motions[key] = np.where(at_one_place, by_gear.mean(axis=0), by_gear[ruling])",
+                "motions[key] = 0.0",
                 "test_ends_of_the_common_face_move_with_the_wheel",
             ),
             (
@@ -654,9 +654,9 @@ FAULTS = (
             (
                 "ends at one place are no kink",
                 "separation/pair_change.py",
-                "(most - least)[:, kept]",
-                "(most - most)[:, kept]",
-                "test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error",
+                "kinks = (most - least)[:, kept]",
+                "kinks = (most - most)[:, kept]",
+                "test_aligned_faces_of_one_width_are_a_kink_without_a_slope",
             ),
             (
                 "a strip that carries as much is no kink",
@@ -1473,6 +1473,32 @@ FAULTS = (
         "means = [mean_over_a_pitch(over_pitch) for over_pitch in values]",
         "means = np.nanmean(values, axis=1)",
         "supports/test_rolling_of_scenes.py::test_picture_of_the_misalignment_has_the_means_of_the_summary",
+    ),
+    *(
+        Fault(f"kinks: {what}", file, text, wrong, f"results/test_sensitivities_at_edges.py::{test}")
+        for what, file, text, wrong, test in (
+            (
+                "the wheel tilts alike to both sides",
+                "separation/pair_change.py",
+                "replace(self, below=pair, difference=half, side=1)",
+                "replace(self, side=1)",
+                "test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error_and_of_the_face_load_factor",
+            ),
+            (
+                "edges that rule to one side rule to the other",
+                "separation/pair_change.py",
+                "rates = np.where(sides > 0, least, np.where(sides < 0, most, rates))",
+                "rates = np.where(sides > 0, most, np.where(sides < 0, least, rates))",
+                "test_aligned_faces_of_one_width_are_a_kink_without_a_slope",
+            ),
+            (
+                "ends of the common face are those of the gear that is shorter by micrometres",
+                "results/face_slopes.py",
+                "at_one_place = np.abs(ends[1] - ends[0]) < AT_ONE_PLACE * width",
+                "at_one_place = np.abs(ends[1] - ends[0]) < 0.0 * width",
+                "test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error_and_of_the_face_load_factor",
+            ),
+        )
     ),
 )
 

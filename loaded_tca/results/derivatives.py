@@ -143,6 +143,7 @@ class SensitivitiesOnSupports(Sensitivities):
     line_load = _by_torque("line_load")
     peak_pressure = _by_torque("peak_pressure")
     face_load_factor = _by_torque("face_load_factor")
+    face_load_factor_kinks = _by_torque("face_load_factor_kinks")
     root_tension = _by_torque("root_tension")
     root_compression = _by_torque("root_compression")
 

@@ -276,6 +276,7 @@ def growth_on_supports(
                 displaced, turned = on_slices.growth(changes[key], _tilting(growth.tilts[n]))
                 in_states = in_states + turned
             growth.gaps[n] += displaced
+            on_slices.add_kinks(changes[key], growth.kinks, n)
         motions[n] = on_slices.answer(tangents, growth.gaps[n], torques[n], in_states, places[1])
     lever, further = 0.5 * result.face_width, motions
     for _ in range(ROUNDS):
@@ -289,6 +290,7 @@ def growth_on_supports(
         for n, (change, way) in enumerate(zip(moving, directions, strict=True)):
             displaced, in_states = on_slices.growth(change, by_motion.motions[n])
             by_motion.gaps[n] += displaced - on_slices.opened(way)
+            on_slices.add_kinks(change, by_motion.kinks, n)
             answers[n] = on_slices.answer(tangents, by_motion.gaps[n], -lever_torques[n], in_states, places[1])
         growth, further = growth.with_parts(parts, by_motion), parts @ answers
         motions = motions + further
@@ -316,6 +318,13 @@ class _OnSlices:
             self._displaced(side, part * width * motions) for side, part in ((change.low, -0.5), (change.high, 0.5))
         )
         return (above - below) / width, (high - low) / width
+
+    def add_kinks(self, change: SupportChange, kinks: GapGrowth | None, key: int) -> None:
+        """Add to the kinks of a key what supports displace otherwise as its grids move otherwise by growing values."""
+        if kinks is not None and kinks.motions[key].any():
+            pair = self.supports.pair
+            held = SupportChange(replace(change.pairs, below=pair, above=pair), self.supports, self.supports)
+            kinks.gaps[key] += self.growth(held, kinks.motions[key])[0]
 
     def opened(self, way: Array) -> Array:
         """How far the gaps at the active cells (n,) grow as both gears move by (12,) as rigid bodies."""
