@@ -291,7 +291,7 @@ def warn_of_face_ends(keys: Sequence[str], slopes: Array, kinks: Array, stacklev
     sizes = np.nan_to_num(np.abs(kinks) / np.abs(sides).max(axis=0).clip(min=np.finfo(float).tiny))
     above = (sizes > TOLD).any(axis=0)
     if above.any():
-        torque, own = np.unravel_index(int(sizes.argmax()), sizes.shape)
+        torque, own = (int(place) for place in np.unravel_index(int(sizes.argmax()), sizes.shape))
         falling, growing = sides[:, torque, own]
         counted = {"key": keys[own], "count": np.count_nonzero(above), "keys": len(keys)}
         unit = keys[own].rpartition("_")[2]
