@@ -90,6 +90,19 @@ FACE_ENDS_AT_ONE_PLACE = Kind(
     "derivative is the mean of both sides",
     "faces of two widths or an offset; else the derivative of the side that is meant",
 )
+SLOPES_BY_GRIDS = Kind(
+    "derivatives of the transmission error depend on the grid by up to {size:.2g} um per {unit}, more than 5% of what "
+    "they differ by over the positions ({key}; {count} of {keys} keys)",
+    "edges, arcs and relief starts run through cells: where grids stay, or go with the contact points, derivatives are "
+    "others by that, as they would not be on small cells; peak to peak and harmonics are off by about as much",
+    "more `cells`, or a smaller `accuracy`; compare two grids",
+)
+NEARLY_PLASTIC = Kind(
+    "the cap on the pressure leaves fewer than {cells} cells of a contact below it: derivatives of load shares are "
+    "off by 10 to 30%, and peak to peak by as much as itself",
+    "cells at the cap do not answer to a key, the few others carry all of it: derivatives follow single cells",
+    "more `cells`; else a higher `max_pressure_MPa`, less torque, or analyses on both sides",
+)
 STRIPS_ALIKE = Kind(
     "another strip of the face carries as much but for {lacking:.1g}: K_Hbeta has a kink, beyond which derivatives "
     "are others by up to {size:.0%} ({key}; {count} of {keys} keys)",

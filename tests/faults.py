@@ -1500,6 +1500,39 @@ FAULTS = (
             ),
         )
     ),
+    *(
+        Fault(f"derivatives by grids: {what}", file, text, wrong, f"results/test_sensitivities_at_edges.py::{test}")
+        for what, file, text, wrong, test in (
+            (
+                "the parts of cells that an edge cuts do not move in them",
+                "results/gap_growth.py",
+                "covers[:, held.border.cell] = held.border.slopes[:, :2].T",
+                "covers[:, held.border.cell] = 0.0",
+                "test_what_grids_change_of_derivatives_falls_with_the_cells_that_edges_cut",
+            ),
+            (
+                "gaps do not go with the grids",
+                "results/gap_growth.py",
+                "gaps = held.slopes.T[:2,",
+                "gaps = 0.0 * held.slopes.T[:2,",
+                "test_grids_change_no_derivative_of_a_contact_that_reaches_no_edge",
+            ),
+            (
+                "they are not told",
+                "results/sensitivities.py",
+                "warn_of_grids(self.keys, slopes, self.transmission_error_by_grids,",
+                "warn_of_grids(self.keys, slopes, 0.0 * self.transmission_error_by_grids,",
+                "test_what_grids_change_is_told_beside_what_derivatives_differ_by_over_the_positions",
+            ),
+            (
+                "few cells below the cap are not told",
+                "results/sensitivities.py",
+                "and grid.active.sum() < FEW",
+                "and grid.active.sum() < 0",
+                "test_contacts_with_few_cells_below_the_cap_are_told",
+            ),
+        )
+    ),
 )
 
 

@@ -270,19 +270,29 @@ def warn_of_edges(keys: Sequence[str], slopes: Array, kinks: Array, length: floa
     Of the size of what the derivative differs between positions, which is what figures are made of; ``length`` [um/rad]
     by which it is told.
     """
+    _warn_beside_spread(kinds.EDGES_AT_ONE_PLACE, keys, slopes, kinks, length, stacklevel + 1)
+
+
+def warn_of_grids(keys: Sequence[str], slopes: Array, by_grids: Array, length: float, stacklevel: int) -> None:
+    """Tell which derivatives of the transmission error depend on the grids by ``by_grids``, likewise."""
+    _warn_beside_spread(kinds.SLOPES_BY_GRIDS, keys, slopes, by_grids, length, stacklevel + 1)
+
+
+def _warn_beside_spread(
+    kind: kinds.Kind, keys: Sequence[str], slopes: Array, parts: Array, length: float, stacklevel: int
+) -> None:
     loaded = np.isfinite(slopes).any(axis=(1, 2))
-    slopes, kinks = slopes[loaded], kinks[loaded]
+    slopes, parts = slopes[loaded], parts[loaded]
     over_positions = np.nanmax(slopes, axis=1) - np.nanmin(slopes, axis=1)
     largest = np.nanmax(np.abs(slopes), axis=1)
     scale = np.where(over_positions > LEVEL * largest, over_positions, largest)
-    sizes = np.abs(kinks).max(axis=1)
+    sizes = np.abs(parts).max(axis=1)
     above = (sizes > TOLD * scale).any(axis=0)
     if above.any():
         own = int(np.where(above, sizes.max(axis=0), -1.0).argmax())
         size, unit = length * float(sizes[:, own].max()), keys[own].rpartition("_")[2]
         counted = {"key": keys[own], "count": np.count_nonzero(above), "keys": len(keys)}
-        sentence = kinds.EDGES_AT_ONE_PLACE.sentence(size=size, unit=unit, **counted)
-        give_accuracy_warning(sentence, stacklevel=stacklevel + 1)
+        give_accuracy_warning(kind.sentence(size=size, unit=unit, **counted), stacklevel=stacklevel + 1)
 
 
 def warn_of_face_ends(keys: Sequence[str], slopes: Array, kinks: Array, stacklevel: int) -> None:

@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import combinations, pairwise
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.slice_pressure import SlicePeak
 from loaded_tca.separation import Separation
-from loaded_tca.separation.gap_change import OF_GRIDS, contact_changes
+from loaded_tca.separation.gap_change import OF_GRIDS, MovedContacts, contact_changes
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.pair_change import PairChange
 
@@ -52,6 +52,8 @@ class GapGrowth:
         Of the wheel back into contact, against the normal force of each pair.
     tilts : (keys, grids, 2) array [rad per unit]
         Of the normals at the contact points along x and y of the grids, also where these stay.
+    shifts : (keys, grids, 2) array [mm per unit]
+        Of the contact points along x and y of the grids.
     kinks : GapGrowth or None
         Growth by growing values of the keys less that by falling ones, where edges of both gears end a contact at one
         place, or the wheel moves otherwise to either side. None where no key has any.
@@ -62,6 +64,7 @@ class GapGrowth:
     motions: Array
     turns: Array
     tilts: Array
+    shifts: Array
     kinks: GapGrowth | None = None
 
     def of_grids(self, grids: Sequence[int]) -> GapGrowth:
@@ -72,7 +75,8 @@ class GapGrowth:
 
     def _with(self, changed: Callable[[Array], Array]) -> GapGrowth:
         """Arrays that are changed, without kinks."""
-        return GapGrowth(*(changed(getattr(self, name)) for name in ARRAYS))
+        values: dict[str, Any] = {name: changed(getattr(self, name)) for name in ARRAYS}
+        return GapGrowth(**values)
 
     @property
     def no_kinks(self) -> GapGrowth:
@@ -81,7 +85,10 @@ class GapGrowth:
 
     def _plus(self, parts: Array, others: GapGrowth) -> GapGrowth:
         """The same with parts (keys, m) of m others, without kinks."""
-        return GapGrowth(*(getattr(self, name) + np.tensordot(parts, getattr(others, name), 1) for name in ARRAYS))
+        values: dict[str, Any] = {
+            name: getattr(self, name) + np.tensordot(parts, getattr(others, name), 1) for name in ARRAYS
+        }
+        return GapGrowth(**values)
 
     def with_parts(self, parts: Array, others: GapGrowth) -> GapGrowth:
         """The same with parts (keys, m) of m others, of the same grids, added."""
@@ -139,7 +146,7 @@ def gap_growth(
     if not changes:
         none = np.zeros((0, tangents.state.size))
         motions, tilts = (np.zeros((*none.shape, count)) for count in (OF_GRIDS, 2))
-        return GapGrowth(np.zeros((0, tangents.grid.size)), none, motions, none, tilts)
+        return GapGrowth(np.zeros((0, tangents.grid.size)), none, motions, none, tilts, tilts)
     pair, of_pairs = result.gear_pair, (result, tangents, bending, places)
     growth, at_one_place = _growth(*of_pairs, changes)
     kinked = [
@@ -177,18 +184,76 @@ def _growth(
     gaps = growth.gaps[:, active]
     for row, closed in zip(gaps, points.turns * wheel_levers - turned * points.levers[1], strict=True):
         row += closed[tangents.grid]
+    lever_torques = result.normal_force[places] * points.levers[0]
+    lever_torques += _add_displaced(result, tangents, bending, changes, growth, gaps)
+    whole = GapGrowth(gaps, lever_torques, growth.motions, points.turns, points.tilts, points.shifts)
+    return whole, held.border.has_kinks
+
+
+def _add_displaced(
+    result: CycleNumbers,
+    tangents: Tangents,
+    bending: BendingModel | None,
+    changes: Sequence[PairChange],
+    growth: MovedContacts,
+    gaps: Array,
+) -> Array:
+    """Add to the gaps (keys, n) what the forces as they are displace more; what cells at the cap carry more has levers.
+
+    Returns the growth of their torques (keys, grids) [N mm per unit].
+    """
+    pair, grids = result.gear_pair, tangents.grids
     ends = np.cumsum([np.count_nonzero(grid.pressed) for grid in grids])[:-1]
-    covers = np.split(growth.covers, ends, axis=1)
+    covers, lever_torques = np.split(growth.covers, ends, axis=1), np.zeros((len(gaps), len(grids)))
     for i, (first, last) in enumerate(pairwise([0, *tangents.ends.tolist()])):
         if (own := covers[i]).any():
             gaps[:, first:last] += _released(grids[i], own)
-    lever_torques = result.normal_force[places] * points.levers[0]
     if pair.max_pressure is not None:
         _add_forces_at_cap(tangents, covers, gaps, lever_torques)
     free_edges = result.scene.analysis.free_edges
     _add_moved_lines(pair, tangents, bending, changes, growth.motions, gaps, free_edges=free_edges)
-    whole = GapGrowth(gaps, lever_torques, growth.motions, points.turns, points.tilts)
-    return whole, held.border.has_kinks
+    return lever_torques
+
+
+PART_OF_CELL = 1e-2
+"""Motion of grids of which differences are taken, over the smallest cell."""
+
+
+def motion_rates(
+    result: CycleNumbers,
+    tangents: Tangents,
+    bending: BendingModel | None,
+    displaced: Callable[[Array, float], Array] | None = None,
+) -> Array:
+    """Growth of the rotation of each state as one of its grids moves along x or y (2, grids) [rad/mm], forces held.
+
+    Any grid is as good as another, so that in the limit of small cells it is none; what it is tells how far derivatives
+    depend on the motions of the grids. What a pair bends under the forces of others counts as if their grids moved
+    alike.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    tangents : Tangents
+    bending : BendingModel or None
+    displaced : callable, optional
+        Growth of the displacement of the active cells (n,) beside that of the teeth by motions (grids, 6) of the grids,
+        with a step of these [mm]; default: there is none.
+    """
+    pair, grids = result.gear_pair, tangents.grids
+    separations, pressed = [grid.separation for grid in grids], [grid.pressed for grid in grids]
+    held = contact_changes(pair, [grid.contact for grid in grids], separations, pressed, [])
+    motions, covers = np.zeros((2, len(grids), OF_GRIDS)), np.zeros((2, held.contact.size))
+    motions[[0, 1], :, [0, 1]] = 1.0
+    covers[:, held.border.cell] = held.border.slopes[:, :2].T
+    gaps = held.slopes.T[:2, np.concatenate([grid.active[grid.pressed] for grid in grids])].copy()
+    steps = (PART_OF_CELL * np.min([one.spacing for one in separations], axis=0)).tolist()
+    changes = [PairChange("mounting.grids", pair, pair, step) for step in steps]
+    lever_torques = _add_displaced(result, tangents, bending, changes, MovedContacts(gaps, covers, motions), gaps)
+    if displaced is not None:
+        gaps += [displaced(motion, step) for motion, step in zip(motions, steps, strict=True)]
+    by_grid = np.add.reduceat(gaps * tangents.weights, np.concatenate([[0], tangents.ends[:-1]]), axis=1)
+    return np.asarray((by_grid - lever_torques) / tangents.stiffness[tangents.state])
 
 
 def _add_forces_at_cap(tangents: Tangents, covers: Sequence[Array], gaps: Array, lever_torques: Array) -> None:

@@ -23,6 +23,7 @@ from loaded_tca.results.face_slopes import (
     rival_strip,
     warn_of_edges,
     warn_of_face_ends,
+    warn_of_grids,
     warn_of_strips,
 )
 from loaded_tca.results.figure_slopes import (
@@ -51,6 +52,10 @@ LINEAR = 1e-6
 """Tolerance of the linear systems, which are known to the grid's percent."""
 
 
+FEW = 200
+"""Cells between the bounds, of a contact with others at the cap on the pressure, below which derivatives hold less."""
+
+
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
     """Derivatives of a result to keys of its scene; NaN where nothing is in contact or nothing is loaded.
@@ -74,6 +79,8 @@ class Sensitivities:
         Of the gaps, of the torques of the pairs by that of their levers, motions of the grids.
     changes : tuple of PairChange or None
         Pairs of gears that differ in each key; none of the torque.
+    motion_rates : callable
+        As of :func:`loaded_tca.results.gap_growth.motion_rates`.
     """
 
     keys: tuple[str, ...]
@@ -83,6 +90,7 @@ class Sensitivities:
     pairs: Indices
     growth: GapGrowth
     changes: tuple[PairChange | None, ...]
+    motion_rates: Callable[[], Array]
 
     def __reduce__(self) -> tuple[Callable[..., Sensitivities], tuple[CycleNumbers, tuple[str, ...]]]:
         """Found anew by pickle and copy: the linear systems are large, and quickly made."""
@@ -158,6 +166,23 @@ class Sensitivities:
         return kinks
 
     @cached_property
+    def transmission_error_by_grids(self) -> Array:
+        """How far derivatives of the transmission error depend on the grids, (torque, position, key) [rad per unit].
+
+        They would not if cells were small: the less of what they change as grids stay, and as they go with the contact
+        points. Zero of keys that move no grids. It takes half of what derivatives by one mounting error do.
+        """
+        by_grids = np.zeros((*self.result.transmission_error.shape, len(self.keys)))
+        moving = np.array([change is not None and not change.of_modifications for change in self.changes])
+        if moving.any():
+            motions = self.growth.motions[..., :2]
+            first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
+            of_grids = np.stack([motions, motions - self.growth.shifts]) * self.motion_rates().T
+            by_states = np.abs(np.add.reduceat(of_grids.sum(axis=-1), first, axis=-1)).min(axis=0)
+            by_grids[*self.places] = (by_states * moving[:, None]).T
+        return by_grids
+
+    @cached_property
     def load_share(self) -> Array:
         """Derivatives of the load shares, (torque, position, pair, key) [1 per unit]; zero where nothing is carried."""
         state = self.tangents.state
@@ -193,6 +218,15 @@ class Sensitivities:
         """
         across = self.result.on_relief_start[*self._grids] > 0
         return self._where(across & [not grid.contact.on_relief_start for grid in self.tangents.grids])
+
+    @cached_property
+    def nearly_plastic(self) -> Mask:
+        """Whether few cells of a contact at the cap on the pressure are below it, (torque, position, pair).
+
+        They alone answer to keys, and derivatives follow them: an AccuracyWarning says so.
+        """
+        few = [bool(grid.pressed.sum() > grid.active.sum()) and grid.active.sum() < FEW for grid in self.tangents.grids]
+        return self._of_changes(self._where(few))
 
     def _where(self, marks: Iterable[bool] | Mask) -> Mask:
         """Marks of the grids as (torque, position, pair)."""
@@ -408,13 +442,15 @@ class Sensitivities:
         arrays = {name: ((*own, "key"), getattr(self, name)) for own, names in dimensions.items() for name in names}
         return xarray.Dataset(arrays, {**coordinates, "key": list(self.keys)})
 
-    @property
+    @cached_property
     def peak_to_peak(self) -> Array:
         """Derivatives of the peak-to-peak transmission error, (torque, key) [rad per unit]; NaN at one place alone.
 
-        That of the highest position less that of the lowest one.
+        That of the highest position less that of the lowest one. Where these depend on the grids an AccuracyWarning
+        says by how much.
         """
         errors, slopes = self.result.transmission_error, self.transmission_error
+        warn_of_grids(self.keys, slopes, self.transmission_error_by_grids, self.result.um_per_rad, stacklevel=3)
         changes = np.full((len(errors), len(self.keys)), np.nan)
         for t, error in enumerate(errors):
             if min(self.result.places_of_mesh, np.isfinite(error).sum()) > 1:

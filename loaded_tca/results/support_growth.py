@@ -233,6 +233,7 @@ def growth_on_supports(
     result: UnderOneTorque,
     tangents: Tangents,
     bending: SumOfParts,
+    on_slices: OnSlices,
     places: tuple[Array, ...],
     keys: Sequence[str],
     at_rest: Mapping[str, PairChange],
@@ -246,6 +247,8 @@ def growth_on_supports(
     tangents : Tangents
     bending : SumOfParts
         With the supports.
+    on_slices : OnSlices
+        Of the tangents.
     places : three (grids,) arrays
         Torque, position and pair of each grid.
     keys : sequence of str
@@ -261,7 +264,7 @@ def growth_on_supports(
         The whole change of the gears by each key.
     """
     changes = _support_changes(result, keys, at_rest)
-    teeth, on_slices = bending.on_rigid_supports, _OnSlices(result, tangents)
+    teeth = bending.on_rigid_supports
     of_gears = [key for key in keys if key in changes and not is_of_support(key)]
     at = [keys.index(key) for key in of_gears]
     growth = gap_growth(result, tangents, teeth, places, [changes[key].pairs for key in of_gears])
@@ -298,7 +301,7 @@ def growth_on_supports(
     return growth, whole
 
 
-class _OnSlices:
+class OnSlices:
     """What the supports do on the slices of the grids of all states."""
 
     def __init__(self, result: UnderOneTorque, tangents: Tangents) -> None:
@@ -322,9 +325,13 @@ class _OnSlices:
     def add_kinks(self, change: SupportChange, kinks: GapGrowth | None, key: int) -> None:
         """Add to the kinks of a key what supports displace otherwise as its grids move otherwise by growing values."""
         if kinks is not None and kinks.motions[key].any():
-            pair = self.supports.pair
-            held = SupportChange(replace(change.pairs, below=pair, above=pair), self.supports, self.supports)
-            kinks.gaps[key] += self.growth(held, kinks.motions[key])[0]
+            kinks.gaps[key] += self.by_motions(kinks.motions[key], change.pairs.difference)
+
+    def by_motions(self, motions: Array, step: float) -> Array:
+        """Growth of the displacement of the active cells (n,) by motions (grids, 6) of the grids alone, with a step."""
+        pair = self.supports.pair
+        held = SupportChange(PairChange("mounting.grids", pair, pair, step), self.supports, self.supports)
+        return self.growth(held, motions)[0]
 
     def opened(self, way: Array) -> Array:
         """How far the gaps at the active cells (n,) grow as both gears move by (12,) as rigid bodies."""

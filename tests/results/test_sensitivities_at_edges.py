@@ -1,5 +1,6 @@
 """Sensitivities of contacts that end at edges: against numbers of whole analyses on either side."""
 
+import re
 import warnings
 
 import numpy as np
@@ -259,3 +260,43 @@ def test_kinks_are_told_beside_a_torque_that_loads_nothing():
     assert [one.category for one in caught] == [AccuracyWarning]
     assert np.isnan(slopes[0]).all()
     assert np.isfinite(slopes[1]).all()
+
+
+def test_what_grids_change_of_derivatives_falls_with_the_cells_that_edges_cut():
+    coarse, fine = (solved("helical", cells, 3, **FLANKS_ALONE) for cells in (16, 48))
+    sizes = []
+    for result, length in (coarse, fine):
+        found = result.sensitivities([DISTANCE, CROWNING])
+        assert not found.transmission_error_by_grids[..., 1].any(), "grids stay"
+        sizes.append(found.transmission_error_by_grids[..., 0].max() * length)
+    assert 1e-3 < sizes[1] < 0.5 * sizes[0] < 0.02  # um/mm
+
+
+def test_grids_change_no_derivative_of_a_contact_that_reaches_no_edge():
+    result, _ = solved("spiral_bevel", 16, 3, **FLANKS_ALONE, **{"analysis.torques_Nm": (2.0,)})
+    found = result.sensitivities(["mounting.pinion_axial_mm"])
+    assert found.transmission_error_by_grids.max() < 1e-3 * np.ptp(found.transmission_error)
+
+
+@pytest.mark.parametrize(("part", "count"), [(0.06, 1), (0.04, 0)])
+def test_what_grids_change_is_told_beside_what_derivatives_differ_by_over_the_positions(part, count, monkeypatch):
+    result, _ = solved("helical", 16, 3, **FLANKS_ALONE)
+    found = result.sensitivities([DISTANCE])
+    spread = np.ptp(found.transmission_error[0, :, 0])
+    monkeypatch.setitem(found.__dict__, "transmission_error_by_grids", np.full((1, 3, 1), part * spread))
+    with noted_accuracy_warnings(given=False) as sentences:
+        assert np.isfinite(found.peak_to_peak[0, 0])
+    told = "derivatives of the transmission error depend on the grid by up to .* um per mm, more than 5%"
+    assert sum(re.match(told, one) is not None for one in sentences) == count
+
+
+@pytest.mark.parametrize(("cap", "few", "told"), [(550.0, 200, 1), (550.0, 5, 0), (1e5, 200, 0)])
+def test_contacts_with_few_cells_below_the_cap_are_told(cap, few, told, monkeypatch):
+    """Of a larger cap none is at it; the middle case has more cells below it than are few."""
+    monkeypatch.setattr("loaded_tca.results.sensitivities.FEW", few)
+    result, _ = solved("helical", 16, 2, **{"material.max_pressure_MPa": cap, **FLANKS_ALONE})
+    with noted_accuracy_warnings(given=False) as sentences:
+        found = result.sensitivities([DISTANCE])
+        result.sensitivities([TORQUE])
+    assert sum("cells of a contact below it" in one for one in sentences) == told
+    assert found.nearly_plastic.any() == bool(told)
