@@ -1504,13 +1504,6 @@ FAULTS = (
         Fault(f"derivatives by grids: {what}", file, text, wrong, f"results/test_sensitivities_at_edges.py::{test}")
         for what, file, text, wrong, test in (
             (
-                "the parts of cells that an edge cuts do not move in them",
-                "results/gap_growth.py",
-                "covers[:, held.border.cell] = held.border.slopes[:, :2].T",
-                "covers[:, held.border.cell] = 0.0",
-                "test_what_grids_change_of_derivatives_falls_with_the_cells_that_edges_cut",
-            ),
-            (
                 "gaps do not go with the grids",
                 "results/gap_growth.py",
                 "gaps = held.slopes.T[:2,",
