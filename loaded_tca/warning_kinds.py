@@ -76,11 +76,32 @@ PEAK_SLOPES = Kind(
     "read the derivatives of other contacts, or compare two grids; more crowning, end or tip relief on the gears",
 )
 EDGES_AT_ONE_PLACE = Kind(
-    "edges of both gears end the contact at one place: derivatives of the transmission error have a kink, and "
-    "differ by up to {size:.2g} um per {unit} on its sides ({key}; {count} of {keys} keys)",
+    "edges of both gears lie at one place: derivatives of the transmission error have a kink, and by growing values "
+    "are up to {size:.2g} um per {unit} off those by falling ones ({key}; {count} of {keys} keys)",
     "to one side of the key the pinion's end rules and to the other the wheel's, and on one of them the contact is "
-    "shorter: the derivative is that of the edges that rule in the scene, and lies between those of both sides",
+    "shorter; and a misalignment over the common face tilts the wheel by more as that gets shorter: the derivative is "
+    "the mean of both sides",
     "faces of two widths or an offset, so that one gear ends the contact; else analyses on both sides",
+)
+FACE_ENDS_AT_ONE_PLACE = Kind(
+    "faces of both gears end at one place: the derivative of K_Hbeta has a kink, it is {falling:+.2g} per {unit} by "
+    "falling and {growing:+.2g} by growing values ({key}; {count} of {keys} keys)",
+    "the common face, over which K_Hbeta counts, gets shorter to either side of the key, or one end of it does: the "
+    "derivative is the mean of both sides",
+    "faces of two widths or an offset; else the derivative of the side that is meant",
+)
+SLOPES_BY_GRIDS = Kind(
+    "derivatives of the transmission error depend on the grid by up to {size:.2g} um per {unit}, more than 5% of what "
+    "they differ by over the positions ({key}; {count} of {keys} keys)",
+    "edges, arcs and relief starts run through cells: where grids stay, or go with the contact points, derivatives are "
+    "others by that, as they would not be on small cells; peak to peak and harmonics are off by about as much",
+    "more `cells`, or a smaller `accuracy`; compare two grids",
+)
+NEARLY_PLASTIC = Kind(
+    "the cap on the pressure leaves fewer than {cells} cells of a contact below it: derivatives of load shares are "
+    "off by 10 to 30%, and peak to peak by as much as itself",
+    "cells at the cap do not answer to a key, the few others carry all of it: derivatives follow single cells",
+    "more `cells`; else a higher `max_pressure_MPa`, less torque, or analyses on both sides",
 )
 STRIPS_ALIKE = Kind(
     "another strip of the face carries as much but for {lacking:.1g}: K_Hbeta has a kink, beyond which derivatives "

@@ -612,8 +612,8 @@ FAULTS = (
             (
                 "the ends of the common face are held",
                 "results/face_slopes.py",
-                "face_ends[key] = (high - low) / change.difference",
-                "face_ends[key] = 0.0",
+                "motions[key] = np.where(at_one_place, by_gear.mean(axis=0), by_gear[ruling])",
+                "motions[key] = 0.0",
                 "test_ends_of_the_common_face_move_with_the_wheel",
             ),
             (
@@ -654,9 +654,9 @@ FAULTS = (
             (
                 "ends at one place are no kink",
                 "separation/pair_change.py",
-                "(most - least)[:, kept]",
-                "(most - most)[:, kept]",
-                "test_kinks_are_told_beside_a_torque_that_loads_nothing",
+                "kinks = (most - least)[:, kept]",
+                "kinks = (most - most)[:, kept]",
+                "test_aligned_faces_of_one_width_are_a_kink_without_a_slope",
             ),
             (
                 "a strip that carries as much is no kink",
@@ -1529,6 +1529,58 @@ FAULTS = (
         "there = pair.wheel.flank.inside(rho, z, ON_EDGE)",
         "there = pair.wheel.flank.inside(rho, z, 1.0)",
         "unloaded/test_rounded_edges.py::test_points_off_the_arc_of_a_face_end_are_not_looked_at_beyond_the_tip",
+    ),
+    *(
+        Fault(f"kinks: {what}", file, text, wrong, f"results/test_sensitivities_at_edges.py::{test}")
+        for what, file, text, wrong, test in (
+            (
+                "the wheel tilts alike to both sides",
+                "separation/pair_change.py",
+                "replace(self, below=pair, difference=half, side=1)",
+                "replace(self, side=1)",
+                "test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error_and_of_the_face_load_factor",
+            ),
+            (
+                "edges that rule to one side rule to the other",
+                "separation/pair_change.py",
+                "rates = np.where(sides > 0, least, np.where(sides < 0, most, rates))",
+                "rates = np.where(sides > 0, most, np.where(sides < 0, least, rates))",
+                "test_aligned_faces_of_one_width_are_a_kink_without_a_slope",
+            ),
+            (
+                "ends of the common face are those of the gear that is shorter by micrometres",
+                "results/face_slopes.py",
+                "at_one_place = np.abs(ends[1] - ends[0]) < AT_ONE_PLACE * width",
+                "at_one_place = np.abs(ends[1] - ends[0]) < 0.0 * width",
+                "test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error_and_of_the_face_load_factor",
+            ),
+        )
+    ),
+    *(
+        Fault(f"derivatives by grids: {what}", file, text, wrong, f"results/test_sensitivities_at_edges.py::{test}")
+        for what, file, text, wrong, test in (
+            (
+                "gaps do not go with the grids",
+                "results/gap_growth.py",
+                "gaps = held.slopes.T[:2,",
+                "gaps = 0.0 * held.slopes.T[:2,",
+                "test_grids_change_no_derivative_of_a_contact_that_reaches_no_edge",
+            ),
+            (
+                "they are not told",
+                "results/sensitivities.py",
+                "warn_of_grids(self.keys, slopes, self.transmission_error_by_grids,",
+                "warn_of_grids(self.keys, slopes, 0.0 * self.transmission_error_by_grids,",
+                "test_what_grids_change_is_told_beside_what_derivatives_differ_by_over_the_positions",
+            ),
+            (
+                "few cells below the cap are not told",
+                "results/sensitivities.py",
+                "and grid.active.sum() < FEW",
+                "and grid.active.sum() < 0",
+                "test_contacts_with_few_cells_below_the_cap_are_told",
+            ),
+        )
     ),
 )
 

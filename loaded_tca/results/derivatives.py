@@ -5,7 +5,7 @@ On supports they are found torque by torque, each in the gears as they stand und
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
@@ -27,11 +27,12 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
 )
-from loaded_tca.results.gap_growth import GapGrowth, gap_growth
+from loaded_tca.results.gap_growth import GapGrowth, gap_growth, motion_rates
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.sensitivities import LINEAR, NEWTON_MILLIMETRES, TORQUE, Sensitivities
+from loaded_tca.results.sensitivities import FEW, LINEAR, NEWTON_MILLIMETRES, TORQUE, Sensitivities
 from loaded_tca.results.support_growth import (
+    OnSlices,
     UnderOneTorque,
     changes_at_rest,
     growth_on_supports,
@@ -132,17 +133,21 @@ class SensitivitiesOnSupports(Sensitivities):
     pairs: Indices = field(init=False)
     growth: GapGrowth = field(init=False)
     changes: tuple[PairChange | None, ...] = field(init=False)
+    motion_rates: Callable[[], Array] = field(init=False)
     parts: tuple[Sensitivities | None, ...]
 
     transmission_error = _by_torque("transmission_error")
     transmission_error_kinks = _by_torque("transmission_error_kinks")
+    transmission_error_by_grids = _by_torque("transmission_error_by_grids")
     load_share = _by_torque("load_share")
     on_cut_slices = _by_torque("on_cut_slices")
     at_corners = _by_torque("at_corners")
     across_relief_starts = _by_torque("across_relief_starts")
+    nearly_plastic = _by_torque("nearly_plastic")
     line_load = _by_torque("line_load")
     peak_pressure = _by_torque("peak_pressure")
     face_load_factor = _by_torque("face_load_factor")
+    face_load_factor_kinks = _by_torque("face_load_factor_kinks")
     root_tension = _by_torque("root_tension")
     root_compression = _by_torque("root_compression")
 
@@ -199,16 +204,19 @@ def _of_torque(
     of_torque = np.flatnonzero([len(state) for state in states.grids])
     places = np.stack([np.zeros_like(of_torque), of_torque])
     raised = np.array([[NEWTON_MILLIMETRES if key == TORQUE else 0.0] for key in keys])
+    on_slices = OnSlices(result, tangents)
     growth, changes = growth_on_supports(
         result,
         tangents,
         bending,
+        on_slices,
         (*places[:, tangents.state], columns),
         keys,
         at_rest,
         raised,
     )
-    return Sensitivities(tuple(keys), result, tangents, places, columns, growth, changes)
+    rates = partial(motion_rates, result, tangents, bending.on_rigid_supports, on_slices.by_motions)
+    return Sensitivities(tuple(keys), result, tangents, places, columns, growth, changes, rates)
 
 
 NO_LOAD = "sensitivities: no tooth pair of the result carries load"
@@ -228,6 +236,8 @@ def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
         made, moves_lines = (sensitivities_on_supports if result.scene.is_supported else _of_rigid_gears)(result, keys)
     if moves_lines:
         warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts, stacklevel=4)
+    if result.gear_pair.max_pressure is not None:
+        warn_of_contacts(result, kinds.NEARLY_PLASTIC.sentence(cells=FEW), made.nearly_plastic, stacklevel=4)
     return made
 
 
@@ -248,5 +258,6 @@ def _of_rigid_gears(result: CycleNumbers, keys: Sequence[str]) -> tuple[Sensitiv
     growth = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
     by_key = dict(zip(named, changes, strict=True))
     every = tuple(by_key.get(key) for key in keys)
-    made = Sensitivities(tuple(keys), result, tangents, places, columns, growth.at_keys(at, len(keys)), every)
+    rates = partial(motion_rates, result, tangents, loaded.bending)
+    made = Sensitivities(tuple(keys), result, tangents, places, columns, growth.at_keys(at, len(keys)), every, rates)
     return made, any(not change.holds_lines for change in changes)

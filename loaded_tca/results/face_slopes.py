@@ -20,7 +20,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figure_slopes import line_load_slopes
 from loaded_tca.results.load_factors import (
     STRIPS,
-    common_face,
+    face_ends,
     face_forces,
     strip_motions,
     strip_shares,
@@ -28,7 +28,7 @@ from loaded_tca.results.load_factors import (
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak
-from loaded_tca.separation.pair_change import PairChange
+from loaded_tca.separation.pair_change import AT_ONE_PLACE, PairChange
 from loaded_tca.unloaded import ContactPath
 
 AS_LARGE, BESIDE = 1e-2, 5e-4
@@ -41,7 +41,7 @@ def face_load_factor_changes(
     places: Indices,
     grids: Sequence[LoadedGrid],
     motions: Array,
-    changes: Sequence[PairChange | None],
+    common_face: Array,
     strips: Sequence[int | None],
 ) -> tuple[list[Array], Array]:
     """Derivatives of the face load factor of one strip under each torque by forces, and its growth by motions.
@@ -54,8 +54,8 @@ def face_load_factor_changes(
     grids : sequence of LoadedGrid
     motions : (keys, grids, 6) array
         Of the grids.
-    changes : sequence of PairChange or None
-        None of keys that change no gears.
+    common_face : (keys, 2) array [mm per unit]
+        Motions of its lower and the upper end.
     strips : sequence of int or None
         Strip by torque; None: that with the largest force.
 
@@ -70,20 +70,44 @@ def face_load_factor_changes(
     of_maps, of_motions = (
         [derivative(*row) for row in rows] for derivative in (face_load_factor_slopes, face_load_factor_motions)
     )
-    by_motion = np.zeros((len(result.torque), len(changes)))
+    by_motion = np.zeros((len(result.torque), len(motions)))
     by_motion[~np.isfinite(result.face_load_factor)] = np.nan
-    face_ends = np.zeros((len(changes), 2))
-    for key, change in enumerate(changes):
-        if change is not None and change.of_mounting:
-            low, high = (np.array(common_face(side, result.path)) for side in (change.below, change.above))
-            face_ends[key] = (high - low) / change.difference
     slopes = []
     for i, ((t, n, k), grid) in enumerate(zip(places.T.tolist(), grids, strict=True)):
         own = of_maps[t][n][k]
         slopes.append(np.zeros(grid.active.shape) if own is None else own)
         if (moved := of_motions[t][n][k]) is not None:
-            by_motion[t] += motions[:, i] @ moved[:6] + face_ends @ moved[6:]
+            by_motion[t] += motions[:, i] @ moved[:6] + common_face @ moved[6:]
     return slopes, by_motion
+
+
+def common_face_motions(result: CycleNumbers, changes: Sequence[PairChange | None]) -> tuple[Array, Array]:
+    """Motions of the ends of the common face with keys, and their kinks.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    changes : sequence of PairChange or None
+        None of keys that change no gears.
+
+    Returns
+    -------
+    motions, kinks : (keys, 2) array [mm per unit]
+        Of the lower and the upper end: the mean of both sides of a key, and by growing values less that by falling
+        ones, where the faces of both gears end at one place.
+    """
+    ends = face_ends(result.gear_pair, result.path)
+    width = float(ends[:, 1].min() - ends[:, 0].max()) / STRIPS
+    at_one_place = np.abs(ends[1] - ends[0]) < AT_ONE_PLACE * width
+    ruling = [ends[:, 0].argmax(), ends[:, 1].argmin()], [0, 1]
+    motions, kinks = np.zeros((2, len(changes), 2))
+    for key, change in enumerate(changes):
+        if change is not None and change.of_mounting:
+            low, high = (face_ends(side, result.path) for side in (change.below, change.above))
+            by_gear = (high - low) / change.difference
+            motions[key] = np.where(at_one_place, by_gear.mean(axis=0), by_gear[ruling])
+            kinks[key] = np.where(at_one_place, np.abs(by_gear[1] - by_gear[0]), 0.0) * [1.0, -1.0]
+    return motions, kinks
 
 
 def face_load_factor_slopes(
@@ -246,16 +270,40 @@ def warn_of_edges(keys: Sequence[str], slopes: Array, kinks: Array, length: floa
     Of the size of what the derivative differs between positions, which is what figures are made of; ``length`` [um/rad]
     by which it is told.
     """
+    _warn_beside_spread(kinds.EDGES_AT_ONE_PLACE, keys, slopes, kinks, length, stacklevel + 1)
+
+
+def warn_of_grids(keys: Sequence[str], slopes: Array, by_grids: Array, length: float, stacklevel: int) -> None:
+    """Tell which derivatives of the transmission error depend on the grids by ``by_grids``, likewise."""
+    _warn_beside_spread(kinds.SLOPES_BY_GRIDS, keys, slopes, by_grids, length, stacklevel + 1)
+
+
+def _warn_beside_spread(
+    kind: kinds.Kind, keys: Sequence[str], slopes: Array, parts: Array, length: float, stacklevel: int
+) -> None:
     loaded = np.isfinite(slopes).any(axis=(1, 2))
-    slopes, kinks = slopes[loaded], kinks[loaded]
+    slopes, parts = slopes[loaded], parts[loaded]
     over_positions = np.nanmax(slopes, axis=1) - np.nanmin(slopes, axis=1)
     largest = np.nanmax(np.abs(slopes), axis=1)
     scale = np.where(over_positions > LEVEL * largest, over_positions, largest)
-    sizes = np.abs(kinks).max(axis=1)
+    sizes = np.abs(parts).max(axis=1)
     above = (sizes > TOLD * scale).any(axis=0)
     if above.any():
         own = int(np.where(above, sizes.max(axis=0), -1.0).argmax())
         size, unit = length * float(sizes[:, own].max()), keys[own].rpartition("_")[2]
         counted = {"key": keys[own], "count": np.count_nonzero(above), "keys": len(keys)}
-        sentence = kinds.EDGES_AT_ONE_PLACE.sentence(size=size, unit=unit, **counted)
+        give_accuracy_warning(kind.sentence(size=size, unit=unit, **counted), stacklevel=stacklevel + 1)
+
+
+def warn_of_face_ends(keys: Sequence[str], slopes: Array, kinks: Array, stacklevel: int) -> None:
+    """Tell which derivatives (torque, key) of K_Hbeta are others by growing values than by falling ones."""
+    sides = np.stack([slopes - 0.5 * kinks, slopes + 0.5 * kinks])
+    sizes = np.nan_to_num(np.abs(kinks) / np.abs(sides).max(axis=0).clip(min=np.finfo(float).tiny))
+    above = (sizes > TOLD).any(axis=0)
+    if above.any():
+        torque, own = (int(place) for place in np.unravel_index(int(sizes.argmax()), sizes.shape))
+        falling, growing = sides[:, torque, own]
+        counted = {"key": keys[own], "count": np.count_nonzero(above), "keys": len(keys)}
+        unit = keys[own].rpartition("_")[2]
+        sentence = kinds.FACE_ENDS_AT_ONE_PLACE.sentence(falling=falling, growing=growing, unit=unit, **counted)
         give_accuracy_warning(sentence, stacklevel=stacklevel + 1)

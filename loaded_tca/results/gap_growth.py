@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import combinations, pairwise
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.slice_pressure import SlicePeak
 from loaded_tca.separation import Separation
-from loaded_tca.separation.gap_change import OF_GRIDS, contact_changes
+from loaded_tca.separation.gap_change import OF_GRIDS, MovedContacts, contact_changes
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.pair_change import PairChange
 
@@ -44,9 +44,6 @@ class GapGrowth:
     ----------
     gaps : (keys, n) array [mm per unit]
         At the active cells, with what the forces as they are displace more.
-    kinks : (keys, grids) array [1 per unit]
-        Part of its loaded length by which a contact that edges of both gears end at one place is shorter on one side of
-        a key than on the other.
     lever_torques : (keys, grids) array [N mm per unit]
         Growth of the torque of each pair by that of its lever.
     motions : (keys, grids, 6) array
@@ -55,30 +52,50 @@ class GapGrowth:
         Of the wheel back into contact, against the normal force of each pair.
     tilts : (keys, grids, 2) array [rad per unit]
         Of the normals at the contact points along x and y of the grids, also where these stay.
+    shifts : (keys, grids, 2) array [mm per unit]
+        Of the contact points along x and y of the grids.
+    kinks : GapGrowth or None
+        Growth by growing values of the keys less that by falling ones, where edges of both gears end a contact at one
+        place, or the wheel moves otherwise to either side. None where no key has any.
     """
 
     gaps: Array
-    kinks: Array
     lever_torques: Array
     motions: Array
     turns: Array
     tilts: Array
+    shifts: Array
+    kinks: GapGrowth | None = None
 
     def of_grids(self, grids: Sequence[int]) -> GapGrowth:
         """The same of some of the grids, without gaps."""
         some = list(grids)
         none = np.zeros((len(self.turns), 0))
-        whole = {one.name: getattr(self, one.name) for one in fields(self)}
-        return GapGrowth(**{name: none if name == "gaps" else values[:, some] for name, values in whole.items()})
+        return self._with(lambda values: none if values is self.gaps else values[:, some])
+
+    def _with(self, changed: Callable[[Array], Array]) -> GapGrowth:
+        """Arrays that are changed, without kinks."""
+        values: dict[str, Any] = {name: changed(getattr(self, name)) for name in ARRAYS}
+        return GapGrowth(**values)
+
+    @property
+    def no_kinks(self) -> GapGrowth:
+        """Zeros like these."""
+        return self._with(np.zeros_like)
+
+    def _plus(self, parts: Array, others: GapGrowth) -> GapGrowth:
+        """The same with parts (keys, m) of m others, without kinks."""
+        values: dict[str, Any] = {
+            name: getattr(self, name) + np.tensordot(parts, getattr(others, name), 1) for name in ARRAYS
+        }
+        return GapGrowth(**values)
 
     def with_parts(self, parts: Array, others: GapGrowth) -> GapGrowth:
         """The same with parts (keys, m) of m others, of the same grids, added."""
-        kinks = self.kinks + np.abs(parts) @ others.kinks
-        added = {
-            one.name: getattr(self, one.name) + np.tensordot(parts, getattr(others, one.name), 1)
-            for one in fields(self)
-        }
-        return replace(GapGrowth(**added), kinks=kinks)
+        kinks = self.kinks
+        if others.kinks is not None:  # by a part below zero the other falls as the key grows
+            kinks = (kinks or self.no_kinks)._plus(np.abs(parts), others.kinks)
+        return replace(self._plus(parts, others), kinks=kinks)
 
     def at_keys(self, at: Sequence[int], count: int) -> GapGrowth:
         """The same as rows ``at`` of so many keys, of which the others change nothing."""
@@ -88,7 +105,23 @@ class GapGrowth:
             rows[list(at)] = values
             return rows
 
-        return GapGrowth(*(spread(getattr(self, one.name)) for one in fields(self)))
+        return replace(self._with(spread), kinks=None if self.kinks is None else self.kinks._with(spread))
+
+    def with_sides(self, kinked: Sequence[int], sides: GapGrowth) -> GapGrowth:
+        """The same, of keys that have kinks the mean of both sides: those by growing values, and then by falling ones.
+
+        The derivative of a figure is the mean, too, and on the sides it is more or less than that by half the kink.
+        """
+        half, rows = len(kinked), list(kinked)
+        apart = sides._with(lambda values: values[:half] - values[half:]).at_keys(rows, len(self.turns))
+        whole = self._with(np.copy)
+        for name in ARRAYS:
+            both = getattr(sides, name)
+            getattr(whole, name)[rows] = 0.5 * (both[:half] + both[half:])
+        return replace(whole, kinks=apart)
+
+
+ARRAYS = tuple(one.name for one in fields(GapGrowth) if one.name != "kinks")
 
 
 def gap_growth(
@@ -110,11 +143,33 @@ def gap_growth(
         Torque, position and pair of each grid.
     changes : sequence of PairChange
     """
-    pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
     if not changes:
-        none = np.zeros((0, pairs.size))
+        none = np.zeros((0, tangents.state.size))
         motions, tilts = (np.zeros((*none.shape, count)) for count in (OF_GRIDS, 2))
-        return GapGrowth(np.zeros((0, tangents.grid.size)), none, none, motions, none, tilts)
+        return GapGrowth(np.zeros((0, tangents.grid.size)), none, motions, none, tilts, tilts)
+    pair, of_pairs = result.gear_pair, (result, tangents, bending, places)
+    growth, at_one_place = _growth(*of_pairs, changes)
+    kinked = [
+        key
+        for key, change in enumerate(changes)
+        if not change.of_modifications and (at_one_place[key] or change.has_kink_at(pair))
+    ]
+    if not kinked:
+        return growth
+    sides = zip(*(changes[key].to_sides_of(pair) for key in kinked), strict=True)
+    by_sides, _ = _growth(*of_pairs, [change for side in sides for change in side])
+    return growth.with_sides(kinked, by_sides)
+
+
+def _growth(
+    result: CycleNumbers,
+    tangents: Tangents,
+    bending: BendingModel | None,
+    places: tuple[Array, ...],
+    changes: Sequence[PairChange],
+) -> tuple[GapGrowth, Mask]:
+    """Growth with each change, and by which of them edges of both gears at one place part."""
+    pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
     separations = [grid.separation for grid in grids]
     held = contact_changes(
         pair, [grid.contact for grid in grids], separations, [grid.pressed for grid in grids], changes
@@ -126,22 +181,79 @@ def gap_growth(
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
     wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
     active = np.concatenate([grid.active[grid.pressed] for grid in grids])
-    gaps, kinks = growth.gaps[:, active], np.zeros(points.turns.shape)
+    gaps = growth.gaps[:, active]
     for row, closed in zip(gaps, points.turns * wheel_levers - turned * points.levers[1], strict=True):
         row += closed[tangents.grid]
+    lever_torques = result.normal_force[places] * points.levers[0]
+    lever_torques += _add_displaced(result, tangents, bending, changes, growth, gaps)
+    whole = GapGrowth(gaps, lever_torques, growth.motions, points.turns, points.tilts, points.shifts)
+    return whole, held.border.has_kinks
+
+
+def _add_displaced(
+    result: CycleNumbers,
+    tangents: Tangents,
+    bending: BendingModel | None,
+    changes: Sequence[PairChange],
+    growth: MovedContacts,
+    gaps: Array,
+) -> Array:
+    """Add to the gaps (keys, n) what the forces as they are displace more; what cells at the cap carry more has levers.
+
+    Returns the growth of their torques (keys, grids) [N mm per unit].
+    """
+    pair, grids = result.gear_pair, tangents.grids
     ends = np.cumsum([np.count_nonzero(grid.pressed) for grid in grids])[:-1]
-    covers, kinks_of_cells = (np.split(values, ends, axis=1) for values in (growth.covers, growth.kinks))
+    covers, lever_torques = np.split(growth.covers, ends, axis=1), np.zeros((len(gaps), len(grids)))
     for i, (first, last) in enumerate(pairwise([0, *tangents.ends.tolist()])):
         if (own := covers[i]).any():
             gaps[:, first:last] += _released(grids[i], own)
-        if (own := kinks_of_cells[i]).any():
-            kinks[:, i] = _shorter(grids[i], own)
-    lever_torques = result.normal_force[places] * points.levers[0]
     if pair.max_pressure is not None:
         _add_forces_at_cap(tangents, covers, gaps, lever_torques)
     free_edges = result.scene.analysis.free_edges
     _add_moved_lines(pair, tangents, bending, changes, growth.motions, gaps, free_edges=free_edges)
-    return GapGrowth(gaps, kinks, lever_torques, growth.motions, points.turns, points.tilts)
+    return lever_torques
+
+
+PART_OF_CELL = 1e-2
+"""Motion of grids of which differences are taken, over the smallest cell."""
+
+
+def motion_rates(
+    result: CycleNumbers,
+    tangents: Tangents,
+    bending: BendingModel | None,
+    displaced: Callable[[Array, float], Array] | None = None,
+) -> Array:
+    """Growth of the rotation of each state as one of its grids moves along x or y (2, grids) [rad/mm], forces held.
+
+    Any grid is as good as another, so that in the limit of small cells it is none; what it is tells how far derivatives
+    depend on the motions of the grids. What a pair bends under the forces of others counts as if their grids moved
+    alike.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    tangents : Tangents
+    bending : BendingModel or None
+    displaced : callable, optional
+        Growth of the displacement of the active cells (n,) beside that of the teeth by motions (grids, 6) of the grids,
+        with a step of these [mm]; default: there is none.
+    """
+    pair, grids = result.gear_pair, tangents.grids
+    separations, pressed = [grid.separation for grid in grids], [grid.pressed for grid in grids]
+    held = contact_changes(pair, [grid.contact for grid in grids], separations, pressed, [])
+    motions, covers = np.zeros((2, len(grids), OF_GRIDS)), np.zeros((2, held.contact.size))
+    motions[[0, 1], :, [0, 1]] = 1.0
+    covers[:, held.border.cell] = held.border.slopes[:, :2].T
+    gaps = held.slopes.T[:2, np.concatenate([grid.active[grid.pressed] for grid in grids])].copy()
+    steps = (PART_OF_CELL * np.min([one.spacing for one in separations], axis=0)).tolist()
+    changes = [PairChange("mounting.grids", pair, pair, step) for step in steps]
+    lever_torques = _add_displaced(result, tangents, bending, changes, MovedContacts(gaps, covers, motions), gaps)
+    if displaced is not None:
+        gaps += [displaced(motion, step) for motion, step in zip(motions, steps, strict=True)]
+    by_grid = np.add.reduceat(gaps * tangents.weights, np.concatenate([[0], tangents.ends[:-1]]), axis=1)
+    return np.asarray((by_grid - lever_torques) / tangents.stiffness[tangents.state])
 
 
 def _add_forces_at_cap(tangents: Tangents, covers: Sequence[Array], gaps: Array, lever_torques: Array) -> None:
@@ -173,18 +285,6 @@ def _released(grid: LoadedGrid, covers: Array) -> Array:
     cover = np.ones(grid.active.shape) if problem.cover is None else problem.cover
     displaced = crowding_growth(cover, growth, grid.pressure, dy / dx)
     return displaced[:, grid.active] * (dx / problem.contact_modulus)
-
-
-def _shorter(grid: LoadedGrid, kinks: Array) -> Array:
-    """Part (keys,) of its loaded slices by which a contact is shorter on one side of the keys.
-
-    ``kinks`` (keys, n): of the parts of its cells under pressure; of a slice the mean by the pressure, since an end has
-    them all across.
-    """
-    slices, line = grid.pressed.nonzero()[1], grid.pressure.sum(axis=0)
-    parts = np.zeros((line.size, len(kinks)))
-    np.add.at(parts, slices, (kinks * grid.pressure[grid.pressed] / line[slices]).T)
-    return np.asarray(parts.max(axis=0) / np.count_nonzero(line))
 
 
 def moved(grid: Grid, motion: Array) -> Grid:

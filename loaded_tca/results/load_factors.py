@@ -220,16 +220,20 @@ def strip_borders(pair: GearPair, path: ContactPath) -> Array:
 
 def common_face(pair: GearPair, path: ContactPath) -> tuple[float, float]:
     """Ends of the part of the face that both gears cover, along the pinion's lengthwise coordinate [mm]."""
+    (first, last), (low, high) = face_ends(pair, path).tolist()
+    return max(first, low), min(last, high)
+
+
+def face_ends(pair: GearPair, path: ContactPath) -> Array:
+    """Lower and upper end of the faces of pinion and wheel (2, 2), along the pinion's lengthwise coordinate [mm]."""
     points = path.point[path.in_contact]
     radius, _, axial = pair.to_wheel(points)
     other = pair.wheel.flank.lengthwise_coordinate(radius, axial).value
-    shift = float(np.mean(_lengthwise(pair, points) - other))
-    spans = []
+    ends = []
     for flank in (pair.pinion.flank, pair.wheel.flank):
         place = flank.lengthwise_coordinate(*flank.grid(2, 2)).value
-        spans.append((float(place.min()), float(place.max())))
-    (first, last), (low, high) = spans
-    return max(first, low + shift), min(last, high + shift)
+        ends.append((float(place.min()), float(place.max())))
+    return np.array(ends) + np.array([[0.0], [float(np.mean(_lengthwise(pair, points) - other))]])
 
 
 def _lengthwise(pair: GearPair, points: Array) -> Array:

@@ -16,11 +16,14 @@ from loaded_tca.errors import require
 from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.results.face_slopes import (
     LITTLE,
+    common_face_motions,
     face_load_factor_changes,
     largest_cut,
     peak_cut,
     rival_strip,
     warn_of_edges,
+    warn_of_face_ends,
+    warn_of_grids,
     warn_of_strips,
 )
 from loaded_tca.results.figure_slopes import (
@@ -49,6 +52,10 @@ LINEAR = 1e-6
 """Tolerance of the linear systems, which are known to the grid's percent."""
 
 
+FEW = 200
+"""Cells between the bounds, of a contact with others at the cap on the pressure, below which derivatives hold less."""
+
+
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
     """Derivatives of a result to keys of its scene; NaN where nothing is in contact or nothing is loaded.
@@ -72,6 +79,8 @@ class Sensitivities:
         Of the gaps, of the torques of the pairs by that of their levers, motions of the grids.
     changes : tuple of PairChange or None
         Pairs of gears that differ in each key; none of the torque.
+    motion_rates : callable
+        As of :func:`loaded_tca.results.gap_growth.motion_rates`.
     """
 
     keys: tuple[str, ...]
@@ -81,6 +90,7 @@ class Sensitivities:
     pairs: Indices
     growth: GapGrowth
     changes: tuple[PairChange | None, ...]
+    motion_rates: Callable[[], Array]
 
     def __reduce__(self) -> tuple[Callable[..., Sensitivities], tuple[CycleNumbers, tuple[str, ...]]]:
         """Found anew by pickle and copy: the linear systems are large, and quickly made."""
@@ -94,8 +104,12 @@ class Sensitivities:
     @cached_property
     def torques(self) -> Array:
         """Growth of the torques that the forces balance with the levers as they are, (keys, states) [N mm per unit]."""
+        return self._raised + self._of_levers(self.growth)
+
+    def _of_levers(self, growth: GapGrowth) -> Array:
+        """The same of levers alone."""
         first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
-        return self._raised - np.add.reduceat(self.growth.lever_torques, first, axis=1)
+        return -np.add.reduceat(growth.lever_torques, first, axis=1)
 
     @property
     def _raised(self) -> Array:
@@ -133,25 +147,40 @@ class Sensitivities:
         slopes = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
         change = self.tangents.rotation_change(self.growth.gaps, self.torques)
         slopes[*self.places] = -self.result.gear_pair.driving * change.T
-        if self.growth.kinks.any():
+        if self.growth.kinks is not None:
             warn_of_edges(self.keys, slopes, self.transmission_error_kinks, self.result.um_per_rad, stacklevel=3)
         return slopes
 
     @cached_property
     def transmission_error_kinks(self) -> Array:
-        """How large kinks of the transmission error are at most, (torque, position, key) [rad per unit]; else zero.
+        """Kinks of the transmission error, (torque, position, key) [rad per unit]; zero where it has none.
 
-        Where edges of both gears end a contact at one place, as the ends of faces of one width, the pinion's end it
-        to one side of a key and the wheel's to the other, and on one of them the contact is shorter: by that part of
-        its length the pair is softer, or by less where the end carries less. Derivatives of both sides differ by that;
-        those given are of the edges that rule, cell by cell.
+        Derivatives by growing values of a key less those by falling ones, the mean of which ``transmission_error`` has:
+        where edges of both gears end a contact at one place, as the ends of faces of one width, the pinion's end it to
+        one side of a key and the wheel's to the other, and on one of them the contact is shorter.
         """
-        result, (torque, position, _) = self.result, self._grids
-        unloaded = np.array([path.transmission_error for path in result.paths])[self.pairs, position]
-        closed = np.abs(result.transmission_error[torque, position] - unloaded) * result.load_share[*self._grids]
-        kinks = np.zeros((*result.transmission_error.shape, len(self.keys)))
-        np.add.at(kinks, (torque, position), (self.growth.kinks * closed).T)
+        kinks = np.zeros((*self.result.transmission_error.shape, len(self.keys)))
+        if (apart := self.growth.kinks) is not None:
+            change = self.tangents.rotation_change(apart.gaps, self._of_levers(apart))
+            kinks[*self.places] = -self.result.gear_pair.driving * change.T
         return kinks
+
+    @cached_property
+    def transmission_error_by_grids(self) -> Array:
+        """How far derivatives of the transmission error depend on the grids, (torque, position, key) [rad per unit].
+
+        They would not if cells were small: the less of what they change as grids stay, and as they go with the contact
+        points. Zero of keys that move no grids. It takes half of what derivatives by one mounting error do.
+        """
+        by_grids = np.zeros((*self.result.transmission_error.shape, len(self.keys)))
+        moving = np.array([change is not None and not change.of_modifications for change in self.changes])
+        if moving.any():
+            motions = self.growth.motions[..., :2]
+            first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
+            of_grids = np.stack([motions, motions - self.growth.shifts]) * self.motion_rates().T
+            by_states = np.abs(np.add.reduceat(of_grids.sum(axis=-1), first, axis=-1)).min(axis=0)
+            by_grids[*self.places] = (by_states * moving[:, None]).T
+        return by_grids
 
     @cached_property
     def load_share(self) -> Array:
@@ -189,6 +218,15 @@ class Sensitivities:
         """
         across = self.result.on_relief_start[*self._grids] > 0
         return self._where(across & [not grid.contact.on_relief_start for grid in self.tangents.grids])
+
+    @cached_property
+    def nearly_plastic(self) -> Mask:
+        """Whether few cells of a contact at the cap on the pressure are below it, (torque, position, pair).
+
+        They alone answer to keys, and derivatives follow them: an AccuracyWarning says so.
+        """
+        few = [bool(grid.pressed.sum() > grid.active.sum()) and grid.active.sum() < FEW for grid in self.tangents.grids]
+        return self._of_changes(self._where(few))
 
     def _where(self, marks: Iterable[bool] | Mask) -> Mask:
         """Marks of the grids as (torque, position, pair)."""
@@ -265,26 +303,47 @@ class Sensitivities:
     def face_load_factor(self) -> Array:
         """Derivatives of K_Hbeta, (torque, key) [1 per unit], the largest strip held; NaN with one position.
 
-        Where another strip of the face carries nearly as much, an AccuracyWarning tells what its derivatives are.
+        Where another strip of the face carries nearly as much, an AccuracyWarning tells what its derivatives are; where
+        the faces of both gears end at one place, what they are to both sides of a key.
         """
         result = self.result
-        by_torque = self._of_strips([None] * len(result.torque))
+        by_torque, kinks = self._of_largest_strips
         rivals = [rival_strip(result.gear_pair, result.path, rows) for rows in result.maps]
         if any(rivals):
-            others = self._of_strips([None if rival is None else rival[0] for rival in rivals])
+            others, _ = self._of_strips([None if rival is None else rival[0] for rival in rivals])
             lacking = [rival[1] for rival in rivals if rival is not None]
             warn_of_strips(self.keys, by_torque, others - by_torque, lacking, stacklevel=3)
+        warn_of_face_ends(self.keys, by_torque, kinks, stacklevel=3)
         return by_torque
 
-    def _of_strips(self, strips: Sequence[int | None]) -> Array:
-        """Derivatives (torque, key) of the factor of one strip of the face under each torque; None: the largest."""
-        slopes, by_motion = face_load_factor_changes(
-            self.result, self._grids, self.tangents.grids, self.growth.motions, self.changes, strips
+    @property
+    def face_load_factor_kinks(self) -> Array:
+        """Derivatives of K_Hbeta by growing values of the keys less those by falling ones, (torque, key)."""
+        return self._of_largest_strips[1]
+
+    @cached_property
+    def _of_largest_strips(self) -> tuple[Array, Array]:
+        return self._of_strips([None] * len(self.result.torque))
+
+    def _of_strips(self, strips: Sequence[int | None]) -> tuple[Array, Array]:
+        """Derivatives (torque, key) of the factor of one strip of the face under each torque, and their kinks.
+
+        A strip None is the largest one.
+        """
+        kinks = self.growth.no_kinks if self.growth.kinks is None else self.growth.kinks
+        motions, gaps = (
+            np.concatenate([getattr(one, name) for one in (self.growth, kinks)]) for name in ("motions", "gaps")
         )
-        change = self.tangents.functional_change(self.tangents.gathered(slopes), self.growth.gaps, self.torques)
+        common_face = np.concatenate(common_face_motions(self.result, self.changes))
+        slopes, by_motion = face_load_factor_changes(
+            self.result, self._grids, self.tangents.grids, motions, common_face, strips
+        )
+        torques = np.concatenate([self.torques, self._of_levers(kinks)])
+        change = self.tangents.functional_change(self.tangents.gathered(slopes), gaps, torques)
         for t in range(len(by_motion)):
             by_motion[t] += change[:, self.places[0] == t].sum(axis=1)
-        return by_motion
+        slopes_and_kinks = np.split(by_motion, 2, axis=1)
+        return slopes_and_kinks[0], slopes_and_kinks[1]
 
     @cached_property
     def root_tension(self) -> Array:
@@ -383,13 +442,15 @@ class Sensitivities:
         arrays = {name: ((*own, "key"), getattr(self, name)) for own, names in dimensions.items() for name in names}
         return xarray.Dataset(arrays, {**coordinates, "key": list(self.keys)})
 
-    @property
+    @cached_property
     def peak_to_peak(self) -> Array:
         """Derivatives of the peak-to-peak transmission error, (torque, key) [rad per unit]; NaN at one place alone.
 
-        That of the highest position less that of the lowest one.
+        That of the highest position less that of the lowest one. Where these depend on the grids an AccuracyWarning
+        says by how much.
         """
         errors, slopes = self.result.transmission_error, self.transmission_error
+        warn_of_grids(self.keys, slopes, self.transmission_error_by_grids, self.result.um_per_rad, stacklevel=3)
         changes = np.full((len(errors), len(self.keys)), np.nan)
         for t, error in enumerate(errors):
             if min(self.result.places_of_mesh, np.isfinite(error).sum()) > 1:

@@ -233,6 +233,7 @@ def growth_on_supports(
     result: UnderOneTorque,
     tangents: Tangents,
     bending: SumOfParts,
+    on_slices: OnSlices,
     places: tuple[Array, ...],
     keys: Sequence[str],
     at_rest: Mapping[str, PairChange],
@@ -246,6 +247,8 @@ def growth_on_supports(
     tangents : Tangents
     bending : SumOfParts
         With the supports.
+    on_slices : OnSlices
+        Of the tangents.
     places : three (grids,) arrays
         Torque, position and pair of each grid.
     keys : sequence of str
@@ -261,7 +264,7 @@ def growth_on_supports(
         The whole change of the gears by each key.
     """
     changes = _support_changes(result, keys, at_rest)
-    teeth, on_slices = bending.on_rigid_supports, _OnSlices(result, tangents)
+    teeth = bending.on_rigid_supports
     of_gears = [key for key in keys if key in changes and not is_of_support(key)]
     at = [keys.index(key) for key in of_gears]
     growth = gap_growth(result, tangents, teeth, places, [changes[key].pairs for key in of_gears])
@@ -276,6 +279,7 @@ def growth_on_supports(
                 displaced, turned = on_slices.growth(changes[key], _tilting(growth.tilts[n]))
                 in_states = in_states + turned
             growth.gaps[n] += displaced
+            on_slices.add_kinks(changes[key], growth.kinks, n)
         motions[n] = on_slices.answer(tangents, growth.gaps[n], torques[n], in_states, places[1])
     lever, further = 0.5 * result.face_width, motions
     for _ in range(ROUNDS):
@@ -289,6 +293,7 @@ def growth_on_supports(
         for n, (change, way) in enumerate(zip(moving, directions, strict=True)):
             displaced, in_states = on_slices.growth(change, by_motion.motions[n])
             by_motion.gaps[n] += displaced - on_slices.opened(way)
+            on_slices.add_kinks(change, by_motion.kinks, n)
             answers[n] = on_slices.answer(tangents, by_motion.gaps[n], -lever_torques[n], in_states, places[1])
         growth, further = growth.with_parts(parts, by_motion), parts @ answers
         motions = motions + further
@@ -296,7 +301,7 @@ def growth_on_supports(
     return growth, whole
 
 
-class _OnSlices:
+class OnSlices:
     """What the supports do on the slices of the grids of all states."""
 
     def __init__(self, result: UnderOneTorque, tangents: Tangents) -> None:
@@ -316,6 +321,17 @@ class _OnSlices:
             self._displaced(side, part * width * motions) for side, part in ((change.low, -0.5), (change.high, 0.5))
         )
         return (above - below) / width, (high - low) / width
+
+    def add_kinks(self, change: SupportChange, kinks: GapGrowth | None, key: int) -> None:
+        """Add to the kinks of a key what supports displace otherwise as its grids move otherwise by growing values."""
+        if kinks is not None and kinks.motions[key].any():
+            kinks.gaps[key] += self.by_motions(kinks.motions[key], change.pairs.difference)
+
+    def by_motions(self, motions: Array, step: float) -> Array:
+        """Growth of the displacement of the active cells (n,) by motions (grids, 6) of the grids alone, with a step."""
+        pair = self.supports.pair
+        held = SupportChange(PairChange("mounting.grids", pair, pair, step), self.supports, self.supports)
+        return self.growth(held, motions)[0]
 
     def opened(self, way: Array) -> Array:
         """How far the gaps at the active cells (n,) grow as both gears move by (12,) as rigid bodies."""

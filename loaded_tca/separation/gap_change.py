@@ -118,9 +118,7 @@ class ContactChanges:
         by_motion = (plane[:, self.contact[border.cell]] * border.slopes).sum(axis=-1)
         of_edges = np.flatnonzero(self.moves_edges | moved)
         covers[np.ix_(of_edges, border.cell)] = (self.moves_edges[:, None] * border.rates + by_motion)[of_edges]
-        kinks = np.zeros(covers.shape)
-        kinks[np.ix_(edges, border.cell)] = border.kinks[edges]
-        return MovedContacts(gaps, covers, kinks, motions)
+        return MovedContacts(gaps, covers, motions)
 
     def _with_gaps(self, gaps: Array, shifts: Array, scales: Array) -> Array:
         """Motions (keys, contacts, 2) of grids along x and y by which gaps change least, but for a part in common.
@@ -160,8 +158,6 @@ class MovedContacts:
         Growth of the gaps, the wheel turned back into contact.
     covers : (keys, n) array [1 per unit of the key]
         Growth of the parts of the cells that have material.
-    kinks : (keys, n) array [1 per unit of the key]
-        What that of growing values is less than that of falling ones, where edges of both gears are at one place.
     motions : (keys, contacts, 6) array [mm, mm, rad, rad, rad, mm per unit of the key]
         Of the grids along their x and y, their turn from x to y, the growth of their normal along x and y, their motion
         along the normal.
@@ -169,7 +165,6 @@ class MovedContacts:
 
     gaps: Array
     covers: Array
-    kinks: Array
     motions: Array
 
 

@@ -24,6 +24,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from numbers import Real
+from typing import Self
 
 import numpy as np
 
@@ -45,6 +46,8 @@ OF_MOUNTING = 1e-2
 """The same, so many times as large, of mounting errors: by 1 um of misalignment contacts go far."""
 OF_SETTINGS = 100.0
 """The same, so many times as large, of machine settings and cutters: generated flanks are known to 1e-11 mm."""
+KINK = 1e-6
+"""Difference of the motions of the wheel to both sides of a key, over them, that is none."""
 SECTIONS = ("modifications", "machine", "cutter")
 """Of a gear, whose keys shape its flanks and, to first order, nothing else."""
 
@@ -61,12 +64,15 @@ class PairChange:
         With a smaller and a larger value of the key.
     difference : float
         Of the two values, in the unit of the key.
+    side : int
+        1: by growing values of the key alone, one of the pairs is that of the scene; -1: by falling ones; 0: by both.
     """
 
     key: str
     below: GearPair
     above: GearPair
     difference: float
+    side: int = 0
 
     @property
     def of_modifications(self) -> bool:
@@ -93,6 +99,21 @@ class PairChange:
         """Derivatives of the wheel's origin (3,) [mm per unit] and axes (3, 3) [1 per unit]."""
         shift, turn = (getattr(self.above, name) - getattr(self.below, name) for name in ("wheel_origin", "wheel_axes"))
         return shift / self.difference, turn / self.difference
+
+    def to_sides_of(self, pair: GearPair) -> tuple[Self, Self]:
+        """The same by growing values of the key alone, and by falling ones, from a pair half way between the two."""
+        half = 0.5 * self.difference
+        return replace(self, below=pair, difference=half, side=1), replace(self, above=pair, difference=half, side=-1)
+
+    def has_kink_at(self, pair: GearPair) -> bool:
+        """Whether the wheel moves otherwise by growing values than by falling ones, from a pair half way between.
+
+        A misalignment over the common face tilts it by more as that gets shorter, to either side.
+        """
+        (growing, turned), (falling, back) = (one.moved_wheel for one in self.to_sides_of(pair))
+        apart = np.linalg.norm(growing - falling), np.linalg.norm(turned - back)
+        largest = np.linalg.norm(growing), np.linalg.norm(turned)
+        return self.of_mounting and any(one > KINK * whole for one, whole in zip(apart, largest, strict=True))
 
 
 def pair_changes(scene: Scene, keys: Sequence[str]) -> list[PairChange]:
@@ -307,16 +328,15 @@ class BorderCells:
         Their places in the row of all cells.
     rates : (keys, m) array [1 per unit of the key]
         Growth of their parts with material on grids that are held, the wheel turned back into contact.
-    kinks : (keys, m) array [1 per unit of the key]
-        By how much the rates of growing values of the keys are less than those of falling ones, where an edge of the
-        other gear leaves the same part.
+    has_kinks : (keys,) bool array
+        Whether an edge of the other gear that leaves the same part of a cell has another rate: it rules to one side.
     slopes : (m, 3) array [1/mm, 1/mm, 1/rad]
         The same by the motion of the grid along x and y and by its turn from x to y.
     """
 
     cell: Indices
     rates: Array
-    kinks: Array
+    has_kinks: Mask
     slopes: Array
 
     @classmethod
@@ -358,7 +378,10 @@ class BorderCells:
             )
             rates[:, own & rules[number]], slopes[own & rules[number]] = by_keys[:, mine], by_motion[:, mine].T
             least[:, own], most[:, own] = np.minimum(least[:, own], by_keys), np.maximum(most[:, own], by_keys)
-        return cls(cell[kept], rates[:, kept], (most - least)[:, kept], slopes[kept])
+        sides = np.array([change.side for change in changes])[:, None]
+        rates = np.where(sides > 0, least, np.where(sides < 0, most, rates))[:, kept]
+        kinks = (most - least)[:, kept] > AT_ONE_PLACE * np.abs(most[:, kept]).clip(np.abs(least[:, kept]))
+        return cls(cell[kept], rates, kinks.any(axis=1), slopes[kept])
 
     @classmethod
     def of_arcs(
@@ -383,18 +406,18 @@ class BorderCells:
             width = np.abs(values[1:] - values[0]).sum(axis=0)[rows[own]]
             rates[:, own] = places.growth(pair, gear, distance, changes)[:, rows[own]] / width
             slopes[own] = places.slopes_of(pair, gear, distance)[rows[own]] / width[:, None]
-        return cls(cell[rows], rates, np.zeros(rates.shape), slopes)
+        return cls(cell[rows], rates, np.zeros(len(changes), dtype=bool), slopes)
 
     def of_keys(self, keys: Indices) -> BorderCells:
         """The same with some of the keys."""
-        return replace(self, rates=self.rates[keys], kinks=self.kinks[keys])
+        return replace(self, rates=self.rates[keys], has_kinks=self.has_kinks[keys])
 
     def with_others(self, others: BorderCells) -> BorderCells:
         """These and others."""
         return BorderCells(
             np.concatenate([self.cell, others.cell]),
             np.concatenate([self.rates, others.rates], axis=1),
-            np.concatenate([self.kinks, others.kinks], axis=1),
+            self.has_kinks | others.has_kinks,
             np.concatenate([self.slopes, others.slopes]),
         )
 

@@ -23,7 +23,9 @@ from loaded_tca.results.key_figures import mean_over_a_pitch
 from tests.samples.pictures import told
 from tests.samples.results import result
 
-pytestmark = pytest.mark.filterwarnings("ignore:an edge cuts the slices")  # contacts reach edges, and all is read
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:an edge cuts the slices", "ignore:derivatives of the transmission error depend"
+)  # contacts reach edges, and all is read
 ROUNDING = 1e-12
 """Of numbers that are drawn, after one factor."""
 TOLERANCES = {

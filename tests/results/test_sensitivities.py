@@ -125,7 +125,7 @@ def test_lead_crowning_of_either_gear_counts_alike():
     assert_allclose(found[:, 0], found[:, 1], rtol=1e-3)
 
 
-@pytest.mark.filterwarnings("ignore:edges of both gears end")  # faces are of one width
+@pytest.mark.filterwarnings("ignore:edges of both gears lie")  # faces are of one width
 def test_tooth_pair_that_carries_all_has_sensitivities_too():
     one = analysed("mesh_cycle_helical", False, tuple(ONE_PAIR.items()), 32)
     found = one.sensitivities(["mounting.axial_offset_mm", CROWNING])

@@ -1,5 +1,6 @@
 """Sensitivities of contacts that end at edges: against numbers of whole analyses on either side."""
 
+import re
 import warnings
 
 import numpy as np
@@ -200,33 +201,101 @@ def test_kinks_are_told_by_their_part_of_what_changes_over_the_positions(spread,
     assert len(sentences) == count
 
 
-@pytest.mark.thorough
-def test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error():
-    at = {"mounting.misalignment_um": 20.0}
-    result, length = solved("helical", 48, 5, **at)
+def test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error_and_of_the_face_load_factor():
+    """By growing values the wheel tilts by more over the shorter common face, by falling ones it ends the contact.
+
+    Beside analyses over 0.05 mm, by which the end moves an eighth of its cell: by steps of 0.02 to 0.2 mm kinks of the
+    transmission error differ by a sixth, and derivatives of K_Hbeta to one side by 0.2.
+    """
+    at = {"mounting.misalignment_um": 20.0, **FLANKS_ALONE}
+    result, length = solved("helical", 32, 3, **at)
     found = result.sensitivities([OFFSET, CROWNING])
-    with pytest.warns(AccuracyWarning, match=rf"edges of both gears end .* um per mm .*{OFFSET}; 1 of 2 keys"):
+    with pytest.warns(AccuracyWarning, match=rf"edges of both gears lie .* um per mm .*{OFFSET}; 1 of 2 keys"):
         slopes = found.transmission_error[0, :, 0]
-    low, high = (solved("helical", 48, 5, **at, **{OFFSET: by})[0].transmission_error[0] for by in (-0.05, 0.05))
-    middle = result.transmission_error[0]
-    kinks = (high - 2.0 * middle + low) / 0.05
-    assert (kinks[[0, 2, 3, 4]] > 0.0).all()
-    assert (found.transmission_error_kinks[0, :, 0] >= kinks).all(), "at most"
-    assert (found.transmission_error_kinks[0, :, 0] <= 4.0 * kinks.max()).all()
-    assert_allclose(slopes * length, (high - low) / 0.1 * length, rtol=0, atol=0.5 * kinks.max() * length)
-    assert not found.transmission_error_kinks[0, :, 1].any(), "crowning moves neither end"
-    assert (
-        not solved("helical", 16, 3, **FLANKS_ALONE, **at, **{OFFSET: 1.0})[0]
-        .sensitivities([OFFSET])
-        .transmission_error_kinks.any()
+    with pytest.warns(AccuracyWarning, match=rf"faces of both gears end .*-0\.\d+ per mm .*{OFFSET}; 1 of 2 keys"):
+        factor = found.face_load_factor[0, 0]
+    low, high = (solved("helical", 32, 3, **at, **{OFFSET: by})[0] for by in (-0.05, 0.05))
+    errors, factors = (
+        [getattr(one, name)[0] for one in (low, result, high)] for name in ("transmission_error", "face_load_factor")
     )
+    kinks = found.transmission_error_kinks[0]
+    assert_allclose(kinks[[0, 2], 0], np.diff(errors, 2, axis=0)[0, [0, 2]] / 0.05, rtol=0.15)
+    middle = (errors[2] - errors[0]) / 0.1 * length
+    assert_allclose(slopes * length, middle, rtol=0, atol=0.15 * kinks.max() * length)
+    assert_allclose(factor, (factors[2] - factors[0]) / 0.1, rtol=0, atol=0.2)
+    assert_allclose(found.face_load_factor_kinks[0], [np.diff(factors, 2)[0] / 0.05, 0.0], rtol=0, atol=0.2)
+    assert not kinks[:, 1].any(), "crowning moves neither end"
+
+
+def test_aligned_faces_of_one_width_are_a_kink_without_a_slope():
+    """The pair is its own mirror image: by either sign of the offset it is as much softer.
+
+    Kinks beside analyses over 0.05 mm, by which those over 0.02 mm differ by a tenth.
+    """
+    result, length = solved("mesh_cycle_spur", 32, 3)
+    found = result.sensitivities([OFFSET])
+    with pytest.warns(AccuracyWarning, match="edges of both gears lie"):
+        assert_allclose(found.transmission_error[0] * length, 0.0, rtol=0, atol=1e-3)
+    high, _ = solved("mesh_cycle_spur", 32, 3, **{OFFSET: 0.05})
+    kinks = 2.0 * (high.transmission_error[0] - result.transmission_error[0]) / 0.05
+    assert_allclose(found.transmission_error_kinks[0, 1, 0], kinks[1], rtol=0.25)
+
+
+def test_faces_that_end_apart_have_no_kink():
+    at = {"mounting.misalignment_um": 20.0, OFFSET: 1.0}
+    result, _ = solved("helical", 16, 3, **FLANKS_ALONE, **at)
+    found = result.sensitivities([OFFSET])
+    assert found.growth.kinks is None
+    with noted_accuracy_warnings(given=False) as sentences:
+        assert np.isfinite([found.transmission_error[0].max(), found.face_load_factor[0, 0]]).all()
+    assert not any("at one place" in one for one in sentences)
 
 
 def test_kinks_are_told_beside_a_torque_that_loads_nothing():
     at = {"mounting.misalignment_um": 20.0, "analysis.torques_Nm": (0.0, 130.0)}
     result, _ = solved("helical", 16, 3, **FLANKS_ALONE, **at)
-    with pytest.warns(AccuracyWarning, match="edges of both gears end") as caught:
+    with pytest.warns(AccuracyWarning, match="edges of both gears lie") as caught:
         slopes = result.sensitivities([OFFSET]).transmission_error
     assert [one.category for one in caught] == [AccuracyWarning]
     assert np.isnan(slopes[0]).all()
     assert np.isfinite(slopes[1]).all()
+
+
+def test_what_grids_change_of_derivatives_falls_with_the_cells_that_edges_cut():
+    coarse, fine = (solved("helical", cells, 3, **FLANKS_ALONE) for cells in (16, 48))
+    sizes = []
+    for result, length in (coarse, fine):
+        found = result.sensitivities([DISTANCE, CROWNING])
+        assert not found.transmission_error_by_grids[..., 1].any(), "grids stay"
+        sizes.append(found.transmission_error_by_grids[..., 0].max() * length)
+    assert 1e-3 < sizes[1] < 0.5 * sizes[0] < 0.02  # um/mm
+
+
+def test_grids_change_no_derivative_of_a_contact_that_reaches_no_edge():
+    result, _ = solved("spiral_bevel", 16, 3, **FLANKS_ALONE, **{"analysis.torques_Nm": (2.0,)})
+    found = result.sensitivities(["mounting.pinion_axial_mm"])
+    assert found.transmission_error_by_grids.max() < 1e-3 * np.ptp(found.transmission_error)
+
+
+@pytest.mark.parametrize(("part", "count"), [(0.06, 1), (0.04, 0)])
+def test_what_grids_change_is_told_beside_what_derivatives_differ_by_over_the_positions(part, count, monkeypatch):
+    result, _ = solved("helical", 16, 3, **FLANKS_ALONE)
+    found = result.sensitivities([DISTANCE])
+    spread = np.ptp(found.transmission_error[0, :, 0])
+    monkeypatch.setitem(found.__dict__, "transmission_error_by_grids", np.full((1, 3, 1), part * spread))
+    with noted_accuracy_warnings(given=False) as sentences:
+        assert np.isfinite(found.peak_to_peak[0, 0])
+    told = "derivatives of the transmission error depend on the grid by up to .* um per mm, more than 5%"
+    assert sum(re.match(told, one) is not None for one in sentences) == count
+
+
+@pytest.mark.parametrize(("cap", "few", "told"), [(550.0, 200, 1), (550.0, 5, 0), (1e5, 200, 0)])
+def test_contacts_with_few_cells_below_the_cap_are_told(cap, few, told, monkeypatch):
+    """Of a larger cap none is at it; the middle case has more cells below it than are few."""
+    monkeypatch.setattr("loaded_tca.results.sensitivities.FEW", few)
+    result, _ = solved("helical", 16, 2, **{"material.max_pressure_MPa": cap, **FLANKS_ALONE})
+    with noted_accuracy_warnings(given=False) as sentences:
+        found = result.sensitivities([DISTANCE])
+        result.sensitivities([TORQUE])
+    assert sum("cells of a contact below it" in one for one in sentences) == told
+    assert found.nearly_plastic.any() == bool(told)

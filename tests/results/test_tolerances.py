@@ -11,6 +11,9 @@ from loaded_tca.results import default_tolerances, key_figure_slopes
 from tests.samples.results import SCENES, result
 
 TORQUE = "load.pinion_torque_Nm"
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:derivatives of the transmission error depend"
+)  # coarse grids, all is read
 
 
 def scene(name, **changes):
