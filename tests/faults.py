@@ -1474,6 +1474,20 @@ FAULTS = (
         "means = np.nanmean(values, axis=1)",
         "supports/test_rolling_of_scenes.py::test_picture_of_the_misalignment_has_the_means_of_the_summary",
     ),
+    Fault(
+        "solve_to_accuracy: a peak that misses the accuracy is not said where that is of the approach",
+        "contact/adaptive.py",
+        "    if of_approach:\n        limit",
+        "    if not figures:\n        limit",
+        "contact/test_adaptive.py::test_peak_that_misses_the_accuracy_where_that_is_of_the_approach_is_said",
+    ),
+    Fault(
+        "changes: a file of a measured flank does not take the place of the points",
+        "scene/flank_form.py",
+        "    alternatives: ClassVar[tuple[str, ...]] = (\"file\", \"measurement\")",
+        "    alternatives: ClassVar[tuple[str, ...]] = ()",
+        "scene/test_flank_form.py::test_another_file_takes_the_place_of_the_points_of_the_first",
+    ),
 )
 
 

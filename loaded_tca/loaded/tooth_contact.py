@@ -211,7 +211,7 @@ class _InBox:
             def smooth(solution: ContactSolution) -> bool:
                 return not (across_start or _reaches_arc(pair, self.separation, solution.pressure_on_material))
 
-            solution, _ = yield from refinement(self._solved, grid.accuracy, grid.tolerance, smooth, cells, expected)
+            solution, *_ = yield from refinement(self._solved, grid.accuracy, grid.tolerance, smooth, cells, expected)
         on_material = solution.pressure_on_material
         return LoadedContact(
             contact,

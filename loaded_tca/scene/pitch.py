@@ -85,6 +85,7 @@ class Pitch(Section):
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (Rule(SOURCES, _one_source), Rule(("single_um",), _closed))
+    alternatives: ClassVar[tuple[str, ...]] = SOURCES
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -32,6 +32,13 @@ def test_file_of_deviations_takes_the_place_of_a_list(tmp_path):
     assert parse_scene(scene.to_toml(), folder=None) == scene
 
 
+def test_deviations_of_one_key_take_the_place_of_those_of_another():
+    drawn = SCENE.with_changes({"wheel.pitch.tolerance_class": 7, "wheel.pitch.runout_um": 3.0})
+    pitch = drawn.with_changes({"wheel.pitch.index_um": [1.0] * 24}).wheel.pitch
+    assert (pitch.index_um, pitch.tolerance_class, pitch.runout_um) == ((1.0,) * 24, None, 3.0)
+    assert drawn.with_changes({"wheel.pitch.index_um": None}).wheel.pitch == drawn.wheel.pitch
+
+
 def test_file_with_single_deviations(tmp_path):
     assert read_deviations(written(tmp_path, "single_um\n1\n-2\n1\n")) == ("single_um", (1.0, -2.0, 1.0))
 
