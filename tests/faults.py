@@ -1484,9 +1484,30 @@ FAULTS = (
     Fault(
         "changes: a file of a measured flank does not take the place of the points",
         "scene/flank_form.py",
-        "    alternatives: ClassVar[tuple[str, ...]] = (\"file\", \"measurement\")",
+        '    alternatives: ClassVar[tuple[str, ...]] = ("file", "measurement")',
         "    alternatives: ClassVar[tuple[str, ...]] = ()",
         "scene/test_flank_form.py::test_another_file_takes_the_place_of_the_points_of_the_first",
+    ),
+    Fault(
+        "measured flanks: a diameter is taken for a radius",
+        "flanks/topography.py",
+        'factors.append(("radius", 0.5 * UNITS[unit]))',
+        'factors.append(("radius", UNITS[unit]))',
+        "flanks/test_topography_file.py::test_file_of_windows_is_read",
+    ),
+    Fault(
+        "tables: what a first line says of the separator is not obeyed",
+        "input_files.py",
+        'marks = ";\\t" if declared is None else declared[1]',
+        'marks = ";\\t"',
+        "flanks/test_topography_file.py::test_separator_of_the_first_line_rules",
+    ),
+    Fault(
+        "pitch deviations: what stands behind a decimal comma is left out",
+        "scene/pitch.py",
+        "        require_decimal_points(table)\n",
+        "",
+        "scene/test_pitch.py::test_refusals",
     ),
 )
 

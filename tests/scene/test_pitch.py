@@ -48,6 +48,13 @@ def test_file_of_a_spreadsheet_is_read(tmp_path):
     assert read_deviations(written(tmp_path, text)) == ("index_um", (1.5, -2.0, 0.5))
 
 
+@pytest.mark.parametrize("encoding", ["cp1252", "utf-16"])
+def test_file_of_windows_is_read(tmp_path, encoding):
+    lines = "sep=;", "# tooth by tooth", "tooth;index_\N{MICRO SIGN}m", "1;1.5", "2;-2", "3;.5"
+    (tmp_path / "pitch.csv").write_bytes("\r\n".join(lines).encode(encoding))
+    assert read_deviations(str(tmp_path / "pitch.csv")) == ("index_um", (1.5, -2.0, 0.5))
+
+
 def test_scene_names_a_file_in_its_folder(tmp_path):
     written(tmp_path, "index_um\n" + "1.0\n" * 24)
     text = SCENE.to_toml().replace("# [wheel.pitch] is not given", '[wheel.pitch]\nfile = "pitch.csv"')
@@ -112,7 +119,11 @@ test_refusals = refused_calls(
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\nnan\n3\n")), 'line 2 of the table: found "nan"'),
     (lambda tmp_path: read_deviations(written(tmp_path, "t,index_um\n1,1\n2\n")), "line 2 of the table: found"),
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\n1_0\n")), 'line 2 of the table: found "1_0"'),
-    (lambda tmp_path: read_deviations(written(tmp_path, "a;index_um\n1;2,5\n")), 'line 1 of the table: found "2,5"'),
+    *(
+        (lambda tmp_path, text=text: read_deviations(written(tmp_path, text)), "line 2: decimal commas, it seems")
+        for text in ("a;index_um\n1;2,5\n", "index_um\n2,5\n1,5\n-4,0\n")
+    ),
+    (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\n2,5\n3\n")), "line 2 of the table: more values"),
     (lambda tmp_path: read_deviations(written(tmp_path, 'index_um\n"1\n')), "line 2: a quotation that does not end"),
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\n")), "allowed a list of 3 to 10000 values"),
     (
