@@ -44,7 +44,8 @@ face_milled with the same blanks, and with all machine settings and cutters: in 
 what its contact shows ('loaded-tca run', 'vh', 'ease-off'), or with the pinion's by local synthesis, whose contact at
 the mean point is what [pair.settings] of a scene of type face_milled asks for, or what is usual."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
-touch.
+touch. Axes are those of each gear's own frame, which does not turn with it: z the axis of the gear, x to the pitch
+point, turns right-handed.
 
 files in DIR:
   shaft.csv                 motions along each shaft, one row per torque and place
