@@ -1509,6 +1509,34 @@ FAULTS = (
         "",
         "scene/test_pitch.py::test_refusals",
     ),
+    Fault(
+        "report: no limit was met, although a note tells one",
+        "reports/templates/result.html.j2",
+        "{{ parts.warned(warnings, notes=limits + (lubrication.notes if lubrication else [])) }}",
+        "{{ parts.warned(warnings) }}",
+        "reports/test_report.py::test_result_without_warnings_says_so_and_one_of_an_earlier_version_too",
+    ),
+    Fault(
+        "at a glance: the legend lies on the load over the face",
+        "plots/at_a_glance.py",
+        'loc="upper center", bbox_to_anchor=(0.5, BELOW))',
+        'loc="lower center")',
+        "plots/test_at_a_glance.py::test_nothing_of_the_sheet_covers_the_load_over_the_face",
+    ),
+    Fault(
+        "stages: a sun that stays where it is has a picture of its orbit",
+        "plots/stage.py",
+        "if moves or draw is not plot_stage_sun_orbit}",
+        "}",
+        "plots/test_stage.py::test_rigid_sun_has_no_orbit",
+    ),
+    Fault(
+        "pictures: what is said in an empty panel reaches into the next",
+        "plots/style.py",
+        "textwrap.fill(why, longest)",
+        "why",
+        "plots/test_at_a_glance.py::test_empty_panel_says_why_within_its_width",
+    ),
 )
 
 

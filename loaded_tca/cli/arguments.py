@@ -124,7 +124,7 @@ STAGE = """files in DIR:
   stage_phases.png          phases of the meshes of all planets
   stage_shares.png          share of every planet, under the largest torque
   stage_load_factor.png     K_gamma over the pin errors, all torques
-  stage_sun_orbit.png       motion of the sun's axis, all torques
+  stage_sun_orbit.png       motion of the sun's axis, all torques; of a sun that is not held rigid
   stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
   stage_orders.png          their orders of the mesh
 Numbers have their units in their names; docs/guide/planetary_stages.md says more."""

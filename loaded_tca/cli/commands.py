@@ -154,7 +154,7 @@ def _is_of_tribology(key: str) -> bool:
 def stage(options: argparse.Namespace) -> None:
     """Analyse a planetary stage, write everything into a directory, and show the summary."""
     from loaded_tca.output.other_results import write_stage
-    from loaded_tca.plots import STAGE_PICTURES, png_of
+    from loaded_tca.plots import png_of, stage_figures
     from loaded_tca.stages import analyse_stage
     from loaded_tca.stages.analyse import expected_stage_effort, states_of
 
@@ -164,7 +164,7 @@ def stage(options: argparse.Namespace) -> None:
     states = states_of(asked)
     with progress_bar(expected_stage_effort(asked), "states of both meshes", states) as progress:
         result = analyse_stage(asked, progress=progress)
-    pictures = {f"{name}.png": png_of(draw(result)) for name, draw in STAGE_PICTURES.items()}
+    pictures = {f"{name}.png": png_of(figure) for name, figure in stage_figures(result).items()}
     written = write_stage(result, directory, pictures)
     print_summary(result.summary(), written)
 

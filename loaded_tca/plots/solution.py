@@ -68,7 +68,8 @@ def plot_solution(solution: ContactSolution, hertz: PointContact | LineContact |
     if pressure.any():
         loaded = np.where(pressure > 0.0, pressure, np.nan)
         drawn = area.pcolormesh(borders[1], borders[0], loaded, cmap=COLOURS, vmin=0.0, rasterized=True)
-        figure.colorbar(drawn, ax=area, label=PRESSURE)
+        figure.colorbar(drawn, ax=area)
+        area.set_title(PRESSURE, fontsize="small")
     else:
         tell(area, NO_LOAD)
     top = np.unravel_index(int(pressure.argmax()), pressure.shape)
@@ -87,7 +88,7 @@ def plot_solution(solution: ContactSolution, hertz: PointContact | LineContact |
         from_zero(axes)
         axes.grid(alpha=0.3)
     if hertz is not None:
-        panels[1].legend(fontsize="small")
+        figure.legend(*panels[1].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize="small")
     figure.suptitle(
         f"peak pressure {solution.peak_pressure:.5g} MPa, load {solution.load:.5g} N, approach {solution.approach:.5g}"
         f" mm; {pressure.shape[0]} x {pressure.shape[1]} cells",

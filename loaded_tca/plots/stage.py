@@ -269,3 +269,19 @@ STAGE_PICTURES: dict[str, Callable[[StageResult], Figure]] = {
     "stage_orders": plot_stage_orders,
 }
 """Name of the file of ``loaded-tca stage`` -> how it is drawn."""
+
+
+def stage_figures(result: StageResult) -> dict[str, Figure]:
+    """Draw every picture of a stage; none of the orbit of a sun that stays where it is.
+
+    Parameters
+    ----------
+    result : StageResult
+
+    Returns
+    -------
+    dict of str to matplotlib.figure.Figure
+        By the names of ``STAGE_PICTURES``.
+    """
+    moves = bool(result.sun_motion.any())
+    return {name: draw(result) for name, draw in STAGE_PICTURES.items() if moves or draw is not plot_stage_sun_orbit}

@@ -13,9 +13,9 @@ from loaded_tca.output.overview import HELD, geometry_of_meshes, scene_sections,
 from loaded_tca.plots import (
     CAPTIONS,
     STAGE_CAPTIONS,
-    STAGE_PICTURES,
     TRIBOLOGY_PICTURES,
     result_figures,
+    stage_figures,
     tribology_figures,
 )
 from loaded_tca.plots.style import label_of
@@ -205,7 +205,6 @@ def stage_content(result: StageResult) -> dict[str, Any]:
     result : StageResult
     """
     head, *phases = stage_sections(result.stage)["phases"]
-    figures = {name: draw(result) for name, draw in STAGE_PICTURES.items()}
     return {
         "title": result.stage.title or "Planetary stage",
         "analysed_by": str(result.dataset.attrs.get("version", "")),
@@ -219,7 +218,7 @@ def stage_content(result: StageResult) -> dict[str, Any]:
         "orders": _orders(result),
         "files": FILES[1:],
         "warnings": explained(result.warnings),
-        "pictures": pictures_of(figures, STAGE_CAPTIONS, result.stage.title),
+        "pictures": pictures_of(stage_figures(result), STAGE_CAPTIONS, result.stage.title),
     }
 
 
