@@ -1537,6 +1537,13 @@ FAULTS = (
         "why",
         "plots/test_at_a_glance.py::test_empty_panel_says_why_within_its_width",
     ),
+    Fault(
+        "vh --loaded: warnings of the analyses are not shown",
+        "cli/commands.py",
+        'print_summary(study_summary(rows), [directory / "vh_study.nc"',
+        'print_summary("", [directory / "vh_study.nc"',
+        "test_cli_vh.py::test_vh_under_load_keeps_the_study",
+    ),
 )
 
 

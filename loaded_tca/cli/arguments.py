@@ -59,6 +59,7 @@ files in DIR:
   vh_check.csv              centre of each pattern, its shift, part of the pitch with edge contact
 and with --loaded instead
   vh_under_load.png         highest pressure at each place of the flank
+  vh_study.csv              key figures, one row per pair of errors and torque; the summary has the warnings
   vh_study.nc, vh_study_maps/  the study behind it; the same command goes on from there"""
 TRIBOLOGY = """[operation], [lubricant], roughness_Ra_um and the thermal keys of materials say how the pair runs; --set
 gives or changes them. What needs an input that is not given is left out, and the summary says which.
