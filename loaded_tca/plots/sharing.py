@@ -197,7 +197,7 @@ def draw_face_load(axes: Axes, result: MeshCycle, styles: Iterable[tuple[int, st
             middles = 0.5 * (borders[1:] + borders[:-1])
             centre = float(forces @ middles / forces.sum()) - 0.5 * float(borders[0] + borders[-1])
             off = plain(round(centre, CENTRE_DECIMALS), 2, "+")
-            text = f"{label}, K_Hβ = {factor:.3g},\ncentre {off} mm from the middle"
+            text = f"{label}, K_Hβ = {plain(factor, 3)},\ncentre {off} mm from the middle"
         axes.stairs(forces / (len(result.path) - 1) / np.diff(borders), borders, color=colour, label=text)
     axes.set(xlabel=frame.labels[0], ylabel="normal force per face width [N/mm]")
     axes.set_ylim(bottom=0.0)

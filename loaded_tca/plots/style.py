@@ -26,6 +26,7 @@ from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import require
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.input_files import is_place
+from loaded_tca.plain import plain
 from loaded_tca.plots.layout import estimated_at_first
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.files import FilePath, replace_file
@@ -285,7 +286,7 @@ def parts_of(line: str, longest: int) -> list[str]:
 
 
 def _degrees(angle: float) -> str:
-    return f"{round(math.degrees(angle), 3) + 0.0:.4g}"
+    return plain(round(math.degrees(angle), 3))
 
 
 SILENT = {"pair", "modifications", "mounting", "load", "analysis", "material"}

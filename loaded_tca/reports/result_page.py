@@ -10,6 +10,7 @@ import numpy as np
 
 from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.output.overview import HELD, geometry_of_meshes, scene_sections, stage_sections
+from loaded_tca.plain import plain
 from loaded_tca.plots import (
     CAPTIONS,
     STAGE_CAPTIONS,
@@ -149,7 +150,7 @@ def _key_figures(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> 
 
 def _under(figures: Sequence[Figures]) -> Iterator[str]:
     """Names of the columns of some torques."""
-    return (f"{one['pinion_torque_Nm']:.4g}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m" for one in figures)
+    return (f"{plain(one['pinion_torque_Nm'])}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m" for one in figures)
 
 
 def _value(figures: Figures, name: str) -> str:
