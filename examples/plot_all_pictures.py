@@ -44,7 +44,7 @@ def main() -> None:
     turn = analyse_revolution(HELICAL.with_changes(FEW | turning))
     drawn |= {name: draw(turn) for name, draw in plots.REVOLUTION_PICTURES.items()}
     stage = analyse_stage(read_stage(STAGE).with_changes(FEW))
-    drawn |= {name: draw(stage) for name, draw in plots.STAGE_PICTURES.items()}
+    drawn |= plots.stage_figures(stage)
     oiled = result.tribology([500.0, 1500.0], OIL, (0.6, 0.6), permissible_film_ratio=0.3)
     drawn |= {name: one for name, one in plots.tribology_figures(oiled).items() if not name.startswith("flank_")}
     drawn["over_flank"] = plots.plot_over_flank(oiled, "film_ratio")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import csv
 import os
 import re
@@ -65,17 +66,44 @@ def read_text(path: str | os.PathLike[str], largest: int, kind: str = "scene and
     InputError
         If the file cannot be read, is no regular one, is longer, or is no such text.
     """
+    return _decoded(read_bytes(path, largest, kind), os.fspath(path))
+
+
+def read_table(path: str | os.PathLike[str], largest: int, kind: str) -> str:
+    """Text of a file of a table: in UTF-8, or as spreadsheets save one: in UTF-16, or in Windows' western code page.
+
+    Raises
+    ------
+    InputError
+        As ``read_text`` does.
+    """
     content = read_bytes(path, largest, kind)
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return _decoded(content, os.fspath(path), "UTF-16")
     try:
-        return content.decode("utf-8-sig")
+        return _decoded(content, os.fspath(path))
+    except InputError:
+        if NOT_IN_TEXT.search(content):
+            raise
+    return _decoded(content, os.fspath(path), "cp1252")
+
+
+def _decoded(content: bytes, name: str, encoding: str = "UTF-8") -> str:
+    try:
+        return content.decode("utf-8-sig" if encoding == "UTF-8" else encoding)
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{os.fspath(path)}: not a text file in UTF-8 (line {line})") from None
+        raise InputError(f"{name}: not a text file in {encoding} (line {line})") from None
 
 
+NOT_IN_TEXT = re.compile(rb"[\x00-\x08\x0e-\x1f]")
+"""Bytes that no text in a code page has."""
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 WHOLE = re.compile(r"[+-]?\d+", re.ASCII)
 MICRO = str.maketrans({"\N{MICRO SIGN}": "u", "\N{GREEK SMALL LETTER MU}": "u"})
+DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?", re.ASCII)
+SEPARATOR_LINE = re.compile(r"\s*\"?sep=(.)\"?\s*", re.IGNORECASE)
+"""First line of a file of a spreadsheet that says what stands between cells."""
 BESIDE_CELLS = '";,\t \N{NO-BREAK SPACE}'
 """Characters that stand around the cells of a table."""
 MOST_DIGITS = 1000
@@ -141,18 +169,22 @@ class Table(NamedTuple):
 def table_in(text: str) -> Table:
     """The table that a text is, as people and spreadsheets write it; without names and rows if it has no line.
 
-    Semicolons, tabs or commas are between cells: the first of them that the line of names has. Cells may be quoted.
-    Separators at the ends of lines, below nothing in the line of names, and lines of separators alone are left out.
+    Between cells is what a first line such as ``sep=;`` says; without it semicolons, tabs or commas, the first of them
+    that the line of names has. Cells may be quoted. Separators at the ends of lines, below nothing in the line of
+    names, and lines of separators alone are left out.
 
     Raises
     ------
     InputError
         If a quotation does not end.
     """
-    numbered = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip(BESIDE_CELLS)]
+    lines = text.splitlines()
+    declared = SEPARATOR_LINE.fullmatch(lines[0]) if lines else None
+    numbered = [(number, line) for number, line in enumerate(lines, 1) if line.strip(BESIDE_CELLS)][bool(declared) :]
     comments = [line for _, line in numbered if line.lstrip(BESIDE_CELLS).startswith("#")]
     body = [(number, line) for number, line in numbered if not line.lstrip(BESIDE_CELLS).startswith("#")]
-    separator = next((mark for mark in (";", "\t") if body and mark in body[0][1]), ",")
+    marks = ";\t" if declared is None else declared[1]
+    separator = next((mark for mark in marks if body and mark in body[0][1]), ",")
     rows = [(number, _cells(number, line, separator)) for number, line in body]
     names = [name.translate(MICRO) for name in rows[0][1]] if rows else []
     while names and not names[-1]:
@@ -167,6 +199,24 @@ def table_in(text: str) -> Table:
         tuple((number, tuple(cells)) for number, cells in rows[1:]),
         separator,
     )
+
+
+def require_decimal_points(table: Table) -> None:
+    """Refuse a table of numbers whose decimals stand behind a comma: between commas they would be cells of their own.
+
+    Raises
+    ------
+    InputError
+        With the first such line.
+    """
+    longer = [number for number, cells in table.rows if table.separator == "," and len(cells) > len(table.names)]
+    with_comma = [number for number, cells in table.rows if any(map(DECIMAL_COMMA.fullmatch, cells))]
+    lines = with_comma or (longer if 2 * len(longer) > len(table.rows) else [])
+    if lines:
+        raise InputError(
+            f"line {lines[0]}: decimal commas, it seems ({len(lines)} such line{'s' if len(lines) > 1 else ''}); "
+            "numbers are written with a decimal point"
+        )
 
 
 def _cells(number: int, line: str, separator: str) -> list[str]:

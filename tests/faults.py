@@ -1582,6 +1582,76 @@ FAULTS = (
             ),
         )
     ),
+    Fault(
+        "solve_to_accuracy: a peak that misses the accuracy is not said where that is of the approach",
+        "contact/adaptive.py",
+        "    if of_approach:\n        limit",
+        "    if not figures:\n        limit",
+        "contact/test_adaptive.py::test_peak_that_misses_the_accuracy_where_that_is_of_the_approach_is_said",
+    ),
+    Fault(
+        "changes: a file of a measured flank does not take the place of the points",
+        "scene/flank_form.py",
+        '    alternatives: ClassVar[tuple[str, ...]] = ("file", "measurement")',
+        "    alternatives: ClassVar[tuple[str, ...]] = ()",
+        "scene/test_flank_form.py::test_another_file_takes_the_place_of_the_points_of_the_first",
+    ),
+    Fault(
+        "measured flanks: a diameter is taken for a radius",
+        "flanks/topography.py",
+        'factors.append(("radius", 0.5 * UNITS[unit]))',
+        'factors.append(("radius", UNITS[unit]))',
+        "flanks/test_topography_file.py::test_file_of_windows_is_read",
+    ),
+    Fault(
+        "tables: what a first line says of the separator is not obeyed",
+        "input_files.py",
+        'marks = ";\\t" if declared is None else declared[1]',
+        'marks = ";\\t"',
+        "flanks/test_topography_file.py::test_separator_of_the_first_line_rules",
+    ),
+    Fault(
+        "pitch deviations: what stands behind a decimal comma is left out",
+        "scene/pitch.py",
+        "        require_decimal_points(table)\n",
+        "",
+        "scene/test_pitch.py::test_refusals",
+    ),
+    Fault(
+        "report: no limit was met, although a note tells one",
+        "reports/templates/result.html.j2",
+        "{{ parts.warned(warnings, notes=limits + (lubrication.notes if lubrication else [])) }}",
+        "{{ parts.warned(warnings) }}",
+        "reports/test_report.py::test_result_without_warnings_says_so_and_one_of_an_earlier_version_too",
+    ),
+    Fault(
+        "at a glance: the legend lies on the load over the face",
+        "plots/at_a_glance.py",
+        'loc="upper center", bbox_to_anchor=(0.5, BELOW))',
+        'loc="lower center")',
+        "plots/test_at_a_glance.py::test_nothing_of_the_sheet_covers_the_load_over_the_face",
+    ),
+    Fault(
+        "stages: a sun that stays where it is has a picture of its orbit",
+        "plots/stage.py",
+        "if moves or draw is not plot_stage_sun_orbit}",
+        "}",
+        "plots/test_stage.py::test_rigid_sun_has_no_orbit",
+    ),
+    Fault(
+        "pictures: what is said in an empty panel reaches into the next",
+        "plots/style.py",
+        "textwrap.fill(why, longest)",
+        "why",
+        "plots/test_at_a_glance.py::test_empty_panel_says_why_within_its_width",
+    ),
+    Fault(
+        "vh --loaded: warnings of the analyses are not shown",
+        "cli/commands.py",
+        'print_summary(study_summary(rows), [directory / "vh_study.nc"',
+        'print_summary("", [directory / "vh_study.nc"',
+        "test_cli_vh.py::test_vh_under_load_keeps_the_study",
+    ),
 )
 
 

@@ -47,9 +47,15 @@ def test_vh_takes_steps_of_its_own_and_the_other_gear(run):
 
 @pytest.mark.usefixtures("blank_pictures")
 def test_vh_under_load_keeps_the_study(run):
-    code, out, _ = run("vh", SCENES / "spiral_bevel.toml", "--out", "out", "--loaded", "--v", 0, "--h", 0, 0.01, *FEW)
+    few = (*FEW[:-1], "analysis.cells=[6, 16]")
+    code, out, _ = run("vh", SCENES / "spiral_bevel.toml", "--out", "out", "--loaded", "--v", 0, "--h", 0, 0.01, *few)
     assert code == 0
-    assert out == "Written to out: vh_study.nc, vh_under_load.png\n"
+    assert out.startswith("2 variants: 2 ok\n")
+    assert out.endswith("\nWritten to out: vh_study.nc, vh_study.csv, vh_under_load.png\n")
+    assert "warning: fewer than 8 cells lie across the contact (2 variants)" in out
+    rows = list(csv.DictReader(Path("out", "vh_study.csv").read_text(encoding="utf-8").splitlines()))
+    assert [float(row["mounting.pinion_axial_mm"]) for row in rows] == [0.0, 0.01]
+    assert all(float(row["peak_pressure_MPa"]) > 0.0 for row in rows)
     assert {path.name for path in Path("out", "vh_study_maps").iterdir()} == {"0.nc", "1.nc"}
 
 

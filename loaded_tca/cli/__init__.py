@@ -41,7 +41,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with collecting_garbage(False), warnings_in_one_line_each():
             options = command_line().parse_args(arguments)
-            with nullcontext() if getattr(options, "scheduler", None) else hidden("dask"):
+            # xarray that is there already has looked for dask, and imports it where it saw it.
+            needed = getattr(options, "scheduler", None) or "xarray" in sys.modules
+            with nullcontext() if needed else hidden("dask"):
                 options.command(options)
             flush()
     except (Exception, KeyboardInterrupt) as error:  # whatever happens ends in one line

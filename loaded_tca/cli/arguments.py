@@ -44,7 +44,8 @@ face_milled with the same blanks, and with all machine settings and cutters: in 
 what its contact shows ('loaded-tca run', 'vh', 'ease-off'), or with the pinion's by local synthesis, whose contact at
 the mean point is what [pair.settings] of a scene of type face_milled asks for, or what is usual."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
-touch.
+touch. Axes are those of each gear's own frame, which does not turn with it: z the axis of the gear, x to the pitch
+point, turns right-handed.
 
 files in DIR:
   shaft.csv                 motions along each shaft, one row per torque and place
@@ -58,6 +59,7 @@ files in DIR:
   vh_check.csv              centre of each pattern, its shift, part of the pitch with edge contact
 and with --loaded instead
   vh_under_load.png         highest pressure at each place of the flank
+  vh_study.csv              key figures, one row per pair of errors and torque; the summary has the warnings
   vh_study.nc, vh_study_maps/  the study behind it; the same command goes on from there"""
 TRIBOLOGY = """[operation], [lubricant], roughness_Ra_um and the thermal keys of materials say how the pair runs; --set
 gives or changes them. What needs an input that is not given is left out, and the summary says which.
@@ -123,7 +125,7 @@ STAGE = """files in DIR:
   stage_phases.png          phases of the meshes of all planets
   stage_shares.png          share of every planet, under the largest torque
   stage_load_factor.png     K_gamma over the pin errors, all torques
-  stage_sun_orbit.png       motion of the sun's axis, all torques
+  stage_sun_orbit.png       motion of the sun's axis, all torques; of a sun that is not held rigid
   stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
   stage_orders.png          their orders of the mesh
 Numbers have their units in their names; docs/guide/planetary_stages.md says more."""

@@ -154,7 +154,7 @@ def _is_of_tribology(key: str) -> bool:
 def stage(options: argparse.Namespace) -> None:
     """Analyse a planetary stage, write everything into a directory, and show the summary."""
     from loaded_tca.output.other_results import write_stage
-    from loaded_tca.plots import STAGE_PICTURES, png_of
+    from loaded_tca.plots import png_of, stage_figures
     from loaded_tca.stages import analyse_stage
     from loaded_tca.stages.analyse import expected_stage_effort, states_of
 
@@ -164,7 +164,7 @@ def stage(options: argparse.Namespace) -> None:
     states = states_of(asked)
     with progress_bar(expected_stage_effort(asked), "states of both meshes", states) as progress:
         result = analyse_stage(asked, progress=progress)
-    pictures = {f"{name}.png": png_of(draw(result)) for name, draw in STAGE_PICTURES.items()}
+    pictures = {f"{name}.png": png_of(figure) for name, figure in stage_figures(result).items()}
     written = write_stage(result, directory, pictures)
     print_summary(result.summary(), written)
 
@@ -339,11 +339,11 @@ def shaft(options: argparse.Namespace) -> None:
 def vh(options: argparse.Namespace) -> None:
     """Draw the contact pattern over two mounting errors, without load or under the scene's torque."""
     from loaded_tca.flank_maps import vh_check
-    from loaded_tca.output.tables import vh_table
+    from loaded_tca.output.tables import study_csv, vh_table
     from loaded_tca.plots import plot_loaded_vh_check, plot_vh_check, png_of
     from loaded_tca.plots.style import label_of
     from loaded_tca.results.files import replace_together
-    from loaded_tca.studies import run_study, vh_study
+    from loaded_tca.studies import run_study, study_summary, vh_study
 
     scene, directory = scene_of(options), options.out
     check_place(directory)
@@ -354,7 +354,8 @@ def vh(options: argparse.Namespace) -> None:
         with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
             rows = run_study(study, executor, directory / "vh_study.nc", show, keep_maps=range(len(study)))
         figure = plot_loaded_vh_check(rows, directory / "vh_study_maps", gear=options.gear)
-        print_files([directory / "vh_study.nc", *replace_together(directory, {"vh_under_load.png": png_of(figure)})])
+        loaded = {"vh_study.csv": study_csv(rows).encode(), "vh_under_load.png": png_of(figure)}
+        print_summary(study_summary(rows), [directory / "vh_study.nc", *replace_together(directory, loaded)])
         return
     keys = scene.vh_keys
     patterns = vh_check(

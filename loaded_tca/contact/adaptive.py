@@ -17,6 +17,7 @@ from loaded_tca.contact.problem import ContactProblem
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution
 from loaded_tca.contact.solver import solve_problem
 from loaded_tca.errors import give_accuracy_warning, require
+from loaded_tca.plain import plain
 
 Cells = tuple[int, int]
 Request = TypeVar("Request")
@@ -71,7 +72,8 @@ def solve_to_accuracy(
     -------
     ContactSolution
         On the first grid that is fine enough, its ``error_estimate`` being that of the last two grids: on at least 64
-        cells ``second_order`` is within the accuracy, ``peak_pressure`` may be above.
+        cells ``second_order`` is within the accuracy, ``peak_pressure`` may be above. Where the accuracy is that of the
+        approach, ``approach`` is within it.
 
     Raises
     ------
@@ -81,7 +83,8 @@ def solve_to_accuracy(
     Warns
     -----
     AccuracyWarning
-        If the finest grid allowed does not reach the accuracy, and for the accuracy_warnings about the answer.
+        If the finest grid allowed does not reach the accuracy; if the accuracy is that of the approach and the
+        estimated error of the peak pressure is above it; and for the accuracy_warnings about the answer.
 
     Examples
     --------
@@ -113,13 +116,25 @@ def solve_to_accuracy(
     try:
         next(refinement(solve, accuracy, tolerance, limited, first_cells, start))
     except StopIteration as end:
-        solution, error = end.value
+        solution, error, of_approach = end.value
     if warn:
-        error = math.inf if math.isnan(error) else error
-        late = () if error <= accuracy else (f"estimated error {error:.1e} is above the accuracy {accuracy:.1e}",)
-        for sentence in late + solution.accuracy_warnings:
+        for sentence in _missed(solution, error, of_approach, accuracy) + solution.accuracy_warnings:
             give_accuracy_warning(sentence)
     return solution
+
+
+def _missed(solution: ContactSolution, error: float, of_approach: bool, accuracy: float) -> tuple[str, ...]:
+    """Sentences on the figures whose estimated error is above the accuracy; ``of_approach``: it is that of another."""
+    figures = [("approach" if of_approach else "peak pressure", error, "")]
+    if of_approach:
+        limit = ", which is that of the approach where the pressure has no limit"
+        figures.append(("peak pressure", solution.error_estimate.peak_pressure, limit))
+    return tuple(
+        f"the estimated error of the {figure}, {'unknown' if math.isnan(size) else plain(size, 2)}, is above the "
+        f"accuracy {plain(accuracy)}{limit}"
+        for figure, size, limit in figures
+        if not size <= accuracy
+    )
 
 
 def _solved(
@@ -137,8 +152,8 @@ def refinement(
     smooth: Callable[[ContactSolution], bool],
     first_cells: Cells,
     initial_pressure: Array | None,
-) -> Generator[Request, Any, tuple[ContactSolution, float]]:
-    """Solve on finer and finer grids; return the last solution and its estimated error.
+) -> Generator[Request, Any, tuple[ContactSolution, float, bool]]:
+    """Solve on finer and finer grids; return the last solution, its estimated error, and whether of the approach.
 
     ``solved(cells, tolerance, start)`` is a generator that returns the solution on a grid, and may ask for what it
     needs; ``smooth(solution)`` tells whether its peak is one of the surfaces, not of the grid. For the other parameters
@@ -154,10 +169,11 @@ def refinement(
         ended, estimate = solution.bounded or not smooth(solution), solution.estimate(0.0)
         fine = min(cells) >= MOST_CELLS_FOR_FIRST_ORDER
         error = estimate.second_order if fine and not ended else estimate.peak_pressure
-        if ended and ended_before:
+        of_approach = ended and ended_before
+        if of_approach:
             error = estimate.approach
         if error <= accuracy or (fine if ended else max(cells) >= MOST_CELLS):
-            return solution, error
+            return solution, error, of_approach
         ended_before, coarse, cells = ended, solution, (2 * cells[0], 2 * cells[1])
         solution = yield from solved(cells, tolerance, prolong(coarse.pressure, cells, (2, 2)))
         if coarse.pressure.any():

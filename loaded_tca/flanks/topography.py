@@ -13,13 +13,13 @@ Files hold comma-separated values with the unit of every column in its header::
     2,1,84.45,-11.2,-1.6
     ...
 
-The columns are either ``x, y, z`` (points), or ``radius, axial`` and one of ``deviation`` (positive: **more** material
-than nominal, as measuring centres count) and ``removed`` (positive: less material, as modifications count), each with
-``_um``, ``_mm``, ``_m`` or ``_in`` behind it. Rows come in any order with the columns ``profile_index`` and
-``lengthwise_index``; without them in the order of the grid, the profile running fastest, and a comment says how many
-points there are: ``# points = 5 x 9`` (profile x lengthwise). Semicolons and tabs separate values, too. Names and
-values may be quoted, the sign for micro in a name stands for u, and separators at the ends of lines, as spreadsheets
-write them, are left out. Numbers have a decimal point.
+The columns are either ``x, y, z`` (points), or ``radius`` (or ``diameter``), ``axial`` and one of ``deviation``
+(positive: **more** material than nominal, as measuring centres count) and ``removed`` (positive: less material, as
+modifications count), each with ``_um``, ``_mm``, ``_m`` or ``_in`` behind it. Rows come in any order with the columns
+``profile_index`` and ``lengthwise_index``; without them in the order of the grid, the profile running fastest, and a
+comment says how many points there are: ``# points = 5 x 9`` (profile x lengthwise). Semicolons and tabs separate
+values, too, and a first line ``sep=;`` is read. Names and values may be quoted, the sign for micro in a name stands for
+u, and separators at the ends of lines, as spreadsheets write them, are left out. Numbers have a decimal point.
 
 References
 ----------
@@ -42,16 +42,15 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, OtherKindError, numbers, shown
 from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.base import Flank
-from loaded_tca.input_files import Table, number_in, read_text, table_in
+from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
 
 LARGEST_FILE = 2**23
 """Bytes of a topography file; a point takes about 60."""
 UNITS = {"um": 1e-3, "mm": 1.0, "m": 1e3, "in": 25.4}
 """Unit at the end of a column's name -> factor to mm."""
 INDICES = ("profile_index", "lengthwise_index")
-LENGTHS = ("x", "y", "z", "radius", "axial", "deviation", "removed")
+LENGTHS = ("x", "y", "z", "radius", "diameter", "axial", "deviation", "removed")
 CHOICES = ({"x", "y", "z"}, {"radius", "axial", "deviation"}, {"radius", "axial", "removed"})
-DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?", re.ASCII)
 MOST_PROBLEMS = 10
 """Problems of single lines that are told; more of them are counted."""
 
@@ -63,7 +62,7 @@ def read_topography(path: str | os.PathLike[str]) -> Topography:
     Parameters
     ----------
     path : str or path
-        A file as this module describes it, UTF-8.
+        A file as this module describes it, in UTF-8, UTF-16 with its mark, or the western code page of Windows.
 
     Returns
     -------
@@ -86,7 +85,7 @@ def read_topography(path: str | os.PathLike[str]) -> Topography:
     >>> topography.radius.shape, float(topography.excess[4, 1])
     ((5, 4), 0.003)
     """
-    text = read_text(path, LARGEST_FILE)
+    text = read_table(path, LARGEST_FILE, "measured flank")
     with named(os.fspath(path)):
         return parse_topography(text)
 
@@ -118,13 +117,7 @@ def _numbers(table: Table) -> Array:
     Places are told, and not what stands there: the file may be any that can be read.
     """
     lines, header = table.rows, table.names
-    longer = [number for number, cells in lines if table.separator == "," and len(cells) > len(header)]
-    with_comma = [number for number, cells in lines if any(map(DECIMAL_COMMA.fullmatch, cells))]
-    if 2 * len(longer) > len(lines) or with_comma:
-        raise InputError(
-            f"line {(with_comma or longer)[0]}: decimal commas, it seems ({len(with_comma or longer)} such lines); "
-            "numbers are written with a decimal point"
-        )
+    require_decimal_points(table)
     rows, problems = [], []
     for number, cells in lines:
         if len(cells) != len(header):
@@ -158,6 +151,8 @@ def _factors(line: int, header: Sequence[str]) -> list[tuple[str, float]]:
         name, _, unit = column.rpartition("_")
         if column in INDICES:
             factors.append((column, 1.0))
+        elif name == "diameter" and unit in UNITS:
+            factors.append(("radius", 0.5 * UNITS[unit]))
         elif name in LENGTHS and unit in UNITS:
             factors.append((name, UNITS[unit]))
         elif column in LENGTHS:

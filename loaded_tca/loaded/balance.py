@@ -11,6 +11,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError
+from loaded_tca.plain import plain
 
 EXPONENTS = (0.05, 3.0)
 """Range of the exponent of a contact deformation over the force; above 1: at a cap on the pressure; far below 2/3: in a
@@ -115,7 +116,7 @@ def balance(
     array([2000.,    0.])
     """
     if not (levers > 0.0).all():
-        raise ConvergenceError(f"load sharing: no rotation gives a torque of {torque:.6g} N mm", last=levers)
+        raise ConvergenceError(f"load sharing: no rotation gives a torque of {plain(torque, 6)} N mm", last=levers)
     lever, turning = levers.tolist()
     apart = (turning * (separations - separations.min())).tolist()
     pairs = [_Pair(*parts) for parts in zip(laws, apart, lever, turning, compliance.tolist(), strict=True)]

@@ -23,6 +23,7 @@ from loaded_tca.loaded.together import Steps, found_together, with_gears
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice, contact_under_load
 from loaded_tca.loaded.tooth_pairs import SharedLoad, ToothPair, tooth_pairs_at
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.unloaded import ContactPath, MeshPath
 from loaded_tca.unloaded.curvature import relative_curvatures
 
@@ -310,7 +311,7 @@ def _loaded_states(pairs: NDArray[np.int_], contacts: Contacts, bending: Bending
 @contextmanager
 def told_where(torque: float, angle: float) -> Iterator[None]:
     """Say under which torque [N mm] and at which pinion angle [rad] something cannot be solved."""
-    where = f"{1e-3 * torque:g} N m at pinion angle {math.degrees(angle):.6g} deg"
+    where = f"{1e-3 * torque:g} N m at pinion angle {plain(math.degrees(angle), 6)} deg"
     try:
         with named(where):
             yield

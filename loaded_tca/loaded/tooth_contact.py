@@ -23,6 +23,7 @@ from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.together import Ends, Gap, Steps, Task, found_alone
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.separation import Separation
 from loaded_tca.separation.strips import strip_pressure
 from loaded_tca.unloaded import ContactPoint
@@ -149,7 +150,8 @@ def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation:
         if wider.material_area <= separation.material_area:
             most = CAP_USE * separation.material_area * cap
             raise InputError(
-                f"load: {load:.6g} N is more than the flank carries at max_pressure, {cap:g} MPa: about {most:.4g} N"
+                f"load: {plain(load, 6)} N is more than the flank carries at max_pressure, {cap:g} MPa: about "
+                f"{plain(most)} N"
             )
         separation = wider
     return separation
@@ -211,7 +213,7 @@ class _InBox:
             def smooth(solution: ContactSolution) -> bool:
                 return not (across_start or _reaches_arc(pair, self.separation, solution.pressure_on_material))
 
-            solution, _ = yield from refinement(self._solved, grid.accuracy, grid.tolerance, smooth, cells, expected)
+            solution, *_ = yield from refinement(self._solved, grid.accuracy, grid.tolerance, smooth, cells, expected)
         on_material = solution.pressure_on_material
         return LoadedContact(
             contact,

@@ -14,6 +14,7 @@ from loaded_tca.arrays import GEARS
 from loaded_tca.flank_maps.ease_off_map import EaseOffMap
 from loaded_tca.loaded.shaft_lines import ShaftLine
 from loaded_tca.output.result_files import csv_table, json_text, known
+from loaded_tca.plain import plain
 from loaded_tca.results.files import Buffer, FilePath, replace_together
 from loaded_tca.results.revolution import Revolution
 from loaded_tca.stages import StageResult
@@ -265,6 +266,12 @@ def rolling_figures(line: ShaftLine, place: int) -> dict[str, float]:
     return dict(zip(INSIDE, values, strict=True))
 
 
+AXES_OF_SHAFTS = (
+    "forces on the bearings and motions of the shafts, in the axes of each gear's own frame, which does not turn:",
+    "z is the axis of the gear, x points to the pitch point; turns are right-handed about these axes",
+)
+
+
 def bearings_text(lines: Sequence[ShaftLine]) -> str:
     """Return forces on the bearings and the motion of the middles of the faces as text.
 
@@ -284,14 +291,14 @@ def bearings_text(lines: Sequence[ShaftLine]) -> str:
             text.append(f"  bearing {n} at {line.shaft.bearings[n].at:g} mm: force x | y | z {parts} N")
             if inside := rolling_figures(line, n):
                 largest, pressure, life = inside.values()
-                lasting = "no load" if math.isinf(life) else f"life {life:.4g} million revolutions"
+                lasting = "no load" if math.isinf(life) else f"life {plain(life)} million revolutions"
                 text.append(f"    largest element force {largest:z.1f} N, pressure {pressure:z.0f} MPa, {lasting}")
         at = abs(line.places - line.middle).argmin()
         x, y, z, about_x, about_y, about_z = line.motions[at].tolist()
         text.append(f"  middle of the face: x | y | z {1e3 * x:z.2f} | {1e3 * y:z.2f} | {1e3 * z:z.2f} um")
         turns = " | ".join(f"{1e6 * one:z.1f}" for one in (about_x, about_y, about_z))
         text.append(f"    about x | y | z {turns} urad")
-    return "\n".join(text)
+    return "\n".join([*text, *AXES_OF_SHAFTS])
 
 
 def ease_off_csv(ease_off: EaseOffMap) -> str:

@@ -131,7 +131,7 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
             inside = [rolling_figures(line, n) for line in lines]
             if any(inside):
                 yield "  largest element force [N]", *(f"{one['element_force_N']:z.1f}" for one in inside)
-                yield "  life [million revolutions]", *(f"{one['life_Mrev']:.4g}" for one in inside)
+                yield "  life [million revolutions]", *(plain(one["life_Mrev"]) for one in inside)
 
 
 def torques_with_columns(torques: tuple[float, ...]) -> tuple[float, ...]:
@@ -152,7 +152,7 @@ def _standard_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
         return
     for name, nominal in zip(GEARS, scene.nominal_root_stress, strict=True):
         if math.isfinite(nominal):
-            yield f"nominal root stress, ISO, {name} [MPa]", *(f"{nominal * torque:.4g}" for torque in torques)
+            yield f"nominal root stress, ISO, {name} [MPa]", *(plain(nominal * torque) for torque in torques)
     if math.isfinite(scene.tooth_height_over_width):
         yield RIM_LABEL.strip(), *(shown(rim_factor(gear), "") for gear in (pair.pinion, pair.wheel))
 

@@ -58,6 +58,7 @@ from loaded_tca.plots.stage import (
     plot_stage_phases,
     plot_stage_shares,
     plot_stage_sun_orbit,
+    stage_figures,
 )
 from loaded_tca.plots.study import (
     plot_study,
@@ -158,6 +159,7 @@ __all__ = [
     "result_figures",
     "save_figure",
     "show_teeth",
+    "stage_figures",
     "tribology_figures",
 ]
 

@@ -25,6 +25,8 @@ from loaded_tca.results.summary import shown, signed
 A4 = (11.7, 8.3)
 """Inches, lying."""
 COLOUR = DISTINCT_COLOURS[0]
+BELOW = -0.17
+"""Of a panel and what is written at its axis, in heights of the panel: curves fill the load over the face."""
 SHOWN = (
     "peak_pressure_MPa",
     "edge_pressure_MPa",
@@ -76,7 +78,7 @@ def plot_at_a_glance(result: MeshCycle, torque: int | None = None) -> Figure:
     label = "highest contact pressure [MPa]"
     figure.colorbar(ScalarMappable(scale, COLOURS), ax=flank, label=label, extend=extend, location="bottom")
     draw_face_load(face, result, [(torque, "mean over a pitch", COLOUR, "")])
-    face.legend(fontsize="small", loc="lower center")
+    face.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, BELOW))
     for axes in (flank, face):
         axes.xaxis.label.set_fontsize("small")
     flank.title.set_fontsize("x-small")

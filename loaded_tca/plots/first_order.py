@@ -11,6 +11,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.study_panels import SAME, panels_of, told_of_variants
 from loaded_tca.plots.style import ACCENT, COLOURS, chosen_torque, label_of, load
@@ -83,7 +84,7 @@ def plot_first_order_scatter(sensitivities: Sensitivities, study: xarray.Dataset
             axes.plot(places, norm.pdf(places, middle[name], sigmas[name]), color=ACCENT, label="first order")
         axes.set(xlabel=label_of(name), yticks=[], ylabel="density")
         by_study = float(np.std(values, ddof=1)) if len(values) > 1 else math.nan
-        title = f"standard deviation {sigmas[name]:.3g} to first order, {by_study:.3g} in the study"
+        title = f"standard deviation {plain(sigmas[name], 3)} to first order, {plain(by_study, 3)} in the study"
         axes.set_title(title, fontsize="small")
     drawing.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize="small")
     style.set_title(drawing, result, f"scatter by {len(keys)} keys, {load(result, torque)}", told_of_variants(study))

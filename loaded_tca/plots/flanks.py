@@ -21,6 +21,7 @@ from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank, edge_places
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.plots.style import (
     ACCENT,
     COLOURS,
@@ -153,7 +154,7 @@ def plot_full_mesh(result: MeshCycle, position: int | None = None, torque: int |
             rising = math.copysign(1.0, np.prod(along - at))
             upwards = 1.0 if at[1] < np.mean(axes.get_ylim()) else -1.0
             axes.annotate(
-                f"pair {signed(number)}: {100.0 * share:.3g} %",
+                f"pair {signed(number)}: {plain(100.0 * share, 3)} %",
                 at,
                 xytext=(-45.0 * rising * upwards, 24.0 * upwards),  # beside the contact, towards mid-height
                 textcoords="offset points",

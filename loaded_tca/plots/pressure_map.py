@@ -27,6 +27,7 @@ from loaded_tca.contact import SubsurfaceStress
 from loaded_tca.errors import require
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks, colour_scale, highest_of_maps, loaded_maps
 from loaded_tca.plots.style import (
@@ -126,7 +127,7 @@ def _edge(result: MeshCycle, torque: int, at: tuple[int, int]) -> list[str]:
         return []
     rounded = bool(result.edge_is_rounded[torque][at])
     return [
-        f"pressure at {'a rounded' if rounded else 'a sharp'} edge {pressure:.4g} MPa"
+        f"pressure at {'a rounded' if rounded else 'a sharp'} edge {plain(pressure)} MPa"
         + ("" if rounded else ", mesh-dependent: the force of a cell that an edge cuts, on its part with material")
     ]
 
@@ -145,7 +146,7 @@ def draw_map(
     names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
     minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
     if math.isfinite(pressure):
-        label = f"after Hertz, peak pressure {pressure:.4g} MPa"
+        label = f"after Hertz, peak pressure {plain(pressure)} MPa"
         drawn: dict[str, Any] = {"fill": False, "color": ACCENT, "linestyle": "--", "label": label}
         line, size = bool(result.paths[at[1]].on_line[at[0]]), (2.0 * major, 2.0 * minor)
         area: Patch = Rectangle((-major, -minor), *size, **drawn) if line else Ellipse((0.0, 0.0), *size, **drawn)
@@ -246,7 +247,7 @@ def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear", 
     axes.contour(across, stress.depths[order], section, LINES, colors="white", linewidths=0.5)
     figure.colorbar(filled, ax=axes, label=f"{NAMES[quantity]} [MPa]")
     depth = depth_of_largest(stress.depths, values[:, row, column])
-    label = f"{largest:.4g} MPa at a depth of {depth:.3g} mm"
+    label = f"{plain(largest)} MPa at a depth of {plain(depth, 3)} mm"
     axes.plot(across[row], depth, "+", color=ACCENT, markersize=10.0, label=label)
     axes.invert_yaxis()
     axes.set_aspect("equal" if np.ptp(stress.depths) > DEEPEST_DRAWN * np.ptp(across) else "auto")

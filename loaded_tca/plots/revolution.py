@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.revolution import Revolution
@@ -67,7 +68,7 @@ def plot_revolution_error(revolution: Revolution) -> Figure:
         one + two for one, two in zip(*(a.get_legend_handles_labels() for a in (rigid, loaded)), strict=True)
     )
     figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize="small")
-    spans = f"F_i' {revolution.total_deviation():.3g} µm rigid"
+    spans = f"F_i' {plain(revolution.total_deviation(), 3)} µm rigid"
     style.write_title(
         figure,
         revolution.scene.title,
@@ -218,7 +219,7 @@ def plot_revolution_waterfall(revolution: Revolution) -> Figure:
     order = spectra[0].order[shown]
     amplitude = np.log10(np.maximum([one.amplitude[shown] for one in spectra], LEAST_SHOWN))
     mesh = axes.pcolormesh(order, np.arange(len(ascending)), amplitude, cmap=style.COLOURS, shading="nearest")
-    axes.set_yticks(range(len(ascending)), [f"{1e-3 * revolution.torque[torque]:.4g}" for torque in ascending])
+    axes.set_yticks(range(len(ascending)), [plain(1e-3 * revolution.torque[torque]) for torque in ascending])
     gear = GEARS[revolution.counted_by]
     axes.set_xlabel(f"order of the {gear}'s rotation ({gear}: {teeth} teeth)")
     axes.set_ylabel("pinion torque [N m]")

@@ -21,6 +21,7 @@ from scipy.ndimage import gaussian_filter
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks
 from loaded_tca.plots.pressure_map import POINTS_OF_A_FIELD, points_of_cells
@@ -242,7 +243,7 @@ def plot_tornado(
         label = label_of(name)
         unit = label.partition(" [")[2].rstrip("]")
         by = "keys but mounting errors" if without else "all keys"
-        title = f"now {shown(now[name], name)} {unit}, standard deviation by {by} {together:.3g} {unit}"
+        title = f"now {shown(now[name], name)} {unit}, standard deviation by {by} {plain(together, 3)} {unit}"
         axes.set_title(" ".join(title.split()).replace(" ,", ","), fontsize="small")
         axes.set_xlabel(f"change of the {label}")
     drawing.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize="small")
@@ -408,4 +409,4 @@ def _spread(sensitivities: Sensitivities, tolerances: Mapping[str, float] | None
 def _with_tolerance(key: str, tolerance: float, sign: str = "±") -> str:
     """A key in words with its tolerance and unit."""
     label = label_of(key)
-    return f"{without_unit(label)} {sign} {tolerance:.4g} {label.partition(' [')[2].rstrip(']')}".rstrip()
+    return f"{without_unit(label)} {sign} {plain(tolerance)} {label.partition(' [')[2].rstrip(']')}".rstrip()

@@ -52,7 +52,12 @@ def plot_shafts(lines: Sequence[ShaftLine], title: str = "") -> Figure:
             axes.grid(alpha=0.3)
         panels[2, column].set_xlabel(f"axial coordinate of the {gear} [mm]")
     figure.legend(*panels[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
-    write_title(figure, title, "shafts under the normal force of unloaded flanks; markers: bearings")
+    write_title(
+        figure,
+        title,
+        "shafts under the normal force of unloaded flanks; markers: bearings",
+        "axes of each gear's own frame, x to the pitch point",
+    )
     return figure
 
 

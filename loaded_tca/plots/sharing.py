@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks, loaded_maps
 from loaded_tca.plots.style import (
@@ -53,6 +54,8 @@ NEAR_LETTERS = 0.03
 MOST_ORDERS, LEAST_POSITIONS = 8, 4
 """Orders of the tooth mesh that are drawn; positions from which the first is known."""
 SMALLEST_AMPLITUDE_UM = 1e-4
+CENTRE_DECIMALS = 3
+"""Of the centre of the load in mm, which the grid does not tell more closely."""
 PART_WITH_PHASE = 0.01
 """Part of the largest amplitude under a torque from which a phase is drawn: that of less may be rounding."""
 
@@ -193,7 +196,8 @@ def draw_face_load(axes: Axes, result: MeshCycle, styles: Iterable[tuple[int, st
         if not (np.isnan(factor) or label.startswith("_")):
             middles = 0.5 * (borders[1:] + borders[:-1])
             centre = float(forces @ middles / forces.sum()) - 0.5 * float(borders[0] + borders[-1])
-            text = f"{label}, K_Hβ = {factor:.3g},\ncentre {centre:+.2g} mm from the middle"
+            off = plain(round(centre, CENTRE_DECIMALS), 2, "+")
+            text = f"{label}, K_Hβ = {plain(factor, 3)},\ncentre {off} mm from the middle"
         axes.stairs(forces / (len(result.path) - 1) / np.diff(borders), borders, color=colour, label=text)
     axes.set(xlabel=frame.labels[0], ylabel="normal force per face width [N/mm]")
     axes.set_ylim(bottom=0.0)
@@ -245,7 +249,11 @@ def draw_orders(axes: Axes, curves: Sequence[tuple[str, str, Array]]) -> Array:
         axes.set_xlim(known[0] - 0.6, known[-1] + 0.6)
     else:
         axes.set(xticks=[], yticks=[])
-        style.tell(axes, f"no order is known: the first needs {LEAST_POSITIONS} positions, all of them in contact")
+        style.tell(
+            axes,
+            f"no order is known: the first needs {LEAST_POSITIONS} positions, all of them in contact, and tooth pairs "
+            "that share the load",
+        )
     axes.set_xlabel("order of the tooth mesh")
     axes.set_ylabel("amplitude at the wheel's base circle [µm]")
     style.widen(axes, SMALLEST_AMPLITUDE_UM)

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from loaded_tca.contact import ContactSolution
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 from loaded_tca.plots.pressure_map import PRESSURE, scale_factor
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_LOAD, NO_MATERIAL, from_zero, tell
 from loaded_tca.reference.hertz import LineContact, PointContact
@@ -68,7 +69,8 @@ def plot_solution(solution: ContactSolution, hertz: PointContact | LineContact |
     if pressure.any():
         loaded = np.where(pressure > 0.0, pressure, np.nan)
         drawn = area.pcolormesh(borders[1], borders[0], loaded, cmap=COLOURS, vmin=0.0, rasterized=True)
-        figure.colorbar(drawn, ax=area, label=PRESSURE)
+        figure.colorbar(drawn, ax=area)
+        area.set_title(PRESSURE, fontsize="small")
     else:
         tell(area, NO_LOAD)
     top = np.unravel_index(int(pressure.argmax()), pressure.shape)
@@ -80,17 +82,17 @@ def plot_solution(solution: ContactSolution, hertz: PointContact | LineContact |
             fine = np.linspace(place[0], place[-1], FINE)
             across, along = (fine, np.zeros_like(fine)) if k == 0 else (np.zeros_like(fine), fine)
             curve = hertz.pressure(across) if isinstance(hertz, LineContact) else hertz.pressure(across, along)
-            axes.plot(fine, curve, color=ACCENT, label=f"Hertz, peak {hertz.max_pressure:.5g} MPa")
+            axes.plot(fine, curve, color=ACCENT, label=f"Hertz, peak {plain(hertz.max_pressure, 5)} MPa")
         at = float(places[1 - k][top[1 - k]])
-        axes.set_title(f"at {at:.3g} mm of the {('second', 'first')[k]} axis", fontsize="small")
+        axes.set_title(f"at {plain(at, 3)} mm of the {('second', 'first')[k]} axis", fontsize="small")
         axes.set(xlabel=name, ylabel=PRESSURE)
         from_zero(axes)
         axes.grid(alpha=0.3)
     if hertz is not None:
-        panels[1].legend(fontsize="small")
+        figure.legend(*panels[1].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize="small")
     figure.suptitle(
-        f"peak pressure {solution.peak_pressure:.5g} MPa, load {solution.load:.5g} N, approach {solution.approach:.5g}"
-        f" mm; {pressure.shape[0]} x {pressure.shape[1]} cells",
+        f"peak pressure {plain(solution.peak_pressure, 5)} MPa, load {plain(solution.load, 5)} N, "
+        f"approach {plain(solution.approach, 5)} mm; {pressure.shape[0]} x {pressure.shape[1]} cells",
         fontsize="medium",
     )
     return figure

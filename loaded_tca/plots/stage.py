@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
+from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.stages import StageResult, rebalanced
@@ -90,7 +91,7 @@ def plot_stage_shares(result: StageResult, torque: int | None = None) -> Figure:
     style.widen(axes, 1.0)
     axes.grid(alpha=0.3)
     figure.legend(loc="outside lower center", ncols=7, fontsize="small")
-    factor = f"K_gamma = {result.mesh_load_factor[torque]:.4g}"
+    factor = f"K_gamma = {plain(result.mesh_load_factor[torque])}"
     return _title(figure, result, f"shares of the planets, sun torque {shown_torque(result.torque[torque])}", factor)
 
 
@@ -179,7 +180,7 @@ def plot_stage_sun_orbit(result: StageResult) -> Figure:
     axes.grid(alpha=0.3)
     figure.legend(loc="outside lower center", ncols=3, fontsize="small")
     middle = 0.5 * (low + high)
-    away = () if at_rest else (f"around ({middle[0]:.4g}, {middle[1]:.4g}) µm from the axis of the carrier",)
+    away = () if at_rest else (f"around ({plain(middle[0])}, {plain(middle[1])}) µm from the axis of the carrier",)
     return _title(figure, result, "motion of the sun's axis over a mesh cycle", *away)
 
 
@@ -269,3 +270,19 @@ STAGE_PICTURES: dict[str, Callable[[StageResult], Figure]] = {
     "stage_orders": plot_stage_orders,
 }
 """Name of the file of ``loaded-tca stage`` -> how it is drawn."""
+
+
+def stage_figures(result: StageResult) -> dict[str, Figure]:
+    """Draw every picture of a stage; none of the orbit of a sun that stays where it is.
+
+    Parameters
+    ----------
+    result : StageResult
+
+    Returns
+    -------
+    dict of str to matplotlib.figure.Figure
+        By the names of ``STAGE_PICTURES``.
+    """
+    moves = bool(result.sun_motion.any())
+    return {name: draw(result) for name, draw in STAGE_PICTURES.items() if moves or draw is not plot_stage_sun_orbit}

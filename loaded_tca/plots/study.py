@@ -18,6 +18,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
+from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.study_panels import (
     MISSING,
@@ -274,11 +275,11 @@ def _draw_cells(drawing: Figure, axes: Axes, cells: Array, label: str, largest_i
     mesh = axes.pcolormesh(*borders, cells, cmap=COLOURS, norm=scale)
     bar = drawing.colorbar(mesh, ax=axes, label=label)
     if same:
-        bar.set_ticks([low], labels=[f"{low:.4g}"])
+        bar.set_ticks([low], labels=[plain(low)])
     if cells.size <= MOST_CELLS_WITH_NUMBERS:
         for i, j in zip(*np.nonzero(known), strict=True):
             ink = "black" if scale(cells[i, j]) > 0.6 else "white"
-            axes.text(j, i, f"{cells[i, j]:.4g}", ha="center", va="center", color=ink, fontsize="small")
+            axes.text(j, i, plain(cells[i, j]), ha="center", va="center", color=ink, fontsize="small")
     i, j = np.unravel_index((np.nanargmax if largest_is_best else np.nanargmin)(cells), cells.shape)
     axes.add_patch(Rectangle((j - 0.5, i - 0.5), 1, 1, fill=False, edgecolor=ACCENT, linewidth=2.5, clip_on=False))
 

@@ -22,6 +22,7 @@ from matplotlib.transforms import Bbox
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
+from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.style import ACCENT, COLOURS, MARKERS, MOST_LABELS, NOT_REACHED, label_of, wrapped_label_of
 from loaded_tca.results.summary import shown_torque
@@ -75,7 +76,7 @@ def steps_of(study: xarray.Dataset, key: str) -> tuple[Array, list[str]]:
     """Which of its values, in ascending order, a key has in each sample, and the values as text."""
     column, words = column_of(study, key)
     steps, places = np.unique(column, return_inverse=True)
-    return places, words or [f"{step:.5g}" for step in steps]
+    return places, words or [plain(step, 5) for step in steps]
 
 
 def groups_of(study: xarray.Dataset, keys: Sequence[str]) -> list[tuple[str, Array]]:
@@ -295,4 +296,4 @@ def _why_unranked(variants: pandas.DataFrame) -> list[str]:
 
 
 def _cell(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    return plain(value) if isinstance(value, float) else str(value)

@@ -17,6 +17,7 @@ from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.plots.study_panels import (
     MISSING,
     PERCENTILES,
@@ -243,7 +244,7 @@ def _draw_percentiles(axes: Axes, values: Array) -> str:
     places = dict(zip(PERCENTILES, percentiles_of(values).tolist(), strict=True))
     for part, at in places.items():
         axes.axvline(at, color=ACCENT, linestyle="-" if part == 0.5 else "--")
-    return "lines: " + ", ".join(f"{100.0 * part:z.0f} % at {at:.4g}" for part, at in places.items())
+    return "lines: " + ", ".join(f"{100.0 * part:z.0f} % at {plain(at)}" for part, at in places.items())
 
 
 def _strongest(study: xarray.Dataset, values: Array) -> list[str]:

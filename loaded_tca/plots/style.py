@@ -26,6 +26,7 @@ from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import require
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.input_files import is_place
+from loaded_tca.plain import plain
 from loaded_tca.plots.layout import estimated_at_first
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.files import FilePath, replace_file
@@ -51,6 +52,8 @@ HEADROOM = 0.08
 """Part of an axis above the highest curve."""
 CHARACTERS_PER_INCH = 11.5
 """Of a title, at most."""
+SHORTEST_LINE = 12
+"""Characters of what is said in an empty panel, at least."""
 LINE_OF_NOTE = 0.16
 """Height [inch] of a line below a picture."""
 PAD_OF_LEGEND = 0.06
@@ -145,7 +148,10 @@ def over_a_stretch(values: Array) -> Array:
 
 def tell(axes: Axes, why: str) -> None:
     """Say in a picture why it is empty."""
-    axes.text(0.5, 0.65, why, transform=axes.transAxes, ha="center", va="center", wrap=True)
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    longest = max(SHORTEST_LINE, int(CHARACTERS_PER_INCH * figure.get_figwidth() * axes.get_position().width))
+    axes.text(0.5, 0.65, textwrap.fill(why, longest), transform=axes.transAxes, ha="center", va="center")
 
 
 def highest_torque(result: CycleNumbers) -> int:
@@ -280,7 +286,7 @@ def parts_of(line: str, longest: int) -> list[str]:
 
 
 def _degrees(angle: float) -> str:
-    return f"{round(math.degrees(angle), 3) + 0.0:.4g}"
+    return plain(round(math.degrees(angle), 3))
 
 
 SILENT = {"pair", "modifications", "mounting", "load", "analysis", "material"}

@@ -29,6 +29,7 @@ from loaded_tca.flank_maps.ease_off_map import EaseOffMap, SecondOrder
 from loaded_tca.flank_maps.pattern import ContactPattern
 from loaded_tca.flank_maps.vh_check import BEYOND, VHCheck
 from loaded_tca.flanks.base import FlankFrame
+from loaded_tca.plain import plain
 from loaded_tca.plots.flanks import FINENESS, loaded_maps, picture_of
 from loaded_tca.plots.pressure_map import pressure_seen
 from loaded_tca.plots.study_panels import told_of_variants
@@ -77,7 +78,7 @@ def plot_vh_check(check: VHCheck, names: tuple[str, str] = ("V [mm]", "H [mm]"),
             panels[i, j].plot(*check.centre[cell], **DOT)
             _frame(panels[i, j], bool(check.edge_share[cell] > 0.0))
     figure.colorbar(drawn, ax=panels, label="smallest gap over the passage [µm]", format="%.3g")
-    what = f"contact pattern on the {first.gear}, marking compound {1e3 * first.compound:.4g} µm, no load"
+    what = f"contact pattern on the {first.gear}, marking compound {plain(1e3 * first.compound)} µm, no load"
     _set_legend(figure, "centre of the pattern", bool((check.edge_share > 0.0).any()), check.frame)
     write_title(figure, title, what)
     return figure
@@ -162,9 +163,9 @@ def _grid_of_flanks(v: Array, h: Array, names: tuple[str, str]) -> tuple[Figure,
     figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(rect=(0.0, below, 1.0, 1.0 - below)))
     panels = figure.subplots(len(v), len(h), squeeze=False, sharex=True, sharey=True)
     for axes, value in zip(panels[:, 0], np.sort(v)[::-1], strict=True):
-        axes.set_ylabel(f"{value:.4g}", rotation=0, ha="right", va="center")
+        axes.set_ylabel(plain(value), rotation=0, ha="right", va="center")
     for axes, value in zip(panels[-1], np.sort(h), strict=True):
-        axes.set_xlabel(f"{value:.4g}")
+        axes.set_xlabel(plain(value))
     figure.supylabel(names[0])
     figure.supxlabel(names[1], y=legend)
     return figure, panels
@@ -278,10 +279,10 @@ def _write_corners(axes: Axes, place: tuple[Array, Array], corners: Array) -> No
 def _write_numbers(axes: Axes, numbers: SecondOrder) -> None:
     """The second-order coefficients as a table."""
     axes.axis("off")
-    cells = [[name.replace("um]", "µm]"), f"{round(value, 3) + 0.0:.3g}"] for name, value in numbers.named.items()]
+    cells = [[name.replace("um]", "µm]"), plain(round(value, 3), 3)] for name, value in numbers.named.items()]
     table = axes.table(cells, cellLoc="left", colWidths=[0.75, 0.25], edges="horizontal", loc="upper center")
     table.auto_set_font_size(False)
     table.set_fontsize(9.0)
     table.scale(1.0, 1.5)
-    size = f"over {numbers.size[0]:.3g} mm of length\nand {numbers.size[1]:.3g} mm of profile"
+    size = f"over {plain(numbers.size[0], 3)} mm of length\nand {plain(numbers.size[1], 3)} mm of profile"
     axes.set_title(f"second order, {size}", fontsize="small")

@@ -17,6 +17,7 @@ import numpy as np
 
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.plots import plot_before_and_after, plot_peak_to_peak_over_torque, plot_study
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports import page
@@ -268,7 +269,7 @@ def _heads(columns: Sequence[str]) -> Iterator[str]:
 
 def _cell(value: Any) -> str:
     """A number as tables have it, a word as it is."""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    return plain(value) if isinstance(value, float) else str(value)
 
 
 DIFFERENCE = "largest difference of the transmission errors of both [um]"
@@ -301,9 +302,9 @@ def design_content(design: DesignResult) -> dict[str, Any]:
         + (f" [{minimised.unit}]" if minimised.unit != "1" else ""),
         "objectives": Table(
             (
-                ("by the full analysis", *(f"{one:.4g}" for one in design.objective)),
-                ("on held contacts", *(f"{one:.4g}" for one in design.held_objective)),
-                (DIFFERENCE, *("-" if math.isnan(one) else f"{one:.2g}" for one in design.held_difference)),
+                ("by the full analysis", *(plain(one) for one in design.objective)),
+                ("on held contacts", *(plain(one) for one in design.held_objective)),
+                (DIFFERENCE, *("-" if math.isnan(one) else plain(one, 2) for one in design.held_difference)),
             ),
             ("", "start", "optimum"),
         ),
@@ -364,7 +365,7 @@ def _figures(design: DesignResult) -> Table:
         worst = np.fmax.reduce(values.transpose("design", "sample", "torque").values, axis=1)
         for k, torque in enumerate(data["torque"].values.tolist()):
             label = words + (f" [{unit.replace('um', 'µm')}]" if unit != "1" else "")
-            row = label, f"{1e-3 * torque:.4g}", *(shown(value, name) for value in worst[:, k].tolist())
+            row = label, plain(1e-3 * torque), *(shown(value, name) for value in worst[:, k].tolist())
             highest = min((one.highest for one in limits if one.figure == name and k in one.torques), default=math.nan)
             rows.append((*row, _told_beside(float(worst[1, k]), highest)) if limits else row)
     head = "largest of the samples", "pinion torque [N m]", "start", "optimum"
@@ -375,5 +376,5 @@ def _told_beside(value: float, highest: float) -> str:
     """A limit, and by how much the value exceeds it; nothing where there is none."""
     if math.isnan(highest):
         return ""
-    exceeded = f"{highest:.4g}, exceeded by {value / highest - 1.0:.1%}"
-    return exceeded if value > (1.0 + KEPT) * highest else f"{highest:.4g}"
+    exceeded = f"{plain(highest)}, exceeded by {value / highest - 1.0:.1%}"
+    return exceeded if value > (1.0 + KEPT) * highest else plain(highest)

@@ -10,12 +10,13 @@ import numpy as np
 
 from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.output.overview import HELD, geometry_of_meshes, scene_sections, stage_sections
+from loaded_tca.plain import plain
 from loaded_tca.plots import (
     CAPTIONS,
     STAGE_CAPTIONS,
-    STAGE_PICTURES,
     TRIBOLOGY_PICTURES,
     result_figures,
+    stage_figures,
     tribology_figures,
 )
 from loaded_tca.plots.style import label_of
@@ -149,7 +150,7 @@ def _key_figures(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> 
 
 def _under(figures: Sequence[Figures]) -> Iterator[str]:
     """Names of the columns of some torques."""
-    return (f"{one['pinion_torque_Nm']:.4g}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m" for one in figures)
+    return (f"{plain(one['pinion_torque_Nm'])}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m" for one in figures)
 
 
 def _value(figures: Figures, name: str) -> str:
@@ -205,7 +206,6 @@ def stage_content(result: StageResult) -> dict[str, Any]:
     result : StageResult
     """
     head, *phases = stage_sections(result.stage)["phases"]
-    figures = {name: draw(result) for name, draw in STAGE_PICTURES.items()}
     return {
         "title": result.stage.title or "Planetary stage",
         "analysed_by": str(result.dataset.attrs.get("version", "")),
@@ -219,7 +219,7 @@ def stage_content(result: StageResult) -> dict[str, Any]:
         "orders": _orders(result),
         "files": FILES[1:],
         "warnings": explained(result.warnings),
-        "pictures": pictures_of(figures, STAGE_CAPTIONS, result.stage.title),
+        "pictures": pictures_of(stage_figures(result), STAGE_CAPTIONS, result.stage.title),
     }
 
 

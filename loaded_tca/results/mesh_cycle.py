@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.results.derivatives import sensitivities
 from loaded_tca.results.dynamics import dynamics_of
 from loaded_tca.results.figures import key_figures
@@ -94,7 +95,7 @@ class MeshCycle(CycleNumbers):
     def __repr__(self) -> str:
         peak = np.nanmax(self.peak_pressure, initial=0.0)
         torques = f"{len(self.torque)} torque" + "s" * (len(self.torque) > 1)
-        return f"MeshCycle({len(self.path)} positions, {torques}, peak {peak:.6g} MPa)"
+        return f"MeshCycle({len(self.path)} positions, {torques}, peak {plain(peak, 6)} MPa)"
 
     @cached_property
     def root_stress(self) -> tuple[RootStressMap, RootStressMap]:
@@ -278,7 +279,7 @@ class MeshCycle(CycleNumbers):
         """Positions, tooth pairs that carry the load, and whether teeth bend, in words."""
         first, last = (math.degrees(self.pinion_angle[end]) for end in (0, -1))
         count = len(self.path)
-        where = f"{count} positions, pinion angle {first:.4g} to {last:.4g} deg" if count > 1 else "1 position"
+        where = f"{count} positions, pinion angle {plain(first)} to {plain(last)} deg" if count > 1 else "1 position"
         if self.scene.analysis.load_sharing:
             numbers = [signed(number) for number in self.pair.tolist()]
             carrying = f"load shared by the tooth pairs {', '.join(numbers)}, at most {self.loaded_pairs.max()} at once"

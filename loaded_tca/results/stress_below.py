@@ -12,6 +12,7 @@ from loaded_tca.arrays import GEARS, Array, GearName, index_checks
 from loaded_tca.contact import SubsurfaceStress, subsurface_stress
 from loaded_tca.contact.subsurface import graded_depths
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.reference.hertz import LineContact, PointContact
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import index_or_largest
@@ -201,9 +202,9 @@ class StressBelow:
         angle = round(math.degrees(result.pinion_angle[self.position]), 3) + 0.0
         return (
             f"pinion torque {shown_torque(result.torque[self.torque])}, position {self.position + 1} of "
-            f"{len(result.path)}, tooth pair {self.pair}, pinion angle {angle:.4g} deg",
+            f"{len(result.path)}, tooth pair {self.pair}, pinion angle {plain(angle)} deg",
             f"flank of the {self.gear}, Poisson's ratio {self.stress.poisson_ratio:g}: "
-            f"highest pressure{across} {peak:.4g} MPa, half width b {self.half_width:.4g} mm",
+            f"highest pressure{across} {plain(peak)} MPa, half width b {plain(self.half_width)} mm",
         )
 
     def summary(self) -> str:
@@ -214,26 +215,26 @@ class StressBelow:
         for quantity, name in NAMES.items():
             largest = self.largest(quantity)
             relative = f"{largest.value / peak:z.3f} of the pressure at {largest.depth / self.half_width:z.2f} b"
-            lines.append(f"{name:<34}{largest.value:>8.4g} MPa at {largest.depth:.4g} mm: {relative}")
+            lines.append(f"{name:<34}{largest.value:>8.4g} MPa at {plain(largest.depth)} mm: {relative}")
             lines.append(f"  on the pinion at {frame.place(largest.radius, largest.axial)}")
         if (hertz := self.hertz_shear) is not None:
             relative = f"{hertz.value / hertz.pressure:z.3f} of p0 at {hertz.depth / hertz.half_width:z.2f} b"
-            own = f"p0 {hertz.pressure:.4g} MPa, b {hertz.half_width:.4g} mm"
+            own = f"p0 {plain(hertz.pressure)} MPa, b {plain(hertz.half_width)} mm"
             what = "greatest shear stress after Hertz"
-            lines.append(f"{what:<34}{hertz.value:>8.4g} MPa at {hertz.depth:.4g} mm: {relative} of its own, {own}")
+            lines.append(f"{what:<34}{hertz.value:>8.4g} MPa at {plain(hertz.depth)} mm: {relative} of its own, {own}")
         if self.result.on_edge[self._at]:
             note = "note: the contact reaches an edge, where pressure and stress are mesh-dependent"
             if self.beside_spike is not None:
                 peak, shear = float(self.pressure_map.pressure.max()), self.largest("max_shear", anywhere=True).value
                 note += (
                     "; the numbers above are those across the contact point, not those of the edge: there the cells "
-                    f"have up to {peak:.4g} MPa and {shear:.4g} MPa of shear"
+                    f"have up to {plain(peak)} MPa and {plain(shear)} MPa of shear"
                 )
             elif self._is_of_an_edge:
                 without = float(self.result.peak_pressure[self._at])
                 note += (
                     "; the numbers above are those of the edge, since the contact point lies within it or carries "
-                    f"nothing: they are not to be rated. Without the edge the contact has {without:.4g} MPa"
+                    f"nothing: they are not to be rated. Without the edge the contact has {plain(without)} MPa"
                 )
             lines.append(note)
         return "\n".join(lines)

@@ -135,9 +135,9 @@ def limits_of(figures: Sequence[Figures]) -> Iterator[str]:
     cap = figures[0]["max_pressure_MPa"]
     if math.isfinite(cap):
         counts = [entry["capped_positions"] for entry in figures]
-        yield from _counted(figures, counts, f"the pressure equals the cap on the pressure, {cap:.6g} MPa")
+        yield from _counted(figures, counts, f"the pressure equals the cap on the pressure, {plain(cap, 6)} MPa")
         if not any(counts):
-            yield f"the cap on the pressure, {cap:.6g} MPa, is not reached"
+            yield f"the cap on the pressure, {plain(cap, 6)} MPa, is not reached"
 
 
 def _counted(figures: Sequence[Figures], counts: Sequence[float], sentence: str) -> Iterator[str]:

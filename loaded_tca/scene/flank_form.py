@@ -173,6 +173,7 @@ class FlankForm(Section):
         Rule(("points", "degree"), _enough_points),
         Rule(("file", "measurement", "form"), _one_source),
     )
+    alternatives: ClassVar[tuple[str, ...]] = ("file", "measurement")
 
     def __post_init__(self) -> None:
         super().__post_init__()

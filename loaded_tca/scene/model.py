@@ -23,6 +23,7 @@ from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.section import (
     Rule,
     Section,
+    alternatives_of,
     as_table,
     contents,
     rule,
@@ -400,7 +401,9 @@ class Scene(WithStandards, ABC):
         Parameters
         ----------
         changes : mapping
-            Key as in a file, with dots (``"pinion.modifications.tip_relief_um"``) -> value; None: not given.
+            Key as in a file, with dots (``"pinion.modifications.tip_relief_um"``) -> value; None: not given. Of keys
+            that say the same in several ways (``file``, ``measurement`` of a flank; ``index_um``, ``single_um``,
+            ``file``, ``tolerance_class`` of a pitch) the one that is changed takes the place of the others.
 
         Raises
         ------
@@ -424,6 +427,9 @@ class Scene(WithStandards, ABC):
                 if isinstance(inner, tuple) and inner and isinstance(inner[0], Section | dict):
                     inner = {str(n): one for n, one in enumerate(inner)}  # a list of tables: names are places
                 place[section] = place = dict(inner) if isinstance(inner, dict) else {}
+            if value is not None:  # what a file was read into, for one, when another file is named
+                for other in set(alternatives_of(type(self), path)).difference(changes):
+                    place.pop(other.rpartition(".")[2], None)
             place[name] = value
         return scene_from_table(table)
 

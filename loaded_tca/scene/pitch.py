@@ -11,7 +11,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named, require
-from loaded_tca.input_files import number_in, read_text, table_in
+from loaded_tca.input_files import number_in, read_table, require_decimal_points, table_in
 from loaded_tca.pairs.tooth_deviations import random_index
 from loaded_tca.scene.keys import Choice, Either, Line, List, Number, Whole, key, shown
 from loaded_tca.scene.section import Rule, Section
@@ -85,6 +85,7 @@ class Pitch(Section):
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (Rule(SOURCES, _one_source), Rule(("single_um",), _closed))
+    alternatives: ClassVar[tuple[str, ...]] = SOURCES
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -131,14 +132,17 @@ def read_deviations(file: str) -> tuple[str, tuple[float, ...]]:
     InputError
         If the file cannot be read, has not one of the columns, or an entry that is no number within the limits.
     """
-    text = read_text(file, LARGEST_FILE, "file of pitch deviations")
+    text = read_table(file, LARGEST_FILE, "file of pitch deviations")
     with named(file):
         table = table_in(text)
         names = [name for name in COLUMNS if name in table.names]
         columns = ", ".join(table.names) or "none"
         require((len(names) == 1, f"found the columns {columns}; allowed one of index_um, single_um"))
+        require_decimal_points(table)
     column, values = table.names.index(names[0]), []
     for number, (_, cells) in enumerate(table.rows, 1):
+        if len(cells) > len(table.names):
+            raise InputError(f"{file}: line {number} of the table: more values than the header has columns")
         cell = cells[column] if column < len(cells) else ""
         try:
             values.append(DEVIATION_um.read(number_in(cell)))

@@ -94,9 +94,13 @@ def rule(keys: tuple[str, ...], holds: Callable[..., bool], problem: str) -> Rul
 
 @dataclass(frozen=True, kw_only=True)
 class Section:
-    """What all sections share: every way to make one checks all its values, every problem is told."""
+    """What all sections share: every way to make one checks all its values, every problem is told.
+
+    ``alternatives`` are keys that say the same in several ways: one that is changed takes the place of the others.
+    """
 
     rules: ClassVar[tuple[Rule, ...]] = ()
+    alternatives: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         values, problems = check(type(self), contents(self))
@@ -273,6 +277,25 @@ def key_at(section: type[Section], path: str, place: str = "") -> Key:
     if rest:
         raise InputError(f"{place}{name}.{shown_key(rest)}: unknown key; {place}{name} is a key, not a section")
     return entry
+
+
+def alternatives_of(section: type[Section], path: str) -> tuple[str, ...]:
+    """Paths of the keys whose place the key at a path takes where it is changed; none of a path that leads nowhere.
+
+    Examples
+    --------
+    >>> from loaded_tca.scene.cylindrical import CylindricalScene
+    >>> alternatives_of(CylindricalScene, "wheel.flank.file")
+    ('wheel.flank.measurement',)
+    """
+    *sections, name = path.split(".")
+    for each in sections:
+        _, entry = entries(section).get(each, ("", None))
+        if not isinstance(entry, Subsection):
+            return ()
+        section = entry.section
+    names = section.alternatives if name in section.alternatives else ()
+    return tuple(".".join((*sections, other)) for other in names if other != name)
 
 
 def _homes(section: type[Section]) -> dict[str, str]:

@@ -26,6 +26,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, InputError
+from loaded_tca.plain import plain
 
 MOST_STEPS = 200
 TOLERANCE = 1e-11
@@ -180,8 +181,8 @@ def balance(
     if np.abs(residual).max() <= 1e-6 * total:
         return Shares(forces, float(unknown[0]), unknown[1:] if moving else np.zeros(2))
     raise ConvergenceError(
-        f"the planets do not come into balance: {np.abs(residual).max():.3g} N of {total:.3g} N are left after "
-        f"{MOST_STEPS} steps"
+        f"the planets do not come into balance: {plain(np.abs(residual).max(), 3)} N of {plain(total, 3)} N are left "
+        f"after {MOST_STEPS} steps"
     )
 
 

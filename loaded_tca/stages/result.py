@@ -13,6 +13,7 @@ import numpy as np
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.files import (
     STAGE,
@@ -238,7 +239,7 @@ class StageResult:
         """The figures as a text, a line each and a column for each torque."""
         z_s, z_p, z_r = self.stage.teeth
         figures = self.key_figures()
-        degrees = ", ".join(f"{math.degrees(angle):.4g}" for angle in self.stage.stage.angles)
+        degrees = ", ".join(plain(math.degrees(angle)) for angle in self.stage.stage.angles)
         lines = [
             *([self.stage.title] if self.stage.title else []),
             f"sun {z_s}, planets {z_p} at {degrees} deg, ring {z_r}; the {self.stage.stage.driving} drives; "
@@ -254,8 +255,8 @@ class StageResult:
         lines += [
             _line(
                 f"  {one.order}{', cancels between equal planets' if one.torsion_cancels else ''}",
-                f"{one.stage:.4g}",
-                f"{one.one_path:.4g}",
+                plain(one.stage),
+                plain(one.one_path),
             )
             for one in self.orders()
         ]

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Literal
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears import CylindricalMesh, InternalMesh
 from loaded_tca.pairs.gear_pair import Driving
+from loaded_tca.plain import plain
 from loaded_tca.scene import cylindrical
 from loaded_tca.scene.blank import OTHER
 from loaded_tca.scene.cylindrical import CylindricalScene
@@ -106,8 +107,8 @@ class PlanetaryStage(Section):
         Rule(
             ("planet_angles_deg", "floating_sun", "sun_support_stiffness_N_per_um"),
             lambda angles, floating, stiffness: (
-                f"found planets on one side of a sun that floats, with {gap:.4g} deg between two of them; allowed up "
-                "to 180 deg, or the planets push the sun away"
+                f"found planets on one side of a sun that floats, with {plain(gap)} deg between two of them; allowed "
+                "up to 180 deg, or the planets push the sun away"
                 if (floating or stiffness == 0.0)
                 and len(angles or ()) > 1
                 and (gap := _largest_gap(angles)) > 180.0 + WRITTEN_deg

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.plain import plain
 from loaded_tca.results.warnings import without_place
 from loaded_tca.stages.sections import RING_MESH, SUN_MESH
 
@@ -72,7 +73,7 @@ class MeshWarnings:
             for up_to in own:
                 sentence = up_to[0] if len(up_to) == 1 else up_to[last]
                 if sentence is not None:
-                    load = f"; N m: {whose}, up to {1e-3 * torque:.4g})"
+                    load = f"; N m: {whose}, up to {plain(1e-3 * torque)})"
                     placed = sentence != without_place(sentence)
                     sentences.append(f"{mesh}: {sentence[:-1] + load if placed else sentence}")
         return sentences

@@ -24,6 +24,7 @@ import numpy as np
 from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import ConvergenceError, InputError, noted_accuracy_warnings, require
+from loaded_tca.plain import plain
 from loaded_tca.results.files import DESIGN, variables_of
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
@@ -296,14 +297,14 @@ def _limits(model: DesignModel, limits: Limits) -> list[Limit]:
 def _told_unmet(model: DesignModel, limits: Sequence[Limit], x: Array) -> list[str]:
     """The limits that the best design found exceeds, and by how much."""
     evaluation, sentences = model.evaluate(x), []
-    place = ", ".join(f"{key} = {value:.4g}" for key, value in zip(model.keys, x.tolist(), strict=True))
+    place = ", ".join(f"{key} = {plain(value)}" for key, value in zip(model.keys, x.tolist(), strict=True))
     for one in limits:
         largest = float(evaluation.figure(one.figure, one.torques).max())
         if largest > (1.0 + KEPT) * one.highest:
             part = 100.0 * (largest / one.highest - 1.0)
             sentences.append(
-                f"limits: {one.figure}: no design found meets {one.highest:g}; at the best one it is {largest:.4g}, "
-                f"{part:.2g} % more ({place})"
+                f"limits: {one.figure}: no design found meets {one.highest:g}; at the best one it is {plain(largest)}, "
+                f"{plain(part, 2)} % more ({place})"
             )
     return sentences
 

@@ -14,6 +14,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.input_files import number_in
+from loaded_tca.plain import plain
 from loaded_tca.results.files import DESIGN, FilePath, Part, read_dataset, write_dataset
 from loaded_tca.studies.design_figures import FIGURES, Limit
 
@@ -88,11 +89,11 @@ class DesignResult:
     def __repr__(self) -> str:
         before, after = self.objective
         warnings = self.dataset.attrs["warnings"].count("\n") + 1 if self.dataset.attrs["warnings"] else 0
-        values = ", ".join(f"{key} = {value:.4g}" for key, value in self.optimum.items())
+        values = ", ".join(f"{key} = {plain(value)}" for key, value in self.optimum.items())
         figure = f"{self.dataset.attrs['objective']} of {self.dataset.attrs['figure']}"
         warned = f", {warnings} accuracy warnings in dataset.attrs" if warnings else ""
         refused = ", not confirmed" if self.unconfirmed else ""
-        return f"DesignResult({figure}: {before:.4g} -> {after:.4g}, {values}{refused}{warned})"
+        return f"DesignResult({figure}: {plain(before)} -> {plain(after)}, {values}{refused}{warned})"
 
     @property
     def start(self) -> dict[str, float]:
@@ -162,8 +163,8 @@ class DesignResult:
         gain, held_gain = start - optimum, held_start - held_optimum
         if not gain >= held_gain * (CONFIRMED if held_gain > 0.0 else 1.0 / CONFIRMED):  # nor is NaN
             yield (
-                f"the objective goes from {held_start:.4g} to {held_optimum:.4g} on held contacts, but from "
-                f"{start:.4g} to {optimum:.4g} by the analysis"
+                f"the objective goes from {plain(held_start)} to {plain(held_optimum)} on held contacts, but from "
+                f"{plain(start)} to {plain(optimum)} by the analysis"
             )
 
     def _exceeded(self) -> Iterator[Limit]:
@@ -183,8 +184,8 @@ class DesignResult:
                 continue
             torque = _shown_torque(float(self.dataset["torque"].values[place[1]]))
             yield (
-                f"{limit.figure} is {values[place]:.4g} by the analysis at {torque} N m{self._told_sample(place[0])}, "
-                f"its limit {limit.highest:g} ({held[place]:.4g} on held contacts)"
+                f"{limit.figure} is {plain(values[place])} by the analysis at {torque} N m{self._told_sample(place[0])}"
+                f", its limit {limit.highest:g} ({plain(held[place])} on held contacts)"
             )
 
     def _at_optimum(self, name: str) -> Array:
@@ -197,7 +198,7 @@ class DesignResult:
         if "scatter" not in self.dataset or "scatter_key" not in self.dataset.coords:
             return ""
         values = self.dataset["scatter"].values[sample].tolist()
-        words = (f"{key} = {one:.4g}" for key, one in zip(self.dataset["scatter_key"].values, values, strict=True))
+        words = (f"{key} = {plain(one)}" for key, one in zip(self.dataset["scatter_key"].values, values, strict=True))
         return f" with sample {sample} of the scatter ({', '.join(words)})"
 
     @property

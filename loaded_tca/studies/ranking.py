@@ -16,6 +16,7 @@ import numpy as np
 from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.figures import FIGURES, declared
@@ -340,7 +341,7 @@ def _table(study: xarray.Dataset) -> Iterator[str]:
             values = values[np.isfinite(values)]
             if values.size:
                 at = np.percentile(values, [*PERCENTILES.values()])
-                yield f"{label:<{width}}" + "".join(f"{value:>11.4g}" for value in at)
+                yield f"{label:<{width}}" + "".join(f"{plain(value):>11}" for value in at)
 
 
 def _reasons(study: xarray.Dataset) -> Iterator[str]:

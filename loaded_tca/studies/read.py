@@ -19,7 +19,7 @@ import numpy as np
 
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, named
-from loaded_tca.input_files import read_text, table_in
+from loaded_tca.input_files import read_table, read_text, table_in
 from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest, shown, shown_key
 from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, toml_table
@@ -239,7 +239,7 @@ def _table(name: Any, folder: Path) -> dict[str, list[Any]]:
 
     with named("table"):
         # pandas would unpack it, or open an address
-        text = read_text(folder / name, LARGEST_TABLE, "table of variants")
+        text = read_table(folder / name, LARGEST_TABLE, "table of variants")
     with named(f"table: {folder / name}"):
         table, lines = table_in(text), io.StringIO()
     csv.writer(lines).writerows([table.names, *(cells for _, cells in table.rows)])

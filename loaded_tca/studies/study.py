@@ -17,6 +17,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.scene import Scene
 from loaded_tca.scene.keys import Key, Number, Whole, shown
 from loaded_tca.scene.section import as_table
@@ -97,7 +98,7 @@ class Study:
             lists = {key: [_plain(value) for value in values] for key, values in getattr(self, name).items()}
             object.__setattr__(self, name, lists)
         if (count := math.prod(self._counts)) > MOST_VARIANTS:
-            raise InputError(f"factors: all together {count:.4g} variants; allowed up to {MOST_VARIANTS}")
+            raise InputError(f"factors: all together {plain(count)} variants; allowed up to {MOST_VARIANTS}")
 
     def _problems_of_numbers(self) -> Iterator[str]:
         if not is_whole(self.seed, 0, math.inf):

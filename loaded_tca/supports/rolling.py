@@ -33,6 +33,7 @@ import numpy as np
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 from loaded_tca.reference.hertz import line_contact, point_contact
 from loaded_tca.supports.bearing import Reaction
 from loaded_tca.supports.bearing_life import ball_life, ball_rating, roller_life, roller_rating
@@ -101,7 +102,7 @@ class RollingBearing(ABC):
                 self.diameter < self.pitch_diameter * math.sin(math.pi / self.elements),
                 f"diameter: {self.elements} elements of {self.diameter:g} mm touch each other on a pitch diameter of "
                 f"{self.pitch_diameter:g} mm; allowed below "
-                f"{self.pitch_diameter * math.sin(math.pi / self.elements):.4g} mm",
+                f"{plain(self.pitch_diameter * math.sin(math.pi / self.elements))} mm",
             ),
         )
 

@@ -31,6 +31,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, keep_copies
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import Material
+from loaded_tca.plain import plain
 from loaded_tca.supports.bearing import AnyBearing, Bearing, Seat, balanced, solved
 
 SAME_PLACE = 1e-9
@@ -292,8 +293,8 @@ class Shaft:
         require(
             (
                 wanted in senses or abs(thrust) <= NO_THRUST * float(np.abs(loads[:, :3]).max()),
-                f"bearings: none takes the axial force of {thrust:.4g} N; allowed are bearings of which one has side = "
-                f"{wanted}, no contact angle, or an axial stiffness",
+                f"bearings: none takes the axial force of {plain(thrust)} N; allowed are bearings of which one has "
+                f"side = {wanted}, no contact angle, or an axial stiffness",
             )
         )
 

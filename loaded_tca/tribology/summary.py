@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loaded_tca.plain import plain
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.tribology.quantities import QUANTITIES, SUMMARY, WITH_PLACES
 
@@ -51,4 +52,4 @@ def _places_in_words(tribology: Tribology, name: str, speed: int) -> list[tuple[
 
 def _shown(value: float) -> str:
     """Return a number as the summary shows it; a dash for what is not known."""
-    return "-" if math.isnan(value) else f"{value:.4g}"
+    return "-" if math.isnan(value) else plain(value)

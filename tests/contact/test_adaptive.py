@@ -1,6 +1,7 @@
 """The choice of the grid: errors kept, no finer than needed, borders, and every refusal."""
 
 import math
+import re
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,6 +64,18 @@ def test_answer_is_that_of_its_grid():
     assert_allclose(solution.pressure, direct.pressure, atol=1e-3 * contact.max_pressure)
 
 
+def test_peak_that_misses_the_accuracy_where_that_is_of_the_approach_is_said():
+    """A quarter of the contact is cut away: two grids agree on the approach, the peak beside the end has no limit."""
+    sample, _ = paraboloid((0.1, 0.1), edge=0.1)
+    with pytest.warns(AccuracyWarning) as warned:
+        solution = solve_to_accuracy(sample, accuracy=0.05)
+    assert solution.error_estimate.approach <= 0.05 < solution.error_estimate.peak_pressure
+    assert [str(one.message) for one in warned if "accuracy 0.05" in str(one.message)] == [
+        f"the estimated error of the peak pressure, {solution.error_estimate.peak_pressure:.2g}, is above the "
+        "accuracy 0.05, which is that of the approach where the pressure has no limit"
+    ]
+
+
 def test_approach_control_refines_too():
     approach = hertz.point_contact(LOAD, (0.1, 0.1), E_STAR).approach
     sample, _ = paraboloid((0.1, 0.1), approach=approach)
@@ -74,8 +87,9 @@ def test_edge_of_the_material_asks_for_the_approach_and_stops_at_64_cells():
     sample, contact = paraboloid((0.1, 0.1), edge=0.3)
     with pytest.warns(AccuracyWarning) as warned:
         solution = solve_to_accuracy(sample, accuracy=1e-6)
-    late, ended = (str(one.message) for one in warned)
-    assert "above the accuracy" in late
+    approach, peak, ended = (str(one.message) for one in warned)
+    assert re.fullmatch(r"the estimated error of the approach, 0\.\d+, is above the accuracy 0\.000001", approach)
+    assert re.match(r"the estimated error of the peak pressure, 0\.\d+, is above the accuracy 0\.000001, which", peak)
     assert "the pressure has no limit" in ended
     assert solution.pressure.shape == (64, 64)
     assert solution.approach > contact.approach
@@ -95,8 +109,9 @@ def test_bodies_that_stand_apart_have_the_estimate_of_those_that_touch():
 
 def test_accuracy_warnings_are_given_unless_left_to_the_caller():
     sample, _ = paraboloid((0.1, 0.1), box=0.8)
-    with pytest.warns(AccuracyWarning, match="reaches the box"):
+    with pytest.warns(AccuracyWarning) as warned:
         solve_to_accuracy(sample, accuracy=1e-2)
+    assert any("reaches the box" in str(one.message) for one in warned)
     assert solve_to_accuracy(sample, accuracy=1e-2, warn=False).reaches_border
 
 
@@ -105,7 +120,7 @@ def test_accuracy_that_the_finest_grid_misses_by_little_is_told(monkeypatch):
     monkeypatch.setattr("loaded_tca.contact.adaptive.MOST_CELLS", 32)
     sample, _ = paraboloid((0.1, 0.1))
     solve_to_accuracy(sample, accuracy=2e-3)
-    with pytest.warns(AccuracyWarning, match=r"estimated error 1\..e-03 is above the accuracy 8\.0e-04"):
+    with pytest.warns(AccuracyWarning, match=r"error of the peak pressure, 0\.001\d, is above the accuracy 0\.0008$"):
         solve_to_accuracy(sample, accuracy=8e-4)
 
 

@@ -121,6 +121,24 @@ def test_file_of_a_spreadsheet_is_read_with_every_sign_for_micro(grid, micro):
     assert_allclose(found.axial, grid[1], rtol=0)
 
 
+def test_file_of_windows_is_read(grid, tmp_path):
+    """Its code page has other signs for micro and umlauts; the first line of Excel says what is between cells."""
+    rows = [row.replace(",", "\t") for row in rows_of(2.0 * grid[0], grid[1], 1e3 * grid[2])]
+    header = HEADER.replace("_um", "_\N{MICRO SIGN}m").replace("radius", "diameter").replace(",", "\t")
+    note = "# Pr\N{LATIN SMALL LETTER U WITH DIAERESIS}fer = 7; 8"
+    (tmp_path / "flank.csv").write_bytes("\r\n".join(["sep=\t", note, header, *rows]).encode("cp1252"))
+    topography = read_topography(tmp_path / "flank.csv")
+    assert topography.notes == {"Pr\N{LATIN SMALL LETTER U WITH DIAERESIS}fer": "7; 8"}
+    assert_allclose(topography.radius, grid[0], rtol=0)
+    assert_allclose(topography.excess, grid[2], rtol=1e-15)  # two conversions of units
+
+
+def test_separator_of_the_first_line_rules():
+    """Semicolons in names, for one."""
+    (problem,) = problems_of(f"sep=,\n{HEADER},note;\n1,1,50,0,0,0")
+    assert problem.startswith("line 2, column 6: the name of the column is unknown")
+
+
 def test_empty_first_cell_between_tabs_is_no_other_column():
     text = "\n".join([HEADER.replace(",", "\t"), "\t1\t50\t0\t0"])
     assert problems_of(text) == ("line 2, column 1: profile_index is not a finite number",)
@@ -146,7 +164,7 @@ def test_unknown_unit_of_a_known_column_is_told_as_such():
 
 def test_decimal_commas_in_quotes_are_one_problem():
     (problem,) = problems_of(f'{HEADER}\n1,1,"50,5",0,0')
-    assert problem.startswith("line 2: decimal commas, it seems (1 such lines)")
+    assert problem.startswith("line 2: decimal commas, it seems (1 such line)")
 
 
 @pytest.mark.parametrize("row", ['1,1,"50,0,0', '1,1,"50"5,0,0'])
@@ -218,7 +236,7 @@ def test_decimal_comma_of_one_line_is_told_with_its_place(grid):
     rows = rows_of(*grid, separator=";")
     rows[3] = "4;1;+50,25;-,5e-1;0"
     (told,) = problems_of("\n".join([HEADER.replace(",", ";"), *rows]))
-    assert told.startswith("line 5: decimal commas, it seems (1 such lines)")
+    assert told.startswith("line 5: decimal commas, it seems (1 such line)")
 
 
 def test_many_bad_lines_are_counted():

@@ -22,6 +22,7 @@ def test_sheet_has_the_numbers_of_its_torque():
     assert_allclose(error.lines[0].get_ydata(), expected, rtol=1e-12)
     assert orders.get_ylabel().endswith("[µm]")
     assert_allclose(sum(line.get_ydata() for line in shares.lines), 100.0, rtol=1e-6)  # the balance's agreement
+    assert "centre +0 mm from the middle" in figure.axes[1].get_legend_handles_labels()[1][0]  # a symmetric pair
     cells = {cell.get_text().get_text() for cell in figure.axes[2].tables[0].get_celld().values()}
     assert f"{cycle.key_figures()[0]['face_load_factor']:.4g}" in cells
 
@@ -32,6 +33,23 @@ def test_sheet_shows_root_stress_where_there_is_any():
     assert stress.get_ylabel() == "largest root stress [MPa]"
     assert_allclose(stress.lines[0].get_ydata(), cycle.root_tension[1, :, 0])
     assert np.all(stress.lines[1].get_ydata() <= 0.0)
+
+
+def test_nothing_of_the_sheet_covers_the_load_over_the_face():
+    figure = plot_at_a_glance(result(**CYCLE))
+    figure.canvas.draw()
+    face = figure.axes[1]
+    assert not face.get_legend().get_window_extent().overlaps(face.get_window_extent())
+
+
+def test_empty_panel_says_why_within_its_width():
+    alone = result("spur", positions=9, torques=(130.0,))
+    figure = plot_at_a_glance(alone)
+    figure.canvas.draw()
+    orders = figure.axes[4]
+    (text,) = orders.texts
+    assert "no order is known" in text.get_text()
+    assert text.get_window_extent().width < orders.get_window_extent().width
 
 
 def test_one_position_has_no_sheet():

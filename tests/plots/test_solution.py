@@ -26,7 +26,9 @@ def test_map_and_sections_are_those_of_the_solution_and_hertz():
     inside = np.abs(hertz.get_xdata()) <= POINT.semi_minor
     expected = POINT.max_pressure * np.sqrt(1.0 - (hertz.get_xdata()[inside] / POINT.semi_minor) ** 2)
     assert_allclose(hertz.get_ydata()[inside], expected, rtol=1e-9)
-    assert bar.get_ylabel() == across.get_ylabel() == "contact pressure [MPa]"
+    assert area.get_title() == across.get_ylabel() == "contact pressure [MPa]"
+    assert bar.get_ylabel() == ""  # beside the label of the next panel
+    assert across.get_legend() is None  # outside, not on the curves
     assert (area.get_xlabel(), area.get_aspect()) == ("second axis [mm]", 1.0)
 
 

@@ -5,7 +5,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
-from loaded_tca.plots import STAGE_PICTURES, plot_stage_load_factor, plot_stage_shares, plot_stage_sun_orbit
+from loaded_tca.plots import (
+    STAGE_PICTURES,
+    plot_stage_load_factor,
+    plot_stage_shares,
+    plot_stage_sun_orbit,
+    stage_figures,
+)
 from loaded_tca.stages import rebalanced
 from tests.samples.stages import analysed
 
@@ -46,3 +52,5 @@ def test_stage_without_pin_errors_has_one_varied(result):
 def test_rigid_sun_has_no_orbit(result):
     figure = plot_stage_sun_orbit(rebalanced(result, {"stage.floating_sun": False}))
     assert any("held rigid" in text.get_text() for text in figure.axes[0].texts)
+    drawn = stage_figures(rebalanced(result, {"stage.floating_sun": False}))
+    assert list(drawn) == [name for name in STAGE_PICTURES if name != "stage_sun_orbit"]

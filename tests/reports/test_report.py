@@ -285,8 +285,11 @@ def test_every_warning_is_told_with_what_it_means(page):
 
 
 def test_result_without_warnings_says_so_and_one_of_an_earlier_version_too(written):
-    clean = replace(cycle(), dataset=cycle().dataset.assign_attrs(warnings=""))
-    assert "None: the analysis met no limit" in written(clean).words
+    assert "None: the analysis met no limit" in written(result("spur", 1)).words
+    noted = written(replace(cycle(), dataset=cycle().dataset.assign_attrs(warnings="")))
+    assert "the contact reaches an edge of a flank" in noted.words
+    assert "met no limit" not in noted.words
+    assert "None. What the notes above say of single figures holds all the same." in noted.words
     old = replace(cycle(), dataset=cycle().dataset.drop_attrs(deep=False).assign_attrs(version="0.0.1"))
     page = written(old)
     assert "does not tell the warnings" in page.words

@@ -205,6 +205,16 @@ def test_scene_needs_the_file_no_more_once_it_is_read(small, scene, tmp_path):
     assert_array_equal(again.pair().wheel.flank.theta(rho, z).value, first.pair().wheel.flank.theta(rho, z).value)
 
 
+def test_another_file_takes_the_place_of_the_points_of_the_first(scene, measured_file):
+    first = scene.with_changes({"wheel.flank": {"form": "measured", "file": str(measured_file)}})
+    second = measured_file.with_name("second.csv")
+    second.write_text(csv_of(deviations(scene, points=(6, 8))), encoding="utf-8")
+    measurement = first.with_changes({"wheel.flank.file": str(second)}).wheel.flank.measurement
+    assert (measurement.shape, measurement.source) == ((6, 8), "second.csv")
+    with pytest.raises(InputError, match=r"^wheel\.flank\.file: found .* beside a section measurement"):
+        first.with_changes({"wheel.flank.file": str(second), "wheel.flank.measurement": measurement})
+
+
 def test_result_of_a_measured_flank_opens_without_the_file(small, scene, tmp_path):
     path = written(tmp_path / "there", small + MEASURED, csv_of(deviations(scene)))
     first = read_scene(path).with_changes({**ONE_PAIR, "analysis.positions": 1, "analysis.cells": (16, 16)})

@@ -32,6 +32,13 @@ def test_file_of_deviations_takes_the_place_of_a_list(tmp_path):
     assert parse_scene(scene.to_toml(), folder=None) == scene
 
 
+def test_deviations_of_one_key_take_the_place_of_those_of_another():
+    drawn = SCENE.with_changes({"wheel.pitch.tolerance_class": 7, "wheel.pitch.runout_um": 3.0})
+    pitch = drawn.with_changes({"wheel.pitch.index_um": [1.0] * 24}).wheel.pitch
+    assert (pitch.index_um, pitch.tolerance_class, pitch.runout_um) == ((1.0,) * 24, None, 3.0)
+    assert drawn.with_changes({"wheel.pitch.index_um": None}).wheel.pitch == drawn.wheel.pitch
+
+
 def test_file_with_single_deviations(tmp_path):
     assert read_deviations(written(tmp_path, "single_um\n1\n-2\n1\n")) == ("single_um", (1.0, -2.0, 1.0))
 
@@ -39,6 +46,13 @@ def test_file_with_single_deviations(tmp_path):
 def test_file_of_a_spreadsheet_is_read(tmp_path):
     text = '\N{BYTE ORDER MARK}"tooth";"index_\N{MICRO SIGN}m";\r\n1;1.5;\r\n2;"-2";\r\n3;.5;\r\n;;\r\n'
     assert read_deviations(written(tmp_path, text)) == ("index_um", (1.5, -2.0, 0.5))
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "utf-16"])
+def test_file_of_windows_is_read(tmp_path, encoding):
+    lines = "sep=;", "# tooth by tooth", "tooth;index_\N{MICRO SIGN}m", "1;1.5", "2;-2", "3;.5"
+    (tmp_path / "pitch.csv").write_bytes("\r\n".join(lines).encode(encoding))
+    assert read_deviations(str(tmp_path / "pitch.csv")) == ("index_um", (1.5, -2.0, 0.5))
 
 
 def test_scene_names_a_file_in_its_folder(tmp_path):
@@ -105,7 +119,11 @@ test_refusals = refused_calls(
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\nnan\n3\n")), 'line 2 of the table: found "nan"'),
     (lambda tmp_path: read_deviations(written(tmp_path, "t,index_um\n1,1\n2\n")), "line 2 of the table: found"),
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\n1_0\n")), 'line 2 of the table: found "1_0"'),
-    (lambda tmp_path: read_deviations(written(tmp_path, "a;index_um\n1;2,5\n")), 'line 1 of the table: found "2,5"'),
+    *(
+        (lambda tmp_path, text=text: read_deviations(written(tmp_path, text)), "line 2: decimal commas, it seems")
+        for text in ("a;index_um\n1;2,5\n", "index_um\n2,5\n1,5\n-4,0\n")
+    ),
+    (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\n2,5\n3\n")), "line 2 of the table: more values"),
     (lambda tmp_path: read_deviations(written(tmp_path, 'index_um\n"1\n')), "line 2: a quotation that does not end"),
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\n")), "allowed a list of 3 to 10000 values"),
     (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -316,6 +317,7 @@ def test_command_shows_elements_pressures_and_lives(tmp_path: Path, capsys: pyte
     force = bearing.element_forces(line.bearing_motions[0]).max()
     out = capsys.readouterr().out
     assert f"largest element force {force:.1f} N, pressure" in out
+    assert not re.search(r"\de[+-]\d", out)  # lives, too, as a person writes them
     rows = list(csv.DictReader((tmp_path / "out" / "bearings.csv").read_text().splitlines()))
     assert_allclose(float(rows[0]["element_force_N"]), force)
     assert_allclose(float(rows[0]["life_Mrev"]), bearing.life(line.bearing_motions[0]))

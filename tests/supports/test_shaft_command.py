@@ -50,7 +50,16 @@ def test_command_writes_tables_and_a_picture(tmp_path: Path, capsys: pytest.Capt
 
 def test_command_shows_forces_without_writing(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["shaft", SCENE]) == 0
-    assert "Written" not in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "Written" not in out
+    assert "own frame" in out
+    assert "x points to the pitch point" in out
+
+
+def test_both_gears_are_pressed_away_from_the_pitch_point_to_which_x_points() -> None:
+    for line in shaft_lines(read_scene(SCENE)):
+        assert line.bearing_forces[:, 0].sum() < 0.0
+        assert line.motions[abs(line.places - line.middle).argmin(), 0] < 0.0
 
 
 def test_scene_without_a_shaft_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
