@@ -339,8 +339,8 @@ FAULTS = (
             (
                 "an edge that ends the contact on one of two grids ends it",
                 "contact/adaptive.py",
-                "if ended and ended_before:",
-                "if ended:",
+                "of_approach = ended and ended_before",
+                "of_approach = ended",
                 "contact/test_adaptive.py::test_edge_ends_a_contact_where_two_grids_agree_that_it_does",
             ),
             (
@@ -977,8 +977,8 @@ FAULTS = (
     Fault(
         "accuracy: one that the finest grid misses by little is not told",
         "contact/adaptive.py",
-        "late = () if error <= accuracy else",
-        "late = () if error <= 10.0 * accuracy else",
+        "        if not size <= accuracy\n",
+        "        if not size <= 10.0 * accuracy\n",
         "contact/test_adaptive.py::test_accuracy_that_the_finest_grid_misses_by_little_is_told",
     ),
     Fault(
