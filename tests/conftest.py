@@ -23,6 +23,7 @@ hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
 LONG = ("tests/test_site.py", "tests/test_examples.py", "tests/test_release.py", "tests/results/test_sensitivities.py")
 """Files with tests of several seconds."""
 DEAR_EXAMPLES = (
+    "loaded_tca.baselines.bidirectional.BidirectionalStart",
     "loaded_tca.baselines.golden_section.search_golden_section",
     "loaded_tca.compliance.root_stress.root_stress_model",
     "loaded_tca.flanks.hypoid_synthesis.synthesised_gears",

@@ -113,6 +113,7 @@ def test_compliance_is_symmetric_and_positive_definite(make):
     assert np.linalg.eigvalsh(matrix(compliance, {0: first, 1: second})).min() > 0.0
 
 
+@pytest.mark.quick_cases("spur", "helical", "bevel")
 @FAMILIES
 def test_compliance_knows_which_tooth_comes_next(make):
     """Pair +1 is on the other side of both teeth than pair -1: numbers may be turned round, neighbours not."""

@@ -118,7 +118,10 @@ def test_both_solvers_warn_of_a_jump():
     problem = roof((32, 32))
     with pytest.warns(AccuracyWarning, match="the slope of the gap jumps by 100 mrad inside the contact"):
         solve_contact(problem.gap, problem.spacing, E_STAR, load=3000.0)
-    with pytest.warns(AccuracyWarning, match="the slope of the gap jumps by 100 mrad inside the contact"):
+    with (
+        pytest.warns(AccuracyWarning, match="the slope of the gap jumps by 100 mrad inside the contact"),
+        pytest.warns(AccuracyWarning, match=r"peak pressure, 0\.\d+, is above the accuracy 0\.04"),
+    ):
         solution = solve_to_accuracy(roof, accuracy=0.04)
     assert max(solution.pressure.shape) <= 64  # where its approach agrees, as where an edge ends a contact
     assert solution.error_estimate.approach <= 0.04 < solution.error_estimate.peak_pressure

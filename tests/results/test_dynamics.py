@@ -140,6 +140,7 @@ def test_angles_of_cylindrical_gears_give_the_direction_of_the_force():
     assert not {"pinion_base_helix_angle_rad", "working_pressure_angle_rad"} & {*bevel}
 
 
+@pytest.mark.quick_cases("helical")
 @pytest.mark.parametrize("name", ["helical", "bevel"])
 def test_stiffness_is_the_slope_of_the_transmission_error(name):
     """Between two torques the wheel falls back by the change of T1/r_b1 over the stiffness."""

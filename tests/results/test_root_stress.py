@@ -60,6 +60,7 @@ def test_forces_on_the_roots_are_the_normal_forces_of_the_pairs():
                 assert_allclose(table.sum(), slices.sum(), rtol=ROUNDING)
 
 
+@pytest.mark.quick_cases("mesh_cycle_spur")
 @pytest.mark.parametrize("name", ["mesh_cycle_spur", "mesh_cycle_helical"])
 def test_extremes_are_those_of_the_sum_over_the_pairs_at_all_teeth_of_the_gear(name):
     """One tooth and one pair at a time, at places of the contacts found from the frame of the pinion and the wheel."""

@@ -116,7 +116,7 @@ BENDING = {
         pytest.param("spur", "wheel.modifications.tip_relief_um", 1.0, AGREES, marks=pytest.mark.thorough),
         pytest.param("spur", TORQUE, 2.0, SMOOTH, marks=pytest.mark.thorough),
         pytest.param("spur", "pinion.shaft.bearings.0.at_mm", 1.0, SMOOTH, marks=pytest.mark.thorough),
-        ("spur", "pinion.shaft.torque_at_mm", 1.0, SMOOTH),
+        pytest.param("spur", "pinion.shaft.torque_at_mm", 1.0, SMOOTH, marks=pytest.mark.thorough),
         pytest.param("spur", "pinion.shaft.sections.0.outer_diameter_mm", 0.25, SMOOTH, marks=pytest.mark.thorough),
         ("spur", "pinion.shaft.bearings.0.radial_stiffness_N_per_um", 10.0, AGREES),  # 0.03 um in all: grids count
         ("spur", "pinion.shaft.loads.0.at_mm", 2.0, AGREES),

@@ -43,7 +43,7 @@ def with_error(pair, function):
 # The envelope
 
 
-@pytest.mark.quick_cases("mesh0-pinion", "mesh1-wheel")
+@pytest.mark.quick_cases("mesh0-pinion")
 @drives
 @kinds
 def test_envelope_is_the_first_touch_over_many_teeth(mesh, driving):
