@@ -12,11 +12,12 @@ from importlib.metadata import version
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.analysis import Effort, expected_effort, grid_of, roots_of
+from loaded_tca.analysis import grid_of, roots_of
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, model_of
 from loaded_tca.compliance.model import HeldBodies, SumOfParts, held_bodies, with_enough_teeth
+from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
@@ -44,7 +45,7 @@ KEPT = "normal_force", "peak_pressure", "on_edge"
 
 
 def expected_revolution_effort(scene: Scene) -> Effort:
-    """Estimate what a whole revolution takes; see :func:`loaded_tca.analysis.expected_effort`.
+    """Estimate what a whole revolution takes; see :func:`loaded_tca.effort.expected_effort`.
 
     The time is that of the states of all its positions; the memory that of those which are solved together.
     """

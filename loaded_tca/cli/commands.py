@@ -76,7 +76,8 @@ def run(options: argparse.Namespace) -> None:
 
 def _run_scene(scene: Scene, directory: Path) -> None:
     """Analyse a scene, write everything into a directory, and show the summary."""
-    from loaded_tca.analysis import analyse, expected_effort
+    from loaded_tca.analysis import analyse
+    from loaded_tca.effort import expected_effort
     from loaded_tca.output.result_files import write_report
     from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
 

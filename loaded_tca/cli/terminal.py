@@ -15,7 +15,7 @@ from threading import Event, Thread
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
-    from loaded_tca.analysis import Effort
+    from loaded_tca.effort import Effort
     from loaded_tca.studies import Study
 
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {elapsed} gone, {remaining} left"
@@ -89,7 +89,7 @@ def say_cost(study: Study, workers: int = 1) -> None:
 
     Each as the scene they have in common, roughly: variants with other grids differ, models of teeth are made once.
     """
-    from loaded_tca.analysis import expected_effort
+    from loaded_tca.effort import expected_effort
     from loaded_tca.plain import plain
     from loaded_tca.scene import Scene
     from loaded_tca.studies.stage import expected_seconds as of_stage

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import enum
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import import_module
-from typing import Any, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 
@@ -223,11 +221,6 @@ class ContactSolution(Solution):
 
     problem: ContactProblem
     coarser: CoarserGrid | None = None
-
-    def plot(self, hertz: Any = None) -> Any:
-        """Draw the pressure, beside a PointContact or LineContact if given: :func:`loaded_tca.plots.plot_solution`."""
-        draw: Callable[..., Any] = import_module("loaded_tca.plots").plot_solution  # numerics know no plotting
-        return draw(self, hertz)
 
     @cached_property
     def peak_pressure(self) -> float:

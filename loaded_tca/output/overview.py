@@ -11,8 +11,8 @@ from itertools import chain
 
 import numpy as np
 
-from loaded_tca.analysis import expected_effort
 from loaded_tca.arrays import GEARS
+from loaded_tca.effort import expected_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from loaded_tca.analysis import Effort, analyse, expected_effort
+from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array
+from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.results import MeshCycle
 from loaded_tca.scene import Scene
@@ -153,7 +154,7 @@ def states_of(stage: Stage) -> int:
 
 
 def expected_stage_effort(stage: Stage) -> Effort:
-    """Estimate of what an analysis takes, as of :func:`loaded_tca.analysis.expected_effort`: that of both meshes."""
+    """Estimate of what an analysis takes, as of :func:`loaded_tca.effort.expected_effort`: that of both meshes."""
     first, second = map(expected_effort, scenes_of(stage))
     return replace(
         first,

@@ -19,7 +19,7 @@ def solution(load=LOAD, cells=(32, 48)):
 
 def test_map_and_sections_are_those_of_the_solution_and_hertz():
     one = solution()
-    area, across, along, bar = one.plot(POINT).axes
+    area, across, along, bar = plot_solution(one, POINT).axes
     assert_allclose(across.lines[0].get_ydata().max(), one.pressure.max())
     assert_allclose(along.lines[0].get_ydata().max(), one.pressure.max())
     hertz = across.lines[1]
@@ -34,14 +34,14 @@ def test_map_and_sections_are_those_of_the_solution_and_hertz():
 
 def test_line_after_hertz_has_no_ends():
     line = line_contact(50.0, 1.0 / RADII[0], MODULUS)
-    _, across, along, _ = solution().plot(line).axes
+    _, across, along, _ = plot_solution(solution(), line).axes
     assert_allclose(across.lines[1].get_ydata(), line.pressure(across.lines[1].get_xdata()))
     assert_allclose(along.lines[1].get_ydata(), line.max_pressure)
 
 
 def test_anything_else_than_hertz_is_refused():
     with pytest.raises(InputError, match=r"hertz: 1250\.0 is neither a PointContact nor a LineContact"):
-        solution().plot(1250.0)
+        plot_solution(solution(), 1250.0)
 
 
 def test_without_load_the_picture_says_so():
@@ -51,7 +51,7 @@ def test_without_load_the_picture_says_so():
 def test_long_grids_say_how_much_larger_they_are_drawn():
     gap, spacing = point_contact_gap((10.0, np.inf), (0.1, 10.0), (64, 16))
     with pytest.warns(UserWarning, match="reaches the box"):
-        area = solve_contact(gap, spacing, MODULUS, load=LOAD).plot().axes[0]
+        area = plot_solution(solve_contact(gap, spacing, MODULUS, load=LOAD)).axes[0]
     assert f"drawn {area.get_aspect():g} times larger" in area.get_ylabel()
 
 

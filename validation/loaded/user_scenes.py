@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from loaded_tca import analyse, analyse_revolution, parse_scene, read_scene
-from loaded_tca.analysis import expected_effort
+from loaded_tca.effort import expected_effort
 from loaded_tca.stages import analyse_stage, read_stage
 from validation.page import ROOT, SCENES, Page, machine, table, write_page
 

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from loaded_tca import InputError, analyse, read_scene
-from loaded_tca.analysis import expected_effort
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
 from loaded_tca.compliance.root_stress import OUTLINE, root_influence, stress_density
+from loaded_tca.effort import expected_effort
 from tests.samples.results import ONE_PAIR, result
 
-SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+SCENES = Path(__file__).parents[1] / "examples" / "scenes"
 
 
 def effort_of(name="helical", **changes):
