@@ -99,7 +99,7 @@ def test_accuracy_asks_for_no_more_cells_than_the_finest_grid():
 
 
 def test_analysis_beyond_the_memory_is_refused_before_it_starts(monkeypatch):
-    monkeypatch.setattr("loaded_tca.analysis.machine_memory", lambda: 2.0**30)
+    monkeypatch.setattr("loaded_tca.effort.machine_memory", lambda: 2.0**30)
     asked = scene(cells=(1000, 1000), accuracy=None, positions=21)
     with pytest.raises(InputError, match=r"cells: \(1000, 1000\): 21 contacts of 1000000 cells.*has 1 GiB"):
         analyse(asked, progress=lambda *_: pytest.fail("has started"))
