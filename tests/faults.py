@@ -1652,6 +1652,13 @@ FAULTS = (
         'print_summary("", [directory / "vh_study.nc"',
         "test_cli_vh.py::test_vh_under_load_keeps_the_study",
     ),
+    Fault(
+        "supports: what a shaft is wound up by counts as a tilt of the gear",
+        "results/supports.py",
+        "(motions[..., :3], motions[..., 3:5])",
+        "(motions[..., :3], motions[..., 3:])",
+        "supports/test_analysis.py::test_shaft_that_is_wound_up_is_no_soft_support",
+    ),
 )
 
 

@@ -17,8 +17,8 @@ from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.supports import RollingBearing, SupportCompliance, shafts_of
 from loaded_tca.units import MICROMETRES
 
-LARGEST_WAY, LARGEST_TURN = 0.1, 5e-3
-"""Motions over the module, and rotations [rad], above which supports are softer than those of gears that mesh."""
+LARGEST_WAY, LARGEST_TILT = 0.1, 5e-3
+"""Motions over the module, and tilts [rad], above which supports are softer than those of gears that mesh."""
 
 LARGEST_MOMENT = 5e-3
 """Part of the torque that the axial moment of the forces on a pinion's supports may lack; of cylindrical and straight
@@ -128,12 +128,15 @@ def warn_of_supports(pair: GearPair, cycles: Sequence[OnSupports], torques: Sequ
 
 
 def warn_of_motions(pair: GearPair, cycles: Sequence[OnSupports]) -> None:
-    """Give an AccuracyWarning if gears on supports move so far that their units are in doubt."""
-    motions = np.abs(np.stack([_motions(pair, one) for one in cycles]))
-    way, turn = (float(np.nanmax(part, initial=0.0)) for part in (motions[..., :3], motions[..., 3:]))
-    if way > LARGEST_WAY * pair.module or turn > LARGEST_TURN:
+    """Give an AccuracyWarning if gears on supports move so far that their units are in doubt.
+
+    What shafts are wound up by turns the gears about their axes, as meshing does, and is no such motion.
+    """
+    motions = np.abs(np.stack([_motions_of_gears(one) for one in cycles]))
+    way, tilt = (float(np.nanmax(part, initial=0.0)) for part in (motions[..., :3], motions[..., 3:5]))
+    if way > LARGEST_WAY * pair.module or tilt > LARGEST_TILT:
         give_accuracy_warning(
-            kinds.LARGE_MOTIONS.sentence(way=way, turn=1e3 * turn, modules=LARGEST_WAY, most=1e3 * LARGEST_TURN),
+            kinds.LARGE_MOTIONS.sentence(way=way, tilt=1e3 * tilt, modules=LARGEST_WAY, most=1e3 * LARGEST_TILT),
             stacklevel=3,
         )
 
@@ -186,11 +189,22 @@ def _parts(one: OnSupports) -> SupportCompliance:
 
 def _motions(at_rest: GearPair, one: OnSupports) -> Array:
     """Motions (2, n, 6) of the middles of both faces [mm, rad], in the axes of the fixed frame."""
-    motions, frames = [], (np.eye(3), at_rest.wheel_axes)
-    for support, loads, axes in zip(_parts(one).supports, one.loads, frames, strict=True):
-        own = np.stack([support.at_middle(support.moved(load)) for load in loads])
-        motions.append(np.concatenate([own[:, :3] @ axes, own[:, 3:] @ axes], axis=-1))
+    frames = np.eye(3), at_rest.wheel_axes
+    motions = [
+        np.concatenate([own[:, :3] @ axes, own[:, 3:] @ axes], axis=-1)
+        for own, axes in zip(_motions_of_gears(one), frames, strict=True)
+    ]
     return np.stack(motions)
+
+
+def _motions_of_gears(one: OnSupports) -> Array:
+    """The same in the axes of each gear's own frame, z its axis."""
+    return np.stack(
+        [
+            [support.at_middle(support.moved(load)) for load in loads]
+            for support, loads in zip(_parts(one).supports, one.loads, strict=True)
+        ]
+    )
 
 
 def _misalignment(pair: GearPair, pressure_angle: float, motions: Array) -> Array:

@@ -233,8 +233,17 @@ def test_misalignment_counts_as_mounting_errors_do() -> None:
 @pytest.mark.filterwarnings("default::loaded_tca.AccuracyWarning")
 def test_motions_of_doubtful_size_are_warned_of() -> None:
     scene = scene_of("mesh_cycle_spur", **{"analysis.torques_Nm": [20.0]})
-    with pytest.warns(AccuracyWarning, match=r"gears on their supports move by up to .* and 10 mrad, more than 0.1"):
-        analyse(on(scene, np.diag([0.0] * 5 + [5e-7]), None))
+    with pytest.warns(
+        AccuracyWarning, match=r"gears on their supports move by up to 0\.\d+ mm and tilt by up to 0 mrad"
+    ):
+        analyse(on(scene, np.diag([0.0, 1e-3] + [0.0] * 4), None))
+
+
+def test_shaft_that_is_wound_up_is_no_soft_support() -> None:
+    """By 10 mrad about the axis: the gears mesh as before, and errors of units show in tilts and ways."""
+    scene = scene_of("mesh_cycle_spur", **{"analysis.torques_Nm": [20.0]})
+    (motion,) = analyse(on(scene, np.diag([0.0] * 5 + [5e-7]), None)).pinion_motion[0]
+    assert_allclose(np.abs(motion), [0.0] * 5 + [0.01], rtol=1e-3, atol=1e-12)
 
 
 @pytest.mark.thorough
