@@ -269,8 +269,8 @@ FACE_ELEMENTS = Kind(
     "read root stress under a contact of the whole face; a contact that covers a part of it has more",
 )
 LARGE_MOTIONS = Kind(
-    "gears on their supports move by up to {way:.3g} mm and tilt by up to {tilt:.3g} mrad, more than {modules:g} modules "
-    "or {most:g} mrad: supports are linear, and so soft that the gears hardly mesh",
+    "gears on their supports move by up to {way:.3g} mm and tilt by up to {tilt:.3g} mrad, more than {modules:g} "
+    "modules or {most:g} mrad: supports are linear, and so soft that the gears hardly mesh",
     "motions of that size shift the contact by parts of the tooth; stiffnesses may have another unit than was meant",
     "stiffer supports, less torque, or the unit of compliance and stiffness: mm, rad, N, N mm",
 )
