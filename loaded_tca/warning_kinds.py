@@ -87,8 +87,8 @@ FACE_ENDS_AT_ONE_PLACE = Kind(
     "faces of both gears end at one place: the derivative of K_Hbeta has a kink, it is {falling:+.2g} per {unit} by "
     "falling and {growing:+.2g} by growing values ({key}; {count} of {keys} keys)",
     "the common face, over which K_Hbeta counts, gets shorter to either side of the key, or one end of it does: the "
-    "derivative is the mean of both sides",
-    "faces of two widths or an offset; else the derivative of the side that is meant",
+    "derivative is the mean of both sides; beside ends of the load it depends on the cells, its sign, too",
+    "faces of two widths or an offset; else analyses to the side that is meant, over more than a cell",
 )
 SLOPES_BY_GRIDS = Kind(
     "derivatives of the transmission error depend on the grid by up to {size:.2g} um per {unit}, more than 5% of what "

@@ -11,7 +11,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named, require
-from loaded_tca.input_files import number_in, read_table, require_decimal_points, table_in
+from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
 from loaded_tca.pairs.tooth_deviations import random_index
 from loaded_tca.scene.keys import Choice, Either, Line, List, Number, Whole, key, shown
 from loaded_tca.scene.section import Rule, Section
@@ -24,7 +24,7 @@ LARGEST_INDEX = 0.05
 """Index deviation over the module, beyond which no load brings the teeth into contact."""
 DEVIATION_um = Number(-10000.0, 10000.0)
 DEVIATIONS_um = List(DEVIATION_um, 3, 10000)
-COLUMNS = "index_um", "single_um"
+COLUMNS, TOOTH = ("index_um", "single_um"), "tooth"
 SOURCES = "index_um", "single_um", "file", "tolerance_class"
 
 
@@ -65,7 +65,7 @@ class Pitch(Section):
     file: str | None = key(
         Line(1000),
         "or a CSV file, relative to the folder of the scene, with a column `index_um` or `single_um`, a line for each "
-        "tooth",
+        "tooth, in whose order teeth are numbered; beside it no column but `tooth`, which counts them from 0 or 1",
         None,
         "as `index_um`",
     )
@@ -137,8 +137,16 @@ def read_deviations(file: str) -> tuple[str, tuple[float, ...]]:
         table = table_in(text)
         names = [name for name in COLUMNS if name in table.names]
         columns = ", ".join(table.names) or "none"
-        require((len(names) == 1, f"found the columns {columns}; allowed one of index_um, single_um"))
+        others = {*table.names} - {*COLUMNS, TOOTH}
+        require(
+            (
+                len(names) == 1 and not others,
+                f"found the columns {columns}; allowed one of index_um, single_um, and {TOOTH} beside it",
+            )
+        )
         require_decimal_points(table)
+    if TOOTH in table.names:
+        _require_order(file, table)
     column, values = table.names.index(names[0]), []
     for number, (_, cells) in enumerate(table.rows, 1):
         if len(cells) > len(table.names):
@@ -154,6 +162,19 @@ def read_deviations(file: str) -> tuple[str, tuple[float, ...]]:
         return names[0], DEVIATIONS_um.read(values)
     except ValueError as refused:
         raise InputError(f"{file}: {refused}") from None
+
+
+def _require_order(file: str, table: Table) -> None:
+    """Deviations are taken in the order of their lines: numbers of teeth beside them count up, from 0 or 1 on."""
+    column = table.names.index(TOOTH)
+    cells = [row[column].strip() if column < len(row) else "" for _, row in table.rows]
+    first = int(cells[:1] != ["0"])
+    for line, cell in enumerate(cells):
+        if cell != str(first + line):
+            raise InputError(
+                f"{file}: line {line + 1} of the table: found {TOOTH} {shown(cell)}; allowed {first + line}: teeth are "
+                "numbered in the order of the lines, from 0 or 1 on"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -110,6 +110,18 @@ def test_scene_without_deviations_has_none():
 
 test_refusals = refused_calls(
     (lambda tmp_path: read_deviations(written(tmp_path, "tooth\n1\n")), "found the columns tooth; allowed one of"),
+    (
+        lambda tmp_path: read_deviations(written(tmp_path, "index_um,remark\n2,5\n1,0\n")),
+        "found the columns index_um, remark; allowed one of index_um, single_um, and tooth beside it",
+    ),
+    (
+        lambda tmp_path: read_deviations(written(tmp_path, "tooth,index_um\n3,1\n2,2\n1,3\n")),
+        'line 1 of the table: found tooth "3"; allowed 1: teeth are numbered in the order of the lines',
+    ),
+    (
+        lambda tmp_path: read_deviations(written(tmp_path, "tooth,index_um\n0,1\n2,2\n1,3\n")),
+        'line 2 of the table: found tooth "2"; allowed 1',
+    ),
     (lambda tmp_path: read_deviations(written(tmp_path, "")), "found the columns none; allowed one of"),
     (
         lambda tmp_path: read_deviations(written(tmp_path, "index_um,single_um\n1,1\n")),
@@ -117,11 +129,11 @@ test_refusals = refused_calls(
     ),
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\nx\n3\n")), 'line 2 of the table: found "x"'),
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\nnan\n3\n")), 'line 2 of the table: found "nan"'),
-    (lambda tmp_path: read_deviations(written(tmp_path, "t,index_um\n1,1\n2\n")), "line 2 of the table: found"),
+    (lambda tmp_path: read_deviations(written(tmp_path, "tooth,index_um\n1,1\n2\n")), "line 2 of the table: found"),
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\n1_0\n")), 'line 2 of the table: found "1_0"'),
     *(
         (lambda tmp_path, text=text: read_deviations(written(tmp_path, text)), "line 2: decimal commas, it seems")
-        for text in ("a;index_um\n1;2,5\n", "index_um\n2,5\n1,5\n-4,0\n")
+        for text in ("tooth;index_um\n1;2,5\n", "index_um\n2,5\n1,5\n-4,0\n")
     ),
     (lambda tmp_path: read_deviations(written(tmp_path, "index_um\n1\n2,5\n3\n")), "line 2 of the table: more values"),
     (lambda tmp_path: read_deviations(written(tmp_path, 'index_um\n"1\n')), "line 2: a quotation that does not end"),
