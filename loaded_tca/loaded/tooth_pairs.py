@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
@@ -30,6 +30,20 @@ class ToothPair:
     contact: ContactPoint
     initial_separation: float
     gears: GearPair | None = None
+
+    def at_middle(self, driving: int, middle: ContactPoint) -> ToothPair:
+        """Return the pair with its contact as it is traced at the middle of its way from first contact under load.
+
+        There the pinion stands behind by half of the way, and so does the wheel ahead: what either gear is turned from
+        there closes the flanks by its angle times the lever of the normal.
+        """
+        first, ratio = self.contact, middle.pinion_lever / middle.wheel_lever
+        way = first.pinion_angle - middle.pinion_angle
+        later = middle.wheel_angle + ratio * way - first.wheel_angle
+        contact = replace(
+            middle, transmission_error=first.transmission_error + later, pinion_lever=first.pinion_lever
+        )
+        return replace(self, contact=contact, initial_separation=self.initial_separation - driving * later)
 
 
 @dataclass(frozen=True, eq=False)

@@ -110,7 +110,7 @@ def gap_growth(
         Torque, position and pair of each grid.
     changes : sequence of PairChange
     """
-    pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
+    pair, grids, pairs = result.gear_pair, tangents.grids, places[2]
     if not changes:
         none = np.zeros((0, pairs.size))
         motions, tilts = (np.zeros((*none.shape, count)) for count in (OF_GRIDS, 2))
@@ -122,7 +122,7 @@ def gap_growth(
     pressures = np.concatenate([grid.pressure[grid.pressed] for grid in grids])
     growth, points = held.followed(pressures, separations), held.at_points
     # the gears of a pair are turned back into contact first, then closed under load
-    touching = np.array([path.transmission_error for path in result.paths])[pairs, positions]
+    touching = np.array([grid.contact.transmission_error for grid in grids])
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
     wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
     active = np.concatenate([grid.active[grid.pressed] for grid in grids])

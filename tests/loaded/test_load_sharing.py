@@ -143,7 +143,8 @@ def test_zero_from_which_gaps_count_moves_no_force(raised, monkeypatch):
 
     def sampled(pair_of, contacts, **options):
         for contact, grid in zip(contacts, sample_separations(pair_of, contacts, **options), strict=True):
-            by = raised if contact is first.contact else 0.0
+            of_first = abs(contact.pinion_angle - first.contact.pinion_angle) < 0.5 * pair.pitch
+            by = raised if of_first else 0.0
             yield replace(grid, gap=grid.gap + by, cut_gap=grid.cut_gap + by)
 
     at_once = "loaded_tca.loaded.together.sample_separations"
