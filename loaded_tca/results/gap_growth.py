@@ -110,7 +110,7 @@ def gap_growth(
         Torque, position and pair of each grid.
     changes : sequence of PairChange
     """
-    pair, grids, pairs = result.gear_pair, tangents.grids, places[2]
+    pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
     if not changes:
         none = np.zeros((0, pairs.size))
         motions, tilts = (np.zeros((*none.shape, count)) for count in (OF_GRIDS, 2))
@@ -124,10 +124,15 @@ def gap_growth(
     # the gears of a pair are turned back into contact first, then closed under load
     touching = np.array([grid.contact.transmission_error for grid in grids])
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
-    wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
+    levers = np.array([(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in grids]).T
+    # contacts are traced at the middles of their ways, from where the pinion goes on
+    own = result.pinion_angle[positions] - result.pair[pairs] * pair.pitch
+    ways = own - [grid.contact.pinion_angle for grid in grids]
+    rates = (points.levers[0] - levers[0] / levers[1] * points.levers[1]) / levers[1]
+    turns = points.turns - pair.driving * ways * rates
     active = np.concatenate([grid.active[grid.pressed] for grid in grids])
     gaps, kinks = growth.gaps[:, active], np.zeros(points.turns.shape)
-    for row, closed in zip(gaps, points.turns * wheel_levers - turned * points.levers[1], strict=True):
+    for row, closed in zip(gaps, turns * levers[1] - turned * points.levers[1], strict=True):
         row += closed[tangents.grid]
     ends = np.cumsum([np.count_nonzero(grid.pressed) for grid in grids])[:-1]
     covers, kinks_of_cells = (np.split(values, ends, axis=1) for values in (growth.covers, growth.kinks))
