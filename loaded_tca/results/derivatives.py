@@ -99,6 +99,8 @@ def _contacts_of_maps(
     pair: GearPair, firsts: Sequence[ToothPair], maps: Sequence[PressureMap]
 ) -> list[ContactPoint]:
     """Contacts that maps have grown from, at the middles of the ways of pairs that load turns from first contact."""
+    if not firsts:
+        return []
     angles = [angles_through(pair, one.contact, m.origin)[0] for one, m in zip(firsts, maps, strict=True)]
     path = trace_near(pair, [one.contact for one in firsts], angles)
     return [one.at_middle(pair.driving, path[n]).contact for n, one in enumerate(firsts)]
