@@ -1,8 +1,8 @@
 """Work on many contacts at once: each asks for gaps and pressures, and what all ask for is found together.
 
 A contact, or the tooth pairs of a position that share a torque, is a generator. It yields what it needs next, a
-:class:`Trace`, :class:`Gap`, :class:`Line`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its result. So it reads
-as if it were alone, and its numbers do not depend on what stands beside it.
+:class:`Trace`, :class:`Gap`, :class:`Line`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its
+result. So it reads as if it were alone, and its numbers do not depend on what stands beside it.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Generator, Sequence
 from functools import partial
-from itertools import chain, islice
+from itertools import islice
 from typing import Any, NamedTuple, TypeVar
 
 from loaded_tca.arrays import Array
@@ -168,8 +168,8 @@ def _of_flanks(
     requests = list(asked.values())
     gears = requests[0].gears or pair
     if isinstance(requests[0], Trace):
-        contacts, angles = ([*chain(*(one[part] for one in requests))] for part in (0, 1))
-        path = trace_near(gears, contacts, angles)
+        near = [contact for one in requests for contact in one.contacts]
+        path = trace_near(gears, near, [angle for one in requests for angle in one.pinion_angles])
         places = iter(range(len(path)))
         return {index: [path[n] for n in islice(places, len(one.contacts))] for index, one in asked.items()}
     if isinstance(requests[0], Ends):

@@ -19,7 +19,7 @@ class ToothPair:
     pair : int
         Its number.
     contact : ContactPoint
-        Its first contact, unloaded, in the angles of its own tooth.
+        Its first contact, unloaded, in the angles of its own tooth; of a pair under load that in the middle of its way.
     initial_separation : float [rad]
         Rotation of the wheel that brings it into contact; zero for the leading pair.
     gears : GearPair or None
@@ -35,14 +35,13 @@ class ToothPair:
         """Return the pair with its contact as it is traced at the middle of its way from first contact under load.
 
         There the pinion stands behind by half of the way, and so does the wheel ahead: what either gear is turned from
-        there closes the flanks by its angle times the lever of the normal.
+        there closes the flanks by its angle times the lever of the normal. The transmission error of the contact is
+        that of the tangent to its motion at the first pinion angle; the lever of the pinion stays that of results.
         """
         first, ratio = self.contact, middle.pinion_lever / middle.wheel_lever
         way = first.pinion_angle - middle.pinion_angle
         later = middle.wheel_angle + ratio * way - first.wheel_angle
-        contact = replace(
-            middle, transmission_error=first.transmission_error + later, pinion_lever=first.pinion_lever
-        )
+        contact = replace(middle, transmission_error=first.transmission_error + later, pinion_lever=first.pinion_lever)
         return replace(self, contact=contact, initial_separation=self.initial_separation - driving * later)
 
 

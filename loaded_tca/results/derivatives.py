@@ -95,9 +95,7 @@ def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = No
     return loaded_states(states, bending)
 
 
-def _contacts_of_maps(
-    pair: GearPair, firsts: Sequence[ToothPair], maps: Sequence[PressureMap]
-) -> list[ContactPoint]:
+def _contacts_of_maps(pair: GearPair, firsts: Sequence[ToothPair], maps: Sequence[PressureMap]) -> list[ContactPoint]:
     """Contacts that maps have grown from, at the middles of the ways of pairs that load turns from first contact."""
     if not firsts:
         return []
