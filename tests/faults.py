@@ -1489,10 +1489,10 @@ FAULTS = (
         "loaded/test_load_sharing.py::test_pinion_and_wheel_in_each_others_place_stand_to_each_other_as_before",
     ),
     Fault(
-        "load sharing: separation of a pair at the middle of its way with the other sign",
-        "loaded/tooth_pairs.py",
-        "self.initial_separation - driving * later",
-        "self.initial_separation + driving * later",
+        "load sharing: a pair at the middle of its way keeps the lever of first contact",
+        "loaded/load_sharing.py",
+        "self.levers[1, index] = tooth_pair.contact.wheel_lever",
+        "self.levers[1, index] = self.first_contacts[index].contact.wheel_lever",
         "loaded/test_load_sharing.py::test_pinion_and_wheel_in_each_others_place_stand_to_each_other_as_before",
     ),
     Fault(

@@ -242,12 +242,12 @@ class _Balance:
             middles = yield Trace(contacts, angles, firsts[0].gears)
             for index, first, middle in zip(indices, firsts, middles, strict=True):
                 if middle is not first.contact and middle.in_contact:
-                    self._place(index, first.at_middle(self.pair.driving, middle), ways[index])
+                    self._place(index, first.at_middle(middle), ways[index])
 
     def _place(self, index: int, tooth_pair: ToothPair, way: float) -> None:
         """Let the contact of a pair lie elsewhere from now on, where it is solved anew."""
         self.tooth_pairs = (*self.tooth_pairs[:index], tooth_pair, *self.tooth_pairs[index + 1 :])
-        self.separations[index], self.levers[1, index] = tooth_pair.initial_separation, tooth_pair.contact.wheel_lever
+        self.levers[1, index] = tooth_pair.contact.wheel_lever
         self.ways[index], self.first_gaps[index] = way, 0.0
         self.grids_apart.pop(index, None)
         self.moved.add(index)

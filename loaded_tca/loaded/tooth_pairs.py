@@ -31,18 +31,14 @@ class ToothPair:
     initial_separation: float
     gears: GearPair | None = None
 
-    def at_middle(self, driving: int, middle: ContactPoint) -> ToothPair:
+    def at_middle(self, middle: ContactPoint) -> ToothPair:
         """Return the pair with its contact as it is traced at the middle of its way from first contact under load.
 
-        There the pinion stands behind by half of the way, and so does the wheel ahead: what either gear is turned from
-        there closes the flanks by its angle times the lever of the normal. The transmission error of the contact is
-        that of the tangent to its motion at the first pinion angle; the lever of the pinion stays that of results.
+        The way times the wheel's lever there is how far the flanks overlap. The pair still touches first where it did,
+        and the torque is balanced by the lever of the pinion where it stands.
         """
-        first, ratio = self.contact, middle.pinion_lever / middle.wheel_lever
-        way = first.pinion_angle - middle.pinion_angle
-        later = middle.wheel_angle + ratio * way - first.wheel_angle
-        contact = replace(middle, transmission_error=first.transmission_error + later, pinion_lever=first.pinion_lever)
-        return replace(self, contact=contact, initial_separation=self.initial_separation - driving * later)
+        error, lever = self.contact.transmission_error, self.contact.pinion_lever
+        return replace(self, contact=replace(middle, transmission_error=error, pinion_lever=lever))
 
 
 @dataclass(frozen=True, eq=False)

@@ -101,7 +101,7 @@ def _contacts_of_maps(pair: GearPair, firsts: Sequence[ToothPair], maps: Sequenc
         return []
     angles = [angles_through(pair, one.contact, m.origin)[0] for one, m in zip(firsts, maps, strict=True)]
     path = trace_near(pair, [one.contact for one in firsts], angles)
-    return [one.at_middle(pair.driving, path[n]).contact for n, one in enumerate(firsts)]
+    return [one.at_middle(path[n]).contact for n, one in enumerate(firsts)]
 
 
 def _first_contacts(pair: GearPair, angles: Array, *, alone: bool) -> list[dict[int, ToothPair]]:

@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.optimize import brentq
 
 from loaded_tca import read_scene
 from loaded_tca.compliance.model import BendingModel
@@ -21,6 +22,7 @@ from loaded_tca.material import Material
 from loaded_tca.separation import sample_separation
 from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import trace_contact, trace_teeth
+from loaded_tca.unloaded.path import contact_span, trace_near
 from tests.refusals import refused_calls
 from tests.samples.gear_pairs import NONE, gear_pair, sam_paper
 from tests.samples.results import FLANKS_ALONE, SCENES
@@ -176,6 +178,29 @@ def test_pinion_and_wheel_in_each_others_place_stand_to_each_other_as_before(pit
     assert rotation < allowed * abs(here.rotation)
     assert force < allowed * sum(here.forces.values())
     assert peak < allowed * max(here.peaks.values())
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_tip_at_the_middle_of_its_way_overlaps_an_involute_by_the_base_radius_times_the_turn(before):
+    """Of the gear on whose flank the tip of the other one runs, back to where they just touch."""
+    pair, way = read_scene(SCENES / "fzg_c14.toml").pair(), 1e-3
+    at_root, at_tip = contact_span(pair)
+    angle = at_root.pinion_angle - 0.02 if before else at_tip.pinion_angle + 0.02
+    first = trace_contact(pair, [angle], warn=False)[0]
+    ratio = first.wheel_lever / first.pinion_lever
+    middle = trace_near(pair, [first], [angle - 0.5 * way * ratio])
+    tooth_pair = ToothPair(0, first, 0.0).at_middle(middle[0])
+
+    def beyond(turned):
+        path = trace_contact(pair, [turned], warn=False)
+        return path.wheel_angle[0] - first.wheel_angle + way
+
+    turned = angle - brentq(beyond, angle - 3.0 * way * ratio, angle)
+    exact = pair.base_radii[0] * turned if before else pair.base_radii[1] * way
+    off = abs(tooth_pair.contact.wheel_lever * way - exact)
+    assert off < (
+        0.01 * abs(first.wheel_lever * way - exact) if before else 1e-12
+    )  # of the other flank it is third order
 
 
 def test_small_torque_tends_to_the_unloaded_contact():
