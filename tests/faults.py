@@ -1673,6 +1673,34 @@ FAULTS = (
         "if cell != cell:",
         "scene/test_pitch.py::test_refusals",
     ),
+    Fault(
+        "load sharing: the wheel alone goes the way of a pair under load",
+        "loaded/load_sharing.py",
+        "0.5 * self.pair.driving * ways[index]",
+        "0.0 * self.pair.driving * ways[index]",
+        "loaded/test_load_sharing.py::test_pinion_and_wheel_in_each_others_place_stand_to_each_other_as_before",
+    ),
+    Fault(
+        "load sharing: the middle of the way on the wrong side where the wheel drives",
+        "loaded/load_sharing.py",
+        "0.5 * self.pair.driving * ways[index]",
+        "0.5 * ways[index]",
+        "loaded/test_load_sharing.py::test_pinion_and_wheel_in_each_others_place_stand_to_each_other_as_before",
+    ),
+    Fault(
+        "load sharing: a pair at the middle of its way keeps the lever of first contact",
+        "loaded/load_sharing.py",
+        "self.levers[1, index] = tooth_pair.contact.wheel_lever",
+        "self.levers[1, index] = self.first_contacts[index].contact.wheel_lever",
+        "loaded/test_load_sharing.py::test_pinion_and_wheel_in_each_others_place_stand_to_each_other_as_before",
+    ),
+    Fault(
+        "sensitivities: levers leave where a pair at the middle of its way touches as it is",
+        "results/gap_growth.py",
+        "turns = points.turns - pair.driving * ways * rates",
+        "turns = points.turns + 0.0 * ways * rates",
+        "results/test_sensitivities.py::test_bending_follows_a_contact_that_a_relief_moves_up_the_tooth",
+    ),
 )
 
 

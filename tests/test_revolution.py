@@ -16,6 +16,8 @@ from tests.samples.root_stress import coarsely
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
 
+A_CELL = 3e-4
+"""Of the tangent of 16 x 16 cells, of which one more just carries or does not: rounding decides."""
 AS_ONE_PITCH_um = 1e-4
 """Asked for: without deviations the transmission error of the analysis of one pitch."""
 SLOPES = 2e-3
@@ -59,7 +61,7 @@ def test_revolution_of_alike_teeth_is_the_analysis_of_one_pitch(name, changes):
     error = 1e3 * one.wheel_base_radius * one.transmission_error[0, :4]
     assert_allclose(turn.error_um(0)[places], error, atol=AS_ONE_PITCH_um)
     assert_allclose(turn.error_um(0)[4 + places], error, atol=AS_ONE_PITCH_um)
-    assert_allclose(turn.dataset.mesh_stiffness.values[0, places], one.mesh_stiffness[0, :4], rtol=1e-4)
+    assert_allclose(turn.dataset.mesh_stiffness.values[0, places], one.mesh_stiffness[0, :4], rtol=A_CELL)
     of_one, of_turn = one.peak_pressure[0, :4], turn.dataset.peak_pressure.values[0, places]
     assert_allclose(np.nanmax(of_turn, axis=-1), np.nanmax(of_one, axis=-1), rtol=1e-3)
 

@@ -184,25 +184,23 @@ def mirror_along(subject: Subject) -> Off:
 def gears_exchanged(subject: Subject) -> Off:
     """Seen from the wheel, at the angle where it stands without load, under the moment that the teeth turn it with.
 
-    Contacts are solved where they lie without load, and load turns one gear or the other from there: numbers may differ
-    by what they change over the way of that rotation, rotations by the errors told of both grids as well. Rotations are
-    compared, since a tilt about the middle of the other face turns the gear, too.
+    There load turns the pinion, on by some angle; in the scene itself the pinion is put to that place, where load turns
+    the wheel back to where it stood: the gears stand to each other as before. Rotations are compared, since a tilt
+    about the middle of the other face turns the gear, too; they may differ by the errors told of both grids as well.
     """
     result, scene, other = subject.result, subject.scene, exchanged(subject.scene)
     ratio = result.gear_pair.ratio
     levers = np.stack([path.wheel_lever for path in result.paths], axis=-1)
     moments = np.nansum(result.normal_force * levers, axis=-1)[-1]
     unloaded, angles = np.asarray(result.unloaded_transmission_error), np.asarray(result.pinion_angle)
-    rotations = np.asarray(result.transmission_error)[-1] - unloaded
     off = []
-    for n, rotation in enumerate(rotations.tolist()):
-        here = _state(result, -1, n)
-        turned = _alone(scene, angles[n] + rotation / ratio, float(result.torque[-1]))
-        seen = _alone(other, ratio * angles[n] + unloaded[n], float(moments[n]))
-        seen = seen._replace(rotation=-ratio * seen.rotation)
-        away, moved = (np.array(here.differences(one)) / here.sizes(result) for one in (seen, turned))
-        away[0] -= 2.0 * told(result)[-1, n] * abs(rotation) / float(span(result)[-1, 0])
-        off.append(np.maximum(away - moved, 0.0) / SOLVED_ANEW)
+    for n, moment in enumerate(moments.tolist()):
+        seen, _, torque = state_alone(other, ratio * angles[n] + unloaded[n], moment)
+        here, there, _ = state_alone(scene, angles[n] + seen.rotation, torque)
+        seen = seen._replace(rotation=unloaded[n] - there - ratio * seen.rotation)
+        away = np.array(here.differences(seen)) / here.sizes(result)
+        away[0] -= 2.0 * told(result)[-1, n] * abs(here.rotation) / float(span(result)[-1, 0])
+        off.append(np.maximum(away, 0.0) / SOLVED_ANEW)
     names = "rotation", "load share", "peak pressure"
     return dict(zip(names, np.max(off, axis=0).tolist(), strict=True))
 
@@ -237,15 +235,21 @@ def _state(result: MeshCycle, torque: int, position: int) -> State:
     return State(float(rotation), forces, peaks)
 
 
-def _alone(scene: Scene, angle: float, torque: float) -> State:
-    """A state of gears that are held, at a pinion angle [rad] under a torque [N mm] of its own."""
+def state_alone(scene: Scene, angle: float, torque: float) -> tuple[State, float, float]:
+    """A state of gears that are held, at a pinion angle [rad] under a torque [N mm] of its own.
+
+    With the unloaded transmission error [rad] and the moment of the forces about the axis of the wheel [N mm].
+    """
     pair = scene.pair()
     mesh = trace_teeth(pair, np.array([angle]))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
         bending = model_of(scene, pair, farthest_apart(mesh))
         carried = carried_by_all(pair, mesh, np.array([torque]), grid_of(scene), bending)
-        return _state(mesh_cycle(scene, pair, carried, {}, (), [], warnings=[], date=""), 0, 0)
+        state = _state(mesh_cycle(scene, pair, carried, {}, (), [], warnings=[], date=""), 0, 0)
+    loaded = [one for one in carried.contacts[0][0] if one is not None]
+    moment = sum(one.solution.load * one.contact.wheel_lever for one in loaded)
+    return state, float(mesh.transmission_error[0]), moment
 
 
 def revolution_doubled(subject: Subject) -> Off:

@@ -31,7 +31,7 @@ from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import AccuracyWarning, InputError, LoadedTCAError
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.load_sharing import torque_shared
-from loaded_tca.loaded.together import Ends, Gap, Result, Steps
+from loaded_tca.loaded.together import Ends, Gap, Result, Steps, Trace
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
 from loaded_tca.loaded.tooth_pairs import SharedLoad, ToothPair, tooth_pairs_at
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
@@ -386,6 +386,8 @@ class ShapedContacts:
                 return end.value
             if isinstance(request, Gap):
                 answer = self._grid(request)
+            elif isinstance(request, Trace):
+                answer = request.contacts  # on their grids, which are held
             elif isinstance(request, Ends):
                 answer = self._ends[request.separation]
             else:

@@ -45,7 +45,7 @@ class LoadedContact:
     Attributes
     ----------
     contact : ContactPoint
-        The unloaded contact it grows from.
+        The unloaded contact it grows from: where pairs share the load, in the middle of the way of the gears under it.
     separation : Separation
     solution : ContactSolution
     at_relief_start : bool

@@ -1,8 +1,8 @@
 """Work on many contacts at once: each asks for gaps and pressures, and what all ask for is found together.
 
 A contact, or the tooth pairs of a position that share a torque, is a generator. It yields what it needs next, a
-:class:`Gap`, :class:`Line`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its result. So it reads
-as if it were alone, and its numbers do not depend on what stands beside it.
+:class:`Trace`, :class:`Gap`, :class:`Line`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its
+result. So it reads as if it were alone, and its numbers do not depend on what stands beside it.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from loaded_tca.separation.box import Box
 from loaded_tca.separation.polynomials import GapPolynomials
 from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import ContactPoint
+from loaded_tca.unloaded.path import trace_near
 
 UNDER_WAY = 128
 """Generators under way at the same time: a cycle of 33 positions under three torques, whose stacks are full then."""
@@ -46,6 +47,17 @@ class Gap(NamedTuple):
     gears: GearPair | None = None
     polynomials: GapPolynomials | None = None
     cells_at_ends: tuple[int, int] | None = None
+
+
+class Trace(NamedTuple):
+    """Contacts at other pinion angles [rad] nearby; see :func:`loaded_tca.unloaded.path.trace_near`.
+
+    ``gears`` as of :class:`Gap`.
+    """
+
+    contacts: Sequence[ContactPoint]
+    pinion_angles: Sequence[float]
+    gears: GearPair | None = None
 
 
 class Line(NamedTuple):
@@ -71,7 +83,7 @@ class Ends(NamedTuple):
     gears: GearPair | None = None
 
 
-Request = Gap | Line | Ends | Task
+Request = Trace | Gap | Line | Ends | Task
 Steps = Generator[Request, Any, Result]
 
 
@@ -80,7 +92,8 @@ def found_together(
 ) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
 
-    In a round what most ask for is found: all gaps, or all lines, or all free edges, or all problems on one grid.
+    In a round what most ask for is found: all contacts elsewhere, or all gaps, or all lines, or all free edges, or all
+    problems on one grid.
     Whenever one returns, another one begins: so many are under way that stacks are full, and no more, so that memory
     stays bounded and progress steady.
 
@@ -131,12 +144,12 @@ def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
 
 def _answers(
     pair: GearPair, asked: dict[int, Request]
-) -> dict[int, Separation | ExpectedLine | Array | ContactSolution | LoadedTCAError | None]:
-    """Answer what most ask for, gaps, lines, free edges or problems on one grid; errors are answers."""
+) -> dict[int, list[ContactPoint] | Separation | ExpectedLine | Array | ContactSolution | LoadedTCAError | None]:
+    """Answer what most ask for, contacts, gaps, lines, free edges or problems on one grid; errors are answers."""
     kinds = {index: one.problem.cells if isinstance(one, Task) else type(one) for index, one in asked.items()}
     (most, _), *_ = Counter(kinds.values()).most_common(1)
     chosen: Any = {index: asked[index] for index, kind in kinds.items() if kind == most}
-    if most in (Gap, Line, Ends):
+    if most in (Trace, Gap, Line, Ends):
         by_gears: dict[int, dict[int, Any]] = {}
         for index, request in chosen.items():
             by_gears.setdefault(id(request.gears), {})[index] = request
@@ -150,10 +163,15 @@ def _answers(
 
 def _of_flanks(
     pair: GearPair, asked: dict[int, Any]
-) -> dict[int, Separation | ExpectedLine | Array | LoadedTCAError | None]:
-    """Answer requests for gaps, for lines, or for free edges, of the same gears."""
+) -> dict[int, list[ContactPoint] | Separation | ExpectedLine | Array | LoadedTCAError | None]:
+    """Answer requests for contacts, for gaps, for lines, or for free edges, of the same gears."""
     requests = list(asked.values())
     gears = requests[0].gears or pair
+    if isinstance(requests[0], Trace):
+        near = [contact for one in requests for contact in one.contacts]
+        path = trace_near(gears, near, [angle for one in requests for angle in one.pinion_angles])
+        places = iter(range(len(path)))
+        return {index: [path[n] for n in islice(places, len(one.contacts))] for index, one in asked.items()}
     if isinstance(requests[0], Ends):
         return dict(zip(asked, edge_compliances(gears, [one.separation for one in requests]), strict=True))
     if isinstance(requests[0], Line):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
@@ -19,7 +19,7 @@ class ToothPair:
     pair : int
         Its number.
     contact : ContactPoint
-        Its first contact, unloaded, in the angles of its own tooth.
+        Its first contact, unloaded, in the angles of its own tooth; of a pair under load that in the middle of its way.
     initial_separation : float [rad]
         Rotation of the wheel that brings it into contact; zero for the leading pair.
     gears : GearPair or None
@@ -30,6 +30,15 @@ class ToothPair:
     contact: ContactPoint
     initial_separation: float
     gears: GearPair | None = None
+
+    def at_middle(self, middle: ContactPoint) -> ToothPair:
+        """Return the pair with its contact as it is traced at the middle of its way from first contact under load.
+
+        The way times the wheel's lever there is how far the flanks overlap. The pair still touches first where it did,
+        and the torque is balanced by the lever of the pinion where it stands.
+        """
+        error, lever = self.contact.transmission_error, self.contact.pinion_lever
+        return replace(self, contact=replace(middle, transmission_error=error, pinion_lever=lever))
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.moved_gears import given_motions
 from loaded_tca.loaded.sensitivity import LoadedStates, Tangents, loaded_states
 from loaded_tca.loaded.tooth_contact import contact_problem
-from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
+from loaded_tca.loaded.tooth_pairs import ToothPair, tooth_pairs_at
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
@@ -45,6 +45,7 @@ from loaded_tca.supports import SupportCompliance
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded import ContactPoint, RelativeCurvature, trace_contact, trace_teeth
 from loaded_tca.unloaded.curvature import relative_curvatures
+from loaded_tca.unloaded.path import angles_through, trace_near
 
 SAME = 1e-6
 """Distance of two contact points, over the module, that are the same."""
@@ -65,7 +66,7 @@ def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = No
         If the maps do not belong to the scene of the result.
     """
     pair, wanted, numbers = result.gear_pair, result.scene.analysis, result.pair.tolist()
-    unloaded = _unloaded_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
+    unloaded = _first_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
     if supports is None:
         bending = model_of(result.scene, pair, result.coupled_pitches)
     else:
@@ -74,7 +75,8 @@ def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = No
         bending = at_rest.on_supports(supports).mounted(pair)
     places = np.argwhere(result.normal_force > 0.0).tolist()
     maps = [one for t, n, k in places if (one := result.maps[t][n][k]) is not None]
-    contacts = [unloaded[n][numbers[k]] for _, n, k in places if numbers[k] in unloaded[n]]
+    firsts = [unloaded[n][numbers[k]] for _, n, k in places if numbers[k] in unloaded[n]]
+    contacts = _contacts_of_maps(pair, firsts, maps) if len(firsts) == len(maps) else []
     if len(contacts) < len(maps) or any(
         not np.allclose(one.origin, contact.point, rtol=0.0, atol=SAME * pair.module)
         for one, contact in zip(maps, contacts, strict=True)
@@ -94,13 +96,22 @@ def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = No
     return loaded_states(states, bending)
 
 
-def _unloaded_contacts(pair: GearPair, angles: Array, *, alone: bool) -> list[dict[int, ContactPoint]]:
-    """Contacts by position and number of the tooth pair."""
+def _contacts_of_maps(pair: GearPair, firsts: Sequence[ToothPair], maps: Sequence[PressureMap]) -> list[ContactPoint]:
+    """Contacts that maps have grown from, at the middles of the ways of pairs that load turns from first contact."""
+    if not firsts:
+        return []
+    angles = [angles_through(pair, one.contact, m.origin)[0] for one, m in zip(firsts, maps, strict=True)]
+    path = trace_near(pair, [one.contact for one in firsts], angles)
+    return [one.at_middle(path[n]).contact for n, one in enumerate(firsts)]
+
+
+def _first_contacts(pair: GearPair, angles: Array, *, alone: bool) -> list[dict[int, ToothPair]]:
+    """Tooth pairs at first contact by position and number."""
     if alone:
         path = trace_contact(pair, angles)
-        return [{0: path[n]} for n in range(len(path))]
+        return [{0: ToothPair(0, path[n], 0.0)} for n in range(len(path))]
     mesh = trace_teeth(pair, angles)
-    return [{one.pair: one.contact for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
+    return [{one.pair: one for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
 
 
 def _separation(one: PressureMap, curvature: RelativeCurvature) -> Separation:

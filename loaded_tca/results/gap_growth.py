@@ -177,12 +177,17 @@ def _growth(
     pressures = np.concatenate([grid.pressure[grid.pressed] for grid in grids])
     growth, points = held.followed(pressures, separations), held.at_points
     # the gears of a pair are turned back into contact first, then closed under load
-    touching = np.array([path.transmission_error for path in result.paths])[pairs, positions]
+    touching = np.array([grid.contact.transmission_error for grid in grids])
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
-    wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
+    levers = np.array([(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in grids]).T
+    # contacts are traced at the middles of their ways, from where the pinion goes on
+    own = result.pinion_angle[positions] - result.pair[pairs] * pair.pitch
+    ways = own - [grid.contact.pinion_angle for grid in grids]
+    rates = (points.levers[0] - levers[0] / levers[1] * points.levers[1]) / levers[1]
+    turns = points.turns - pair.driving * ways * rates
     active = np.concatenate([grid.active[grid.pressed] for grid in grids])
     gaps = growth.gaps[:, active]
-    for row, closed in zip(gaps, points.turns * wheel_levers - turned * points.levers[1], strict=True):
+    for row, closed in zip(gaps, turns * levers[1] - turned * points.levers[1], strict=True):
         row += closed[tangents.grid]
     lever_torques = result.normal_force[places] * points.levers[0]
     lever_torques += _add_displaced(result, tangents, bending, changes, growth, gaps)

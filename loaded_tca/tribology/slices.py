@@ -27,6 +27,7 @@ from loaded_tca.results.support_growth import standing
 from loaded_tca.separation import slice_middles
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
+from loaded_tca.unloaded.path import angles_through
 
 TOGETHER = 8_000
 """Slices whose curvature is found at once."""
@@ -292,13 +293,13 @@ def _own_contact(result: CycleNumbers, place: tuple[int, int, int], one: Pressur
     pair, path = under.gear_pair, under.paths[column]
     turned = pair.pitch * float(result.pair[column])
     first = {entry.name: getattr(path, entry.name)[position] for entry in fields(path)}
-    contact = ContactPoint(**first)
-    return replace(
-        contact,
-        point=one.origin,
-        pinion_angle=contact.pinion_angle - turned,
-        wheel_angle=contact.wheel_angle - turned * pair.ratio,
+    contact = replace(
+        ContactPoint(**first),
+        pinion_angle=first["pinion_angle"] - turned,
+        wheel_angle=first["wheel_angle"] - turned * pair.ratio,
     )
+    pinion, wheel = angles_through(pair, contact, one.origin)
+    return replace(contact, point=one.origin, pinion_angle=pinion, wheel_angle=wheel)
 
 
 def cells_of_flank(

@@ -23,7 +23,7 @@ from loaded_tca.unloaded.ease_off import EaseOff, Station
 from loaded_tca.unloaded.line import Lines, find_lines
 from loaded_tca.unloaded.reduced import FEASIBLE
 from loaded_tca.unloaded.scan import past_tangents
-from loaded_tca.unloaded.search import FirstTouch, first_touch, spread
+from loaded_tca.unloaded.search import FirstTouch, first_touch, spread, touch_near
 
 POSITIONS = 21
 """Positions over a pitch if none are asked for."""
@@ -174,6 +174,34 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
     if warn:
         warn_of_fillets(pair, path, "contact")
     return path
+
+
+def trace_near(pair: GearPair, contacts: Sequence[ContactPoint], pinion_angles: Sequence[float]) -> ContactPath:
+    """Contacts (n,) at pinion angles [rad] next to those of contacts that are known; NaN where they are not found.
+
+    Each is climbed to from the known one, so that it stays on its part of the flanks, and takes a fraction of the time
+    of :func:`trace_contact`.
+    """
+    places = np.array([(one.pinion_radius, one.pinion_axial) for one in contacts])
+    phi1 = np.array(pinion_angles)
+    return _path(pair, phi1, touch_near(pair, phi1, *places.T))
+
+
+def angles_through(pair: GearPair, contact: ContactPoint, point: Array) -> tuple[float, float]:
+    """Angles of pinion and wheel [rad] at which a point (3,) [mm] of the fixed frame lies on both their flanks.
+
+    They are those next to the angles of a contact.
+    """
+    in_wheel, angles = pair.wheel_axes @ (point - pair.wheel_origin), []
+    views = (
+        (pair.pinion.flank, point, pair.sense, contact.pinion_angle),
+        (pair.wheel.flank, in_wheel, -pair.sense, contact.wheel_angle),
+    )
+    for flank, (x, y, z), sense, near in views:
+        theta = float(flank.theta(np.array([math.hypot(x, y)]), np.array([z])).value[0])
+        turned = sense * (math.atan2(y, x) - theta)
+        angles.append(near + math.remainder(turned - near, 2.0 * math.pi))
+    return angles[0], angles[1]
 
 
 def require_contact(contact: ContactPoint) -> None:

@@ -86,6 +86,14 @@ def first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     return FirstTouch(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(FirstTouch)))
 
 
+def touch_near(pair: GearPair, phi1: Array, rho: Array, z: Array) -> FirstTouch:
+    """Maximum of the ease-off at each pinion angle (n,) [rad] that is climbed to from a place on the pinion (n,) [mm].
+
+    It is the first touch where that of an angle nearby is the place. Not in contact where no ascent arrives.
+    """
+    return _best(phi1, _ascend(pair, phi1, np.arange(len(phi1)), rho, z))
+
+
 def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     """First touch of sharp edges; where that lies on the arc of a rounded one, of flanks with their arcs.
 

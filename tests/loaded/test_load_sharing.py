@@ -8,7 +8,9 @@ from functools import cache
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.optimize import brentq
 
+from loaded_tca import read_scene
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
@@ -20,9 +22,13 @@ from loaded_tca.material import Material
 from loaded_tca.separation import sample_separation
 from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import trace_contact, trace_teeth
+from loaded_tca.unloaded.path import contact_span, trace_near
 from tests.refusals import refused_calls
 from tests.samples.gear_pairs import NONE, gear_pair, sam_paper
+from tests.samples.results import FLANKS_ALONE, SCENES
 from tests.samples.tangents import torque_rate
+from validation.invariances import state_alone
+from validation.scene_transforms import exchanged
 
 TORQUE = 130e3
 GRID = GridChoice(cells=(24, 24))
@@ -140,18 +146,62 @@ def test_zero_from_which_gaps_count_moves_no_force(raised, monkeypatch):
     """A distance [mm] between the initial separation and the gaps of a pair: grids that grow touch below their zero."""
     pair = spur()
     first, *others = tooth_pairs_at(trace_teeth(pair, [0.8 * CENTRE]), 0)
+    expected = [share.force for share in shared(spur, 0.8 * CENTRE).shares]
     moved = replace(first, initial_separation=first.initial_separation - raised / first.contact.wheel_lever)
 
     def sampled(pair_of, contacts, **options):
         for contact, grid in zip(contacts, sample_separations(pair_of, contacts, **options), strict=True):
-            by = raised if contact is first.contact else 0.0
+            of_first = abs(contact.pinion_angle - first.contact.pinion_angle) < 0.5 * pair.pitch
+            by = raised if of_first else 0.0
             yield replace(grid, gap=grid.gap + by, cut_gap=grid.cut_gap + by)
 
     at_once = "loaded_tca.loaded.together.sample_separations"
     monkeypatch.setattr(at_once, lambda *given, **options: list(sampled(*given, **options)))
     forces = [share.force for share in share_load(pair, [moved, *others], TORQUE, GRID).shares]
     assert len(forces) == 2
-    assert_allclose(forces, [share.force for share in shared(spur, 0.8 * CENTRE).shares], rtol=10.0 * COMPATIBLE)
+    assert_allclose(forces, expected, rtol=10.0 * COMPATIBLE)
+
+
+@pytest.mark.parametrize(("pitches", "allowed"), [(-0.25, 4e-4), (0.4, 2e-5)])
+def test_pinion_and_wheel_in_each_others_place_stand_to_each_other_as_before(pitches, allowed):
+    """At first a tip carries more than a third beyond the path of contact.
+
+    Contacts traced with the wheel alone turned back differ by 1e-3 at the tip, and peaks elsewhere by 4e-4. What is
+    left at the tip is of third order in the way of a pair under load.
+    """
+    scene = read_scene(SCENES / "fzg_c14.toml").with_changes({**FLANKS_ALONE, "analysis.cells": (24, 24)})
+    ratio, (torque,) = scene.pair().ratio, scene.torques
+    angle = pitches * scene.pair().pitch
+    seen, _, torque = state_alone(exchanged(scene), ratio * angle, torque / ratio)
+    here, unloaded, _ = state_alone(scene, angle + seen.rotation, torque)
+    assert min(here.forces.values()) > 0.3 * sum(here.forces.values())
+    rotation, force, peak = here.differences(seen._replace(rotation=-unloaded - ratio * seen.rotation))
+    assert rotation < allowed * abs(here.rotation)
+    assert force < allowed * sum(here.forces.values())
+    assert peak < allowed * max(here.peaks.values())
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_tip_at_the_middle_of_its_way_overlaps_an_involute_by_the_base_radius_times_the_turn(before):
+    """Of the gear on whose flank the tip of the other one runs, back to where they just touch."""
+    pair, way = read_scene(SCENES / "fzg_c14.toml").pair(), 1e-3
+    at_root, at_tip = contact_span(pair)
+    angle = at_root.pinion_angle - 0.02 if before else at_tip.pinion_angle + 0.02
+    first = trace_contact(pair, [angle], warn=False)[0]
+    ratio = first.wheel_lever / first.pinion_lever
+    middle = trace_near(pair, [first], [angle - 0.5 * way * ratio])
+    tooth_pair = ToothPair(0, first, 0.0).at_middle(middle[0])
+
+    def beyond(turned):
+        path = trace_contact(pair, [turned], warn=False)
+        return path.wheel_angle[0] - first.wheel_angle + way
+
+    turned = angle - brentq(beyond, angle - 3.0 * way * ratio, angle)
+    exact = pair.base_radii[0] * turned if before else pair.base_radii[1] * way
+    off = abs(tooth_pair.contact.wheel_lever * way - exact)
+    assert off < (
+        0.01 * abs(first.wheel_lever * way - exact) if before else 1e-12
+    )  # of the other flank it is third order
 
 
 def test_small_torque_tends_to_the_unloaded_contact():

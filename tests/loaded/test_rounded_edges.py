@@ -291,7 +291,7 @@ def test_contacts_left_out_do_not_change_the_largest_pressure():
     """Ends of misaligned teeth, whose contacts were expected to differ by up to four times."""
     scene = read_scene(SCENES / "misaligned.toml").with_changes(
         {**FLANKS_ALONE, "analysis.load_sharing": True, "analysis.positions": 4, "analysis.accuracy": None}
-        | {"analysis.cells": (24, 24)}
+        | {"analysis.cells": (28, 28)}
         | {f"{gear}.{edge}_rounding_mm": 0.2 for gear in ("pinion", "wheel") for edge in ("tip", "side")}
     )
     largest, every = (analyse(scene.with_changes({"analysis.edge_pressures": which})) for which in ("largest", "all"))

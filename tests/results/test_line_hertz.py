@@ -13,6 +13,10 @@ from tests.samples.results import SCENES
 MODULUS = 206000.0 / (2.0 * (1.0 - 0.3**2))  # both of steel
 
 
+OF_WAY = 3e-5
+"""A third of what the way changes: that of a pair alone is the one by its first law, a fifth too long here."""
+
+
 @cache
 def unmodified(helix_deg=0.0, positions=9):
     changes = {
@@ -32,16 +36,21 @@ def unmodified(helix_deg=0.0, positions=9):
 
 
 def test_line_of_a_spur_pair_has_the_pressure_of_its_involutes():
-    """At the pitch point: 1/rho1 + 1/rho2 of the roll lengths, force over 14 mm of face."""
+    """Near the pitch point: 1/rho1 + 1/rho2 of the roll lengths, force over 14 mm of face.
+
+    Load turns the wheel back, and the middle of that way is traced: the contact lies half of it before the pitch point.
+    """
     cycle = unmodified(positions=3)
     path = cycle.scene.mesh().path_of_contact
-    curvature = 1.0 / path.C + 1.0 / (path.T2 - path.C)
+    turned = cycle.unloaded_transmission_error[1] - cycle.transmission_error[0, 1]
+    place = path.C - 0.5 * turned * cycle.wheel_base_radius
+    curvature = 1.0 / place + 1.0 / (path.T2 - place)
     column = cycle.pair.tolist().index(0)
     force = cycle.normal_force[0, 1, column]
     expected = np.sqrt(force / 14.0 * MODULUS * curvature / np.pi)
-    assert_allclose(cycle.hertz_pressure[0, 1, column], expected, rtol=1e-6)
+    assert_allclose(cycle.hertz_pressure[0, 1, column], expected, rtol=OF_WAY)
     assert_allclose(2.0 * cycle.hertz_semi_major[0, 1, column], 14.0, rtol=1e-6)
-    assert_allclose(cycle.hertz_semi_minor[0, 1, column], 2.0 * expected / (MODULUS * curvature), rtol=1e-6)
+    assert_allclose(cycle.hertz_semi_minor[0, 1, column], 2.0 * expected / (MODULUS * curvature), rtol=OF_WAY)
 
 
 @pytest.mark.parametrize("helix_deg", [0.0, 10.0])
