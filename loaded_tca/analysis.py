@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 
@@ -9,25 +10,24 @@ import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, model_of, require_teeth, root_stress_model, way_out_told
-from loaded_tca.compliance.model import SumOfParts, held_bodies, with_enough_teeth
+from loaded_tca.compliance.model import held_bodies, with_enough_teeth
 from loaded_tca.effort import expected_effort
 from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require
-from loaded_tca.loaded.cycle import Carried, Progress, carried_by_all, carried_by_one, farthest_apart
+from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.moved_gears import at_rest, pitches_apart
 from loaded_tca.loaded.rounded_edges import PeakAtEdge, pressures_at_rounded_edges
-from loaded_tca.loaded.supported import CarriedOnSupports, SupportedCycle, all_torques
+from loaded_tca.loaded.standing import GearsUnderTorques, StandingCycle, all_torques
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.collect import mesh_cycle
+from loaded_tca.results.collect import Place, mesh_cycle
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.supports import warn_of_supports
 from loaded_tca.results.warnings import warn_of_accuracy, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread
-from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
+from loaded_tca.unloaded import MeshPath, trace_contact, trace_teeth
 
 THICKEST_LAYER = 1.2
 """Of elements across a face, over the module: from there on root stress under a short contact is 2 % too low and more
@@ -69,73 +69,47 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         warn_of_gears(scene, pair)
         count, torques = wanted.positions, np.asarray(scene.torques)
         angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
-        grid = grid_of(scene)
-        roots = roots_of(scene, pair)
-        cycles: list[CarriedOnSupports] = []
-        if scene.is_supported:
-            carried, at_edges, cycles = _on_supports(scene, pair, angles, grid, progress)
-            bending: SumOfParts | None = cycles[0].bending
-        else:
-            if wanted.load_sharing:
-                mesh = trace_teeth(pair, angles)
-                bending = model_of(scene, pair, farthest_apart(mesh))
-                carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
-            else:
-                path = trace_contact(pair, angles)
-                bending = model_of(scene, pair, 1)
-                carried = carried_by_one(pair, path, torques, grid, bending, progress)
-            at_edges = pressures_at_rounded_edges(
-                pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
+        grid, roots = grid_of(scene), roots_of(scene, pair)
+
+        supports = support_compliance(scene, pair)
+        resting = at_rest(pair, supports)
+        unloaded = trace_teeth(resting, angles) if wanted.load_sharing else trace_contact(resting, angles)
+        apart = pitches_apart(supports, scene.torques, unloaded) if isinstance(unloaded, MeshPath) else 1
+
+        def solved(apart: int) -> list[StandingCycle]:
+            gears = GearsUnderTorques(
+                pair, model_of(scene, pair, apart), angles, grid, load_sharing=wanted.load_sharing
             )
-        turned = np.concatenate([one.carried.rotation for one in cycles]) if cycles else carried.rotation
+            return gears.mesh_cycles(torques, progress)
+
+        cycles = with_enough_teeth(apart, solved)
+        carried = all_torques(unloaded, cycles)
+        at_edges = _at_rounded_edges(scene, carried.pairs.tolist(), cycles)
         warn_of_accuracy(
             pair,
             grid,
-            replace(carried, rotation=turned),
+            replace(carried, rotation=np.concatenate([one.carried.rotation for one in cycles])),
             at_edges,
-            mesh_rate=np.stack([one.mesh_rate for one in cycles]) if cycles else carried.torque_rate,
+            mesh_rate=np.concatenate([one.mesh_rate for one in cycles]),
             load_sharing=wanted.load_sharing,
             bodies=held_bodies(scene, pair),
         )
-        if cycles:
-            warn_of_supports(pair, cycles, torques.tolist())
+        warn_of_supports(pair, cycles)
         date = datetime.now(UTC).isoformat(timespec="seconds")
-        coupled = 0 if bending is None else bending.coupled_pitches
-        return mesh_cycle(
-            scene, pair, carried, at_edges, roots, cycles, coupled_pitches=coupled, warnings=warned, date=date
+        return mesh_cycle(scene, pair, carried, at_edges, roots, cycles, warnings=warned, date=date)
+
+
+def _at_rounded_edges(scene: Scene, pairs: list[int], cycles: Sequence[StandingCycle]) -> dict[Place, PeakAtEdge]:
+    """Peaks at rounded edges by the indices of torque, position and tooth pair, whose numbers are in the row."""
+    wanted, first, peaks = scene.analysis, 0, dict[Place, PeakAtEdge]()
+    for one in cycles:
+        gears, numbers = one.standing, one.carried.pairs.tolist()
+        of_cycle = pressures_at_rounded_edges(
+            gears.pair, one.carried, gears.bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
         )
-
-
-def _on_supports(
-    scene: Scene, pair: GearPair, angles: Array, grid: GridChoice, progress: Progress | None
-) -> tuple[Carried, dict[tuple[int, int, int], PeakAtEdge], list[CarriedOnSupports]]:
-    """What the tooth pairs carry on supports that give way, pressures at rounded edges, and both torque by torque."""
-    wanted = scene.analysis
-    supports = support_compliance(scene, pair)
-    assert supports is not None
-    unmoved: MeshPath | ContactPath
-    if wanted.load_sharing:
-        unmoved = trace_teeth(at_rest(supports), angles)
-        apart = pitches_apart(supports, scene.torques, unmoved)
-    else:
-        unmoved, apart = trace_contact(at_rest(supports), angles), 1
-
-    def under(apart: int) -> list[CarriedOnSupports]:
-        bending = model_of(scene, pair, apart)
-        assert bending is not None
-        supported = SupportedCycle(pair, bending, angles, grid, load_sharing=wanted.load_sharing)
-        return supported.under(scene.torques, progress)
-
-    cycles = with_enough_teeth(apart, under, lambda made: max(one.pitches_apart for one in made))
-    at_edges: dict[tuple[int, int, int], PeakAtEdge] = {}
-    for t, one in enumerate(cycles):
-        peaks = pressures_at_rounded_edges(
-            one.pair, one.carried, one.bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
-        )
-        at_edges |= {(t, n, int(one.carried.pairs[k])): peak for (_, n, k), peak in peaks.items()}
-    carried = all_torques(unmoved, cycles)
-    column = {number: k for k, number in enumerate(carried.pairs.tolist())}
-    return carried, {(t, n, column[number]): peak for (t, n, number), peak in at_edges.items()}, cycles
+        peaks |= {(first + t, n, pairs.index(numbers[k])): peak for (t, n, k), peak in of_cycle.items()}
+        first += len(gears.torques)
+    return peaks
 
 
 def grid_of(scene: Scene) -> GridChoice:

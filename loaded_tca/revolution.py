@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
@@ -16,15 +16,15 @@ from loaded_tca.analysis import grid_of, roots_of
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress, model_of
-from loaded_tca.compliance.model import HeldBodies, SumOfParts, held_bodies, with_enough_teeth
+from loaded_tca.compliance.model import HeldBodies, held_bodies, with_enough_teeth
 from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.moved_gears import Loads, at_rest, loads_at, moved_bending, moved_by
+from loaded_tca.loaded.moved_gears import at_rest, loads_at
 from loaded_tca.loaded.moved_gears import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.revolution import STATES_AT_A_TIME, CarriedPart, carried_over_revolution, pitches_apart
-from loaded_tca.loaded.supported import POSITIONS, SupportedCycle, widest_apart
+from loaded_tca.loaded.standing import POSITIONS, GearsUnderTorques, Standing, widest_apart
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import Place, numbers_and_maps
@@ -35,7 +35,7 @@ from loaded_tca.results.supports import support_arrays, warn_of_supports
 from loaded_tca.results.warnings import at_places, place_of, reasons_of, rotation_reasons, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
-from loaded_tca.supports import SupportCompliance, support_compliance
+from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded import trace_teeth
 from loaded_tca.unloaded.revolution import RevolutionPath, trace_revolution
@@ -120,17 +120,9 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
             for gear in open_turns(scene, pitches):
                 give_accuracy_warning(kinds.OPEN_REVOLUTION.sentence(pitches=pitches, gear=gear))
             grid = grid_of(scene)
-            numbers: Sequence[_Numbers]
-            if scene.is_supported:
-                numbers = supported = _on_supports(scene, pair, grid, pitches, frozenset(maps), progress)
-                arrays = _joined(scene, _trace(scene, pair, pitches), supported)
-            else:
-                path = _trace(scene, pair, pitches)
-                bending = model_of(scene, pair, pitches_apart(path))
-                alone = _Numbers(pair, path, np.asarray(scene.torques), grid, roots_of(scene, pair), frozenset(maps))
-                for part in carried_over_revolution(path, alone.torques, grid, bending, progress):
-                    alone.add(part)
-                numbers, arrays = [alone], alone.whole()
+            path = _trace(scene, pair, pitches)
+            numbers = _over_revolution(scene, pair, path, grid, frozenset(maps), progress)
+            arrays = _joined(scene, path, numbers)
             bodies = held_bodies(scene, pair)
             for one in numbers:
                 for sentence in one.sentences(bodies):
@@ -140,7 +132,7 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
             "date": datetime.now(UTC).isoformat(timespec="seconds"),
             "warnings": "\n".join(dict.fromkeys(warned)),
         }
-        kept = {(t + first, n): row for first, one in enumerate(numbers) for (t, n), row in one.maps.items()}
+        kept = {(t + first, n): row for first, one in _in_order(numbers) for (t, n), row in one.maps.items()}
         return Revolution(scene=scene, dataset=revolution_dataset(arrays, **about), maps=kept)
 
 
@@ -148,64 +140,53 @@ def _asked(scene: Scene) -> RevolutionSection:
     return scene.revolution or RevolutionSection()
 
 
-def _trace(
-    scene: Scene, pair: GearPair, pitches: int, move: Callable[[GearPair], GearPair] | None = None
-) -> RevolutionPath:
-    """Unloaded contact over so many pitches of a pair of the scene.
+def _trace(scene: Scene, pair: GearPair, pitches: int, standing: Standing | None = None) -> RevolutionPath:
+    """Unloaded contact over so many pitches of a pair of the scene, and of its pairings of teeth with own flanks.
 
-    ``move``: where the gears of each pairing of teeth with flanks of their own stand; default: at rest.
+    ``standing``: where the gears of these stand, as the pair does; default: at rest.
     """
     asked, flanks = _asked(scene), scene.tooth_flanks()
-    if flanks is not None and move is not None:
-        flanks = replace(flanks, gears={kinds: move(gears) for kinds, gears in flanks.gears.items()})
+    if flanks is not None and standing is not None:
+        flanks = replace(flanks, gears={kinds: standing.moved(gears) for kinds, gears in flanks.gears.items()})
     deviations, first_teeth = scene.tooth_deviations(pair), asked.first_teeth(pair.teeth)
     return trace_revolution(pair, deviations, pitches, asked.positions_per_pitch, first_teeth, flanks)
 
 
-def _on_supports(
+def _over_revolution(
     scene: Scene,
     pair: GearPair,
+    unloaded: RevolutionPath,
     grid: GridChoice,
-    pitches: int,
     maps: frozenset[int],
     progress: Progress | None,
-) -> list[_OnSupports]:
-    """Numbers of gears on supports, torque by torque, moved by the mean load of a pitch of teeth that are alike."""
-    supports = support_compliance(scene, pair)
-    assert supports is not None
-    roots = roots_of(scene, pair)
-    mesh = trace_teeth(at_rest(supports), pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1))
-    apart = max(pitches_of_cycle(supports, scene.torques, mesh), pitches_apart(_trace(scene, pair, pitches)))
+) -> list[_Numbers]:
+    """Numbers of the gears as they stand: on supports moved by the mean load of a pitch of teeth that are alike."""
+    torques, supports, roots = scene.torques, support_compliance(scene, pair), roots_of(scene, pair)
+    angles, pitches = pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1), _asked(scene).count(pair.teeth)
+    apart = pitches_apart(unloaded)
+    if supports is not None:
+        apart = max(apart, pitches_of_cycle(supports, torques, trace_teeth(at_rest(pair, supports), angles)))
 
-    def under(apart: int) -> list[_OnSupports]:
-        bending, numbers = model_of(scene, pair, apart), list[_OnSupports]()
-        assert bending is not None
-        cycle = SupportedCycle(pair, bending, mesh.pinion_angle, grid, load_sharing=True)
-        for t, held in enumerate(cycle.settled(scene.torques)):
-            near = supports.under(held)
-
-            def moved(gears: GearPair, near: SupportCompliance = near, held: Loads = held) -> GearPair:
-                return moved_by(replace(near, pair=gears), held)
-
-            there, given = moved_bending(bending, near, held)
-            assert there.supports is not None
-            path = _trace(scene, there.supports.pair, pitches, moved)
-            torque = np.array(scene.torques[t : t + 1])
-            one = _OnSupports(path.pair, path, torque, grid, roots, maps, bending=there, held=held)
-            report = None if progress is None else partial(_report, progress, t, len(scene.torques))
-            for part in carried_over_revolution(path, one.torques, grid, there.giving_way, report, given):
+    def under(apart: int) -> list[_Numbers]:
+        gears, numbers, done = GearsUnderTorques(pair, model_of(scene, pair, apart), angles, grid), [], 0
+        for standing in gears.standing(torques):
+            path = unloaded if standing.loads is None else _trace(scene, standing.pair, pitches, standing)
+            report = None if progress is None else partial(_report, progress, done, len(path) * len(torques))
+            one = _Numbers(standing, path, grid, roots, maps)
+            for part in carried_over_revolution(path, standing, grid, report):
                 one.add(part)
             numbers.append(one)
+            done += len(path) * standing.torques.size
         return numbers
 
-    numbers = with_enough_teeth(apart, under, lambda made: max(one.pitches_apart for one in made))
-    warn_of_supports(pair, numbers, scene.torques)
+    numbers = with_enough_teeth(apart, under)
+    warn_of_supports(pair, numbers)
     return numbers
 
 
-def _report(progress: Progress, torque: int, torques: int, done: int, whole: int) -> None:
-    """Report the states of one torque among those of all."""
-    progress(torque * whole + done, torques * whole)
+def _report(progress: Progress, before: int, whole: int, done: int, _: int) -> None:
+    """Report the states of some torques among those of all."""
+    progress(before + done, whole)
 
 
 OF_NO_PAIR: dict[str, float | bool] = {
@@ -218,26 +199,33 @@ OF_NO_PAIR: dict[str, float | bool] = {
 """Numbers of tooth pairs that are out of reach."""
 
 
-def _joined(scene: Scene, path: RevolutionPath, numbers: Sequence[_OnSupports]) -> dict[str, Array]:
+def _joined(scene: Scene, path: RevolutionPath, numbers: Sequence[_Numbers]) -> dict[str, Array]:
     """Arrays of all torques, whose gears stand elsewhere: of all tooth pairs that one of them, or none, brings near."""
     parts, paths = [one.whole() for one in numbers], [path, *(one.path for one in numbers)]
-    pairs = np.unique(np.concatenate([one.pairs for one in paths]))
+    pairs, torques = np.unique(np.concatenate([one.pairs for one in paths])), len(scene.torques)
     arrays = dict(parts[0])
     for name, values in parts[0].items():
         if name in OF_NO_PAIR:
-            arrays[name] = np.full((len(parts), len(path), len(pairs)), OF_NO_PAIR[name], dtype=values.dtype)
-            for t, (one, part) in enumerate(zip(numbers, parts, strict=True)):
-                arrays[name][t][:, np.searchsorted(pairs, one.path.pairs)] = part[name][0]
+            arrays[name] = np.full((torques, len(path), len(pairs)), OF_NO_PAIR[name], dtype=values.dtype)
+            for (first, one), part in zip(_in_order(numbers), parts, strict=True):
+                rows = slice(first, first + one.torques.size)
+                arrays[name][rows][..., np.searchsorted(pairs, one.path.pairs)] = part[name]
         elif name not in AS_AT_REST:
             arrays[name] = np.concatenate([part[name] for part in parts])
     for name in ("pinion_tooth", "wheel_tooth"):
         arrays[name] = np.zeros((len(path), len(pairs)), dtype=int)
         for own in paths:
             arrays[name][:, np.searchsorted(pairs, own.pairs)] = getattr(own, name)
-    angle, _ = scene.transverse_angles
-    pair = path.pair
-    supported = support_arrays(pair, numbers, pressure_angle=angle)
+    supported = support_arrays(path.pair, numbers, pressure_angle=scene.transverse_angles[0])
     return arrays | supported | {"pair": pairs, "rigid_transmission_error": path.transmission_error}
+
+
+def _in_order(numbers: Sequence[_Numbers]) -> Iterator[tuple[int, _Numbers]]:
+    """Each with the index of its first torque among all."""
+    first = 0
+    for one in numbers:
+        yield first, one
+        first += one.torques.size
 
 
 AS_AT_REST = {"pinion_angle", "pair", "wheel_base_radius", "face_width", *OF_TEETH, "rigid_transmission_error"}
@@ -246,11 +234,10 @@ AS_AT_REST = {"pinion_angle", "pair", "wheel_base_radius", "face_width", *OF_TEE
 
 @dataclass(eq=False)
 class _Numbers:
-    """Numbers of a revolution, filled part by part."""
+    """Numbers of a revolution of gears as they stand, filled part by part."""
 
-    pair: GearPair
+    standing: Standing
     path: RevolutionPath
-    torques: Array
     grid: GridChoice
     roots: tuple[RootStress, ...]
     wanted_maps: frozenset[int]
@@ -259,7 +246,10 @@ class _Numbers:
     solved: int = 0
 
     def __post_init__(self) -> None:
+        self.pair, self.torques, loads = self.path.pair, self.standing.torques, self.standing.loads or ()
         shape = len(self.torques), len(self.path), len(self.path.pairs)
+        self.drive_rate = np.full(shape[:2], math.nan)
+        self.loads = tuple(np.full((shape[1], one.size), math.nan) for one in loads)
         cycle, gears = shape[:2], (*shape[:2], 2)
         self.arrays: dict[str, Array] = {
             "rotation": np.full(cycle, math.nan),
@@ -273,6 +263,11 @@ class _Numbers:
         if self.roots:
             self.arrays |= {name: np.full(gears, math.nan) for name in ("root_tension", "root_compression")}
             self.arrays["root_tension_tooth"] = np.full(gears, -1)
+
+    @property
+    def pitches_apart(self) -> int:
+        """How many pitches two tooth pairs that carry load at a position are apart at the most."""
+        return widest_apart(self.path.pairs, self.arrays["load_share"])
 
     def add(self, part: CarriedPart) -> None:
         """Take what a part of the positions has of each contact, and let the contacts go."""
@@ -291,7 +286,11 @@ class _Numbers:
                 at = t, begin + n, k
                 self.arrays["load_share"][at] = share.torque / self.torques[t] if shared.torque > 0.0 else 1.0
                 self.arrays["tooth_deflection"][at] = share.tooth_deflection
-        self.arrays["stiffness"][:, rows] = part.stiffness
+        self.arrays["stiffness"][:, rows], self.drive_rate[:, rows] = part.stiffness, part.drive_stiffness
+        if self.standing.supports is not None:
+            loaded = [[share.loaded for share in part.shared[0, n].shares] for n in range(shape[1])]
+            for of_gear, loads in zip(self.loads, loads_at(self.standing.supports, loaded), strict=True):
+                of_gear[rows] = loads
         maps: dict[Place, PressureMap | None] = dict.fromkeys(contacts)
         for pair, own in by_gears.values():
             numbers, own_maps = numbers_and_maps([pair] * shape[0], own, dict.fromkeys(own), shape)
@@ -359,32 +358,3 @@ class _Numbers:
             "mesh_stiffness": stiffness / pair.rate_of_stiffness,
             "loaded_pairs": (arrays["normal_force"] > 0.0).sum(axis=-1),
         }
-
-
-@dataclass(eq=False, kw_only=True)
-class _OnSupports(_Numbers):
-    """The same under one torque, of the pair moved by the loads that are ``held``, and its ``bending``."""
-
-    bending: SumOfParts
-    held: Loads
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.drive_rate = np.full(len(self.path), math.nan)
-        pinion, wheel = (np.full((len(self.path), len(one)), math.nan) for one in self.held)
-        self.loads = pinion, wheel
-
-    @property
-    def pitches_apart(self) -> int:
-        """How many pitches two tooth pairs that carry load at a position are apart at the most."""
-        return widest_apart(self.path.pairs, self.arrays["load_share"][0])
-
-    def add(self, part: CarriedPart) -> None:
-        """Take the loads of the supports, too."""
-        super().add(part)
-        assert self.bending.supports is not None
-        rows = slice(part.positions.start, part.positions.stop)
-        at = [[share.loaded for share in part.shared[0, n].shares] for n in range(len(part.positions))]
-        self.drive_rate[rows] = part.drive_stiffness[0]
-        for of_gear, own in zip(self.loads, loads_at(self.bending.supports, at), strict=True):
-            of_gear[rows] = own

@@ -1518,9 +1518,9 @@ FAULTS = (
     ),
     Fault(
         "rigid supports enter the balance, which makes other boxes and grids with them than without",
-        "loaded/supported.py",
-        "states = OnePairsCycle(pair, trace_contact(pair, angles), torques, grid, bending.giving_way, given)",
-        "states = OnePairsCycle(pair, trace_contact(pair, angles), torques, grid, bending, given)",
+        "loaded/standing.py",
+        "what = grid, standing.giving_way, standing.displacement",
+        "what = grid, standing.bending, standing.displacement",
         "supports/test_analysis.py::test_rigid_supports_are_none",
     ),
     Fault(

@@ -20,7 +20,7 @@ from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.supports import SupportCompliance, support_compliance
 
-Made = TypeVar("Made")
+Solved = TypeVar("Solved", bound="_OfPairs")
 THINNER = 0.5
 """Tooth heights by which a rim is thinner than that of the usual bore, from where its effect is found."""
 
@@ -218,7 +218,15 @@ def model_of(scene: Scene, pair: GearPair, neighbours: int) -> SumOfParts | None
     return SumOfParts(tuple(parts)) if parts else None
 
 
-def with_enough_teeth(estimated: int, make: Callable[[int], Made], bearing: Callable[[Made], int]) -> Made:
+class _OfPairs(Protocol):
+    """What is known of tooth pairs under load."""
+
+    @property
+    def pitches_apart(self) -> int:
+        """How many pitches two of them that carry load together are apart at the most."""
+
+
+def with_enough_teeth(estimated: int, make: Callable[[int], list[Solved]]) -> list[Solved]:
     """What is solved with a bending model, its teeth as many as those between tooth pairs that carry load together.
 
     Where gears move under load, how far such pairs are apart is only an estimate before they have. Of pairs further
@@ -229,17 +237,10 @@ def with_enough_teeth(estimated: int, make: Callable[[int], Made], bearing: Call
     estimated : int
         How many pitches tooth pairs under load are apart at the most, before they are solved.
     make : callable
-        Solves with a model of so many neighbours of a loaded tooth.
-    bearing : callable
-        How many pitches tooth pairs that carry load in what was solved are apart at the most.
-
-    Examples
-    --------
-    >>> with_enough_teeth(1, make=lambda modelled: 10 * modelled, bearing=lambda made: 3)
-    30
+        Solves with a model of so many neighbours of a loaded tooth; each part knows its ``pitches_apart``.
     """
     modelled = max(estimated, 1)
-    made = make(modelled)
-    while (apart := bearing(made)) > modelled:
-        modelled, made = apart, make(apart)
-    return made
+    solved = make(modelled)
+    while (apart := max(one.pitches_apart for one in solved)) > modelled:
+        modelled, solved = apart, make(apart)
+    return solved

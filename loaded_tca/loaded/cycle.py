@@ -81,7 +81,7 @@ def carried_by_one(
     grid: GridChoice,
     bending: BendingModel | None = None,
     progress: Progress | None = None,
-    given: Coupling | None = None,
+    displacement: Coupling | None = None,
 ) -> Carried:
     """Let the tooth pair at the pitch point carry the whole load.
 
@@ -96,10 +96,10 @@ def carried_by_one(
     bending : BendingModel, optional
         Of the teeth beneath the contact; default: none.
     progress : callable, optional
-    given : callable, optional
+    displacement : callable, optional
         Displacement of the slices of a grid that does not depend on the forces; default: none.
     """
-    return carried_together([OnePairsCycle(pair, path, torques, grid, bending, given)], progress)[0]
+    return carried_together([OnePairsCycle(pair, path, torques, grid, bending, displacement)], progress)[0]
 
 
 def carried_by_all(
@@ -109,7 +109,7 @@ def carried_by_all(
     grid: GridChoice,
     bending: BendingModel | None = None,
     progress: Progress | None = None,
-    given: Coupling | None = None,
+    displacement: Coupling | None = None,
 ) -> Carried:
     """Let all tooth pairs in contact share the load.
 
@@ -117,10 +117,10 @@ def carried_by_all(
     ----------
     mesh : MeshPath
         Unloaded contact of all teeth, :func:`loaded_tca.unloaded.trace_teeth`.
-    pair, torques, grid, bending, progress, given
+    pair, torques, grid, bending, progress, displacement
         As of :func:`carried_by_one`.
     """
-    return carried_together([AllPairsCycle(pair, mesh, torques, grid, bending, given)], progress)[0]
+    return carried_together([AllPairsCycle(pair, mesh, torques, grid, bending, displacement)], progress)[0]
 
 
 class MeshStates(Protocol):
@@ -160,7 +160,7 @@ class OnePairsCycle:
     torques: Array
     grid: GridChoice
     bending: BendingModel | None = None
-    given: Coupling | None = None
+    displacement: Coupling | None = None
 
     def steps(self) -> list[Steps[LoadedContact | None]]:
         """Steps of every state, torque by torque."""
@@ -173,7 +173,9 @@ class OnePairsCycle:
         with told_where(self.torques[t], contact.pinion_angle):
             load = self.torques[t] / contact.pinion_lever
             return (
-                yield from contact_under_load(self.pair, contact, load, self.grid, self.bending, coupling=self.given)
+                yield from contact_under_load(
+                    self.pair, contact, load, self.grid, self.bending, coupling=self.displacement
+                )
             )
 
     def carried(self, results: Sequence[LoadedContact | None]) -> Carried:
@@ -204,13 +206,13 @@ class AllPairsCycle:
     torques: Array
     grid: GridChoice
     bending: BendingModel | None = None
-    given: Coupling | None = None
+    displacement: Coupling | None = None
 
     def steps(self) -> list[Steps[SharedLoad]]:
         """Steps of every state, torque by torque."""
         angles, tooth_pairs = self.mesh.pinion_angle, [tooth_pairs_at(self.mesh, n) for n in range(len(self.mesh))]
         positions = list(zip(angles.tolist(), tooth_pairs, strict=True))
-        return steps_of_shared(self.pair, positions, self.torques, self.grid, self.bending, self.given)
+        return steps_of_shared(self.pair, positions, self.torques, self.grid, self.bending, self.displacement)
 
     def carried(self, results: Sequence[SharedLoad]) -> Carried:
         """What the tooth pairs carry by the results of the steps."""
@@ -246,7 +248,7 @@ def torques_shared(
     grid: GridChoice,
     bending: BendingModel | None = None,
     progress: Progress | None = None,
-    given: Coupling | None = None,
+    displacement: Coupling | None = None,
 ) -> dict[tuple[int, int], SharedLoad]:
     """Share every torque over the tooth pairs of every position.
 
@@ -254,7 +256,7 @@ def torques_shared(
     ----------
     positions : sequence of (float, sequence of ToothPair)
         Pinion angle [rad], and all pairs that may come into contact there.
-    pair, torques, grid, bending, progress, given
+    pair, torques, grid, bending, progress, displacement
         As of :func:`carried_by_one`.
 
     Returns
@@ -263,7 +265,7 @@ def torques_shared(
         By the indices of torque and position, torque by torque.
     """
     shape = len(torques), len(positions)
-    steps = steps_of_shared(pair, positions, torques, grid, bending, given)
+    steps = steps_of_shared(pair, positions, torques, grid, bending, displacement)
     report = None if progress is None else lambda done: progress(done, len(steps))
     return dict(zip(np.ndindex(shape), found_together(pair, steps, report), strict=True))
 
@@ -274,7 +276,7 @@ def steps_of_shared(
     torques: Array,
     grid: GridChoice,
     bending: BendingModel | None = None,
-    given: Coupling | None = None,
+    displacement: Coupling | None = None,
 ) -> list[Steps[SharedLoad]]:
     """Steps of every torque at every position, torque by torque; arguments as of :func:`torques_shared`."""
     alike = [one.contact for _, all_at in positions for one in all_at if one.gears is None]
@@ -283,7 +285,7 @@ def steps_of_shared(
     def steps(t: int, n: int) -> Steps[SharedLoad]:
         angle, tooth_pairs = positions[n]
         with told_where(torques[t], angle):
-            return (yield from torque_shared(pair, tooth_pairs, float(torques[t]), grid, bending, given))
+            return (yield from torque_shared(pair, tooth_pairs, float(torques[t]), grid, bending, displacement))
 
     return [steps(*state) for state in np.ndindex(len(torques), len(positions))]
 

@@ -23,7 +23,7 @@ from loaded_tca.loaded.loaded_grid import LoadedGrid, block_diagonal
 from loaded_tca.pairs.gear_pair import ContactGrid
 from loaded_tca.separation import Separation
 
-GivenDisplacement = Callable[[ContactGrid], Array]
+Displacement = Callable[[ContactGrid], Array]
 STEP = 1e-2
 """By which the line of the forces is shifted to see how the bending changes, over the width of its grid."""
 
@@ -44,7 +44,7 @@ class LoadedSlices:
 
 
 def bending_by_shift(
-    grids: Sequence[LoadedGrid], state: Indices, bending: BendingModel, given: GivenDisplacement | None = None
+    grids: Sequence[LoadedGrid], state: Indices, bending: BendingModel, displacement: Displacement | None = None
 ) -> csr_array:
     """Deflection of the slices of all grids, in one row, by the shift of each across its contact, the forces held.
 
@@ -55,7 +55,7 @@ def bending_by_shift(
     state : (grids,) array
         That each belongs to.
     bending : BendingModel
-    given : callable, optional
+    displacement : callable, optional
         Displacement of the slices of a grid (ny,) [mm] beside what the forces do; default: none.
 
     Returns
@@ -64,10 +64,10 @@ def bending_by_shift(
         Of one state only the slices that carry forces depend on each other.
     """
     in_states = np.split(np.arange(len(grids)), np.flatnonzero(np.diff(state)) + 1)
-    return block_diagonal([_of_state([grids[i] for i in numbers], bending, given) for numbers in in_states])
+    return block_diagonal([_of_state([grids[i] for i in numbers], bending, displacement) for numbers in in_states])
 
 
-def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel, given: GivenDisplacement | None) -> Array:
+def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel, displacement: Displacement | None) -> Array:
     """The same of one state, (slices, slices)."""
     forces = [grid.slice_force for grid in grids]
     first = np.cumsum([0, *(force.size for force in forces)])
@@ -90,6 +90,6 @@ def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel, given: GivenDi
         at, under = first[i] + loaded[i], first[j] + loaded[j]
         by_shift[at, at] += by_place @ forces[j][loaded[j]]
         by_shift[np.ix_(under, at)] += by_place.T * forces[i][loaded[i]]
-        if given is not None and i == j:
-            by_shift[at, at] += (given(beyond[i][1]) - given(held[i][1])) / steps[i]
+        if i == j and displacement is not None:
+            by_shift[at, at] += (displacement(beyond[i][1]) - displacement(held[i][1])) / steps[i]
     return by_shift

@@ -180,7 +180,7 @@ class HeldContacts:
     cells : (int, int)
         Of every grid.
     bending : BendingModel, optional
-    given : callable, optional
+    displacement : callable, optional
         Displacement of the slices of a grid that does not depend on the forces; default: none.
 
     Attributes
@@ -199,9 +199,9 @@ class HeldContacts:
         torque: float,
         cells: tuple[int, int],
         bending: BendingModel | None = None,
-        given: Coupling | None = None,
+        displacement: Coupling | None = None,
     ) -> None:
-        self.given = given
+        self.displacement = displacement
         self.scene, self.pair, self.mesh, self.keys = scene, mesh.pair, mesh, tuple(ranges)
         self.start = np.array([value_at(scene, key) for key in self.keys])
         self._torque, self._cells = torque, cells
@@ -371,7 +371,7 @@ class ShapedContacts:
         beyond = [one.initial_separation + self._lowest[one.contact] / one.contact.wheel_lever for one in there]
         first = min(beyond)
         tooth_pairs = [replace(one, initial_separation=rest - first) for one, rest in zip(there, beyond, strict=True)]
-        steps = torque_shared(pair, tooth_pairs, torque, grid, contacts.bending, contacts.given)
+        steps = torque_shared(pair, tooth_pairs, torque, grid, contacts.bending, contacts.displacement)
         answer = yield from self._answered(steps)
         unloaded = float(contacts.mesh.transmission_error[position])
         return unloaded - pair.driving * (first + answer.rotation), answer

@@ -136,11 +136,11 @@ def torque_shared(
     torque: float,
     grid: GridChoice,
     bending: BendingModel | None = None,
-    given: Coupling | None = None,
+    displacement: Coupling | None = None,
 ) -> Steps[SharedLoad]:
     """Share a torque over the tooth pairs of one position, step by step; see :func:`share_load`.
 
-    ``given``: displacement of the slices of a grid, of whichever pair, that does not depend on the forces.
+    ``displacement``: that of the slices of a grid, of whichever pair, that does not depend on the forces.
     """
     if not 0.0 <= torque < math.inf:
         raise InputError(f"torque: {torque!r} N mm is not a finite number >= 0")
@@ -152,7 +152,7 @@ def torque_shared(
         steps = contact_under_load(leading.gears or pair, leading.contact, 0.0, grid)
         loaded = yield from with_gears(leading.gears, steps)
         return SharedLoad(0.0, 0.0, (Share(leading, loaded, 0.0),), 0.0, 0)
-    return (yield from _Balance(pair, tooth_pairs, torque, grid, bending, given).steps())
+    return (yield from _Balance(pair, tooth_pairs, torque, grid, bending, displacement).steps())
 
 
 class _Balance:
@@ -165,10 +165,11 @@ class _Balance:
         torque: float,
         grid: GridChoice,
         bending: BendingModel | None,
-        given: Coupling | None = None,
+        displacement: Coupling | None = None,
     ) -> None:
         self.pair, self.tooth_pairs, self.torque, self.grid = pair, tuple(tooth_pairs), torque, grid
-        self.given, self.given_means = given, np.zeros(len(tooth_pairs))  # [mm], the mean over the force of a pair
+        self.displacement, self.on_moved_gears = displacement, displacement is not None
+        self.mean_displacement = np.zeros(len(tooth_pairs))  # [mm], over the force of each pair
         self.bending, self.lines_held = bending, grid.lines_held
         self.first_contacts, self.ways = self.tooth_pairs, np.zeros(len(tooth_pairs))  # [rad], of the wheel
         self.moved: set[int] = set()  # pairs that are to be solved where they lie now
@@ -182,7 +183,7 @@ class _Balance:
         self.compliance = np.zeros((len(contacts), len(contacts)))
         self.grids_apart: dict[int, Separation] = {}  # of pairs that carried nothing yet
         self.deflections: dict[tuple[int, int], tuple[Separation, LoadedContact, Array]] = {}
-        self.on_grids = given is not None or grid.lines_held  # all pairs, since what is given goes with grids
+        self.on_grids = self.on_moved_gears or grid.lines_held  # all pairs, since displacements go with grids
         usual = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
         self.agreement = usual if grid.agreement is None else grid.agreement
 
@@ -266,10 +267,9 @@ class _Balance:
                 force = line.force
                 lines.append((tooth_pair.pair, line))
             shares.append(force / force.sum())
-        if self.given is not None:
-            self.given_means = np.array(
-                [own @ self.given(grid) for own, grid in zip(shares, self.grids_apart.values(), strict=True)]
-            )
+        if self.on_moved_gears:
+            displaced = [self._displaced(grid) for grid in self.grids_apart.values()]
+            self.mean_displacement = np.array([own @ one for own, one in zip(shares, displaced, strict=True)])
         compliance = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
         for (i, one), (j, other) in combinations(enumerate(lines), 2):
             if self._coupled(i, j):
@@ -349,21 +349,25 @@ class _Balance:
     @property
     def _first_rotations(self) -> Array:
         """Rotations (k,) [rad] at which the grids of the pairs touch; contact laws count from there."""
-        return np.asarray(self.separations + (self.first_gaps + self.given_means) / self.levers[1])
+        return np.asarray(self.separations + (self.first_gaps + self.mean_displacement) / self.levers[1])
 
     def _loaded(self) -> Iterator[tuple[int, LoadedContact]]:
         """Place and contact of the pairs that were solved under a load."""
         return ((n, loaded) for n, loaded in enumerate(self.solved) if loaded is not None and loaded.solution.load > 0)
+
+    def _displaced(self, separation: Separation) -> Array:
+        """Displacement of the slices of a grid (ny,) [mm] that does not depend on the forces; an array of its own."""
+        displaced = None if self.displacement is None else self.displacement(separation)
+        return np.zeros(len(separation.y)) if displaced is None else displaced.copy()
 
     def _coupling(self, index: int, forces: Array, separation: Separation) -> Array | None:
         """Displacement of a pair's slices (ny,) [mm] by the forces of the others; None if nothing bends.
 
         The force of another pair is spread over its slices as in its last solution.
         """
-        given = None if self.given is None else self.given(separation)
+        displaced = self._displaced(separation)
         if self.bending is None:
-            return given
-        displaced = np.zeros(len(separation.y)) if given is None else given.copy()
+            return displaced if self.on_moved_gears else None
         for n, other in self._loaded():
             if n != index and forces[n] > 0.0:
                 displaced += forces[n] * self._deflection(index, separation, n, other)
@@ -395,8 +399,7 @@ class _Balance:
             return compliance
         for index, loaded in self._loaded():
             compliance[index, index] = loaded.own_tooth_deflection / loaded.solution.load
-            if self.given is not None:
-                self.given_means[index] = loaded.slice_shares @ self.given(loaded.separation)
+            self.mean_displacement[index] = loaded.slice_shares @ self._displaced(loaded.separation)
         for (index, one), (other, two) in combinations(self._loaded(), 2):
             displaced = self._deflection(index, one.separation, other, two)
             compliance[index, other] = compliance[other, index] = one.slice_shares @ displaced
@@ -408,7 +411,7 @@ class _Balance:
             if index not in loaded_pairs:
                 grid = yield from self._grid_apart(index)
                 places[index] = self._correct_apart(index, grid, loaded_pairs, compliance)
-        if self.given is not None and places and np.linalg.eigvalsh(compliance)[0] < 0.0:
+        if self.on_moved_gears and places and np.linalg.eigvalsh(compliance)[0] < 0.0:
             self._correct_between_apart(places, compliance)
         return compliance
 
@@ -424,17 +427,14 @@ class _Balance:
             for other, two in loaded_pairs.items()
             if self._coupled(index, other)
         }
-        distance = separation.cut_gap.min(axis=0)
-        given = None if self.given is None else self.given(separation)
-        if given is not None:
-            distance = distance + given
+        displacement = self._displaced(separation)
+        distance = separation.cut_gap.min(axis=0) + displacement
         for other, displaced in bent.items():
             distance = distance + loaded_pairs[other].solution.load * displaced
         place = int(distance.argmin())  # where it comes into contact first, bent away by the others as it is
         for other, displaced in bent.items():
             compliance[index, other] = compliance[other, index] = displaced[place]
-        if given is not None:
-            self.given_means[index] = given[place]
+        self.mean_displacement[index] = displacement[place]
         return place
 
     def _correct_between_apart(self, places: dict[int, int], compliance: Array) -> None:
@@ -473,15 +473,15 @@ class _Balance:
         return True
 
     def _scale(self, rotation: float, forces: Array) -> float:
-        """Rotation [rad] to compare differences with; that of the contacts alone where a given one takes it back."""
-        if self.given is None:
+        """Rotation [rad] to compare differences with; of the contacts alone where gears have moved by it before."""
+        if not self.on_moved_gears:
             return rotation
         pressed = [(n, one.contact_deformation / self.levers[1, n]) for n, one in self._loaded() if forces[n] > 0.0]
         return max(rotation, float(sum(forces[n] * turn for n, turn in pressed) / forces.sum()))
 
     def _shared(self, forces: Array, count: int) -> SharedLoad:
         carrying = np.array([index for index, _ in self._loaded() if forces[index] > 0.0])
-        deflections = self.compliance @ forces + self.given_means
+        deflections = self.compliance @ forces + self.mean_displacement
         shares = []
         for index in carrying.tolist():
             loaded = self.solved[index]

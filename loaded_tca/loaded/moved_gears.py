@@ -12,9 +12,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import SumOfParts
 from loaded_tca.errors import GeometryError
-from loaded_tca.loaded.cycle import (
-    farthest_apart,
-)
+from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import Coupling
 from loaded_tca.pairs.gear_pair import GearPair
@@ -44,8 +42,8 @@ def moved_bending(bending: SumOfParts, near: SupportCompliance, loads: Loads) ->
     gaps of a pair on rigid supports.
     """
     there = standing_under(near, loads)
-    given = None if near.is_rigid else partial(there.opened, motions=given_motions(near, loads))
-    return bending.on_supports(there).mounted(there.pair), given
+    displacement = None if near.is_rigid else partial(there.opened, motions=given_motions(near, loads))
+    return bending.on_supports(there).mounted(there.pair), displacement
 
 
 def moved_by(supports: SupportCompliance, loads: Loads) -> GearPair:
@@ -53,9 +51,9 @@ def moved_by(supports: SupportCompliance, loads: Loads) -> GearPair:
     return standing_under(supports, loads).pair
 
 
-def at_rest(supports: SupportCompliance) -> GearPair:
-    """The pair of supports as other loads alone move it."""
-    return moved_by(supports, no_loads(supports))
+def at_rest(pair: GearPair, supports: SupportCompliance | None) -> GearPair:
+    """The pair without load: as other loads alone move it on its supports, if it has some."""
+    return pair if supports is None else moved_by(supports, no_loads(supports))
 
 
 def moved_too_far(error: GeometryError, torque: float) -> GeometryError:
@@ -63,24 +61,32 @@ def moved_too_far(error: GeometryError, torque: float) -> GeometryError:
     return GeometryError(f"{error}; under {1e-3 * torque:g} N m the supports let the gears move too far")
 
 
-def pitches_apart(supports: SupportCompliance, torques: Sequence[float], mesh: MeshPath) -> int:
+def pitches_apart(supports: SupportCompliance | None, torques: Sequence[float], at_rest: MeshPath) -> int:
     """How many pitches tooth pairs within reach are apart, at rest and moved by each pinion torque [N mm].
 
-    The force of a torque acts where the flanks touch first without load; ``mesh``: contact of the pair at rest.
+    The force of a torque acts where the flanks touch first without load.
+
+    Parameters
+    ----------
+    supports : SupportCompliance or None
+        In the pair of the scene; None: the gears are rigid.
+    torques : sequence of float [N mm]
+    at_rest : MeshPath
+        Contact of the pair at rest.
 
     Raises
     ------
     GeometryError
         If the moved flanks are not in contact.
     """
-    apart = farthest_apart(mesh)
-    for torque in sorted(
-        (torque for torque in torques if torque > 0.0), reverse=True
-    ):  # what the largest one asks for is told first
+    apart = farthest_apart(at_rest)
+    loaded = [] if supports is None else sorted((torque for torque in torques if torque > 0.0), reverse=True)
+    for torque in loaded:  # what the largest one asks for is told first
+        assert supports is not None
         try:
-            loads = loads_at_first_contact(supports, mesh.pair, torque)
+            loads = loads_at_first_contact(supports, at_rest.pair, torque)
             moved = moved_by(supports.under(loads), loads)
-            apart = max(apart, farthest_apart(trace_teeth(moved, mesh.pinion_angle)))
+            apart = max(apart, farthest_apart(trace_teeth(moved, at_rest.pinion_angle)))
         except GeometryError as error:
             raise moved_too_far(error, torque) from None
     return apart

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from functools import partial
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.loaded.cycle import Progress, torques_shared
 from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.sensitivity import loaded_states
-from loaded_tca.loaded.supported import on_rigid_supports
-from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
+from loaded_tca.loaded.standing import Standing, on_rigid_supports
+from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.loaded.tooth_pairs import SharedLoad, ToothPair
 from loaded_tca.unloaded.revolution import RevolutionPath
 
@@ -43,49 +42,37 @@ class CarriedPart:
 
 
 def carried_over_revolution(
-    path: RevolutionPath,
-    torques: Array,
-    grid: GridChoice,
-    bending: BendingModel | None = None,
-    progress: Progress | None = None,
-    given: Coupling | None = None,
+    path: RevolutionPath, standing: Standing, grid: GridChoice, progress: Progress | None = None
 ) -> Iterator[CarriedPart]:
     """Let all tooth pairs in contact share the load, position by position of a revolution.
 
     Parameters
     ----------
     path : RevolutionPath
-    torques : (m,) array [N mm]
-        Of the pinion.
+        Of the gears as they stand.
+    standing : Standing
     grid : GridChoice
-    bending : BendingModel, optional
-        Of the teeth beneath the contacts; default: none.
     progress : callable, optional
         Called with the states that are done, and how many there are.
-    given : callable, optional
-        Displacement of the slices of a grid that does not depend on the forces; default: none.
 
     Yields
     ------
     CarriedPart
     """
-    pair, count, whole = path.pair, max(1, STATES_AT_A_TIME // len(torques)), len(path) * len(torques)
+    torques, bending = standing.torques, standing.giving_way
+    count, whole = max(1, STATES_AT_A_TIME // len(torques)), len(path) * len(torques)
     for first in range(0, len(path), count):
         positions = range(first, min(first + count, len(path)))
-        before = first * len(torques)
-        report = None if progress is None else partial(_report, progress, before, whole)
+        report = None if progress is None else partial(_report, progress, first * len(torques), whole)
         at = [(float(path.pinion_angle[n]), tooth_pairs_of(path, n)) for n in positions]
-        shared = torques_shared(pair, at, torques, grid, bending, report, given)
+        shared = torques_shared(path.pair, at, torques, grid, bending, report, standing.displacement)
+        loaded = [[(one.tooth_pair.pair, one.loaded) for one in each.shares] for each in shared.values()]
+        held = states = [[LoadedGrid.of(*one) for one in at] for at in loaded]
+        if standing.supports is not None:
+            held = [[on_rigid_supports(*one, standing.teeth) for one in at] for at in loaded]
         shape = len(torques), len(positions)
-        states = [[LoadedGrid.of(one.tooth_pair.pair, one.loaded) for one in each.shares] for each in shared.values()]
-        drive = stiffness = loaded_states(states, bending).stiffness.reshape(shape)
-        if isinstance(bending, SumOfParts) and bending.supports is not None:
-            teeth = bending.on_rigid_supports
-            held = [
-                [on_rigid_supports(one.tooth_pair.pair, one.loaded, teeth) for one in each.shares]
-                for each in shared.values()
-            ]
-            stiffness = loaded_states(held, teeth).stiffness.reshape(shape)
+        drive = loaded_states(states, bending).stiffness.reshape(shape)
+        stiffness = drive if held is states else loaded_states(held, standing.teeth).stiffness.reshape(shape)
         yield CarriedPart(positions, shared, stiffness, drive)
 
 

@@ -14,7 +14,7 @@ from loaded_tca.compliance import RootStress
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.loaded_contact import EQUAL, LoadedContact
 from loaded_tca.loaded.rounded_edges import NOT_REACHED, PeakAtEdge
-from loaded_tca.loaded.supported import CarriedOnSupports
+from loaded_tca.loaded.standing import StandingCycle
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
 from loaded_tca.results.load_factors import load_factors
@@ -37,10 +37,9 @@ def mesh_cycle(
     pair: GearPair,
     carried: Carried,
     at_rounded_edges: Mapping[tuple[int, int, int], PeakAtEdge],
-    roots: Sequence[RootStress] = (),
-    on_supports: Sequence[CarriedOnSupports] = (),
+    roots: Sequence[RootStress],
+    cycles: Sequence[StandingCycle],
     *,
-    coupled_pitches: int = 0,
     warnings: Sequence[str] = (),
     date: str = "",
 ) -> MeshCycle:
@@ -56,10 +55,8 @@ def mesh_cycle(
         Peaks there by the indices of torque, position and tooth pair, as ``carried`` has them.
     roots : sequence of RootStress
         Of pinion and wheel, where the scene asks for root stress.
-    on_supports : sequence of CarriedOnSupports
-        By torque, where supports give way; ``carried`` is all of them.
-    coupled_pitches : int
-        As of the bending model that was used.
+    cycles : sequence of StandingCycle
+        Where the gears stand, in the order of the torques; ``carried`` is all of them.
     warnings : sequence of str
         Sentences of the accuracy warnings of the analysis; each is kept once.
     date : str
@@ -69,8 +66,8 @@ def mesh_cycle(
     share = carried.share[..., order]
     contacts = {(t, n, k): carried.contacts[t][n][order[k]] for t, n, k in np.ndindex(share.shape)}
     at_edges = {(t, n, k): at_rounded_edges.get((t, n, int(order[k]))) for t, n, k in contacts}
-    moved = [one.pair for one in on_supports]
-    numbers, maps = numbers_and_maps(moved or [pair] * share.shape[0], contacts, at_edges, share.shape)
+    moved = [one.standing.pair for one in cycles for _ in one.standing.torques]
+    numbers, maps = numbers_and_maps(moved, contacts, at_edges, share.shape)
     apart = np.isnan(numbers["contact_deformation"])
     numbers["normal_force"] = np.where(apart & ~np.isnan(share), 0.0, numbers["normal_force"])
     path, (torques, positions, pairs) = carried.path, (range(length) for length in share.shape)
@@ -83,13 +80,15 @@ def mesh_cycle(
         "pinion_angle": path.pinion_angle,
         "wheel_base_radius": pair.base_radii[1],
         "face_width": pair.face_width,
-        "coupled_pitches": coupled_pitches,
+        "coupled_pitches": 0 if (bending := cycles[0].standing.bending) is None else bending.coupled_pitches,
         "max_pressure": math.nan if pair.max_pressure is None else pair.max_pressure,
         "unloaded_transmission_error": path.transmission_error,
         "face_load_factor": face_load_factor,
         "transverse_load_factor": transverse_load_factor,
         "transmission_error": path.transmission_error - pair.driving * carried.rotation,
-        **_stiffnesses(scene, pair, carried, on_supports),
+        "mesh_stiffness": np.concatenate([one.mesh_rate for one in cycles]) / pair.rate_of_stiffness,
+        "secant_stiffness": secant_on_rigid_supports(carried, cycles) / pair.rate_of_stiffness,
+        **support_arrays(pair, cycles, pressure_angle=scene.transverse_angles[0]),
         "loaded_pairs": (numbers["normal_force"] > 0.0).sum(axis=-1),
         "load_share": share,
         "tooth_deflection": np.where(apart, math.nan, carried.tooth_deflection[..., order]),
@@ -106,27 +105,8 @@ def mesh_cycle(
         path=path,
         paths=tuple(carried.paths[k] for k in order),
         maps=stacked,
-        states=(scene, tuple(one.carried.states for one in on_supports) or (carried.states,)),
+        states=(scene, tuple(one.carried.states for one in cycles)),
     )
-
-
-def _stiffnesses(
-    scene: Scene, pair: GearPair, carried: Carried, on_supports: Sequence[CarriedOnSupports]
-) -> dict[str, Array]:
-    """Tangent and secant mesh stiffness of the teeth and, where supports give way, the arrays of these."""
-    if not on_supports:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            secant = np.where(carried.rotation > 0.0, carried.torque[:, None] / carried.rotation, math.nan)
-        return {
-            "mesh_stiffness": carried.torque_rate / pair.rate_of_stiffness,
-            "secant_stiffness": secant / pair.rate_of_stiffness,
-        }
-    angle, _ = scene.transverse_angles
-    return {
-        "mesh_stiffness": np.stack([one.mesh_rate for one in on_supports]) / pair.rate_of_stiffness,
-        "secant_stiffness": secant_on_rigid_supports(carried, on_supports) / pair.rate_of_stiffness,
-        **support_arrays(pair, on_supports, pressure_angle=angle),
-    }
 
 
 def numbers_and_maps(

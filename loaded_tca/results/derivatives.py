@@ -1,4 +1,4 @@
-"""How the derivatives of a result are found: its contact problems made again, of gears that are held or on supports.
+"""How the derivatives of a result are found: its contact problems made again, of the gears as they stand.
 
 On supports they are found torque by torque, each in the gears as they stand under it.
 """
@@ -19,7 +19,6 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.force_lines import bending_by_shift
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.loaded_grid import LoadedGrid
-from loaded_tca.loaded.moved_gears import given_motions
 from loaded_tca.loaded.sensitivity import LoadedStates, Tangents, loaded_states
 from loaded_tca.loaded.tooth_contact import contact_problem
 from loaded_tca.loaded.tooth_pairs import ToothPair, tooth_pairs_at
@@ -34,14 +33,13 @@ from loaded_tca.results.sensitivities import FEW, LINEAR, NEWTON_MILLIMETRES, TO
 from loaded_tca.results.support_growth import (
     OnSlices,
     UnderOneTorque,
+    as_gears_stand,
     changes_at_rest,
     growth_on_supports,
-    under_one_torque,
 )
 from loaded_tca.results.warnings import warn_of_contacts
-from loaded_tca.separation.pair_change import PairChange, pair_changes
+from loaded_tca.separation.pair_change import PairChange
 from loaded_tca.separation.sample import Separation
-from loaded_tca.supports import SupportCompliance
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded import ContactPoint, RelativeCurvature, trace_contact, trace_teeth
 from loaded_tca.unloaded.curvature import relative_curvatures
@@ -51,14 +49,13 @@ SAME = 1e-6
 """Distance of two contact points, over the module, that are the same."""
 
 
-def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = None) -> LoadedStates:
+def states_of_maps(result: CycleNumbers) -> LoadedStates:
     """Contact problems that the pressure maps of a result solve, and how they answer.
 
     Parameters
     ----------
-    result : MeshCycle
-    supports : SupportCompliance, optional
-        What the gears stand on, as it gives way where they stand; default: they are rigid.
+    result : MeshCycle or UnderOneTorque
+        Of gears that stand alike under all its torques.
 
     Raises
     ------
@@ -67,12 +64,12 @@ def states_of_maps(result: CycleNumbers, supports: SupportCompliance | None = No
     """
     pair, wanted, numbers = result.gear_pair, result.scene.analysis, result.pair.tolist()
     unloaded = _first_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
-    if supports is None:
-        bending = model_of(result.scene, pair, result.coupled_pitches)
-    else:
+    if isinstance(result, UnderOneTorque):
         at_rest = model_of(result.scene, result.scene.pair(), result.coupled_pitches)
         assert at_rest is not None
-        bending = at_rest.on_supports(supports).mounted(pair)
+        bending: SumOfParts | None = at_rest.on_supports(result.supports).mounted(pair)
+    else:
+        bending = model_of(result.scene, pair, result.coupled_pitches)
     places = np.argwhere(result.normal_force > 0.0).tolist()
     maps = [one for t, n, k in places if (one := result.maps[t][n][k]) is not None]
     firsts = [unloaded[n][numbers[k]] for _, n, k in places if numbers[k] in unloaded[n]]
@@ -129,8 +126,8 @@ def _by_torque(name: str) -> cached_property[Any]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SensitivitiesOnSupports(Sensitivities):
-    """Derivatives of a result on supports, which holds those under each torque by themselves.
+class JoinedSensitivities(Sensitivities):
+    """Derivatives of a result whose gears stand elsewhere under each torque, of those under each by themselves.
 
     Attributes
     ----------
@@ -188,48 +185,6 @@ class SensitivitiesOnSupports(Sensitivities):
         return np.concatenate([none if one is None else one for one in arrays])
 
 
-def sensitivities_on_supports(result: CycleNumbers, keys: Sequence[str]) -> tuple[SensitivitiesOnSupports, bool]:
-    """Derivatives of a result on supports, and whether a key moves lines on the flanks through contacts."""
-    at_rest = changes_at_rest(result.scene, [key for key in keys if key != TORQUE])
-    solved, kept = result.states or (None, ())
-    parts = []
-    for t in range(len(result.torque)):
-        one = under_one_torque(result, t)
-        states = kept[t] if solved == result.scene else states_of_maps(one, one.supports)
-        parts.append(_of_torque(one, states, keys, at_rest) if any(states.grids) else None)
-    require((any(parts), NO_LOAD))
-    made = SensitivitiesOnSupports(tuple(keys), result, tuple(parts))
-    return made, any(not change.holds_lines for change in at_rest.values())
-
-
-def _of_torque(
-    result: UnderOneTorque, states: LoadedStates, keys: Sequence[str], at_rest: Mapping[str, PairChange]
-) -> Sensitivities:
-    """Derivatives under one torque."""
-    bending = states.bending
-    assert isinstance(bending, SumOfParts)
-    tangents = states.tangents(LINEAR)
-    given = partial(result.supports.opened, motions=given_motions(result.supports, result.held))
-    tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, bending, given))
-    columns = np.array([result.pair.tolist().index(grid.number) for grid in tangents.grids])
-    of_torque = np.flatnonzero([len(state) for state in states.grids])
-    places = np.stack([np.zeros_like(of_torque), of_torque])
-    raised = np.array([[NEWTON_MILLIMETRES if key == TORQUE else 0.0] for key in keys])
-    on_slices = OnSlices(result, tangents)
-    growth, changes = growth_on_supports(
-        result,
-        tangents,
-        bending,
-        on_slices,
-        (*places[:, tangents.state], columns),
-        keys,
-        at_rest,
-        raised,
-    )
-    rates = partial(motion_rates, result, tangents, bending.on_rigid_supports, on_slices.by_motions)
-    return Sensitivities(tuple(keys), result, tangents, places, columns, growth, changes, rates)
-
-
 NO_LOAD = "sensitivities: no tooth pair of the result carries load"
 
 
@@ -244,31 +199,52 @@ def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
         *((keys.count(key) < 2, f"keys: {key} is given twice") for key in dict.fromkeys(map(str, keys))),
     )
     with one_blas_thread():
-        made, moves_lines = (sensitivities_on_supports if result.scene.is_supported else _of_rigid_gears)(result, keys)
-    if moves_lines:
+        changes = changes_at_rest(result.scene, [key for key in keys if key != TORQUE])
+        made = _as_gears_stand(result, keys, changes)
+    if not all(change.holds_lines for change in changes.values()):
         warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts, stacklevel=4)
     if result.gear_pair.max_pressure is not None:
         warn_of_contacts(result, kinds.NEARLY_PLASTIC.sentence(cells=FEW), made.nearly_plastic, stacklevel=4)
     return made
 
 
-def _of_rigid_gears(result: CycleNumbers, keys: Sequence[str]) -> tuple[Sensitivities, bool]:
-    """Derivatives of gears that stand still, and whether a key moves lines on the flanks through contacts."""
-    named = [key for key in keys if key != TORQUE]
-    changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
-    solved, states = result.states or (None, ())
-    (loaded,) = states if solved == result.scene else (states_of_maps(result),)
-    count = [len(state) for state in loaded.grids]
-    require((any(count), NO_LOAD))
-    pairs = result.pair.tolist()
-    places = np.array(np.unravel_index(np.flatnonzero(count), result.transmission_error.shape))
-    tangents = loaded.tangents(LINEAR)
-    if loaded.bending is not None:
-        tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, loaded.bending))
-    columns = np.array([pairs.index(grid.number) for grid in tangents.grids])
-    growth = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
-    by_key = dict(zip(named, changes, strict=True))
-    every = tuple(by_key.get(key) for key in keys)
-    rates = partial(motion_rates, result, tangents, loaded.bending)
-    made = Sensitivities(tuple(keys), result, tangents, places, columns, growth.at_keys(at, len(keys)), every, rates)
-    return made, any(not change.holds_lines for change in changes)
+def _as_gears_stand(result: CycleNumbers, keys: Sequence[str], changes: Mapping[str, PairChange]) -> Sensitivities:
+    """Derivatives of a result, found of all torques under which the gears stand alike at once."""
+    solved, kept = result.states or (None, ())
+    parts: list[Sensitivities | None] = []
+    for number, one in enumerate(as_gears_stand(result)):
+        states = kept[number] if solved == result.scene else states_of_maps(one)
+        parts.append(_sensitivities(one, states, keys, changes) if any(states.grids) else None)
+    require((any(parts), NO_LOAD))
+    (first, *_) = parts
+    return (
+        first if first is not None and first.result is result else JoinedSensitivities(tuple(keys), result, (*parts,))
+    )
+
+
+def _sensitivities(
+    result: CycleNumbers, states: LoadedStates, keys: Sequence[str], changes: Mapping[str, PairChange]
+) -> Sensitivities:
+    """Derivatives where gears stand alike under all torques."""
+    bending, tangents = states.bending, states.tangents(LINEAR)
+    on_supports = result if isinstance(result, UnderOneTorque) else None
+    if bending is not None:
+        displacement = None if on_supports is None else on_supports.displacement
+        tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, bending, displacement))
+    loaded = np.flatnonzero([len(state) for state in states.grids])
+    places = np.array(np.unravel_index(loaded, result.transmission_error.shape))
+    columns = np.array([result.pair.tolist().index(grid.number) for grid in tangents.grids])
+    at = *places[:, tangents.state], columns
+    if on_supports is None:
+        named = [key for key in keys if key in changes]
+        growth = gap_growth(result, tangents, bending, at, [changes[key] for key in named])
+        growth = growth.at_keys([keys.index(key) for key in named], len(keys))
+        whole = tuple(changes.get(key) for key in keys)
+        rates = partial(motion_rates, result, tangents, bending)
+    else:
+        assert isinstance(bending, SumOfParts)
+        raised = np.array([[NEWTON_MILLIMETRES if key == TORQUE else 0.0] for key in keys])
+        on_slices = OnSlices(on_supports, tangents)
+        growth, whole = growth_on_supports(on_supports, tangents, bending, on_slices, at, keys, changes, raised)
+        rates = partial(motion_rates, result, tangents, bending.on_rigid_supports, on_slices.by_motions)
+    return Sensitivities(tuple(keys), result, tangents, places, columns, growth, whole, rates)

@@ -151,7 +151,7 @@ class MeshCycle(CycleNumbers):
     ) -> Tribology:
         """Return loss, temperatures, films and safeties at one speed or several, with an oil and a roughness.
 
-        What is not given is taken from [operation], [lubricant] and ``roughness_Ra_um`` of the scene. Slices of the
+        What is None is taken from [operation], [lubricant] and ``roughness_Ra_um`` of the scene. Slices of the
         contacts are found once: further speeds and oils are formulas on them.
 
         Parameters

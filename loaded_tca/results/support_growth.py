@@ -28,9 +28,9 @@ from loaded_tca.compliance.model import SumOfParts
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import in_gear_angles
 from loaded_tca.loaded.force_lines import LoadedSlices
-from loaded_tca.loaded.moved_gears import Loads, standing_under
+from loaded_tca.loaded.moved_gears import Loads, given_motions, standing_under
 from loaded_tca.loaded.sensitivity import Tangents
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.results.gap_growth import GapGrowth, gap_growth, moved
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.scene import Scene
@@ -73,6 +73,10 @@ class UnderOneTorque(CycleNumbers):
         """The gears where they stand under the torque."""
         return self.supports.pair
 
+    def displacement(self, grid: ContactGrid) -> Array:
+        """Of the slices of a grid (ny,) [mm] by other loads on the shafts, less what has moved the pair."""
+        return self.supports.opened(grid, given_motions(self.supports, self.held))
+
     @property
     def bodies(self) -> tuple[Array, Array]:
         """Motions (6,) of pinion and wheel that the pair is moved by."""
@@ -83,12 +87,21 @@ _KEPT: WeakKeyDictionary[CycleNumbers, dict[int, UnderOneTorque]] = WeakKeyDicti
 """Results under one torque by its index, by the results on supports that they are of."""
 
 
-def standing(result: CycleNumbers, torque: int) -> tuple[CycleNumbers, int]:
-    """A result whose gears stand as they do under a torque, by its index, and the index that it has there.
+def _stand_alike(result: CycleNumbers) -> bool:
+    """Whether the gears of a result stand alike under all its torques."""
+    return isinstance(result, UnderOneTorque) or not result.scene.is_supported
 
-    The result itself where no support gives way or it is one under one torque, else that of :func:`under_one_torque`.
-    """
-    if isinstance(result, UnderOneTorque) or not result.scene.is_supported:
+
+def as_gears_stand(result: CycleNumbers) -> list[CycleNumbers]:
+    """A result by where its gears stand: itself where none is on supports, else what it is under each torque."""
+    if _stand_alike(result):
+        return [result]
+    return [under_one_torque(result, torque) for torque in range(len(result.torque))]
+
+
+def standing(result: CycleNumbers, torque: int) -> tuple[CycleNumbers, int]:
+    """A result whose gears stand as they do under a torque, by its index, and the index that it has there."""
+    if _stand_alike(result):
         return result, torque
     return under_one_torque(result, torque), 0
 

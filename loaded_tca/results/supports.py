@@ -11,7 +11,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.cycle import Carried
-from loaded_tca.loaded.supported import CarriedOnSupports, OnSupports
+from loaded_tca.loaded.standing import LoadedStanding, StandingCycle
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.supports import RollingBearing, SupportCompliance, shafts_of
@@ -25,18 +25,20 @@ LARGEST_MOMENT = 5e-3
 bevel pairs it lacks 1e-4 and less, of a spiral bevel pair 1e-3, of a hypoid pair 1.5e-2."""
 
 
-def support_arrays(pair: GearPair, cycles: Sequence[OnSupports], *, pressure_angle: float) -> dict[str, Array]:
+def support_arrays(pair: GearPair, cycles: Sequence[LoadedStanding], *, pressure_angle: float) -> dict[str, Array]:
     """Arrays of ``SUPPORT_QUANTITIES``; of ``BEARING_QUANTITIES`` of gears with shafts, ``ROLLING_QUANTITIES`` of some.
 
     Parameters
     ----------
     pair : GearPair
         At rest.
-    cycles : sequence of CarriedOnSupports
-        By torque.
+    cycles : sequence of StandingCycle
+        By torque on supports that give way; there is nothing of rigid gears.
     pressure_angle : float [rad]
         Working transverse one; NaN: axes that meet have no misalignment in a plane of action.
     """
+    if not cycles[0].loads:
+        return {}
     motions = [_motions(pair, one) for one in cycles]
     forces = {
         f"{gear}_bearing_force": np.stack(
@@ -53,13 +55,16 @@ def support_arrays(pair: GearPair, cycles: Sequence[OnSupports], *, pressure_ang
             "wheel_motion": np.stack([one[1] for one in motions]),
             "misalignment": MICROMETRES * np.stack([_misalignment(pair, pressure_angle, one) for one in motions]),
             "wind_up": -pair.driving * np.stack([_wind_up(one) for one in cycles]),
-            "drive_stiffness": np.stack([one.drive_rate for one in cycles]) * (1.0 / pair.rate_of_stiffness),
-            **{f"{gear}_support_load": np.stack([one.held[n] for one in cycles]) for n, gear in enumerate(GEARS)},
+            "drive_stiffness": np.concatenate([one.drive_rate for one in cycles]) * (1.0 / pair.rate_of_stiffness),
+            **{
+                f"{gear}_support_load": np.stack([held[n] for one in cycles if (held := one.standing.loads)])
+                for n, gear in enumerate(GEARS)
+            },
         }
     )
 
 
-def _of_rolling_bearings(cycles: Sequence[OnSupports]) -> dict[str, Array]:
+def _of_rolling_bearings(cycles: Sequence[LoadedStanding]) -> dict[str, Array]:
     """Arrays of ``ROLLING_QUANTITIES`` of the gears whose shafts have rolling bearings; NaN of linear ones beside."""
     arrays: dict[str, Array] = {}
     for n, gear in enumerate(GEARS):
@@ -115,11 +120,15 @@ def element_forces(result: CycleNumbers, gear: str, torque: int) -> dict[int, tu
     }
 
 
-def warn_of_supports(pair: GearPair, cycles: Sequence[OnSupports], torques: Sequence[float]) -> None:
-    """Give an AccuracyWarning if gears on supports move far, or forces on these do not balance torques [N mm]."""
-    warn_of_motions(pair, cycles)
+def warn_of_supports(pair: GearPair, cycles: Sequence[LoadedStanding]) -> None:
+    """Give an AccuracyWarning if gears on supports move far, or forces on these do not balance the torques."""
+    supported = [one for one in cycles if one.loads]
+    if not supported:
+        return
+    warn_of_motions(pair, supported)
     parts = [0.0]
-    for one, torque in zip(cycles, torques, strict=True):
+    for one in supported:
+        (torque,) = one.standing.torques.tolist()
         moments = one.loads[0].reshape(len(one.loads[0]), -1, 6)[..., 5].sum(axis=-1)
         if torque > 0.0 and np.isfinite(moments).any():
             parts.append(abs(abs(float(np.nanmean(moments))) / torque - 1.0))
@@ -127,7 +136,7 @@ def warn_of_supports(pair: GearPair, cycles: Sequence[OnSupports], torques: Sequ
         give_accuracy_warning(kinds.SUPPORT_MOMENT.sentence(part=max(parts)), stacklevel=3)
 
 
-def warn_of_motions(pair: GearPair, cycles: Sequence[OnSupports]) -> None:
+def warn_of_motions(pair: GearPair, cycles: Sequence[LoadedStanding]) -> None:
     """Give an AccuracyWarning if gears on supports move so far that their units are in doubt.
 
     What shafts are wound up by turns the gears about their axes, as meshing does, and is no such motion.
@@ -141,37 +150,38 @@ def warn_of_motions(pair: GearPair, cycles: Sequence[OnSupports]) -> None:
         )
 
 
-def secant_on_rigid_supports(carried: Carried, cycles: Sequence[CarriedOnSupports]) -> Array:
+def secant_on_rigid_supports(carried: Carried, cycles: Sequence[StandingCycle]) -> Array:
     """Torque over the rotation (torque, position) [N mm/rad] without what the supports give way.
 
     Parameters
     ----------
     carried : Carried
         Under all torques, its rotation with the supports.
-    cycles : sequence of CarriedOnSupports
+    cycles : sequence of StandingCycle
         By torque.
     """
+    work = np.concatenate([_work_on_supports(one) for one in cycles])
     secant = np.full(carried.rotation.shape, math.nan)
-    at_rest = [support.at_rest for support in _parts(cycles[0]).supports]
-    for t, one in enumerate(cycles):
-        for n, contacts in enumerate(one.carried.contacts[0]):
-            moment = sum(c.solution.load * c.contact.wheel_lever for c in contacts if c is not None)
-            if moment > 0.0:
-                work = sum(
-                    float(load[n] @ support.compliance @ load[n])
-                    for load, support in zip(one.loads, _parts(one).supports, strict=True)
-                )
-                if not _parts(one).is_linear:  # from where the gears are at rest on
-                    work += sum(
-                        float(load[n] @ (support.moved(np.zeros(load.shape[1])) - rest))
-                        for load, support, rest in zip(one.loads, _parts(one).supports, at_rest, strict=True)
-                    )
-                rotation = carried.rotation[t, n] - work / moment
-                secant[t, n] = carried.torque[t] / rotation if rotation > 0.0 else math.nan
+    for (t, n), rotation in np.ndenumerate(carried.rotation):
+        there = [one for one in carried.contacts[t][n] if one is not None]
+        moment = sum(one.solution.load * one.contact.wheel_lever for one in there)
+        if moment > 0.0:
+            by_teeth = rotation - work[t, n] / moment
+            secant[t, n] = carried.torque[t] / by_teeth if by_teeth > 0.0 else math.nan
     return secant
 
 
-def _wind_up(one: OnSupports) -> Array:
+def _work_on_supports(one: StandingCycle) -> Array:
+    """Loads times the motions of the supports from where they are at rest on (t, n) [N mm]; zero of rigid gears."""
+    work = np.zeros(one.carried.rotation.shape)
+    for loads, support in zip(one.loads, _parts(one).supports if one.loads else (), strict=True):
+        turned = np.zeros(loads.shape[1])
+        beyond = turned if support.law is None else support.moved(turned) - support.at_rest
+        work += np.einsum("ni,ij,nj->n", loads, support.compliance, loads) + loads @ beyond
+    return work
+
+
+def _wind_up(one: LoadedStanding) -> Array:
     """How far the wheel stays behind (n,) [rad] by what both gears turn about their axes, from no torque on."""
     torques = np.abs(one.loads[1].reshape(len(one.loads[1]), -1, 6)[..., 5].sum(axis=1))
     work = np.zeros(len(torques))
@@ -181,13 +191,13 @@ def _wind_up(one: OnSupports) -> Array:
     return np.asarray(work / np.where(torques > 0.0, torques, 1.0))
 
 
-def _parts(one: OnSupports) -> SupportCompliance:
-    supports = one.bending.supports
+def _parts(one: LoadedStanding) -> SupportCompliance:
+    supports = one.standing.supports
     assert supports is not None
     return supports
 
 
-def _motions(at_rest: GearPair, one: OnSupports) -> Array:
+def _motions(at_rest: GearPair, one: LoadedStanding) -> Array:
     """Motions (2, n, 6) of the middles of both faces [mm, rad], in the axes of the fixed frame."""
     frames = np.eye(3), at_rest.wheel_axes
     motions = [
@@ -197,7 +207,7 @@ def _motions(at_rest: GearPair, one: OnSupports) -> Array:
     return np.stack(motions)
 
 
-def _motions_of_gears(one: OnSupports) -> Array:
+def _motions_of_gears(one: LoadedStanding) -> Array:
     """The same in the axes of each gear's own frame, z its axis."""
     return np.stack(
         [

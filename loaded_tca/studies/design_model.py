@@ -26,16 +26,14 @@ from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.compliance import model_of, require_teeth
 from loaded_tca.compliance.model import with_enough_teeth
 from loaded_tca.errors import InputError, named, require
-from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.loaded_grid import LoadedGrid
-from loaded_tca.loaded.moved_gears import at_rest, moved_bending, pitches_apart
+from loaded_tca.loaded.moved_gears import at_rest, pitches_apart
 from loaded_tca.loaded.sensitivity import Tangents
-from loaded_tca.loaded.supported import SupportedCycle
+from loaded_tca.loaded.standing import GearsUnderTorques
 from loaded_tca.loaded.together import found_together
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.loaded.tooth_pairs import SharedLoad
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import value_at
 from loaded_tca.studies.design_figures import FIGURES, SMOOTHING, FigureOfErrors
@@ -267,7 +265,7 @@ class DesignModel:
         return scattered
 
     def _sample(self, deviation: Mapping[str, float], own: Array) -> tuple[HeldContacts, ...]:
-        """Held contacts of a sample, torque by torque; those of rigid gears are the same for all."""
+        """Held contacts of a sample, torque by torque, where the gears stand: the same for all of rigid gears."""
         scene = self.scene.with_changes(self._at(deviation, dict(zip(self.keys, self.start.tolist(), strict=True))))
         pair = scene.pair()
         angles = pair.pitch * (np.arange(self.positions) / self.positions - 0.5)
@@ -275,36 +273,19 @@ class DesignModel:
             require_teeth(pair, without_bodies)
         shifted = zip(self.variables.items(), own, strict=True)
         ranges = {key: (low + by, high + by) for (key, (low, high)), by in shifted}
-        if scene.is_supported:
-            return self._sample_on_supports(scene, pair, angles, ranges)
-        mesh = trace_teeth(pair, angles)
-        bending = model_of(scene, pair, farthest_apart(mesh))
-        held = HeldContacts(scene, mesh, ranges, float(self.torques.max()), self.cells, bending)
-        return (held,) * self.torques.size
-
-    def _sample_on_supports(
-        self, scene: Scene, pair: GearPair, angles: Array, ranges: Mapping[str, tuple[float, float]]
-    ) -> tuple[HeldContacts, ...]:
-        """The same where gears move: under each torque they stand where its mean load moves the scene's."""
         supports = support_compliance(scene, pair)
-        assert supports is not None
-        unmoved = trace_teeth(at_rest(supports), angles)
         grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=scene.analysis.free_edges)
-        torques = self.torques.tolist()
 
-        def under(apart: int) -> tuple[HeldContacts, ...]:
-            bending, held = model_of(scene, pair, apart), []
-            assert bending is not None
-            cycle = SupportedCycle(pair, bending, angles, grid, load_sharing=True)
-            for torque, loads in zip(torques, cycle.settled(torques), strict=True):
-                there, given = moved_bending(bending, supports.under(loads), loads)
-                assert there.supports is not None
-                mesh = trace_teeth(there.supports.pair, angles)
-                held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, there.giving_way, given))
-            return tuple(held)
+        def under(apart: int) -> list[HeldContacts]:
+            gears, held = GearsUnderTorques(pair, model_of(scene, pair, apart), angles, grid), list[HeldContacts]()
+            for one in gears.standing(self.torques):
+                mesh, largest = trace_teeth(one.pair, angles), float(one.torques.max())
+                what = ranges, largest, self.cells, one.giving_way, one.displacement
+                held += [HeldContacts(scene, mesh, *what)] * one.torques.size
+            return held
 
-        apart = pitches_apart(supports, torques, unmoved)
-        return with_enough_teeth(apart, under, lambda made: max(one.pitches_apart for one in made))
+        unloaded = trace_teeth(at_rest(pair, supports), angles)
+        return tuple(with_enough_teeth(pitches_apart(supports, self.torques.tolist(), unloaded), under))
 
     def _check(self) -> None:
         wanted, torques = self.scene.analysis, self.torques

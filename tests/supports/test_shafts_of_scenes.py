@@ -213,7 +213,7 @@ def test_wind_up_is_that_of_the_torque_alone() -> None:
     rest, parts = np.array([0.1, 0.0, 0.0, 0.0, 0.0, 3e-3]), (2e-9, 1e-9)
     supports = [SimpleNamespace(moved=lambda load, part=part: rest + part * load, at_rest=rest) for part in parts]
     loads = tuple(np.array([[0.0, 0.0, 0.0, 0.0, 0.0, torque]]) for torque in (-40e3, 100e3))
-    one = SimpleNamespace(loads=loads, bending=SimpleNamespace(supports=SimpleNamespace(supports=supports)))
+    one = SimpleNamespace(loads=loads, standing=SimpleNamespace(supports=SimpleNamespace(supports=supports)))
     assert_allclose(_wind_up(one), 2e-9 * 40e3**2 / 100e3 + 1e-9 * 100e3)  # type: ignore[arg-type]
 
 
@@ -224,7 +224,7 @@ def test_life_of_a_bearing_is_that_under_its_mean_motion_of_the_loaded_positions
     none = SimpleNamespace(bearings=[])
     one = SimpleNamespace(
         loads=(np.arange(3.0)[:, None], np.zeros((3, 1))),
-        bending=SimpleNamespace(supports=SimpleNamespace(supports=[own, none])),
+        standing=SimpleNamespace(supports=SimpleNamespace(supports=[own, none])),
     )
     arrays = _of_rolling_bearings([one])  # type: ignore[list-item]
     assert_allclose(arrays["pinion_bearing_life"], ball.life(np.array([0.02, 0.0, 0.005, 0.0, 0.0, 0.0])))
