@@ -23,7 +23,8 @@ from loaded_tca.analysis import grid_of
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.compliance import model_of
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.loaded.cycle import carried_by_all, farthest_apart
+from loaded_tca.loaded.cycle import farthest_apart
+from loaded_tca.loaded.standing import GearsUnderTorques, all_torques
 from loaded_tca.results.collect import mesh_cycle
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.results.tolerances import default_tolerances
@@ -245,8 +246,9 @@ def state_alone(scene: Scene, angle: float, torque: float) -> tuple[State, float
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
         bending = model_of(scene, pair, farthest_apart(mesh))
-        carried = carried_by_all(pair, mesh, np.array([torque]), grid_of(scene), bending)
-        state = _state(mesh_cycle(scene, pair, carried, {}, (), [], warnings=[], date=""), 0, 0)
+        cycles = GearsUnderTorques(pair, bending, mesh.pinion_angle, grid_of(scene)).mesh_cycles([torque])
+        carried = all_torques(mesh, cycles)
+        state = _state(mesh_cycle(scene, pair, carried, {}, (), cycles), 0, 0)
     loaded = [one for one in carried.contacts[0][0] if one is not None]
     moment = sum(one.solution.load * one.contact.wheel_lever for one in loaded)
     return state, float(mesh.transmission_error[0]), moment
