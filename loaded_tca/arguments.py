@@ -99,13 +99,32 @@ def _with_checks(function: FunctionType, documented: object) -> FunctionType:
     checks = {name: KINDS[kind] for name, kind in of_names.items() if kind}
     if not checks:
         return function
-    places = tuple((place, name) for place, name in enumerate(names.args) if name in checks)
     optional = {name for name in checks if str(annotations[name]).endswith(" | None")}
-    units = functools.cache(lambda: units_of(documented))
+    taken = _taking(function, documented, names.args, checks, optional)
+    quick = [
+        (names.args.index(name) if name in names.args else sys.maxsize, name, AS_THEY_ARE.get(kind, _never))
+        for name, kind in checks.items()
+    ]
 
     @functools.wraps(function)
     def call_checked(*arguments: Any, **options: Any) -> Any:
-        values: list[Any] = list(arguments)
+        for place, name, stays in quick:  # nearly all calls end here
+            value = arguments[place] if place < len(arguments) else options.get(name, MISSING)
+            if value is not MISSING and not stays(value) and not (value is None and name in optional):
+                return taken(list(arguments), options)
+        return function(*arguments, **options)
+
+    return cast(FunctionType, call_checked)
+
+
+def _taking(
+    function: FunctionType, documented: object, names: list[str], checks: dict[str, Kind], optional: set[str]
+) -> Callable[[list[Any], dict[str, Any]], Any]:
+    """Call of the function with the values that its arguments become."""
+    places = tuple((place, name) for place, name in enumerate(names) if name in checks)
+    units = functools.cache(lambda: units_of(documented))
+
+    def taken(values: list[Any], options: dict[str, Any]) -> Any:
         problems, misfits = Problems(), Problems()
         places_given: list[tuple[Any, Any, str]] = [
             (values, place, name) for place, name in places if place < len(values)
@@ -126,7 +145,7 @@ def _with_checks(function: FunctionType, documented: object) -> FunctionType:
                 raise InputError(misfits) from None
         raise InputError(misfits)
 
-    return cast(FunctionType, call_checked)
+    return taken
 
 
 Problems = list[str]
@@ -147,8 +166,21 @@ def _taken(
 
 def _array(name: str, value: Any, unit: Unit) -> Any:
     """An array, or a number that behaves as one."""
-    plain = (type(value) is np.ndarray and value.dtype == FLOAT) or type(value) in (float, np.float64)
-    return value if plain else numbers(name, value, unit())
+    return value if _is_array(value) else numbers(name, value, unit())
+
+
+def _is_array(value: Any) -> bool:
+    """Whether a value is an array of floats, or one float."""
+    kind = type(value)
+    return (kind is np.ndarray and value.dtype == FLOAT) or kind is float or kind is np.float64
+
+
+def _is_float(value: Any) -> bool:
+    return type(value) is float
+
+
+def _never(value: Any) -> bool:  # noqa: ARG001
+    return False
 
 
 def _number(name: str, value: Any, unit: Unit) -> Any:
@@ -240,3 +272,6 @@ KINDS: dict[str, Kind] = {
     **{title: _instance(title) for title in CLASSES},
 }
 """Annotation of a parameter, less None -> what its argument becomes, with InputError if it is of no such kind."""
+AS_THEY_ARE: dict[Kind, Callable[[Any], bool]] = {_array: _is_array, _number: _is_float}
+"""Kind -> whether a value is told at once to stay as it is; without an entry only the kind itself tells."""
+MISSING = object()
