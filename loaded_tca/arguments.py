@@ -15,7 +15,7 @@ import warnings
 from collections.abc import Callable
 from numbers import Integral, Real
 from types import FunctionType
-from typing import Any, TypeVar, cast
+from typing import Any, Never, TypeVar, cast
 
 import numpy as np
 
@@ -100,7 +100,7 @@ def _with_checks(function: FunctionType, documented: object) -> FunctionType:
     if not checks:
         return function
     optional = {name for name in checks if str(annotations[name]).endswith(" | None")}
-    taken = _taking(function, documented, names.args, checks, optional)
+    take = _taking(documented, names.args, checks, optional)
     quick = [
         (names.args.index(name) if name in names.args else sys.maxsize, name, AS_THEY_ARE.get(kind, _never))
         for name, kind in checks.items()
@@ -108,23 +108,28 @@ def _with_checks(function: FunctionType, documented: object) -> FunctionType:
 
     @functools.wraps(function)
     def call_checked(*arguments: Any, **options: Any) -> Any:
-        for place, name, stays in quick:  # nearly all calls end here
+        for place, name, stays in quick:  # nearly all calls pass
             value = arguments[place] if place < len(arguments) else options.get(name, MISSING)
             if value is not MISSING and not stays(value) and not (value is None and name in optional):
-                return taken(list(arguments), options)
-        return function(*arguments, **options)
+                break
+        else:
+            return function(*arguments, **options)
+        values = list(arguments)
+        if misfits := take(values, options):
+            _refuse(function, values, options, misfits)
+        return function(*values, **options)
 
     return cast(FunctionType, call_checked)
 
 
 def _taking(
-    function: FunctionType, documented: object, names: list[str], checks: dict[str, Kind], optional: set[str]
-) -> Callable[[list[Any], dict[str, Any]], Any]:
-    """Call of the function with the values that its arguments become."""
+    documented: object, names: list[str], checks: dict[str, Kind], optional: set[str]
+) -> Callable[[list[Any], dict[str, Any]], Problems]:
+    """Function that puts what arguments become in their places, and returns the problems of those of other kinds."""
     places = tuple((place, name) for place, name in enumerate(names) if name in checks)
     units = functools.cache(lambda: units_of(documented))
 
-    def taken(values: list[Any], options: dict[str, Any]) -> Any:
+    def take(values: list[Any], options: dict[str, Any]) -> Problems:
         problems, misfits = Problems(), Problems()
         places_given: list[tuple[Any, Any, str]] = [
             (values, place, name) for place, name in places if place < len(values)
@@ -134,18 +139,21 @@ def _taking(
                 where[key] = _taken(checks[name], name, where[key], units, problems, misfits)
         if problems:
             raise InputError(problems)
-        if not misfits:
-            return function(*values, **options)
-        with warnings.catch_warnings(action="ignore"):
-            try:  # the function may say more of it: what is allowed, and what else is wrong
-                function(*values, **options)
-            except LoadedTCAError:
-                raise
-            except Exception:  # numbers were asked for: what text comes to is no matter
-                raise InputError(misfits) from None
-        raise InputError(misfits)
+        return misfits
 
-    return taken
+    return take
+
+
+def _refuse(function: FunctionType, values: list[Any], options: dict[str, Any], misfits: Problems) -> Never:
+    """Raise InputError: what the function says, which knows what is allowed and what else is wrong, or the misfits."""
+    with warnings.catch_warnings(action="ignore"):
+        try:
+            function(*values, **options)
+        except LoadedTCAError:
+            raise
+        except Exception:  # numbers were asked for: what text comes to is no matter
+            raise InputError(misfits) from None
+    raise InputError(misfits)
 
 
 Problems = list[str]
