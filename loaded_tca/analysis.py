@@ -14,7 +14,7 @@ from loaded_tca.compliance import RootStress, model_of, require_teeth, root_stre
 from loaded_tca.compliance.model import SumOfParts, held_bodies, with_enough_teeth
 from loaded_tca.effort import expected_effort
 from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require
-from loaded_tca.loaded.cycle import Carried, Progress, carried_by_all, carried_by_one, farthest_apart
+from loaded_tca.loaded.cycle import Carried, Progress, carried_by_all, carried_by_one
 from loaded_tca.loaded.moved_gears import at_rest, pitches_apart
 from loaded_tca.loaded.rounded_edges import PeakAtEdge, pressures_at_rounded_edges
 from loaded_tca.loaded.supported import CarriedOnSupports, SupportedCycle, all_torques
@@ -28,6 +28,7 @@ from loaded_tca.scene import Scene
 from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
+from loaded_tca.unloaded.tooth_cycle import pitches_within_reach
 
 THICKEST_LAYER = 1.2
 """Of elements across a face, over the module: from there on root stress under a short contact is 2 % too low and more
@@ -78,7 +79,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         else:
             if wanted.load_sharing:
                 mesh = trace_teeth(pair, angles)
-                bending = model_of(scene, pair, farthest_apart(mesh))
+                bending = model_of(scene, pair, pitches_within_reach(pair))
                 carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
             else:
                 path = trace_contact(pair, angles)
@@ -116,7 +117,7 @@ def _on_supports(
     unmoved: MeshPath | ContactPath
     if wanted.load_sharing:
         unmoved = trace_teeth(at_rest(supports), angles)
-        apart = pitches_apart(supports, scene.torques, unmoved)
+        apart = pitches_apart(supports, scene.torques)
     else:
         unmoved, apart = trace_contact(at_rest(supports), angles), 1
 

@@ -21,7 +21,7 @@ from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.moved_gears import Loads, at_rest, loads_at, moved_bending, moved_by
+from loaded_tca.loaded.moved_gears import Loads, loads_at, moved_bending, moved_by
 from loaded_tca.loaded.moved_gears import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.revolution import STATES_AT_A_TIME, CarriedPart, carried_over_revolution, pitches_apart
 from loaded_tca.loaded.supported import POSITIONS, SupportedCycle, widest_apart
@@ -37,8 +37,8 @@ from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 from loaded_tca.supports import SupportCompliance, support_compliance
 from loaded_tca.threads import one_blas_thread
-from loaded_tca.unloaded import trace_teeth
 from loaded_tca.unloaded.revolution import RevolutionPath, trace_revolution
+from loaded_tca.unloaded.tooth_cycle import pitches_within_reach
 
 KEPT = "normal_force", "peak_pressure", "on_edge"
 """Numbers of single contacts that a revolution keeps."""
@@ -126,7 +126,7 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
                 arrays = _joined(scene, _trace(scene, pair, pitches), supported)
             else:
                 path = _trace(scene, pair, pitches)
-                bending = model_of(scene, pair, pitches_apart(path))
+                bending = model_of(scene, pair, max(pitches_within_reach(pair), pitches_apart(path)))
                 alone = _Numbers(pair, path, np.asarray(scene.torques), grid, roots_of(scene, pair), frozenset(maps))
                 for part in carried_over_revolution(path, alone.torques, grid, bending, progress):
                     alone.add(part)
@@ -174,13 +174,13 @@ def _on_supports(
     supports = support_compliance(scene, pair)
     assert supports is not None
     roots = roots_of(scene, pair)
-    mesh = trace_teeth(at_rest(supports), pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1))
-    apart = max(pitches_of_cycle(supports, scene.torques, mesh), pitches_apart(_trace(scene, pair, pitches)))
+    angles = pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1)
+    apart = max(pitches_of_cycle(supports, scene.torques), pitches_apart(_trace(scene, pair, pitches)))
 
     def under(apart: int) -> list[_OnSupports]:
         bending, numbers = model_of(scene, pair, apart), list[_OnSupports]()
         assert bending is not None
-        cycle = SupportedCycle(pair, bending, mesh.pinion_angle, grid, load_sharing=True)
+        cycle = SupportedCycle(pair, bending, angles, grid, load_sharing=True)
         for t, held in enumerate(cycle.settled(scene.torques)):
             near = supports.under(held)
 

@@ -12,14 +12,12 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import SumOfParts
 from loaded_tca.errors import GeometryError
-from loaded_tca.loaded.cycle import (
-    farthest_apart,
-)
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import Coupling
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.supports import SupportCompliance
-from loaded_tca.unloaded import ContactPoint, MeshPath, trace_contact, trace_teeth
+from loaded_tca.unloaded import ContactPoint, trace_contact
+from loaded_tca.unloaded.tooth_cycle import pitches_within_reach
 
 Loads = tuple[Array, Array]
 """Of the stations of pinion and wheel, (6 m,) each [N, N mm], in the axes of each gear's own frame."""
@@ -63,24 +61,25 @@ def moved_too_far(error: GeometryError, torque: float) -> GeometryError:
     return GeometryError(f"{error}; under {1e-3 * torque:g} N m the supports let the gears move too far")
 
 
-def pitches_apart(supports: SupportCompliance, torques: Sequence[float], mesh: MeshPath) -> int:
+def pitches_apart(supports: SupportCompliance, torques: Sequence[float]) -> int:
     """How many pitches tooth pairs within reach are apart, at rest and moved by each pinion torque [N mm].
 
-    The force of a torque acts where the flanks touch first without load; ``mesh``: contact of the pair at rest.
+    The force of a torque acts where the flanks touch first without load.
 
     Raises
     ------
     GeometryError
         If the moved flanks are not in contact.
     """
-    apart = farthest_apart(mesh)
+    standing = at_rest(supports)
+    apart = pitches_within_reach(standing)
     for torque in sorted(
         (torque for torque in torques if torque > 0.0), reverse=True
     ):  # what the largest one asks for is told first
         try:
-            loads = loads_at_first_contact(supports, mesh.pair, torque)
+            loads = loads_at_first_contact(supports, standing, torque)
             moved = moved_by(supports.under(loads), loads)
-            apart = max(apart, farthest_apart(trace_teeth(moved, mesh.pinion_angle)))
+            apart = max(apart, pitches_within_reach(moved))
         except GeometryError as error:
             raise moved_too_far(error, torque) from None
     return apart

@@ -26,10 +26,9 @@ from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.compliance import model_of, require_teeth
 from loaded_tca.compliance.model import with_enough_teeth
 from loaded_tca.errors import InputError, named, require
-from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.loaded_grid import LoadedGrid
-from loaded_tca.loaded.moved_gears import at_rest, moved_bending, pitches_apart
+from loaded_tca.loaded.moved_gears import moved_bending, pitches_apart
 from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.loaded.supported import SupportedCycle
 from loaded_tca.loaded.together import found_together
@@ -49,6 +48,7 @@ from loaded_tca.studies.study import (
 )
 from loaded_tca.supports import support_compliance
 from loaded_tca.unloaded import ContactPoint, trace_teeth
+from loaded_tca.unloaded.tooth_cycle import pitches_within_reach
 
 CELLS = (24, 40)
 """Of every contact, where the scene gives none."""
@@ -278,7 +278,7 @@ class DesignModel:
         if scene.is_supported:
             return self._sample_on_supports(scene, pair, angles, ranges)
         mesh = trace_teeth(pair, angles)
-        bending = model_of(scene, pair, farthest_apart(mesh))
+        bending = model_of(scene, pair, pitches_within_reach(pair))
         held = HeldContacts(scene, mesh, ranges, float(self.torques.max()), self.cells, bending)
         return (held,) * self.torques.size
 
@@ -288,7 +288,6 @@ class DesignModel:
         """The same where gears move: under each torque they stand where its mean load moves the scene's."""
         supports = support_compliance(scene, pair)
         assert supports is not None
-        unmoved = trace_teeth(at_rest(supports), angles)
         grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=scene.analysis.free_edges)
         torques = self.torques.tolist()
 
@@ -303,7 +302,7 @@ class DesignModel:
                 held.append(HeldContacts(scene, mesh, ranges, torque, self.cells, there.giving_way, given))
             return tuple(held)
 
-        apart = pitches_apart(supports, torques, unmoved)
+        apart = pitches_apart(supports, torques)
         return with_enough_teeth(apart, under, lambda made: max(one.pitches_apart for one in made))
 
     def _check(self) -> None:
