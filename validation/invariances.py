@@ -67,6 +67,8 @@ STIFFNESS = 0.03
 """Tangents scatter with the cells that are in contact, by some percent (docs/how_it_works/load_sharing.md)."""
 DERIVATIVES, LARGEST_WARNED = 0.05, 0.5
 """Of the largest; warnings speak of up to a quarter, at kinks of as much as there is on either side."""
+SMALLEST_ROUNDING = 0.01
+"""Radius that scenes may have beside none [mm]."""
 JUMP = 0.015
 """Of the range of a curve, of what is called a jump."""
 
@@ -530,7 +532,8 @@ def _along(
 
 
 def _rounding_from_zero(subject: Subject, part: float) -> dict[str, Any]:
-    radius = 0.15 * subject.scene.pair().module * part
+    least, most = SMALLEST_ROUNDING, 0.15 * subject.scene.pair().module
+    radius = least + part * (most - least) if part > 0.0 else 0.0
     return {f"{gear}.tip_rounding_mm": radius for gear in GEARS}
 
 
