@@ -27,7 +27,7 @@ from loaded_tca.results.warnings import warn_of_accuracy, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread
-from loaded_tca.unloaded import MeshPath, trace_contact, trace_teeth
+from loaded_tca.unloaded import trace_contact, trace_teeth
 
 THICKEST_LAYER = 1.2
 """Of elements across a face, over the module: from there on root stress under a short contact is 2 % too low and more
@@ -72,9 +72,8 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         grid, roots = grid_of(scene), roots_of(scene, pair)
 
         supports = support_compliance(scene, pair)
-        resting = at_rest(pair, supports)
-        unloaded = trace_teeth(resting, angles) if wanted.load_sharing else trace_contact(resting, angles)
-        apart = pitches_apart(supports, scene.torques, unloaded) if isinstance(unloaded, MeshPath) else 1
+        unloaded = (trace_teeth if wanted.load_sharing else trace_contact)(at_rest(pair, supports), angles)
+        apart = pitches_apart(pair, supports, scene.torques) if wanted.load_sharing else 1
 
         def solved(apart: int) -> list[StandingCycle]:
             gears = GearsUnderTorques(

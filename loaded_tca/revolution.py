@@ -21,7 +21,7 @@ from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.moved_gears import at_rest, loads_at
+from loaded_tca.loaded.moved_gears import loads_at
 from loaded_tca.loaded.moved_gears import pitches_apart as pitches_of_cycle
 from loaded_tca.loaded.revolution import STATES_AT_A_TIME, CarriedPart, carried_over_revolution, pitches_apart
 from loaded_tca.loaded.standing import POSITIONS, GearsUnderTorques, Standing, widest_apart
@@ -37,7 +37,6 @@ from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread
-from loaded_tca.unloaded import trace_teeth
 from loaded_tca.unloaded.revolution import RevolutionPath, trace_revolution
 
 KEPT = "normal_force", "peak_pressure", "on_edge"
@@ -163,9 +162,7 @@ def _over_revolution(
     """Numbers of the gears as they stand: on supports moved by the mean load of a pitch of teeth that are alike."""
     torques, supports, roots = scene.torques, support_compliance(scene, pair), roots_of(scene, pair)
     angles, pitches = pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1), _asked(scene).count(pair.teeth)
-    apart = pitches_apart(unloaded)
-    if supports is not None:
-        apart = max(apart, pitches_of_cycle(supports, torques, trace_teeth(at_rest(pair, supports), angles)))
+    apart = max(pitches_of_cycle(pair, supports, torques), pitches_apart(unloaded))
 
     def under(apart: int) -> list[_Numbers]:
         gears, numbers, done = GearsUnderTorques(pair, model_of(scene, pair, apart), angles, grid), [], 0

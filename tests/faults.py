@@ -1701,6 +1701,27 @@ FAULTS = (
         "turns = points.turns + 0.0 * ways * rates",
         "results/test_sensitivities.py::test_bending_follows_a_contact_that_a_relief_moves_up_the_tooth",
     ),
+    Fault(
+        "bending model: its teeth are the next ones, however many can be in contact",
+        "analysis.py",
+        "apart = pitches_apart(pair, supports, scene.torques) if wanted.load_sharing else 1",
+        "apart = 1",
+        "test_analysis.py::test_ends_of_a_pitch_agree_where_the_pressure_lies_beside_the_axis_of_its_grid",
+    ),
+    Fault(
+        "reach: teeth that are within it at some places of a pitch alone count as apart",
+        "unloaded/tooth_cycle.py",
+        "(near[0] & near[-1]).any()",
+        "(near[0] & near[-1]).all()",
+        "unloaded/test_tooth_cycle.py::test_pitches_within_reach_are_those_of_many_positions",
+    ),
+    Fault(
+        "load sharing: tooth pairs are solved in the order of their distance from the pitch point",
+        "loaded/load_sharing.py",
+        "key=lambda tooth_pair: tooth_pair.pair, reverse=True",
+        "key=lambda tooth_pair: -abs(tooth_pair.pair), reverse=True",
+        "test_random_scenes.py::test_what_holds_of_every_scene_holds_of_a_random_one",
+    ),
 )
 
 

@@ -20,6 +20,7 @@ from loaded_tca import (
 from loaded_tca.reference import hertz
 from loaded_tca.scene import parse_scene
 from loaded_tca.unloaded import relative_curvature
+from loaded_tca.unloaded.tooth_cycle import pitches_within_reach
 from tests.samples.results import ONE_PAIR, assert_same
 
 EQUILIBRIUM = 1e-10
@@ -319,5 +320,7 @@ def test_ends_of_a_pitch_agree_where_the_pressure_lies_beside_the_axis_of_its_gr
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        errors = analyse(scene).transmission_error[0]
+        result = analyse(scene)
+    errors = result.transmission_error[0]
     assert abs(errors[1] - errors[0]) * scene.pair().base_radii[1] < 1e-7  # mm: 0.1 nm
+    assert result.coupled_pitches == pitches_within_reach(scene.pair()) == 2

@@ -23,7 +23,6 @@ from loaded_tca.analysis import grid_of
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.compliance import model_of
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.standing import GearsUnderTorques, all_torques
 from loaded_tca.results.collect import mesh_cycle
 from loaded_tca.results.sensitivities import TORQUE
@@ -31,6 +30,7 @@ from loaded_tca.results.tolerances import default_tolerances
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import value_at
 from loaded_tca.unloaded import trace_teeth
+from loaded_tca.unloaded.tooth_cycle import pitches_within_reach
 from validation.random_scenes import FeaturedScene, featured_scene
 from validation.scene_transforms import exchanged, mirrored_across, mirrored_along, scaled
 
@@ -50,6 +50,8 @@ known to that; a grid that is just fine enough in one of two scenes is refined i
 less."""
 SAME_TORQUE = (1e-3, 5e-4, 1e-3)
 """The same of states that start from other ones: the balance ends where rotations agree to 5e-2 times the accuracy."""
+SAME_STEPS = 1e-6
+"""Of the span, and share, of states that are solved by the same steps: rounding, far above what it was seen to be."""
 GRIDS = 1e-2
 """Transmission error and share by grids: the accuracy that was asked for."""
 FROM_FILE = 1e-6
@@ -65,6 +67,8 @@ STIFFNESS = 0.03
 """Tangents scatter with the cells that are in contact, by some percent (docs/how_it_works/load_sharing.md)."""
 DERIVATIVES, LARGEST_WARNED = 0.05, 0.5
 """Of the largest; warnings speak of up to a quarter, at kinks of as much as there is on either side."""
+SMALLEST_ROUNDING = 0.01
+"""Radius that scenes may have beside none [mm]."""
 JUMP = 0.015
 """Of the range of a curve, of what is called a jump."""
 
@@ -245,7 +249,7 @@ def state_alone(scene: Scene, angle: float, torque: float) -> tuple[State, float
     mesh = trace_teeth(pair, np.array([angle]))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        bending = model_of(scene, pair, farthest_apart(mesh))
+        bending = model_of(scene, pair, pitches_within_reach(pair))
         cycles = GearsUnderTorques(pair, bending, mesh.pinion_angle, grid_of(scene)).mesh_cycles([torque])
         carried = all_torques(mesh, cycles)
         state = _state(mesh_cycle(scene, pair, carried, {}, (), cycles), 0, 0)
@@ -275,8 +279,8 @@ def pitch_later(subject: Subject) -> Off:
     pairs = np.arange(result.pair.min() - 1, result.pair.max() + 2)
     shares, error = of_pairs(result, "load_share", pairs), result.transmission_error
     return {
-        "transmission error": float(np.abs((error[:, -1] - error[:, 0]) / span(result)[:, 0]).max()) / SAME_TORQUE[0],
-        "load share": float(np.abs(shares[:, -1, 1:] - shares[:, 0, :-1]).max()) / SAME_TORQUE[1],
+        "transmission error": float(np.abs((error[:, -1] - error[:, 0]) / span(result)[:, 0]).max()) / SAME_STEPS,
+        "load share": float(np.abs(shares[:, -1, 1:] - shares[:, 0, :-1]).max()) / SAME_STEPS,
     }
 
 
@@ -447,13 +451,19 @@ def moments_on_shafts(subject: Subject) -> Off:
 
 
 def stiffness_and_rotation(subject: Subject) -> Off:
-    """Torque over rotation between two torques lies between the tangents at both: load makes the drive stiffer."""
+    """Torque over rotation between two torques lies between the tangents at both: load makes the drive stiffer.
+
+    On supports that by the torque, with which the gears go on to stand elsewhere: drive_stiffness is the tangent
+    where they stand, and leaves out 3.4 % of seed 173 (2.1, 0.53 and 0.13 % under 0.5, 0.1 and 0.02 of its torque).
+    """
     torque = 1e-3 * float(subject.result.torque[-1])
     result = analysed(subject.scene.with_changes({"analysis.torques_Nm": [0.95 * torque, 1.05 * torque]}))
-    stiffness = result.drive_stiffness if subject.scene.is_supported else result.mesh_stiffness
     turned = np.abs(np.diff(result.transmission_error, axis=0)[0])
     lengths = 1e3 * result.gear_pair.base_radii[0] * result.gear_pair.base_radii[1] * result.gear_pair.face_width
     chord = np.diff(result.torque)[0] / turned / lengths
+    stiffness = result.mesh_stiffness
+    if subject.scene.is_supported:
+        stiffness = 1e3 / np.abs(result.sensitivities([TORQUE]).transmission_error[..., 0]) / lengths  # by N m
     low, high = stiffness.min(axis=0), stiffness.max(axis=0)
     return {"stiffness": float(np.maximum(low / chord - 1.0, chord / high - 1.0).max()) / STIFFNESS}
 
@@ -523,7 +533,8 @@ def _along(
 
 
 def _rounding_from_zero(subject: Subject, part: float) -> dict[str, Any]:
-    radius = 0.15 * subject.scene.pair().module * part
+    least, most = SMALLEST_ROUNDING, 0.15 * subject.scene.pair().module
+    radius = least + part * (most - least) if part > 0.0 else 0.0
     return {f"{gear}.tip_rounding_mm": radius for gear in GEARS}
 
 

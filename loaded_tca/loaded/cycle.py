@@ -319,10 +319,3 @@ def told_where(torque: float, angle: float) -> Iterator[None]:
             yield
     except ConvergenceError as error:
         raise ConvergenceError(f"{where}: {error}", error.last) from error
-
-
-def farthest_apart(mesh: MeshPath) -> int:
-    """How many pitches two tooth pairs that can be in contact at the same position are apart."""
-    near = np.isfinite(mesh.initial_separation)
-    spans = [int(np.ptp(mesh.pairs[column])) for column in near.T]
-    return max(spans, default=0)

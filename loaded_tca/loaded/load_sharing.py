@@ -167,7 +167,9 @@ class _Balance:
         bending: BendingModel | None,
         displacement: Coupling | None = None,
     ) -> None:
-        self.pair, self.tooth_pairs, self.torque, self.grid = pair, tuple(tooth_pairs), torque, grid
+        # in one order, whatever the numbers: a pitch later the same steps, each of the next pair
+        tooth_pairs = tuple(sorted(tooth_pairs, key=lambda tooth_pair: tooth_pair.pair, reverse=True))
+        self.pair, self.tooth_pairs, self.torque, self.grid = pair, tooth_pairs, torque, grid
         self.displacement, self.on_moved_gears = displacement, displacement is not None
         self.mean_displacement = np.zeros(len(tooth_pairs))  # [mm], over the force of each pair
         self.bending, self.lines_held = bending, grid.lines_held
@@ -480,7 +482,7 @@ class _Balance:
         return max(rotation, float(sum(forces[n] * turn for n, turn in pressed) / forces.sum()))
 
     def _shared(self, forces: Array, count: int) -> SharedLoad:
-        carrying = np.array([index for index, _ in self._loaded() if forces[index] > 0.0])
+        carrying = np.array([index for index, _ in self._loaded() if forces[index] > 0.0])[::-1]
         deflections = self.compliance @ forces + self.mean_displacement
         shares = []
         for index in carrying.tolist():

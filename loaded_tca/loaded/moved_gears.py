@@ -12,12 +12,12 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import SumOfParts
 from loaded_tca.errors import GeometryError
-from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import Coupling
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.supports import SupportCompliance
-from loaded_tca.unloaded import ContactPoint, MeshPath, trace_contact, trace_teeth
+from loaded_tca.unloaded import ContactPoint, trace_contact
+from loaded_tca.unloaded.tooth_cycle import pitches_within_reach
 
 Loads = tuple[Array, Array]
 """Of the stations of pinion and wheel, (6 m,) each [N, N mm], in the axes of each gear's own frame."""
@@ -61,32 +61,32 @@ def moved_too_far(error: GeometryError, torque: float) -> GeometryError:
     return GeometryError(f"{error}; under {1e-3 * torque:g} N m the supports let the gears move too far")
 
 
-def pitches_apart(supports: SupportCompliance | None, torques: Sequence[float], at_rest: MeshPath) -> int:
+def pitches_apart(pair: GearPair, supports: SupportCompliance | None, torques: Sequence[float]) -> int:
     """How many pitches tooth pairs within reach are apart, at rest and moved by each pinion torque [N mm].
 
     The force of a torque acts where the flanks touch first without load.
 
     Parameters
     ----------
+    pair : GearPair
+        Of the scene.
     supports : SupportCompliance or None
-        In the pair of the scene; None: the gears are rigid.
+        In that pair; None: the gears are rigid.
     torques : sequence of float [N mm]
-    at_rest : MeshPath
-        Contact of the pair at rest.
 
     Raises
     ------
     GeometryError
         If the moved flanks are not in contact.
     """
-    apart = farthest_apart(at_rest)
-    loaded = [] if supports is None else sorted((torque for torque in torques if torque > 0.0), reverse=True)
-    for torque in loaded:  # what the largest one asks for is told first
-        assert supports is not None
+    resting = at_rest(pair, supports)
+    apart = pitches_within_reach(resting)
+    if supports is None:
+        return apart
+    for torque in sorted(set(torques) - {0.0}, reverse=True):  # what the largest one asks for is told first
         try:
-            loads = loads_at_first_contact(supports, at_rest.pair, torque)
-            moved = moved_by(supports.under(loads), loads)
-            apart = max(apart, farthest_apart(trace_teeth(moved, at_rest.pinion_angle)))
+            loads = loads_at_first_contact(supports, resting, torque)
+            apart = max(apart, pitches_within_reach(moved_by(supports.under(loads), loads)))
         except GeometryError as error:
             raise moved_too_far(error, torque) from None
     return apart

@@ -86,7 +86,7 @@ class SharedLoad:
     rotation : float [rad]
         Of the wheel back by the load; zero without load.
     shares : tuple of Share
-        Of the k pairs that carry load; without load the leading one.
+        Of the k pairs that carry load, their numbers ascending; without load the leading one.
     residual : float
         Largest difference of the rotation that a pair asks for from the common one, over the rotation.
     balances : int

@@ -28,7 +28,7 @@ from loaded_tca.compliance.model import with_enough_teeth
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.loaded_grid import LoadedGrid
-from loaded_tca.loaded.moved_gears import at_rest, pitches_apart
+from loaded_tca.loaded.moved_gears import pitches_apart
 from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.loaded.standing import GearsUnderTorques
 from loaded_tca.loaded.together import found_together
@@ -284,8 +284,7 @@ class DesignModel:
                 held += [HeldContacts(scene, mesh, *what)] * one.torques.size
             return held
 
-        unloaded = trace_teeth(at_rest(pair, supports), angles)
-        return tuple(with_enough_teeth(pitches_apart(supports, self.torques.tolist(), unloaded), under))
+        return tuple(with_enough_teeth(pitches_apart(pair, supports, self.torques.tolist()), under))
 
     def _check(self) -> None:
         wanted, torques = self.scene.analysis, self.torques

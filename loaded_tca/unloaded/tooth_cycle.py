@@ -210,6 +210,28 @@ def reach(pair: GearPair, farthest: float = REACH) -> tuple[float, float]:
     return float(within[0]) - step, float(within[-1]) + step
 
 
+def pitches_within_reach(pair: GearPair) -> int:
+    """How many pitches two tooth pairs are apart at the most that are within reach at the same place of a pitch.
+
+    Whatever positions are asked for. The reach lies between its ends in one piece, of which the scan knows each to a
+    step: so many pitches fit into it, or the last one just does not.
+
+    Raises
+    ------
+    GeometryError
+        If the flanks of no tooth pair share a region.
+    """
+    low, high = reach(pair)
+    step, most = pair.pitch / SAMPLES, math.floor((high - low) / pair.pitch)
+    first, last = math.ceil(low / step), math.floor(high / step) - most * SAMPLES
+    if last - first > 2 * SAMPLES // SCANS:  # beyond what the scan does not know
+        return most
+    own = step * (np.arange(first, last + 1) + SAMPLES * np.arange(most + 1)[:, None])
+    heights = first_touch(pair, own.ravel()).value.reshape(own.shape)
+    near = np.isfinite(heights) & (heights >= heights.max(axis=0) - REACH * pair.module)
+    return most if (near[0] & near[-1]).any() else max(most - 1, 0)
+
+
 def _scan(pair: GearPair, pitches: Sequence[int]) -> tuple[Array, Array]:
     """Highest point of a coarse grid over some pitches [mm], -inf if none is common; whether one nearly is.
 

@@ -7,7 +7,15 @@ from numpy.testing import assert_allclose
 from loaded_tca import GeometryError, trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.cylindrical import Mounting
-from loaded_tca.unloaded.tooth_cycle import REACH, height_and_slope, reach, teeth_between, tooth_cycle
+from loaded_tca.unloaded import trace_teeth
+from loaded_tca.unloaded.tooth_cycle import (
+    REACH,
+    height_and_slope,
+    pitches_within_reach,
+    reach,
+    teeth_between,
+    tooth_cycle,
+)
 from tests.samples.gear_pairs import gear_pair
 
 BOTH = FlankModifications(lead_crowning=0.02, profile_crowning=0.01)
@@ -53,6 +61,21 @@ def test_every_tooth_outside_the_reach_lags_beyond_it(pair):
     height = height_and_slope(pair, own.ravel())[0].reshape(own.shape)
     lag = height.max(axis=0) - height
     assert (lag[(own < low) | (own > high)] > REACH * pair.module).all()
+
+
+def widest_apart(pair, positions):
+    """Pitches between tooth pairs within reach at positions of a pitch."""
+    mesh = trace_teeth(pair, pair.pitch * np.linspace(-0.5, 0.5, positions))
+    return max(int(np.ptp(mesh.pairs[near])) for near in np.isfinite(mesh.initial_separation).T)
+
+
+@pytest.mark.parametrize("pair", [*KINDS, gear_pair(BOTH, width=10.0), gear_pair(BOTH, helix_deg=15.0)])
+def test_pitches_within_reach_are_those_of_many_positions(pair):
+    assert pitches_within_reach(pair) == widest_apart(pair, 33)
+
+
+def test_pitches_within_reach_do_not_follow_from_both_ends_of_a_pitch():
+    assert widest_apart(KINDS[0], 2) < pitches_within_reach(KINDS[0])
 
 
 @kinds
