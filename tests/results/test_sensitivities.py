@@ -80,7 +80,7 @@ def test_transmission_error_of_real_pairs_changes_as_whole_analyses_do(name, key
     assert_allclose(found, expected, rtol=0, atol=REAL_PAIRS * np.abs(expected).max())
 
 
-@pytest.mark.thorough
+@pytest.mark.quick_cases("transmission_error-0.005")
 @pytest.mark.parametrize(
     ("name", "agreement"), [("transmission_error", 5e-3), ("line_load", 5e-3), ("face_load_factor", REAL_PAIRS)]
 )

@@ -104,18 +104,19 @@ def test_contact_points_on_the_start_of_a_linear_relief_move_as_by_whole_analyse
     """Beyond the start the flank has another slope: both sides of it at once give 30 times the derivative."""
     form = {"tip_relief_form": "linear", "tip_relief_um": 16.0, "tip_relief_start_mm": START}
     relief = {f"wheel.modifications.{name}": value for name, value in form.items()}
-    result, length = solved("mesh_cycle_helical", 48, 5, **FLANKS_ALONE, **relief)
+    result, length = solved("mesh_cycle_helical", 64, 5, **FLANKS_ALONE, **relief)
     assert any(grid.contact.on_relief_start for state in result.states[1][0].grids for grid in state)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # starts beside contact points
         found = result.sensitivities([key]).transmission_error[0, :, 0]
     value = START if key.endswith("start_mm") else 0.0
     low, high = (
-        solved("mesh_cycle_helical", 48, 5, **FLANKS_ALONE, **relief | {key: value + by})[0].transmission_error[0]
+        solved("mesh_cycle_helical", 64, 5, **FLANKS_ALONE, **relief | {key: value + by})[0].transmission_error[0]
         for by in (-step, step)
     )
     slopes = (high - low) / (2.0 * step)
-    # as starts run through the cells of other contacts; the slope at that point was off by 3 and by 13 um/mm
+    # as starts run through the cells: of 40 to 128 cells derivatives at the start are 0.80 to 0.85 um/mm, without a
+    # trend, and on 48 cells analyses are 0.03 off to the other side; the slope at that point was off by 3 and by 13
     assert_allclose(found * length, slopes * length, rtol=0, atol=0.05)
 
 
@@ -152,8 +153,9 @@ def test_contacts_between_two_face_ends_stay_where_they_are_though_their_point_m
     [
         # at the start of a parabolic relief the curvature jumps, and the peak goes with it: 0.6 of the slope before
         (15, "contact", (32, 64), 1, 1, 2e-3, 0.1),
-        # a corner of 0.7 mm, shorter than the length of the average: 1.6 times before
-        (13, "contact+tooth", (48, 96), 3, 0, 1e-3, 0.02),
+        # a corner of 0.7 mm, shorter than the length of the average: 1.6 times before; analyses place grids anew, by
+        # which peaks jump by 0.2 MPa: by 1e-3 mm that is half of the slope, by 5e-4, 2e-3 and 4e-3 it is in none
+        (13, "contact+tooth", (48, 96), 3, 0, 2e-3, 0.02),
     ],
 )
 def test_peaks_follow_relief_starts_and_the_length_of_contacts(seed, compliance, cells, position, pair, step, allowed):
