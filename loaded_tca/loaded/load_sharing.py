@@ -69,9 +69,6 @@ force: 2 um on module 2, less than 1 nm of transmission error. Forces that swing
 SAME_BOX, GUESSED_BOX = (0.75, 1.25), (0.9, 1.1)
 """Loads over the one a box was made for, between which it is kept, if the contact does not reach its border; the second
 for forces by which teeth bend as guessed: kept, slopes of analyses on 64 cells scattered by 1 %."""
-SAME_WAY, MOST_MOVES = 0.1, 3
-"""Change of the way of a pair under load, over the rotation, from which its contact is traced anew at the middle; first
-balances in which it may be. What is left of an effect of some percent is less than a tenth of it."""
 FAR = 2.0
 """Initial separation, over the rotation, of pairs that others do not bend into contact: by less than they close."""
 
@@ -173,8 +170,6 @@ class _Balance:
         self.displacement, self.on_moved_gears = displacement, displacement is not None
         self.mean_displacement = np.zeros(len(tooth_pairs))  # [mm], over the force of each pair
         self.bending, self.lines_held = bending, grid.lines_held
-        self.first_contacts, self.ways = self.tooth_pairs, np.zeros(len(tooth_pairs))  # [rad], of the wheel
-        self.moved: set[int] = set()  # pairs that are to be solved where they lie now
         self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
         self.first_gaps = np.zeros(len(tooth_pairs))  # [mm], where the grid of a pair touches first: it grows, is cut
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
@@ -203,8 +198,8 @@ class _Balance:
                 forces = balance(self.laws, self._first_rotations, self.levers, self.torque, self.compliance, known)
                 if count > SWINGING and cap is None:
                     forces = 0.5 * (before + forces)
-                if count <= MOST_MOVES:
-                    yield from self._move(forces, 0.0 if count == 1 else SAME_WAY)
+                if count == 1:
+                    yield from self._move_to_middles(forces)
                 box = GUESSED_BOX if count == 2 and self.bending is not None and not self.on_grids else SAME_BOX
                 for index in np.flatnonzero(forces).tolist():
                     yield from self._solve(index, forces, box)
@@ -220,40 +215,35 @@ class _Balance:
             last=shared,
         )
 
-    def _move(self, forces: Array, same: float) -> Steps[None]:
-        """Trace pairs that forces close at the middles of their ways, if these change by more than the same rotation.
+    def _move_to_middles(self, forces: Array) -> Steps[None]:
+        """Trace the pairs that the forces of the first balance close at the middles of their ways.
 
         The gears of a pair that touches go on towards each other by the rotation less the initial separation. Traced
         with the wheel alone taken back by that way, a contact lies elsewhere than with the pinion taken back; in the
-        middle it lies where both do their half, and what is left is of third order.
+        middle it lies where both do their half, and what is left is of third order. Contacts stay there: moved once
+        more where a later rotation differs by more than some limit, they would jump as a scene passes that limit.
         """
         heaviest = int(forces.argmax())
         deflection = self.laws[heaviest].deformation_under(forces[heaviest]) + self.compliance[heaviest] @ forces
         rotation = float(self._first_rotations[heaviest] + deflection / self.levers[1, heaviest])
-        ways = np.array([max(rotation - one.initial_separation, 0.0) for one in self.first_contacts])
         by_gears: dict[int, list[int]] = {}
-        for index in np.flatnonzero(np.abs(ways - self.ways) > same * rotation).tolist():
-            by_gears.setdefault(id(self.first_contacts[index].gears), []).append(index)
+        for index in np.flatnonzero(self.separations < rotation).tolist():
+            by_gears.setdefault(id(self.tooth_pairs[index].gears), []).append(index)
+        moved = list(self.tooth_pairs)
         for indices in by_gears.values():
-            firsts = [self.first_contacts[index] for index in indices]
-            contacts = [first.contact for first in firsts]
-            back = [
-                0.5 * self.pair.driving * ways[index] * one.wheel_lever / one.pinion_lever
-                for index, one in zip(indices, contacts, strict=True)
+            contacts = [moved[index].contact for index in indices]
+            halves = 0.5 * self.pair.driving * (rotation - self.separations[indices])
+            angles = [
+                one.pinion_angle - half * one.wheel_lever / one.pinion_lever
+                for one, half in zip(contacts, halves.tolist(), strict=True)
             ]
-            angles = [one.pinion_angle - turned for one, turned in zip(contacts, back, strict=True)]
-            middles = yield Trace(contacts, angles, firsts[0].gears)
-            for index, first, middle in zip(indices, firsts, middles, strict=True):
-                if middle is not first.contact and middle.in_contact:
-                    self._place(index, first.at_middle(middle), ways[index])
-
-    def _place(self, index: int, tooth_pair: ToothPair, way: float) -> None:
-        """Let the contact of a pair lie elsewhere from now on, where it is solved anew."""
-        self.tooth_pairs = (*self.tooth_pairs[:index], tooth_pair, *self.tooth_pairs[index + 1 :])
-        self.levers[1, index] = tooth_pair.contact.wheel_lever
-        self.ways[index], self.first_gaps[index] = way, 0.0
-        self.grids_apart.pop(index, None)
-        self.moved.add(index)
+            middles = yield Trace(contacts, angles, moved[indices[0]].gears)
+            for index, contact, middle in zip(indices, contacts, middles, strict=True):
+                if middle is not contact and middle.in_contact:
+                    moved[index] = moved[index].at_middle(middle)
+                    self.levers[1, index] = middle.wheel_lever
+                    self.grids_apart.pop(index, None)
+        self.tooth_pairs = tuple(moved)
 
     def _first_compliance(self, bending: BendingModel) -> Steps[Array]:
         """Compliance (k, k) [mm/N] of the pairs under line loads that fall to both ends, as of ellipses."""
@@ -287,8 +277,7 @@ class _Balance:
 
     def _solve(self, index: int, forces: Array, same_box: tuple[float, float]) -> Steps[None]:
         """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""
-        force, law = float(forces[index]), self.laws[index]
-        before = None if index in self.moved else self.solved[index]
+        force, before, law = float(forces[index]), self.solved[index], self.laws[index]
         tooth_pair, coupling = self.tooth_pairs[index], partial(self._coupling, index, forces)
         try:
             loaded: LoadedContact | None = None
@@ -308,7 +297,6 @@ class _Balance:
         except ConvergenceError as error:
             raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
         self.solved[index], self.first_gaps[index] = loaded, loaded.separation.cut_gap.min()
-        self.moved.discard(index)
         deformation = loaded.contact_deformation - self.first_gaps[index]
         if loaded.solution.load > 0.0 and deformation > 0.0:
             first = replace(law, load=force, deformation=deformation)
