@@ -1701,6 +1701,20 @@ FAULTS = (
         "turns = points.turns + 0.0 * ways * rates",
         "results/test_sensitivities.py::test_bending_follows_a_contact_that_a_relief_moves_up_the_tooth",
     ),
+    Fault(
+        "command line: a new result leaves what was written of parts of the old one",
+        "cli/directories.py",
+        """places = ["", *(part.name for part in _parts_of(directory))]""",
+        """places = [""]""",
+        "test_cli.py::test_run_leaves_no_file_of_an_earlier_result_and_each_of_the_user",
+    ),
+    Fault(
+        "command line: a study goes beside a result",
+        "cli/directories.py",
+        "if name != main and (directory / name).exists():",
+        "if name != main and main != STUDY_FILE and (directory / name).exists():",
+        "test_cli_study.py::test_study_goes_into_no_directory_of_a_result",
+    ),
 )
 
 
