@@ -1715,6 +1715,13 @@ FAULTS = (
         "if name != main and main != STUDY_FILE and (directory / name).exists():",
         "test_cli_study.py::test_study_goes_into_no_directory_of_a_result",
     ),
+    Fault(
+        "load factors: halves of the positions are one behind the other, not every second one",
+        "results/load_factors.py",
+        "strips[place % 2] +=",
+        "strips[2 * place // places] +=",
+        "results/test_load_factors.py::test_positions_that_load_unlike_parts_of_the_face_move_its_strips",
+    ),
 )
 
 

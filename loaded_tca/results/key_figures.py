@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.results.load_factors import face_load_factor_error
+from loaded_tca.results.load_factors import face_load_factor_by_positions, face_load_factor_error
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.root_stress import root_figures
 from loaded_tca.scene import Scene
@@ -209,6 +209,11 @@ class UnderTorque:
         if self.result.scene.analysis.free_edges:
             return math.nan
         return face_load_factor_error(self.result.gear_pair, self.result.path, self.result.maps[self.row])
+
+    @cached_property
+    def face_load_factor_by_positions(self) -> float:
+        """How far loads of strips of the face move where every second position counts alone, over the largest."""
+        return face_load_factor_by_positions(self.result.gear_pair, self.result.path, self.result.maps[self.row])
 
     @property
     def on_line(self) -> Array:
