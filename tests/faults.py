@@ -1722,6 +1722,27 @@ FAULTS = (
         "strips[2 * place // places] +=",
         "results/test_load_factors.py::test_positions_that_load_unlike_parts_of_the_face_move_its_strips",
     ),
+    Fault(
+        "scenes: keys that say the same in several ways are not told apart in lists",
+        "scene/section.py",
+        "section = entry.kind.section\n        else:\n            return ()",
+        "return ()\n        else:\n            return ()",
+        "scene/test_flank_form.py::test_another_file_takes_the_place_of_the_points_of_the_first",
+    ),
+    Fault(
+        "scenes: the seed of a class stays behind where deviations are given",
+        "scene/section.py",
+        "    others += [companion for other in others for companion in section.companions.get(other, ())]\n",
+        "",
+        "scene/test_pitch.py::test_deviations_of_one_key_take_the_place_of_those_of_another",
+    ),
+    Fault(
+        "stages: another file does not take the place of the points of the first",
+        "stages/sections.py",
+        "(dict.fromkeys(replaced_by(type(self), changes)) | dict(changes)).items()",
+        "dict(changes).items()",
+        "stages/test_stage.py::test_another_file_takes_the_place_of_the_points_of_a_planet",
+    ),
 )
 
 
