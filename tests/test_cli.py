@@ -146,11 +146,37 @@ def test_plot_draws_a_result_again(run):
 
 
 @pytest.mark.usefixtures("blank_pictures")
-def test_run_leaves_no_picture_of_an_earlier_scene(run):
-    Path("out").mkdir()
-    Path("out", "pressure_map_hertz.png").write_bytes(b"old")
+def test_run_leaves_no_file_of_an_earlier_result_and_each_of_the_user(run):
+    """Of other commands, too, and those of parts; what has another name is the user's."""
+    old = "pressure_map_hertz.png", "sensitivities.nc", "tornado.png", "tribology.csv", "dynamics_orders.csv"
+    old += "report.html", "at_a_glance.pdf", "position_2/teeth.png", "torque_20_Nm_position_2/wheel.stl"
+    users = "notes.txt", "position_2_notes/teeth.png", "torque_20_Nm/notes.txt", "loads/sensitivities.csv"
+    for name in (*old, *users, "torque_20_Nm/sensitivities.csv"):
+        Path("out", name).parent.mkdir(parents=True, exist_ok=True)
+        Path("out", name).write_bytes(b"old")
     assert run("run", scene(), "--out", "out")[0] == 0
-    assert set(os.listdir("out")) == REPORT | PICTURES
+    directories = {"position_2_notes", "torque_20_Nm", "loads"}
+    assert set(os.listdir("out")) == REPORT | PICTURES | {"notes.txt"} | directories
+    assert all(Path("out", name).read_bytes() == b"old" for name in users)
+    assert os.listdir("out/torque_20_Nm") == ["notes.txt"]
+
+
+@pytest.mark.parametrize(
+    ("command", "file", "kind"),
+    [
+        ("run", "study.nc", "a study"),
+        ("run", "comparison.json", "a comparison of results"),
+        ("run --coast", "result.nc", "a result"),
+        ("demo", "stage.nc", "a stage"),
+    ],
+)
+def test_result_goes_into_no_directory_of_something_else(refused, command, file, kind):
+    Path("out").mkdir()
+    Path("out", file).write_bytes(b"old")
+    name, *more = command.split()
+    told = refused(name, *([] if name == "demo" else [scene()]), "--out", "out", *more)
+    assert f"--out out: holds {kind} ({file}); give another directory" in told
+    assert Path("out", file).read_bytes() == b"old"
 
 
 @pytest.mark.thorough

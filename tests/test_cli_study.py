@@ -35,6 +35,13 @@ def study(tmp_path, monkeypatch):
     return study
 
 
+def test_study_goes_into_no_directory_of_a_result(study, tmp_path, capsys):
+    (tmp_path / "result.nc").write_bytes(b"old")
+    assert cli.main(["study", study([2.0]), "--out", "."]) == 2
+    assert "--out .: holds a result (result.nc); give another directory" in capsys.readouterr().err
+    assert not os.path.exists("study.nc")
+
+
 def test_study_writes_figures_table_and_summary(study, capsys):
     assert cli.main(["study", study([2.0, -1.0, 6.0]), "--out", "out", "--keep-maps", "2"]) == 0
     text = capsys.readouterr().out

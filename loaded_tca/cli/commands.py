@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from loaded_tca.cli.directories import REPORT, outdated_files, remove_empty_parts, require_place_of
 from loaded_tca.cli.inputs import (
     STUDY_FILE,
     changes_of,
@@ -43,11 +44,13 @@ DEMO_SCENE = Path(__file__).parents[1] / "demo.toml"
 def demo(options: argparse.Namespace) -> None:
     """Write the scene file of the demo and run it."""
     from loaded_tca.input_files import read_bytes
+    from loaded_tca.output.result_files import RESULT
     from loaded_tca.results.files import replace_together
     from loaded_tca.scene.parse import LARGEST_FILE, read_scene
 
     directory = options.out
     check_place(directory)
+    require_place_of(directory, RESULT)
     scene, content = directory / "scene.toml", DEMO_SCENE.read_bytes()
     if scene.exists() and read_bytes(scene, LARGEST_FILE, "scene") != content:
         again = f"'loaded-tca run {scene} --out {directory}'"
@@ -60,9 +63,14 @@ def demo(options: argparse.Namespace) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Read, analyse, write everything, and show the summary; a comparison with another side or supports where asked."""
+    from loaded_tca.output.result_files import RESULT
+    from loaded_tca.output.tables import COMPARISON_DATA
+
     scene, directory = scene_of(options), options.out
     check_place(directory)
-    if not (options.coast or options.rigid):
+    compared = options.coast or options.rigid
+    require_place_of(directory, COMPARISON_DATA if compared else RESULT)
+    if not compared:
         _run_scene(scene, directory)
         return
     if options.coast:
@@ -75,17 +83,18 @@ def run(options: argparse.Namespace) -> None:
 
 
 def _run_scene(scene: Scene, directory: Path) -> None:
-    """Analyse a scene, write everything into a directory, and show the summary."""
+    """Analyse a scene, write everything into a directory, and show the summary; what is of an old result goes."""
     from loaded_tca.analysis import analyse
     from loaded_tca.effort import expected_effort
     from loaded_tca.output.result_files import write_report
-    from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
+    from loaded_tca.plots import plot_all
 
     torques, positions = len(scene.torques), scene.analysis.positions
     count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
     with progress_bar(expected_effort(scene), count, torques * positions) as progress:
         result = analyse(scene, progress=progress)
-    report = write_report(result, directory, outdated=[f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)])
+    report = write_report(result, directory, outdated=outdated_files(directory))
+    remove_empty_parts(directory)
     try:
         pictures = plot_all(result, directory)
     except BaseException as error:  # an interrupt, too
@@ -158,9 +167,11 @@ def stage(options: argparse.Namespace) -> None:
     from loaded_tca.plots import png_of, stage_figures
     from loaded_tca.stages import analyse_stage
     from loaded_tca.stages.analyse import expected_stage_effort, states_of
+    from loaded_tca.stages.result import STAGE_FILE
 
     asked, directory = stage_of(options), options.out
     check_place(directory)
+    require_place_of(directory, STAGE_FILE)
     asked.require_assembly()
     states = states_of(asked)
     with progress_bar(expected_stage_effort(asked), "states of both meshes", states) as progress:
@@ -381,6 +392,7 @@ def study(options: argparse.Namespace) -> None:
 
     study, directory = read_study(options.study), options.out
     check_place(directory)
+    require_place_of(directory, STUDY_FILE)
     say_cost(study, options.workers or 1)
     with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
         rows = run_study(study, executor, directory / STUDY_FILE, show, keep_maps=options.keep_maps)
@@ -404,7 +416,7 @@ def report(options: argparse.Namespace) -> None:
     from loaded_tca.reports import write_html_report
 
     path, out = file_of_report(options.result), options.out
-    out = path.parent / "report.html" if out is None else out
+    out = path.parent / REPORT if out is None else out
     check_files([out], path)
     subject = subject_of_report(path)
     date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")

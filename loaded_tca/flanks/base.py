@@ -25,6 +25,7 @@ import numpy as np
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
+from loaded_tca.plain import plain
 
 SMALLEST_DISTANCE = 1e-3
 """Cone distances are kept above this fraction of R_m: at the apex there is no flank."""
@@ -239,7 +240,7 @@ class CylinderFrame(FlankFrame):
 
     def place(self, rho: float, z: float) -> str:
         """Diameter and axial position."""
-        return f"diameter {2.0 * rho:.4g} mm, {_rounded(z)} mm from mid-face"
+        return f"diameter {plain(2.0 * rho)} mm, {_rounded(z)} mm from mid-face"
 
 
 @checked
@@ -290,7 +291,7 @@ class ConeFrame(FlankFrame):
 
 def _rounded(length: float) -> str:
     """Three digits, not finer than a micrometre."""
-    return f"{round(length, 3) + 0.0:.3g}"
+    return plain(round(length, 3), 3)
 
 
 EDGE_NAMES = ("tip", "root", "lower side", "upper side")

@@ -38,6 +38,7 @@ from loaded_tca.flanks.spline import FitError, SplineFlank
 from loaded_tca.flanks.tensor_spline import TensorSpline, fit
 from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 from loaded_tca.gears.hypoid import OffsetFrame
+from loaded_tca.plain import plain
 
 SPLINE_POINTS = (41, 33)
 """Chebyshev-Lobatto points of the B-spline along the profile and lengthwise: it is within 1e-7 mm of usual flanks. The
@@ -191,8 +192,8 @@ class GeneratedFlank(ToothRegion):
         place = self._place(distance, cuts[last][0][0])
         return GeometryError(
             f"{self.owner}: undercut: the generated surface turns back in an edge {place}, on the blade at least "
-            f"{depths[last]:.2g} mm above its rounded tip; cut less deep (sliding_base), or use a larger blade_angle "
-            "or edge_radius"
+            f"{plain(depths[last], 2)} mm above its rounded tip; cut less deep (sliding_base), or use a larger "
+            "blade_angle or edge_radius"
         )
 
     def _not_cut(self, distance: Array, angle: Array, cut: Array) -> GeometryError:

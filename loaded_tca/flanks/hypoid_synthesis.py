@@ -48,6 +48,7 @@ from loaded_tca.gears.face_milled import (
     MachineSettings,
 )
 from loaded_tca.gears.hypoid_blank import HypoidBlank
+from loaded_tca.plain import plain
 
 Gears = tuple[FaceMilledGear, FaceMilledGear]
 """Of pinion and wheel."""
@@ -378,8 +379,8 @@ class _Pinion:
         miss = float(np.abs(self.conditions(unknowns)[:HARD]).max())
         if miss > MET:
             raise GeometryError(
-                f"pinion: no settings meet all conditions at the calculation point; what is left is {miss:.3g} mm; "
-                "change the mismatch, the taper or the radius of the cutter"
+                f"pinion: no settings meet all conditions at the calculation point; what is left is "
+                f"{plain(miss, 3)} mm; change the mismatch, the taper or the radius of the cutter"
             )
         return unknowns
 

@@ -30,6 +30,7 @@ from loaded_tca.flanks.removal import (
     one_sided_parabola,
     parabola,
 )
+from loaded_tca.plain import plain
 
 CrowningForm = Literal["parabolic", "circular", "logarithmic"]
 ReliefForm = Literal["parabolic", "linear"]
@@ -321,8 +322,8 @@ def modified(
     flank = ModifiedFlank(nominal, terms)
     most, limit = float(np.abs(flank.removal(*nominal.grid(*CHECKED)).value).max()), MOST * max(nominal.extent)
     if not most <= limit:
-        warning = f"{owner}.modifications: together they remove or add up to {most:.4g} mm"
-        raise InputError(f"{warning}; allowed up to {limit:.4g} mm, {MOST:g} longer sides of the flank")
+        warning = f"{owner}.modifications: together they remove or add up to {plain(most)} mm"
+        raise InputError(f"{warning}; allowed up to {plain(limit)} mm, {MOST:g} longer sides of the flank")
     for name in AMOUNTS:
         amount = getattr(modifications, name) or 0.0  # None: as at both ends
         if abs(amount) > LARGEST_AMOUNT:

@@ -23,6 +23,7 @@ from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
 from loaded_tca.flanks.base import DerivedFlank, Flank, Jet, Region, unmodified
 from loaded_tca.flanks.tensor_spline import TensorSpline, fit
 from loaded_tca.flanks.topography import Topography, excess_problems
+from loaded_tca.plain import plain
 
 FEWEST_POINTS = {3: 4, 5: 6}
 """Degree of a B-spline -> points, or coefficients, that it needs in its direction."""
@@ -109,7 +110,7 @@ class StructuredGrid:
             beyond = -np.broadcast_to(edge.value, self.radius.shape)
             count = int((beyond > OFF_FLANK * min(flank.extent)).sum())
             if count:
-                points = f"{count} of {beyond.size} points lie off the flank, up to {beyond.max():.4g} mm"
+                points = f"{count} of {beyond.size} points lie off the flank, up to {plain(beyond.max())} mm"
                 problems.append(f"{points} beyond the {name}: wrong gear, frame or unit?")
         return problems
 
@@ -140,8 +141,8 @@ class StructuredGrid:
         if not folded.any():
             return []
         row, column = (int(part) for part in np.argwhere(folded)[0])
-        points = self.ordered(self.radius)[row, column], self.ordered(self.axial)[row, column]
-        where = f"{int(folded.sum())} of {folded.size} cells, first at radius {points[0]:.4g}, axial {points[1]:.4g} mm"
+        radius, axial = (plain(self.ordered(one)[row, column]) for one in (self.radius, self.axial))
+        where = f"{int(folded.sum())} of {folded.size} cells, first at radius {radius}, axial {axial} mm"
         return [f"points are folded, or lie on each other: {where}"]
 
     def _too_small(self, flank: Flank) -> list[str]:
@@ -206,7 +207,7 @@ class FitError:
         return cls(float(np.abs(distances).max()), float(np.sqrt((distances**2).mean())))
 
     def __str__(self) -> str:
-        return f"{1e3 * self.largest:.3g} um at most, {1e3 * self.rms:.3g} um rms"
+        return f"{plain(1e3 * self.largest, 3)} um at most, {plain(1e3 * self.rms, 3)} um rms"
 
 
 @checked
@@ -408,11 +409,11 @@ def _warn_if_swinging(nominal: Flank, excess: Array, spline: TensorSpline, smoot
     rho, z = nominal.grid(*DEFAULT_POINTS)
     at = flank_coordinates(nominal, rho, z)
     angles = nominal.side * nominal.gradient_norm(rho, z).value
-    splined, plain = (one(*at).value / angles for one in (spline, smooth))
-    known = np.concatenate([excess.ravel(), plain.ravel()])
+    splined, smoothed = (one(*at).value / angles for one in (spline, smooth))
+    known = np.concatenate([excess.ravel(), smoothed.ravel()])
     beyond, span = max(known.min() - splined.min(), splined.max() - known.max()), float(np.ptp(excess))
     if beyond > max(SWING * span, FIT_TOLERANCE):
-        from_to = (f"{1e3 * one.min():.3g} to {1e3 * one.max():.3g} um" for one in (excess, splined))
+        from_to = (f"{plain(1e3 * one.min(), 3)} to {plain(1e3 * one.max(), 3)} um" for one in (excess, splined))
         give_accuracy_warning(kinds.SWINGS.sentence(points=next(from_to), flank=next(from_to)), stacklevel=3)
 
 

@@ -43,6 +43,7 @@ from loaded_tca.arrays import Array, OtherKindError, numbers, shown
 from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.base import Flank
 from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
+from loaded_tca.plain import plain
 
 LARGEST_FILE = 2**23
 """Bytes of a topography file; a point takes about 60."""
@@ -324,8 +325,8 @@ def excess_problems(nominal: Flank, excess: Array) -> list[str]:
     if largest <= limit:
         return []
     return [
-        f"the points lie up to {largest:.4g} mm off the nominal flank along its normal, more than the {limit:.4g} mm "
-        "of any deviation: wrong gear, hand, side of the tooth, frame or unit?"
+        f"the points lie up to {plain(largest)} mm off the nominal flank along its normal, more than the "
+        f"{plain(limit)} mm of any deviation: wrong gear, hand, side of the tooth, frame or unit?"
     ]
 
 

@@ -11,6 +11,7 @@ from math import cos, inf, pi, sqrt, tan
 
 from loaded_tca.errors import InputError
 from loaded_tca.gears.bevel import pitch_angles
+from loaded_tca.plain import plain
 
 ROUNDED = 0.02
 """By how many mean normal modules the clearances of measured depths may differ: one holds for both gears."""
@@ -168,13 +169,13 @@ def measured_depths(addenda: Both, dedenda: Both, module: float) -> dict[str, fl
     {'profile_shift': 0.505, 'addendum_factor': 1.0, 'dedendum_factor': 1.25}
     """
     first, second = dedenda[0] - addenda[1], dedenda[1] - addenda[0]
-    both = f"h_fm1 - h_am2 = {first:.4g} mm and h_fm2 - h_am1 = {second:.4g} mm"
+    both = f"h_fm1 - h_am2 = {plain(first)} mm and h_fm2 - h_am1 = {plain(second)} mm"
     if not min(first, second) > 0.0:
         raise InputError(f"mean_dedendum: no clearance is left, {both}; allowed above the mating gear's addendum")
     if abs(first - second) > ROUNDED * module:
         raise InputError(
-            f"mean_dedendum: the clearances {both} differ by more than {ROUNDED * module:.3g} mm ({ROUNDED:g} m_mn);"
-            " both gears have one"
+            f"mean_dedendum: the clearances {both} differ by more than {plain(ROUNDED * module, 3)} mm "
+            f"({ROUNDED:g} m_mn); both gears have one"
         )
     shift = addenda[0] - addenda[1] + dedenda[1] - dedenda[0]
     return {

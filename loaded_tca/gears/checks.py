@@ -7,6 +7,7 @@ from math import degrees, inf, isclose, isfinite, pi, radians
 from typing import Any
 
 from loaded_tca.arrays import real
+from loaded_tca.plain import plain
 
 SMALLEST_PRESSURE_ANGLE, LARGEST_PRESSURE_ANGLE = radians(1), radians(45)
 LARGEST_SPIRAL_ANGLE = radians(60)
@@ -45,7 +46,7 @@ def face_check(face_width: float, length: float, name: str) -> tuple[bool, str]:
     """Check of a face width against the module, or another length, that is called so."""
     least = LEAST_FACE * length
     short = 0.0 < real(face_width) < least
-    return not short, f"face_width: {face_width} mm is below {LEAST_FACE:g} {name}, {least:.4g} mm"
+    return not short, f"face_width: {face_width} mm is below {LEAST_FACE:g} {name}, {plain(least)} mm"
 
 
 def half_turn_checks(**angles: float | None) -> Iterator[tuple[bool, str]]:

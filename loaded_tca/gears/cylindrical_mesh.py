@@ -18,6 +18,7 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.involute import InvoluteMesh, involute, working_pressure_angle
+from loaded_tca.plain import plain
 
 # In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
 _NEGLIGIBLE_UNDERCUT = 1e-4
@@ -334,12 +335,12 @@ def _what_stops(room: Room, module: float) -> Iterator[str]:
     """Why nothing can turn."""
     if room.backlash < -RIGID * module:
         yield (
-            f"teeth are {-room.backlash:.4g} mm thicker than the spaces of the mating gear, more than {RIGID:g} "
+            f"teeth are {plain(-room.backlash)} mm thicker than the spaces of the mating gear, more than {RIGID:g} "
             "modules, to which no teeth give way"
         )
     for (name, mating), length in zip(BOTH_WAYS, room.below_root, strict=True):
         if length < -ROUNDING * module:
-            yield f"the tip of the {mating} reaches {-length:.4g} mm into the root of the {name}"
+            yield f"the tip of the {mating} reaches {plain(-length)} mm into the root of the {name}"
 
 
 def profile_shift_sum(pinion: CylindricalGear, wheel: CylindricalGear, centre_distance: float) -> float:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.plain import plain
 
 if TYPE_CHECKING:
     from loaded_tca.gears.cylindrical import CylindricalGear
@@ -60,7 +61,10 @@ def span_measurement(gear: CylindricalGear, teeth: int) -> float:
     require(_touches(gear, radius, f"span_teeth: a span over {teeth} teeth"), owner=gear.name)
     needed = span * abs(sin(gear.base_helix_angle))
     require(
-        (needed < gear.face_width, f"span_teeth: a span over {teeth} teeth needs a face width above {needed:.4g} mm"),
+        (
+            needed < gear.face_width,
+            f"span_teeth: a span over {teeth} teeth needs a face width above {plain(needed)} mm",
+        ),
         owner=gear.name,
     )
     return span
@@ -197,7 +201,7 @@ def _allowance(gear: CylindricalGear, allowance: float, what: str, nominal: floa
     require(
         (
             abs(allowance) <= largest,
-            f"{what} makes the teeth {abs(allowance):.4g} mm {sense} than nominal, where it is {nominal:.6g} mm; "
+            f"{what} makes the teeth {plain(abs(allowance))} mm {sense} than nominal, where it is {nominal:.6g} mm; "
             f"allowed up to half a module, {largest:.6g} mm",
         ),
         owner=gear.name,

@@ -154,8 +154,14 @@ class LoadedContact:
 
     @property
     def peak_place(self) -> tuple[float, float]:
-        """Radius and axial coordinate on the pinion of the largest pressure [mm]: middle of the cells that share it."""
+        """Radius and axial coordinate on the pinion of the largest pressure [mm]: middle of the cells that share it.
+
+        Without load those of the contact point, where a vanishing load presses.
+        """
         pressure = self.solution.pressure
+        if not pressure.any():
+            x, y, z = self.separation.origin
+            return math.hypot(x, y), float(z)
         top = np.unravel_index(int(pressure.argmax()), pressure.shape)
         beside = tuple(slice(max(0, k - 1), k + 2) for k in top)
         equal = pressure[beside] >= (1.0 - EQUAL) * pressure.max()

@@ -24,6 +24,8 @@ from loaded_tca.results.files import Buffer, FilePath, replace_file, replace_tog
 from loaded_tca.results.teeth import TeethInSpace
 from loaded_tca.tooth import TriangleMesh
 
+TEETH_FILES = "pinion.vtk", "wheel.vtk", "pressure.vtk", "pinion.stl", "wheel.stl"
+"""Of :func:`write_teeth`: teeth in contact and the pressure between them in space, solids of both gears."""
 LONGEST_TITLE = 255
 """Bytes of the second line of a VTK file."""
 STL_HEADER = 80
@@ -160,7 +162,7 @@ def write_teeth(
         If a file cannot be written.
     """
     solids = [tooth.triangles(tooth.teeth if whole_gears else 1, closed=True) for tooth in (teeth.pinion, teeth.wheel)]
-    surfaces = {"pinion.vtk": shown.pinion, "wheel.vtk": shown.wheel, "pressure.vtk": shown.pressure}
-    contents: dict[str, Buffer] = {name: b"".join(_vtk_parts(mesh, title)) for name, mesh in surfaces.items()}
-    contents |= {"pinion.stl": _stl(solids[0], title), "wheel.stl": _stl(solids[1], title)}
-    return replace_together(directory, {**contents, **more})
+    surfaces = shown.pinion, shown.wheel, shown.pressure
+    files: list[Buffer] = [b"".join(_vtk_parts(mesh, title)) for mesh in surfaces]
+    files += [_stl(solid, title) for solid in solids]
+    return replace_together(directory, {**dict(zip(TEETH_FILES, files, strict=True)), **more})

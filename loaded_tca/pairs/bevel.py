@@ -42,6 +42,7 @@ from loaded_tca.gears.hypoid import HypoidCones, OffsetFrame
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
+from loaded_tca.plain import plain
 from loaded_tca.tooth.families import BevelTooth, FaceMilledTooth
 
 
@@ -287,7 +288,9 @@ def _closed_cones(pinion: FaceMilledGear, wheel: FaceMilledGear, offset: float, 
 def _require_rolling(cones: HypoidCones, teeth: tuple[int, int], angles: list[FlankAngles]) -> None:
     """Refuse flanks whose spiral angles belong to the opposite offset, or do not roll on each other at P."""
     pinion, wheel = (abs(one.spiral) for one in angles)
-    angles_at_p = f"the flanks have spiral angles of {math.degrees(pinion):.4g} and {math.degrees(wheel):.4g} deg at P"
+    angles_at_p = (
+        f"the flanks have spiral angles of {plain(math.degrees(pinion))} and {plain(math.degrees(wheel))} deg at P"
+    )
     if abs(pinion - wheel + cones.offset_angle) < abs(pinion - wheel - cones.offset_angle):
         larger, sign = ("larger", "positive") if cones.offset > 0.0 else ("smaller", "negative")
         raise InputError(
@@ -300,6 +303,6 @@ def _require_rolling(cones: HypoidCones, teeth: tuple[int, int], angles: list[Fl
     ]
     if not math.isclose(*rolls, rel_tol=_ROLLING):
         raise GeometryError(
-            f"{angles_at_p}: half the normal modules there, {rolls[0]:.5g} and {rolls[1]:.5g} mm, differ by more than "
-            f"{_ROLLING:.0%}: the flanks do not roll on each other"
+            f"{angles_at_p}: half the normal modules there, {plain(rolls[0], 5)} and {plain(rolls[1], 5)} mm, "
+            f"differ by more than {_ROLLING:.0%}: the flanks do not roll on each other"
         )

@@ -22,6 +22,7 @@ from loaded_tca.gears.involute import InvoluteGear, InvoluteMesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
+from loaded_tca.plain import plain
 from loaded_tca.tooth.families import CylindricalTooth, InvoluteTooth
 from loaded_tca.tooth.ring import RingTooth
 
@@ -200,8 +201,8 @@ def require_short_turn(gear: InvoluteGear) -> None:
     turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
     if turn >= LARGEST_TURN:
         raise GeometryError(
-            f"{gear.name}: its teeth wind {turn / (2.0 * math.pi):.3g} times around the gear over its face width, "
-            f"{gear.face_width:.6g} mm; less than one turn is allowed"
+            f"{gear.name}: its teeth wind {plain(turn / (2.0 * math.pi), 3)} times around the gear over its "
+            f"face width, {gear.face_width:.6g} mm; less than one turn is allowed"
         )
 
 
@@ -218,7 +219,8 @@ def require_common_face(mesh: InvoluteMesh) -> None:
     if abs(common) < least:
         raise GeometryError(
             f"axial_offset: {mesh.axial_offset:.6g} mm leaves no common flank: the faces of pinion and wheel have "
-            f"{max(common, 0.0):.4g} mm in common; at least {least:.4g} mm, {LEAST_FACE:g} normal modules, are needed"
+            f"{plain(max(common, 0.0))} mm in common; at least {plain(least)} mm, {LEAST_FACE:g} normal "
+            "modules, are needed"
         )
 
 

@@ -26,6 +26,7 @@ from loaded_tca.flanks.rounding import (
     sharp,
 )
 from loaded_tca.material import Material
+from loaded_tca.plain import plain
 from loaded_tca.tooth.families import ToothForm, ToothGeometry
 
 ROUNDING = 1e-12
@@ -85,7 +86,7 @@ def rounding_problems(geometry: ToothGeometry, flank: Flank, rounding: EdgeRound
         height = float(np.min(flank.edges(*(part[0] for part in root))[TIP].value))
         reach = 1.0 + float(material_cosines(flank, TIP, *edge_places(flank, TIP)).max())
         limits["tip"].append(
-            (height / reach, f"with which no flank is left above its root edge, {height:.4g} mm below")
+            (height / reach, f"with which no flank is left above its root edge, {plain(height)} mm below")
         )
         limits["tip"] += _limit_of_land(geometry, flank)
     if rounding.side > 0.0:
@@ -93,13 +94,13 @@ def rounding_problems(geometry: ToothGeometry, flank: Flank, rounding: EdgeRound
         width = float(np.min(flank.edges(rho, z)[UPPER].value))
         reach = sum(1.0 + float(material_cosines(flank, end, *edge_places(flank, end)).max()) for end in (LOWER, UPPER))
         limits["side"].append(
-            (width / reach, f"with which no flank is left between the ends of the face, {width:.4g} mm apart")
+            (width / reach, f"with which no flank is left between the ends of the face, {plain(width)} mm apart")
         )
     problems = []
     for name, radius in (("tip", rounding.tip), ("side", rounding.side)):
         most, why = min(limits[name])
         if radius > most * (1.0 + ROUNDING):
-            problems.append(f"{name}_rounding_mm: found {radius:g}; allowed up to {most:.4g} mm, {why}")
+            problems.append(f"{name}_rounding_mm: found {radius:g}; allowed up to {plain(most)} mm, {why}")
     return problems
 
 
@@ -120,7 +121,7 @@ def _limit_of_land(geometry: ToothGeometry, flank: Flank) -> list[tuple[float, s
     slope: Array = 0.5 * (slopes[0] + slopes[1])
     width = np.maximum(rho * angle, 0.0) / np.sqrt(1.0 + slope**2)
     worst = int((width / lengths).argmin())
-    reason = f"with which the arcs of both flanks meet on the tip land, {width[worst]:.4g} mm wide"
+    reason = f"with which the arcs of both flanks meet on the tip land, {plain(width[worst])} mm wide"
     return [(float(width[worst] / lengths[worst]), reason)]
 
 

@@ -33,6 +33,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.flanks.cradle import CradleGeneration, GeneratedPoints
 from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
+from loaded_tca.plain import plain
 
 MARKING = 0.00635
 """Approach at which a contact ellipse is as long as a marking compound of this thickness shows it [mm]."""
@@ -227,8 +228,8 @@ class MeanField:
         second = float(self.hessian[0, 0] + mixed @ path)
         if not (least > 0.0 >= second):
             raise GeometryError(
-                f"the flanks do not carry at the mean point: least relative curvature {least:.4g} 1/mm, second"
-                f" derivative of the motion {second:.4g}"
+                f"the flanks do not carry at the mean point: least relative curvature {plain(least)} 1/mm, second"
+                f" derivative of the motion {plain(second)}"
             )
         angle = math.atan2(path[1], path[0]) % math.pi
         fall = -second * (2.0 * math.pi / teeth) ** 2 / 8.0
@@ -252,15 +253,15 @@ class MeanField:
         if not behind > 0.0:
             most = -self.hessian[0, 0] * (2.0 * math.pi / teeth) ** 2 / 8.0
             raise GeometryError(
-                f"motion_fall: {aim.motion_fall:.4g} rad; allowed below {most:.4g} rad, the fall of an edge at the mean"
-                " point"
+                f"motion_fall: {plain(aim.motion_fall)} rad; allowed below {plain(most)} rad, the fall of an "
+                "edge at the mean point"
             )
         if not of_path > least:
             longest = math.sqrt(8.0 * MARKING / of_path) if of_path > 0.0 else math.inf
             raise GeometryError(
-                f"path_angle: a path at {math.degrees(aim.path_angle):.4g} deg with motion_fall = {aim.motion_fall:.4g}"
-                f" rad needs a contact ellipse that is longer than {longest:.4g} mm; asked for are"
-                f" {aim.contact_length:.4g} mm: take a path more across the tooth"
+                f"path_angle: a path at {plain(math.degrees(aim.path_angle))} deg with motion_fall = "
+                f"{plain(aim.motion_fall)} rad needs a contact ellipse that is longer than {plain(longest)} mm; asked "
+                f"for are {plain(aim.contact_length)} mm: take a path more across the tooth"
             )
         across = least + skew**2 / (of_path - least)
         bend = axes.T @ np.array([[of_path, skew], [skew, across]]) @ axes / -lever

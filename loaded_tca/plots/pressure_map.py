@@ -151,7 +151,8 @@ def draw_map(
         line, size = bool(result.paths[at[1]].on_line[at[0]]), (2.0 * major, 2.0 * minor)
         area: Patch = Rectangle((-major, -minor), *size, **drawn) if line else Ellipse((0.0, 0.0), *size, **drawn)
         axes.add_patch(area)
-    axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
+    across, along = one.axes[:2] @ (result.paths[at[1]].point[at[0]] - one.origin)  # gears on supports stand elsewhere
+    axes.plot(along, across, "+", color=ACCENT, label="unloaded contact point")
     axes.set_aspect(scale)
     axes.yaxis.set_major_locator(MaxNLocator(TICKS))  # as many before the layout shrinks the panel as after it
     _label_axes(axes, one, scale, result.gear_pair.pinion.flank.frame)

@@ -172,16 +172,21 @@ BANDS = ((1.0, 0.45), (2.0, 0.2))
 BASE_CIRCLE = "at the wheel's base circle [µm]"
 
 
+SENSITIVITY_PICTURES = "tornado", "sensitivity_curves", "transmission_error_band", "removal_weights"
+"""Names of the pictures of sensitivities, without their ending."""
+
+
 def sensitivity_pictures(
     sensitivities: Sensitivities, tolerances: Mapping[str, float], torque: int
 ) -> dict[str, Figure]:
     """Return all pictures of sensitivities under one torque by the names of their files, bands under all torques."""
-    return {
-        "tornado": plot_tornado(sensitivities, tolerances, torque=torque),
-        "sensitivity_curves": plot_sensitivity_curves(sensitivities, tolerances, torque),
-        "transmission_error_band": plot_transmission_error_band(sensitivities, tolerances),
-        "removal_weights": plot_removal_weights(sensitivities, torque),
-    }
+    figures = (
+        plot_tornado(sensitivities, tolerances, torque=torque),
+        plot_sensitivity_curves(sensitivities, tolerances, torque),
+        plot_transmission_error_band(sensitivities, tolerances),
+        plot_removal_weights(sensitivities, torque),
+    )
+    return dict(zip(SENSITIVITY_PICTURES, figures, strict=True))
 
 
 def plot_tornado(

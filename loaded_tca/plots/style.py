@@ -212,7 +212,7 @@ def place(result: CycleNumbers, position: int, frame: FlankFrame, column: int) -
     where = result.paths[column][position]
     return (
         position_label(result, position, column),
-        f"contact point on the pinion: {frame.place(where.pinion_radius, where.pinion_axial)}",
+        f"unloaded contact point on the pinion: {frame.place(where.pinion_radius, where.pinion_axial)}",
     )
 
 

@@ -205,7 +205,7 @@ def _at_edge(
         across, along = sharp_edge_cell(pair, of_material)
         cell = float(of_material.pressure[across, along])
         if not at_arc or cell > (1.0 + EQUAL) * peak.bound:  # both are equal at the cap
-            place = place_on_material(pair, one, (across, along))
+            place = place_on_material(pair, one, (across, along)) if loaded.solution.load > 0.0 else (0.0, 0.0)
             pressure, error, at_arc = cell, math.nan, False
     radius, axial = one.place(*place)
     return {

@@ -65,6 +65,14 @@ def of_edge(_: str, __: CycleNumbers, ___: slice, figures: Sequence[Figures]) ->
     return "mesh-dependent at sharp edges: not for rating"
 
 
+def of_face_load(_: str, result: CycleNumbers, __: slice, figures: Sequence[Figures]) -> str:
+    """What strips and positions do to K_Hbeta."""
+    moves = [entry["face_load_factor_by_positions"] for entry in figures]
+    known = [f"{move:.1%}" for move in moves if math.isfinite(move)]
+    by = f"; off by less than {max(known, key=lambda text: float(text[:-1]))} by their number" if known else ""
+    return f"from 30 strips of the face and {len(result.path)} positions{by}"
+
+
 def of_line_load(_: str, __: CycleNumbers, ___: slice, figures: Sequence[Figures]) -> str:
     """Where the line load depends on the mesh."""
     return "mesh-dependent where it lies at a sharp face end" if any(one["edge_positions"] for one in figures) else ""

@@ -21,6 +21,7 @@ from loaded_tca.results.figure import (
     length,
     of_bending,
     of_edge,
+    of_face_load,
     of_largest,
     of_line_load,
     of_orders,
@@ -276,9 +277,10 @@ FIGURES: dict[str, Figure] = {
         is_scattered=True,
         rank=3,
         slope=Slope(4, "K_Hbeta", lambda slopes: slopes.face_load_factor),
-        accuracy=saying("from 30 strips of the face"),
+        accuracy=of_face_load,
     ),
     "face_load_factor_error": Figure(of=lambda under: under.face_load_factor_error, is_part=True),
+    "face_load_factor_by_positions": Figure(of=lambda under: under.face_load_factor_by_positions, is_part=True),
     "transverse_load_factor": Figure(
         of=lambda under: float(under.transverse_load_factor),
         label="load factor K_Halpha",
@@ -371,6 +373,7 @@ SUMMARY: tuple[Line, ...] = (
     Line("  shortest life [million revolutions]", tuple(f"{gear}_bearing_life_Mrev" for gear in GEARS)),
     Line("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
     Line("  K_Hbeta too low by its cells, at the most [%]", ("face_load_factor_error",)),
+    Line("  K_Hbeta off by its positions, at the most [%]", ("face_load_factor_by_positions",)),
     Line(*LOAD_ROW),
     Line(
         "line load under the largest force; mesh-dependent at sharp ends [N/mm]",

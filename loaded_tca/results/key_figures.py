@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.results.load_factors import face_load_factor_error
+from loaded_tca.results.load_factors import face_load_factor_by_positions, face_load_factor_error
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.root_stress import root_figures
 from loaded_tca.scene import Scene
@@ -30,7 +30,7 @@ STRESS_ROWS = (
     ("ISO 6336-2: sigma_H0 at the pitch point [MPa]", (STRESS,)),
     ("  times Z_B | Z_D; in it Z_eps | Z_beta", (*SINGLE_CONTACT, CONTACT_RATIO, HELIX_ANGLE)),
 )
-STIFFNESS_ROW = "  ISO 6336-1: c' | c_gamma_alpha [N/(mm um)]", (SINGLE_STIFFNESS, MESH_STIFFNESS)
+STIFFNESS_ROW = "  ISO 6336-1 above 100 N/mm: c' | c_gamma_alpha [N/(mm um)]", (SINGLE_STIFFNESS, MESH_STIFFNESS)
 LOAD_ROW = "  ISO 6336-1: K_Halpha from 1 to", (TRANSVERSE_LOAD,)
 """Labels of lines of a summary, and their key figures."""
 
@@ -209,6 +209,11 @@ class UnderTorque:
         if self.result.scene.analysis.free_edges:
             return math.nan
         return face_load_factor_error(self.result.gear_pair, self.result.path, self.result.maps[self.row])
+
+    @cached_property
+    def face_load_factor_by_positions(self) -> float:
+        """How far loads of strips of the face move where every second position counts alone, over the largest."""
+        return face_load_factor_by_positions(self.result.gear_pair, self.result.path, self.result.maps[self.row])
 
     @property
     def on_line(self) -> Array:

@@ -23,9 +23,9 @@ from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.section import (
     Rule,
     Section,
-    alternatives_of,
     as_table,
     contents,
+    replaced_by,
     rule,
     subsection,
 )
@@ -418,7 +418,8 @@ class Scene(WithStandards, ABC):
         """
         # Sections without a change stay what they are, since they are checked; another family may have others.
         table = contents(self) if _OF_FAMILIES.isdisjoint(changes) else as_table(self)
-        for path, value in changes.items():
+        # What a file was read into, for one, gives way where another file is named.
+        for path, value in (dict.fromkeys(replaced_by(type(self), changes)) | dict(changes)).items():
             *sections, name = path.split(".")
             place = table
             for section in sections:
@@ -427,9 +428,6 @@ class Scene(WithStandards, ABC):
                 if isinstance(inner, tuple) and inner and isinstance(inner[0], Section | dict):
                     inner = {str(n): one for n, one in enumerate(inner)}  # a list of tables: names are places
                 place[section] = place = dict(inner) if isinstance(inner, dict) else {}
-            if value is not None:  # what a file was read into, for one, when another file is named
-                for other in set(alternatives_of(type(self), path)).difference(changes):
-                    place.pop(other.rpartition(".")[2], None)
             place[name] = value
         return scene_from_table(table)
 

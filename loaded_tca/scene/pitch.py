@@ -33,6 +33,12 @@ def _one_source(*given: object) -> str | None:
     return f"found {' beside '.join(names)}; give one of them" if len(names) > 1 else None
 
 
+def _of_class(seed: int, tolerance_class: int | None) -> str | None:
+    if not seed or tolerance_class is not None:
+        return None
+    return f"found {seed} without tolerance_class; allowed beside it, whose random deviations it numbers"
+
+
 def _closed(single: tuple[float, ...] | None) -> str | None:
     if single is None or abs(sum(single)) <= CLOSED_um:
         return None
@@ -84,8 +90,13 @@ class Pitch(Section):
         0.0,
     )
 
-    rules: ClassVar[tuple[Rule, ...]] = (Rule(SOURCES, _one_source), Rule(("single_um",), _closed))
+    rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(SOURCES, _one_source),
+        Rule(("single_um",), _closed),
+        Rule(("seed", "tolerance_class"), _of_class),
+    )
     alternatives: ClassVar[tuple[str, ...]] = SOURCES
+    companions: ClassVar[dict[str, tuple[str, ...]]] = {"tolerance_class": ("seed",)}
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -96,11 +96,13 @@ def rule(keys: tuple[str, ...], holds: Callable[..., bool], problem: str) -> Rul
 class Section:
     """What all sections share: every way to make one checks all its values, every problem is told.
 
-    ``alternatives`` are keys that say the same in several ways: one that is changed takes the place of the others.
+    ``alternatives`` are keys that say the same in several ways: one that is changed takes the place of the others, and
+    of their ``companions``, keys that mean nothing without them.
     """
 
     rules: ClassVar[tuple[Rule, ...]] = ()
     alternatives: ClassVar[tuple[str, ...]] = ()
+    companions: ClassVar[dict[str, tuple[str, ...]]] = {}
 
     def __post_init__(self) -> None:
         values, problems = check(type(self), contents(self))
@@ -279,23 +281,43 @@ def key_at(section: type[Section], path: str, place: str = "") -> Key:
     return entry
 
 
-def alternatives_of(section: type[Section], path: str) -> tuple[str, ...]:
-    """Paths of the keys whose place the key at a path takes where it is changed; none of a path that leads nowhere.
+def replaced_by(section: type[Section], changes: Mapping[str, Any]) -> set[str]:
+    """Paths of the keys whose places those that are changed take: none that is changed itself, or inside.
+
+    Parameters
+    ----------
+    section : type
+    changes : mapping
+        Path of a key, with dots, -> value; None: not given.
 
     Examples
     --------
     >>> from loaded_tca.scene.cylindrical import CylindricalScene
-    >>> alternatives_of(CylindricalScene, "wheel.flank.file")
-    ('wheel.flank.measurement',)
+    >>> replaced_by(CylindricalScene, {"wheel.flank.file": "points.csv"})
+    {'wheel.flank.measurement'}
+    >>> replaced_by(CylindricalScene, {"wheel.tooth.0.flank.file": "a.csv", "wheel.tooth.0.flank.measurement.x": 1})
+    set()
     """
+    parts = [path.split(".") for path, value in changes.items() if value is not None]
+    paths = {".".join(names[: n + 1]) for names in parts for n in range(len(names))}
+    return {other for path in paths for other in _alternatives_of(section, path)} - paths
+
+
+def _alternatives_of(section: type[Section], path: str) -> tuple[str, ...]:
+    """Paths of the alternatives of the key at a path, and of their companions; none of a path that leads nowhere."""
     *sections, name = path.split(".")
-    for each in sections:
+    names = iter(sections)
+    for each in names:
         _, entry = entries(section).get(each, ("", None))
-        if not isinstance(entry, Subsection):
+        if isinstance(entry, Subsection):
+            section = entry.section
+        elif isinstance(entry, Key) and isinstance(entry.kind, Tables) and is_place(next(names, "")):
+            section = entry.kind.section
+        else:
             return ()
-        section = entry.section
-    names = section.alternatives if name in section.alternatives else ()
-    return tuple(".".join((*sections, other)) for other in names if other != name)
+    others = [other for other in section.alternatives if other != name] if name in section.alternatives else []
+    others += [companion for other in others for companion in section.companions.get(other, ())]
+    return tuple(".".join((*sections, other)) for other in others)
 
 
 def _homes(section: type[Section]) -> dict[str, str]:

@@ -20,7 +20,7 @@ from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.internal import InternalScene, RingSection
 from loaded_tca.scene.keys import Choice, Key, Line, List, Number, Whole, above_zero, key
 from loaded_tca.scene.parse import toml_lines
-from loaded_tca.scene.section import Rule, Section, as_table, check, contents, key_at, made, subsection
+from loaded_tca.scene.section import Rule, Section, as_table, check, contents, key_at, made, replaced_by, subsection
 from loaded_tca.scene.sections import Analysis, DIAMETER_mm, ElasticMaterial, Load, TORQUE_Nm
 from loaded_tca.stages.kinematics import spacing_problems
 
@@ -338,7 +338,7 @@ class Stage(Section):
         """
         table = as_table(self)
         of_planets = {path: value for path, value in changes.items() if PLACE.fullmatch(path)}
-        for path, value in changes.items():
+        for path, value in (dict.fromkeys(replaced_by(type(self), changes)) | dict(changes)).items():
             if path in of_planets:
                 continue
             *sections, name = path.split(".")

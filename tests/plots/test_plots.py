@@ -239,6 +239,17 @@ def test_pressure_map_draws_the_ellipse_and_tells_its_scale():
     assert "position 3 of 5: pinion angle 0 deg" in texts(figure)
 
 
+def test_pressure_map_marks_the_point_that_its_title_names():
+    """Of gears that moved on their supports, whose map has another point in its middle."""
+    cycle = result()
+    one, path = cycle.maps[0][2][0], cycle.paths[0]
+    moved = replace(cycle, paths=(replace(path, point=path.point + 0.3 * one.axes[1] - 0.1 * one.axes[0]),))
+    for drawn, place in ((cycle, (0.0, 0.0)), (moved, (0.3, -0.1))):
+        axes = plot_pressure_map(drawn, position=2).axes[0]
+        (mark,) = (line for line in axes.lines if line.get_label() == "unloaded contact point")
+        assert_allclose(np.ravel(mark.get_data()), place, atol=1e-3)  # cells of the search for the point
+
+
 def test_pressure_map_leaves_cells_without_material_to_the_grey_ground():
     cycle = result("misaligned", positions=2)
     axes = plot_pressure_map(cycle, position=0).axes[0]

@@ -25,6 +25,7 @@ from loaded_tca.reports import report as report_module
 from loaded_tca.reports import result_page, write_html_report
 from loaded_tca.reports.page import Table, parts_of, tables_of
 from loaded_tca.results.figure import COMPARED
+from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.summary import known_rows, shown
 from loaded_tca.studies.design import DesignResult
 from loaded_tca.warning_kinds import KINDS, kind_of
@@ -139,7 +140,8 @@ def test_every_figure_of_the_summary_is_there_with_its_unit(page):
     assert len(names) > 30
     for name in names:
         values = [shown(one[name], name) for one in figures]
-        assert values in [row[1 : 1 + len(TORQUES)] for row in page.rows(label_of(name))], name
+        label = label_of(name) + " [%]" * FIGURES[name].is_part
+        assert values in [row[1 : 1 + len(TORQUES)] for row in page.rows(label)], name
         unit = re.search(r"_(MPa|deg|mm|um|arcsec|N)$", name)
         assert unit is None or label_of(name).endswith("]")
 

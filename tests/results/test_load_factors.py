@@ -10,7 +10,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, analyse, parse_scene, read_scene
-from loaded_tca.results.load_factors import load_factors, strip_borders, strip_forces, strip_motions
+from loaded_tca.results.load_factors import (
+    face_load_factor_by_positions,
+    load_factors,
+    strip_borders,
+    strip_forces,
+    strip_motions,
+)
 from tests.samples.internal_pairs import SCENE
 from tests.samples.results import SCENES, result
 
@@ -40,6 +46,18 @@ def test_even_load_has_a_face_load_factor_of_one():
     face, transverse = load_factors(cycle.gear_pair, cycle.path, (((even,),) * 3,), 14.0)
     assert_allclose(face, 1.0, rtol=ROUNDING)
     assert_allclose(transverse, 1.0, rtol=ROUNDING)  # one pair alone, its whole face: the mean length of the lines
+
+
+def test_positions_that_load_unlike_parts_of_the_face_move_its_strips():
+    """Whole face and its middle half in turn: strips carry 1.5 and 0.5, of halves 1 and 1, or 2 and 0 of the mean."""
+    cycle, even = evenly_loaded()
+    _, half = evenly_loaded(line_load=400.0, face_part=0.5)
+    rows = ((even,), (half,), (even,), (half,), (even,))
+    pair, path = cycle.gear_pair, cycle.path
+    assert_allclose(face_load_factor_by_positions(pair, path, rows), 1.0 / 3.0, rtol=ROUNDING)
+    assert face_load_factor_by_positions(pair, path, ((even,),) * 3) < ROUNDING
+    assert np.isnan([face_load_factor_by_positions(pair, path, some) for some in (rows[:1], rows[:4])]).all()
+    assert math.isnan(face_load_factor_by_positions(pair, path, ((even,), (None,), (even,))))
 
 
 def test_pair_that_carries_half_the_load_of_a_longer_mesh_is_told_by_the_transverse_factor():

@@ -434,6 +434,18 @@ def test_summary_of_a_line_contact_says_so():
     assert "note: at 1 of 1 positions the unloaded contact is a line" in text
 
 
+@pytest.mark.parametrize("name", ["helical", "misaligned"])
+def test_peak_without_load_lies_at_the_contact_point(name):
+    """Where a load that vanishes presses, on an edge as elsewhere; the search for the point leaves 1e-3 mm."""
+    cycle = result(name, torques=(0.0,), positions=2)
+    path = cycle.paths[0]
+    for place in ("peak", "edge") if cycle.on_edge.all() else ("peak",):
+        assert_allclose(
+            getattr(cycle, f"{place}_radius")[0, :, 0], path.pinion_radius, atol=1e-3
+        )  # where it is searched
+        assert_allclose(getattr(cycle, f"{place}_axial")[0, :, 0], path.pinion_axial, atol=1e-3)
+
+
 def test_summary_without_load_shows_zeros():
     text = result(torques=(0.0,), positions=2).summary()
     assert line(text, "peak pressure [MPa]").split()[-3] == "0"

@@ -211,8 +211,15 @@ def test_another_file_takes_the_place_of_the_points_of_the_first(scene, measured
     second.write_text(csv_of(deviations(scene, points=(6, 8))), encoding="utf-8")
     measurement = first.with_changes({"wheel.flank.file": str(second)}).wheel.flank.measurement
     assert (measurement.shape, measurement.source) == ((6, 8), "second.csv")
-    with pytest.raises(InputError, match=r"^wheel\.flank\.file: found .* beside a section measurement"):
-        first.with_changes({"wheel.flank.file": str(second), "wheel.flank.measurement": measurement})
+    inside = {"wheel.flank.measurement.source": "points of a gauge"}
+    for more in ({"wheel.flank.measurement": measurement}, inside):
+        both = {"wheel.flank.file": str(second), **more}
+        for changes in (both, dict(reversed(both.items()))):  # in either order
+            with pytest.raises(InputError, match=r"^wheel\.flank\.file: found .* beside a section measurement"):
+                first.with_changes(changes)
+    with_tooth = first.with_changes({"wheel.tooth": [{"number": 3, "flank": first.wheel.flank}]})
+    (tooth,) = with_tooth.with_changes({"wheel.tooth.0.flank.file": str(second)}).wheel.tooth
+    assert tooth.flank.measurement == measurement
 
 
 def test_result_of_a_measured_flank_opens_without_the_file(small, scene, tmp_path):

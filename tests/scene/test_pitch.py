@@ -37,6 +37,8 @@ def test_deviations_of_one_key_take_the_place_of_those_of_another():
     pitch = drawn.with_changes({"wheel.pitch.index_um": [1.0] * 24}).wheel.pitch
     assert (pitch.index_um, pitch.tolerance_class, pitch.runout_um) == ((1.0,) * 24, None, 3.0)
     assert drawn.with_changes({"wheel.pitch.index_um": None}).wheel.pitch == drawn.wheel.pitch
+    numbered = drawn.with_changes({"wheel.pitch.seed": 4})
+    assert numbered.with_changes({"wheel.pitch.index_um": [1.0] * 24}).wheel.pitch == pitch
 
 
 def test_file_with_single_deviations(tmp_path):
@@ -147,6 +149,7 @@ test_refusals = refused_calls(
         r"wheel\.pitch: index_um: found 3 values; allowed 24",
     ),
     (lambda tmp_path: Pitch(file=str(tmp_path / "absent.csv")), "file: .*absent.csv: cannot be read"),
+    (lambda: Pitch(seed=3, runout_um=5.0), "seed: found 3 without tolerance_class; allowed beside it, whose random"),
     (lambda: Pitch(tolerance_class=12), "tolerance_class: found 12; allowed a whole number from 1 to 11"),
 )
 

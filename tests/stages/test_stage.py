@@ -44,6 +44,13 @@ def changed(**keys):
     return parse_stage(TEXT).with_changes({name.replace("__", "."): value for name, value in keys.items()})
 
 
+def test_another_file_takes_the_place_of_the_points_of_a_planet():
+    points = EXAMPLES.parent / "scenes" / "measured_flank.csv"
+    measured = changed(planet__flank={"form": "measured", "file": str(points)})
+    assert measured.planet.flank.measurement.source == "measured_flank.csv"
+    assert measured.with_changes({"planet.flank.file": str(points)}) == measured
+
+
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
 def test_example_is_sound_and_written_back(path):
     stage = read_stage(path)

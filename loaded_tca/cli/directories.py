@@ -1,0 +1,94 @@
+"""What a directory holds of earlier commands: what does not fit beside a new result, and what is of an old one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from loaded_tca.errors import InputError
+
+PART = re.compile(r"(torque_[0-9.e+-]+_Nm|position_\d+|pair_-?\d+|below_wheel)(_(?!$)|$)")
+"""Of the name of a directory that a command makes for a part of a result, as ``torque_80_Nm_position_5``."""
+
+
+def require_place_of(directory: Path, main: str) -> None:
+    """Refuse a directory whose main file is another one: readers of both would take the wrong one, or a mixture.
+
+    Parameters
+    ----------
+    directory : Path
+        Need not exist.
+    main : str
+        Name of the file that is to be written: that of a result, a stage, a study or a comparison.
+
+    Raises
+    ------
+    InputError
+        If the directory has a main file of another name.
+    """
+    from loaded_tca.cli.inputs import DESIGN_FILE, STUDY_FILE
+    from loaded_tca.output.result_files import RESULT
+    from loaded_tca.output.tables import COMPARISON_DATA
+    from loaded_tca.stages.result import STAGE_FILE
+
+    kinds = {
+        RESULT: "a result",
+        STAGE_FILE: "a stage",
+        STUDY_FILE: "a study",
+        DESIGN_FILE: "a design",
+        COMPARISON_DATA: "a comparison of results",
+    }
+    for name, kind in kinds.items():
+        if name != main and (directory / name).exists():
+            raise InputError(f"--out {directory}: holds {kind} ({name}); give another directory, or remove it")
+
+
+def names_of_result() -> set[str]:
+    """Names of all files that commands write of one result into its directory, but for the result's own."""
+    from loaded_tca.output.other_results import TRIBOLOGY_FILES
+    from loaded_tca.output.surface_files import TEETH_FILES
+    from loaded_tca.output.tables import (
+        DYNAMICS,
+        SENSITIVITIES,
+        SENSITIVITY_DATA,
+        STRESS_FIELDS,
+        STRESS_TABLE,
+        tables_at,
+    )
+    from loaded_tca.plots import MORE_PICTURES, PICTURES
+    from loaded_tca.plots.sensitivities import SENSITIVITY_PICTURES
+    from loaded_tca.plots.tribology import TRIBOLOGY_PICTURES
+    from loaded_tca.results.stress_below import NAMES
+
+    tables = *(path.name for path in tables_at(Path(DYNAMICS))), SENSITIVITY_DATA, SENSITIVITIES
+    pictures = *PICTURES, *MORE_PICTURES, *SENSITIVITY_PICTURES, *TRIBOLOGY_PICTURES
+    pictures += "teeth", *(f"subsurface_{quantity}" for quantity in NAMES)
+    others = "at_a_glance.pdf", REPORT, STRESS_FIELDS, STRESS_TABLE
+    return {*tables, *TRIBOLOGY_FILES, *TEETH_FILES, *others, *(f"{name}.png" for name in pictures)}
+
+
+REPORT = "report.html"
+"""Name of the report of a result, where no other is asked for."""
+
+
+def outdated_files(directory: Path) -> list[str]:
+    """Files of a result that a new one makes outdated, by their paths from its directory; none of another name."""
+    names = names_of_result()
+    places = ["", *(part.name for part in _parts_of(directory))]
+    files = [Path(place, name) for place in places for name in sorted(names)]
+    return [str(file) for file in files if (directory / file).is_file()]
+
+
+def remove_empty_parts(directory: Path) -> None:
+    """Remove the directories of parts of a result that have nothing in them."""
+    for part in _parts_of(directory):
+        with suppress(OSError):  # not empty: there is something of the user's
+            part.rmdir()
+
+
+def _parts_of(directory: Path) -> Iterator[Path]:
+    """Directories of parts of a result, which :func:`loaded_tca.cli.inputs.result_of` names."""
+    if directory.is_dir():
+        yield from (one for one in sorted(directory.iterdir()) if one.is_dir() and not PART.sub("", one.name))
