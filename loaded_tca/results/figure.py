@@ -69,7 +69,8 @@ def of_face_load(_: str, result: CycleNumbers, __: slice, figures: Sequence[Figu
     """What strips and positions do to K_Hbeta."""
     moves = [entry["face_load_factor_by_positions"] for entry in figures]
     known = [f"{move:.1%}" for move in moves if math.isfinite(move)]
-    by = f"; off by less than {max(known, key=lambda text: float(text[:-1]))} by their number" if known else ""
+    strips = f"{max(known, key=lambda text: float(text[:-1]))} of the largest" if known else ""
+    by = f", whose halves move strips by {strips}" if known else ""
     return f"from 30 strips of the face and {len(result.path)} positions{by}"
 
 
