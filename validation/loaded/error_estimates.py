@@ -20,10 +20,9 @@ import numpy as np
 from loaded_tca import AccuracyWarning
 from loaded_tca.compliance import tooth_compliance
 from loaded_tca.compliance.model import BendingModel
+from loaded_tca.edges.rounded import pressure_at_rounded_edge, reached_edges
 from loaded_tca.errors import LoadedTCAError
-from loaded_tca.loaded.lines_of_edges import reached_edges
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.rounded_edges import pressure_at_rounded_edge
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.slice_pressure import largest_slice_pressures

@@ -28,11 +28,10 @@ from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import edge_pressures, pressed_arc, rounded_edge
+from loaded_tca.edges.rounded import PeakAtEdge, ReachedEdge, pressure_at_rounded_edge, reached_edges
 from loaded_tca.loaded import rounded_edges as edges_of_gears
 from loaded_tca.loaded.cycle import Carried
-from loaded_tca.loaded.lines_of_edges import ReachedEdge, reached_edges
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.rounded_edges import PeakAtEdge, pressure_at_rounded_edge
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle

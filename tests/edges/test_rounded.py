@@ -11,13 +11,18 @@ from numpy.testing import assert_allclose
 from loaded_tca.analysis import analyse
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import RoundedEdge, edge_pressures, solve_contact
+from loaded_tca.edges import rounded
+from loaded_tca.edges.rounded import (
+    ReachedEdge,
+    _ContactAlongEdge,
+    largest_pressure,
+    pressure_at_rounded_edge,
+    reached_edges,
+)
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
-from loaded_tca.loaded import rounded_edges
-from loaded_tca.loaded.lines_of_edges import ReachedEdge, largest_pressure, reached_edges
 from loaded_tca.loaded.load_sharing import share_load
-from loaded_tca.loaded.rounded_edges import _ContactAlongEdge, pressure_at_rounded_edge
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
 from loaded_tca.material import Material
@@ -61,7 +66,7 @@ def solutions(monkeypatch):
         kept.extend(answer)
         return answer
 
-    monkeypatch.setattr(rounded_edges, "edge_pressures", solved)
+    monkeypatch.setattr(rounded, "edge_pressures", solved)
     return kept
 
 
