@@ -429,14 +429,14 @@ FAULTS = (
             ),
             (
                 "the start of a relief that crosses one is not seen",
-                "contact/pressed_arc.py",
+                "contact/rounded_edge.py",
                 "if growth <= MOST_GROWTH else math.inf",
                 "if growth < math.inf else math.inf",
                 "contact/test_rounded_edge.py::test_edge_crossed_by_a_jump_of_the_slope_has_no_limit",
             ),
             (
                 "where an arc begins the slope of the gap is said to jump",
-                "contact/columns.py",
+                "contact/slope_jumps.py",
                 "np.maximum(bends[:-3], bends[3:])",
                 "np.minimum(bends[:-3], bends[3:])",
                 "contact/test_samples.py::test_curvature_that_jumps_is_no_jump_of_the_slope",

@@ -28,8 +28,8 @@ from scipy.interpolate import make_interp_spline
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.contact.pressed_arc import EdgePressure, RoundedEdge
-from loaded_tca.contact.rounded_edge import SURELY_LESS, edge_pressures
+from loaded_tca.contact.edges import RoundedEdge
+from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, edge_pressures
 from loaded_tca.edges.free import edge_compliances
 from loaded_tca.edges.places import arcs_of, dilated, edge_distances, lengths_past_tangents, relief_start_distances
 from loaded_tca.errors import InputError

@@ -27,9 +27,9 @@ import numpy as np
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.contact import edge_pressures, pressed_arc, rounded_edge
+from loaded_tca.contact import edge_pressures, rounded_edge
+from loaded_tca.edges import rounded as edges_of_gears
 from loaded_tca.edges.rounded import PeakAtEdge, ReachedEdge, pressure_at_rounded_edge, reached_edges
-from loaded_tca.loaded import rounded_edges as edges_of_gears
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
@@ -177,12 +177,12 @@ def finer_columns(fineness: float) -> Iterator[None]:
             "CELLS_ACROSS": fineness * edges_of_gears.CELLS_ACROSS,
             "CELLS_ALONG": fineness * edges_of_gears.CELLS_ALONG,
             "edge_pressures": partial(
-                edge_pressures, cells_on_arc=fineness * pressed_arc.CELLS_ON_ARC, accuracy=math.inf
+                edge_pressures, cells_on_arc=fineness * rounded_edge.CELLS_ON_ARC, accuracy=math.inf
             ),
         },
-        pressed_arc: {
-            "MOST_ROWS": math.ceil(fineness * pressed_arc.MOST_ROWS),
-            "MOST_FINE": math.ceil(fineness * pressed_arc.MOST_FINE),
+        rounded_edge: {
+            "MOST_ROWS": math.ceil(fineness * rounded_edge.MOST_ROWS),
+            "MOST_FINE": math.ceil(fineness * rounded_edge.MOST_FINE),
         },
     }
     with ExitStack() as stack:
@@ -276,7 +276,7 @@ def corner_peaks() -> tuple[float, ...]:
 
         with (
             patch.object(edges_of_gears, "edge_pressures", pressures),
-            patch.object(pressed_arc, "MOST_ROWS", CORNER_ROWS[-1]),
+            patch.object(rounded_edge, "MOST_ROWS", CORNER_ROWS[-1]),
         ):
             return solved.peak(place).pressure
 
