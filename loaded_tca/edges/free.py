@@ -116,7 +116,7 @@ def edge_compliances(pair: GearPair, grids: Sequence[Slices]) -> list[Array | In
         return []
     slices, problems = SliceRow.of(grids), dict[int, InputError]()
     compliances = np.zeros(sum(one.y.size**2 for one in grids))
-    for line in edge_lines(pair, grids):
+    for line in edges_from_slices(pair, grids):
         if (near := NearEdge.of(pair, line, slices)) is None:
             continue
         for run, error in near.problems.items():
@@ -130,7 +130,7 @@ def edge_compliances(pair: GearPair, grids: Sequence[Slices]) -> list[Array | In
     return [problems.get(number, 0.5 * (one + one.T) if one.any() else None) for number, one in enumerate(matrices)]
 
 
-class EdgeLine(NamedTuple):
+class EdgeFromSlices(NamedTuple):
     """An edge of one gear, seen from the middles (n,) of the slices of all grids.
 
     Attributes
@@ -165,7 +165,7 @@ class EdgeLine(NamedTuple):
         return factor, problems
 
 
-def edge_lines(pair: GearPair, grids: Sequence[Slices]) -> list[EdgeLine]:
+def edges_from_slices(pair: GearPair, grids: Sequence[Slices]) -> list[EdgeFromSlices]:
     """Edges of both gears that add to the deflection of slices."""
     points = np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in grids])
     flanks, lines = (pair.pinion.flank, pair.wheel.flank), []
@@ -173,7 +173,7 @@ def edge_lines(pair: GearPair, grids: Sequence[Slices]) -> list[EdgeLine]:
         jets = flank.edges(rho, z)
         for edge in REACHES:
             in_rho, in_z = (np.broadcast_to(by, rho.shape) for by in (jets[edge].rho, jets[edge].z))
-            lines.append(EdgeLine(gear, edge, rho, z, in_rho, in_z, jets[edge].value / np.hypot(in_rho, in_z)))
+            lines.append(EdgeFromSlices(gear, edge, rho, z, in_rho, in_z, jets[edge].value / np.hypot(in_rho, in_z)))
     return lines
 
 
@@ -251,7 +251,7 @@ class NearEdge:
     material: Material
 
     @classmethod
-    def of(cls, pair: GearPair, line: EdgeLine, slices: SliceRow) -> NearEdge | None:
+    def of(cls, pair: GearPair, line: EdgeFromSlices, slices: SliceRow) -> NearEdge | None:
         """Those near an edge; None if there are none."""
         distance, reach = line.distance, REACHES[line.edge] * pair.module
         near = (slices.there & (np.abs(distance) < reach)).nonzero()[0]
@@ -409,8 +409,8 @@ def edge_deflection_growth(
         If a tooth ends at an edge sharper than 30 degrees.
     """
     slices, growth = SliceRow.of(grids), np.zeros((len(moved), forces.size))
-    sides = [[edge_lines(*side) for side in one[:2]] for one in moved]
-    for number, line in enumerate(edge_lines(pair, grids)):
+    sides = [[edges_from_slices(*side) for side in one[:2]] for one in moved]
+    for number, line in enumerate(edges_from_slices(pair, grids)):
         if (near := NearEdge.of(pair, line, slices)) is None:
             continue
         for error in near.problems.values():

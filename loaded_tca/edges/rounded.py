@@ -67,13 +67,13 @@ PARALLEL = 0.1
 """Sine of the angle between two edges below which they are those of both gears at one end."""
 
 
-class ReachedEdge(NamedTuple):
-    """A rounded edge within a cell of a contact's pressure, in the plane of its grid.
+class ReachedArc(NamedTuple):
+    """The arc of an edge, or of those of both gears at one place, within a cell of a contact's pressure.
 
     Attributes
     ----------
     lines : tuple of RoundedEdge
-        One, or those of both gears, whose arcs begin within a cell of each other.
+        Where it begins, in the plane of the contact's grid: one, or those of both gears within a cell of each other.
     bound : float [MPa]
         Of the pressure there, away from sharp edges.
     ends_sharp, at_relief_start : bool
@@ -101,8 +101,8 @@ class _BesideCell(NamedTuple):
     at_relief_start: bool
 
 
-def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
-    """Rounded edges within a cell of the pressure of a contact, the one with the highest bound first.
+def reached_arcs(pair: GearPair, loaded: LoadedContact) -> list[ReachedArc]:
+    """Arcs of edges within a cell of the pressure of a contact, the one with the highest bound first.
 
     An edge is a straight line beside the cell there with the largest pressure.
     """
@@ -179,12 +179,12 @@ def _is_beside(line: RoundedEdge, other: RoundedEdge, distance: float) -> bool:
     )
 
 
-def _joined(group: list[_BesideCell], contact_modulus: float) -> ReachedEdge:
+def _joined(group: list[_BesideCell], contact_modulus: float) -> ReachedArc:
     """An edge of the lines that lie beside each other: the gap opens as fast as with one radius, 1/r = sum 1/r_k."""
     lines, pressures, widths, ends_sharp, at_relief_start = zip(*group, strict=True)
     radius = 1.0 / sum(1.0 / line.radius for line in lines)
     bound = largest_pressure(max(pressures), max(widths), radius, contact_modulus)
-    return ReachedEdge(lines, bound, any(ends_sharp), any(at_relief_start))
+    return ReachedArc(lines, bound, any(ends_sharp), any(at_relief_start))
 
 
 def largest_pressure(mean: float, width: float, radius: float, contact_modulus: float) -> float:
@@ -291,7 +291,7 @@ def pressures_at_rounded_edges(
             (t, n, k): (loaded, edges)
             for n, row in enumerate(positions)
             for k, loaded in enumerate(row)
-            if loaded is not None and loaded.at_arc and (edges := reached_edges(pair, loaded))
+            if loaded is not None and loaded.at_arc and (edges := reached_arcs(pair, loaded))
         }
         limits = {place: max(edge.limit for edge in edges) for place, (_, edges) in reached.items()}
         peaks, largest = dict[tuple[int, int, int], PeakAtEdge](), 0.0
@@ -316,7 +316,7 @@ def pressures_at_rounded_edges(
 def pressure_at_rounded_edge(
     pair: GearPair,
     loaded: LoadedContact,
-    edges: list[ReachedEdge],
+    edges: list[ReachedArc],
     bending: BendingModel | None,
     number: int,
     *,
@@ -332,7 +332,7 @@ def pressure_at_rounded_edge(
     ----------
     pair : GearPair
     loaded : LoadedContact
-    edges : list of ReachedEdge
+    edges : list of ReachedArc
         The one with the highest bound first.
     bending : BendingModel or None
     number : int

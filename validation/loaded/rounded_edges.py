@@ -29,7 +29,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import edge_pressures, rounded_edge
 from loaded_tca.edges import rounded as edges_of_gears
-from loaded_tca.edges.rounded import PeakAtEdge, ReachedEdge, pressure_at_rounded_edge, reached_edges
+from loaded_tca.edges.rounded import PeakAtEdge, ReachedArc, pressure_at_rounded_edge, reached_arcs
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
@@ -145,14 +145,14 @@ class Solved:
         return cls(cycle, *found.call_args.args, found.call_args.kwargs["free_edges"])
 
     @cached_property
-    def reached(self) -> dict[Place, tuple[LoadedContact, list[ReachedEdge]]]:
+    def reached(self) -> dict[Place, tuple[LoadedContact, list[ReachedArc]]]:
         """Contacts that reach rounded edges, by torque, position and tooth pair, the highest bound first."""
         found = {
             (t, n, k): (loaded, edges)
             for t, positions in enumerate(self.carried.contacts)
             for n, row in enumerate(positions)
             for k, loaded in enumerate(row)
-            if loaded is not None and loaded.at_arc and (edges := reached_edges(self.pair, loaded))
+            if loaded is not None and loaded.at_arc and (edges := reached_arcs(self.pair, loaded))
         }
         return dict(sorted(found.items(), key=lambda item: -item[1][1][0].bound))
 
@@ -328,7 +328,7 @@ def over_radii() -> dict[float, tuple[float, float]]:
         number, contact = int(solved.carried.pairs[place[2]]), solved.reached[place][0].contact
         grid = GridChoice((48, 48), free_edges=solved.free_edges)
         held = solve_under_load(solved.pair, contact, force, grid, solved.bending, number)
-        edges = reached_edges(solved.pair, held)
+        edges = reached_arcs(solved.pair, held)
         one = pressure_at_rounded_edge(solved.pair, held, edges, solved.bending, number, free_edges=solved.free_edges)
         cycle = solved.cycle
         found[radius] = float(np.nanmax(cycle.edge_pressure[cycle.edge_is_rounded])), one.pressure
