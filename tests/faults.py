@@ -1701,6 +1701,20 @@ FAULTS = (
         "turns = points.turns + 0.0 * ways * rates",
         "results/test_sensitivities.py::test_bending_follows_a_contact_that_a_relief_moves_up_the_tooth",
     ),
+    Fault(
+        "edges of both flanks: cells on the arc of one are beside all others",
+        "edges/places.py",
+        "beside = np.ones((3, 3) + (1,) * (np.ndim(cells) - 2), dtype=bool)",
+        "beside = np.ones((3,) * np.ndim(cells), dtype=bool)",
+        "edges/test_places.py::test_cells_beside_an_edge_stay_with_that_edge",
+    ),
+    Fault(
+        "edges of both flanks: arcs of the wheel count as the pinion's",
+        "edges/places.py",
+        "for first, gear in ((0, pair.pinion), (len(EDGE_NAMES), pair.wheel))",
+        "for first, gear in ((0, pair.wheel), (len(EDGE_NAMES), pair.pinion))",
+        "edges/test_places.py::test_arcs_have_the_numbers_of_their_edges_and_begin_a_radius_before_the_end_of_a_face",
+    ),
 )
 
 
