@@ -12,11 +12,11 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
 from loaded_tca.compliance import RootStress, model_of, require_teeth, root_stress_model, way_out_told
 from loaded_tca.compliance.model import held_bodies, with_enough_teeth
+from loaded_tca.edges.rounded import PeakAtEdge, pressures_at_rounded_edges
 from loaded_tca.effort import expected_effort
 from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.moved_gears import at_rest, pitches_apart
-from loaded_tca.loaded.rounded_edges import PeakAtEdge, pressures_at_rounded_edges
 from loaded_tca.loaded.standing import GearsUnderTorques, StandingCycle, all_torques
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair

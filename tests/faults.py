@@ -33,8 +33,8 @@ class Fault(NamedTuple):
 
 ROWS = "studies/test_rows.py::test_malformed_row_costs_its_own_variant_and_no_other"
 BOXES = "separation/test_box.py"
-FREE_EDGES, ROUNDED = "loaded/test_free_edges.py", "loaded/test_rounded_edges.py"
-EDGE_GROWTH = "loaded/test_free_edge_growth.py::"
+FREE_EDGES, ROUNDED = "edges/test_free.py", "edges/test_rounded.py"
+EDGE_GROWTH = "edges/test_free_growth.py::"
 AT_EDGES = "results/test_sensitivities_at_edges.py::"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
 ARGUMENTS = "test_arguments.py::"
@@ -251,7 +251,7 @@ FAULTS = (
     ),
     Fault(
         "free edges: the angle of the material is taken for that of the air",
-        "loaded/free_edges.py",
+        "edges/free.py",
         "np.arccos(np.clip(cosine, -1.0, 1.0))",
         "np.arccos(np.clip(-cosine, -1.0, 1.0))",
         f"{FREE_EDGES}::test_tip_counts_by_the_angle_of_its_material",
@@ -408,42 +408,42 @@ FAULTS = (
         for what, file, text, wrong, test in (
             (
                 "a sharp edge that ends one sets no limit aside",
-                "loaded/lines_of_edges.py",
+                "edges/rounded.py",
                 "return math.inf if self.ends_sharp or self.at_relief_start else self.bound",
                 "return self.bound",
                 "results/test_rounded_edges.py::test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are_asked_for",
             ),
             (
                 "a relief start that crosses one sets no limit aside",
-                "loaded/lines_of_edges.py",
+                "edges/rounded.py",
                 "self.ends_sharp or self.at_relief_start else",
                 "self.ends_sharp else",
                 f"{ROUNDED}::test_edge_that_a_relief_start_crosses_has_no_bound",
             ),
             (
                 "they are looked for in the tangent plane, not on the flanks",
-                "loaded/lines_of_edges.py",
+                "edges/rounded.py",
                 "place = place - length / (slope @ slope) * slope",
                 "place = place - (length - 0.05) / (slope @ slope) * slope",
                 f"{ROUNDED}::test_edges_of_bent_flanks_are_where_the_gap_begins_to_open",
             ),
             (
                 "the start of a relief that crosses one is not seen",
-                "contact/pressed_arc.py",
+                "contact/rounded_edge.py",
                 "if growth <= MOST_GROWTH else math.inf",
                 "if growth < math.inf else math.inf",
                 "contact/test_rounded_edge.py::test_edge_crossed_by_a_jump_of_the_slope_has_no_limit",
             ),
             (
                 "where an arc begins the slope of the gap is said to jump",
-                "contact/columns.py",
+                "contact/slope_jumps.py",
                 "np.maximum(bends[:-3], bends[3:])",
                 "np.minimum(bends[:-3], bends[3:])",
                 "contact/test_samples.py::test_curvature_that_jumps_is_no_jump_of_the_slope",
             ),
             (
                 "one that crosses another is solved alone where the other has less",
-                "loaded/rounded_edges.py",
+                "edges/rounded.py",
                 "crossing = _crossing_within(loaded, [line for edge in edges for line in edge.lines])",
                 "crossing = _crossing_within(loaded, [line for e in edges if e.bound >= at_least for line in e.lines])",
                 f"{ROUNDED}::test_edges_that_cross_are_solved_together_whatever_one_of_them_can_come_to",
@@ -487,7 +487,7 @@ FAULTS = (
     ),
     Fault(
         "free edges: the same at helical ends",
-        "loaded/free_edges.py",
+        "edges/free.py",
         "np.arccos(np.clip(cosine, -1.0, 1.0))",
         "np.arccos(np.clip(-cosine, -1.0, 1.0))",
         f"{FREE_EDGES}::test_helical_end_counts_by_the_angle_of_its_material",
@@ -495,7 +495,7 @@ FAULTS = (
     *(
         Fault(
             f"free edges: the image varies by {variation} over its places",
-            "loaded/free_edges.py",
+            "edges/free.py",
             "PLACE_BELOW = 0.4, 0.9, 0.5",
             f"PLACE_BELOW = {variation}, 0.9, 0.5",
             f"{FREE_EDGES}::test_image_counts_less_away_from_its_own_place_as_in_hetenyis_quarter_space",
@@ -504,14 +504,14 @@ FAULTS = (
     ),
     Fault(
         "free edges: the middle of the tooth is not taken off",
-        "loaded/free_edges.py",
+        "edges/free.py",
         "(varied * surface * inverse - below * middle)",
         "(varied * surface * inverse)",
         f"{FREE_EDGES}::test_entries_beside_an_end_are_those_of_hetenyis_quarter_space",
     ),
     Fault(
         "free edges: slices beside a tip give way half as much",
-        "loaded/free_edges.py",
+        "edges/free.py",
         "compliances[place] += mean * near.factor",
         "compliances[place] += 0.5 * mean * near.factor",
         f"{FREE_EDGES}::test_tip_that_is_free_takes_up_the_energy_of_its_slices",
@@ -531,14 +531,14 @@ FAULTS = (
     ),
     Fault(
         "rounded edges: what other pairs displace has the other sign",
-        "loaded/rounded_edges.py",
+        "edges/rounded.py",
         "np.asarray(heights + (displaced",
         "np.asarray(heights - (displaced",
         f"{ROUNDED}::test_peak_beside_another_pair_with_bending_is_that_of_a_fine_grid",
     ),
     Fault(
         "rounded edges: unlike materials share the compliance evenly",
-        "loaded/lines_of_edges.py",
+        "edges/rounded.py",
         "pair.contact_modulus / gear.material.plane_strain_modulus,",
         "0.5,",
         f"{ROUNDED}::test_share_of_a_gear_in_the_compliance_is_that_of_its_material",
@@ -562,7 +562,7 @@ FAULTS = (
         "test_slices_bend_by_shifts_of_the_forces_under_their_own_load_and_that_of_other_pairs",
     ),
     *(
-        Fault(f"growth of free edges: {what}", "loaded/free_edge_growth.py", text, wrong, f"{EDGE_GROWTH}{test}")
+        Fault(f"growth of free edges: {what}", "edges/free.py", text, wrong, f"{EDGE_GROWTH}{test}")
         for what, text, wrong, test in (
             (
                 "slices keep their slope to the edge",
@@ -941,17 +941,17 @@ FAULTS = (
     ),
     Fault(
         "rounded edges: peaks of two grids that agree by chance have no error",
-        "loaded/rounded_edges.py",
+        "edges/rounded.py",
         "error = max(peak.error, left / peak.cells_on_arc)",
         "error = peak.error",
-        "loaded/test_rounded_edges.py::test_peak_whose_grids_agree_by_chance_has_the_error_of_its_cells",
+        "edges/test_rounded.py::test_peak_whose_grids_agree_by_chance_has_the_error_of_its_cells",
     ),
     Fault(
         "rounded edges: teeth bend as if forces acted on the slices' axis",
-        "loaded/rounded_edges.py",
+        "edges/rounded.py",
         "forces = np.interp(along, grid.y, grid.force_line)",
         "forces = 0.0 * np.interp(along, grid.y, grid.force_line)",
-        "loaded/test_rounded_edges.py::test_teeth_bend_under_the_forces_where_they_act",
+        "edges/test_rounded.py::test_teeth_bend_under_the_forces_where_they_act",
     ),
     Fault(
         "rounded edges: tilt of a wedge counted from beyond its rounding",
@@ -1278,7 +1278,7 @@ FAULTS = (
     ),
     Fault(
         "free edges: of no grid at all",
-        "loaded/free_edges.py",
+        "edges/free.py",
         "    if not grids:\n        return []\n",
         "",
         "supports/test_sensitivities.py::test_derivatives_from_a_file_are_those_of_the_analysis",
@@ -1784,6 +1784,20 @@ FAULTS = (
         "(across, along)) if loaded.solution.load > 0.0 else (0.0, 0.0)",
         "(across, along))",
         "results/test_mesh_cycle.py::test_peak_without_load_lies_at_the_contact_point",
+    ),
+    Fault(
+        "edges of both flanks: cells on the arc of one are beside all others",
+        "edges/places.py",
+        "beside = np.ones((3, 3) + (1,) * (np.ndim(cells) - 2), dtype=bool)",
+        "beside = np.ones((3,) * np.ndim(cells), dtype=bool)",
+        "edges/test_places.py::test_cells_beside_an_edge_stay_with_that_edge",
+    ),
+    Fault(
+        "edges of both flanks: arcs of the wheel count as the pinion's",
+        "edges/places.py",
+        "for first, gear in ((0, pair.pinion), (len(EDGE_NAMES), pair.wheel))",
+        "for first, gear in ((0, pair.wheel), (len(EDGE_NAMES), pair.pinion))",
+        "edges/test_places.py::test_arcs_have_the_numbers_of_their_edges_and_begin_a_radius_before_the_end_of_a_face",
     ),
 )
 

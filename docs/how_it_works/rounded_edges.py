@@ -54,7 +54,7 @@ def columns_kept() -> Iterator[list[tuple[EdgePressure, Array]]]:
         kept.extend((one, points) for one in found if np.isfinite(one.pressure))
         return found
 
-    with patch("loaded_tca.loaded.rounded_edges.edge_pressures", keep), warnings.catch_warnings():
+    with patch("loaded_tca.edges.rounded.edge_pressures", keep), warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
         yield kept
 

@@ -6,11 +6,10 @@ from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
     from loaded_tca.contact.adaptive import solve_to_accuracy
-    from loaded_tca.contact.edges import FreeEdge, quarter_space_factor, wedge_factor
+    from loaded_tca.contact.edges import FreeEdge, RoundedEdge, quarter_space_factor, wedge_factor
     from loaded_tca.contact.graded import solve_graded
-    from loaded_tca.contact.pressed_arc import EdgePressure, RoundedEdge
     from loaded_tca.contact.problem import ContactProblem, GradedProblem
-    from loaded_tca.contact.rounded_edge import edge_pressures
+    from loaded_tca.contact.rounded_edge import EdgePressure, edge_pressures
     from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate, GradedSolution
     from loaded_tca.contact.solver import contact_stiffness, solve_contact, solve_problem, solve_problems
     from loaded_tca.contact.subsurface import SubsurfaceStress, depths_below, subsurface_stress

@@ -1,4 +1,4 @@
-r"""Free edges: a body that ends beside its contact is softer than a half-space.
+r"""Edges of half-spaces in the plane of a grid: free ones, beside which a body is softer, and rounded ones.
 
 Pressure on a half-space would leave stresses on the plane where the body really ends. The same pressure mirrored in
 that plane takes the shear off it and doubles the displacement of the half-space there; the rest is tension across
@@ -17,34 +17,21 @@ Hetenyi 1960, J. Appl. Mech. 27, 289-296 (quarter-space by overlapping half-spac
 Solids Struct. 19, 337-352 (the same in three dimensions); Guilbault 2011, J. Tribol. 133, 031402 (one image and a
 factor; the factor here is fitted anew); Michell 1902, Proc. London Math. Soc. 34, 134-146 (force at the apex of a
 wedge; Timoshenko & Goodier 1970, Theory of Elasticity, art. 38).
-
-Cells that an edge of the material cuts: their part of the area, their compliance.
-
-The unknown of a cut cell is the mean pressure over the whole cell, so that the convolution stays as it is. On a cut
-cell itself the force stands closer together: of two cells of one slice that have the parts c_i and c_j of their area
-as material
-
-.. math:: K_{ij} \to K_{ij} \left(1 + \kappa \left[\min(1/c_i, 1/c_j) - 1\right]\right)
-
-as it is for cells that are long along the contact and end at the same place. A cell without material carries nothing,
-a whole one what it carries anyway, and in between the force grows with the part. The matrix stays positive definite:
-min(1/c_i, 1/c_j) is, and so is its product with K, element by element.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from loaded_tca.arrays import Array, Indices, real
+from loaded_tca.arrays import Array, real
 from loaded_tca.contact.convolution import ALL, Convolution, Rows, Window
-from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.errors import InputError
 
 # psi = c0 + c1 nu + c2 nu^2, between what Hetenyi's solution gives for Hertz circles of radius a centred 0 to 1.5 a
@@ -55,6 +42,10 @@ FACTOR = (1.28, 0.44, 3.7)
 # across it ask for, see validation/contact/wedge.py.
 POWER = 1.07
 SHARPEST = math.radians(30.0)
+ALIGNED = 1e-3
+"""Sine of the angle between an edge and the columns up to which their borders follow it."""
+MOST_FACTOR = 0.6
+"""Of the image at the edge of a wedge, up to which the iteration converges: 103 deg of like materials."""
 # Part of a cell by which the place of an edge may miss half cells and count as there.
 WHOLE = 1e-9
 
@@ -79,6 +70,46 @@ class FreeEdge:
     position: float
     material: Literal["below", "above"]
     factor: float
+
+
+@dataclass(frozen=True)
+class RoundedEdge:
+    """A straight line in the plane of a grid, from which on a surface is rounded.
+
+    Parameters
+    ----------
+    place : (float, float) [mm]
+        A point of the line where the rounding begins.
+    normal : (float, float)
+        Across the line, towards the end of the surface; of any length.
+    radius : float [mm]
+        Of the rounding.
+    angle : float, optional [rad]
+        Of the material between the surface and the land beyond the rounding, from pi/6 to pi: the surface is softer
+        towards the edge and tilts. Of a half-space if absent.
+    share : float
+        Of the body that ends in the compliance, E* (1 - nu1^2)/E1: a half of like materials.
+    """
+
+    place: tuple[float, float]
+    normal: tuple[float, float]
+    radius: float
+    angle: float | None = None
+    share: float = 0.5
+
+    @property
+    def direction(self) -> Array:
+        """The normal as a unit vector (2,)."""
+        return np.array(self.normal, dtype=float) / math.hypot(*self.normal)
+
+    def free_edge(self, low: float) -> FreeEdge | None:
+        """The apex of its wedge, from the first border of the columns on; None without one or across them."""
+        if self.angle is None or abs(self.normal[0]) > ALIGNED * math.hypot(*self.normal):
+            return None
+        side = math.copysign(1.0, self.normal[1])
+        apex = self.place[1] + side * self.radius * math.tan(0.5 * (math.pi - self.angle))
+        factor = min(self.share * extra_displacement(self.angle), MOST_FACTOR)
+        return FreeEdge(1, apex - low, "below" if side > 0.0 else "above", factor)
 
 
 @dataclass(frozen=True)
@@ -315,112 +346,3 @@ def _images(edges: tuple[Mirror, ...], starts: tuple[int, int], stops: tuple[int
             factor *= edge.factor
         images.append(((place[0], place[1]), (flips[0], flips[1]), factor))
     return images
-
-
-CROWDING = 0.94
-"""kappa: the approach of a strip that ends anywhere in a cell lies on the line through those that end at its borders,
-within 0.02 % on 16 and 32 cells (with 1: 0.09 %)."""
-
-
-def limits(cap: float | Array, cover: Array) -> Array:
-    """Largest pressure of every cell where its material carries the cap at most; caps and covers may be stacked."""
-    return np.where(cover > 0.0, cover, 1.0) * cap
-
-
-@dataclass(frozen=True, eq=False)
-class CutCells:
-    """Displacement of the cells that edges cut, on top of that of half-spaces, for a stack of problems.
-
-    Attributes
-    ----------
-    shape : (int, int, int)
-        Of the stack.
-    cell : (n,) array of int
-        Cut cells, counted through the stack problem by problem.
-    start : (n,) array of int
-        Where the cells begin that displace each of them, all of its slice that are cut.
-    under : (pairs,) array of int
-        These, counted as ``cell`` is.
-    crowding : (pairs,) array
-        Displacement under a unit pressure on them, in the units of the influence coefficients.
-    """
-
-    shape: tuple[int, ...]
-    cell: Indices
-    start: Indices
-    under: Indices
-    crowding: Array
-
-    @classmethod
-    def of(cls, cover: Array, aspects: Array) -> CutCells | None:
-        """Those of grids with the parts ``cover`` (count, nx, ny) and the aspects dy/dx (count,); None if none is."""
-        problem, column, row = np.nonzero(((cover > 0.0) & (cover < 1.0)).transpose(0, 2, 1))
-        if not row.size:
-            return None
-        (_, nx, ny), slices = cover.shape, problem * cover.shape[2] + column
-        one, other, start = _partners(slices)
-        cell, inverse = (problem * nx + row) * ny + column, 1.0 / cover[problem, row, column]
-        crowding = CROWDING * (np.minimum(inverse[one], inverse[other]) - 1.0)
-        crowding *= influence_coefficients((nx, 1), aspects)[problem[one], np.abs(row[one] - row[other]), 0]
-        return cls(cover.shape, cell, start, cell[other], crowding)
-
-    def in_precision(self, dtype: str) -> CutCells:
-        """The same in a precision."""
-        return replace(self, crowding=self.crowding.astype(dtype, copy=False))
-
-    def add(self, pressure: Array, out: Array, rows: Rows = ALL) -> None:
-        """Add the displacement under pressures on some of the problems to that of their grids."""
-        pressures = np.zeros(self.shape, dtype=pressure.dtype)
-        pressures[rows] = pressure
-        moved = np.zeros(self.shape, dtype=out.dtype)
-        moved.reshape(-1)[self.cell] = np.add.reduceat(self.crowding * pressures.reshape(-1)[self.under], self.start)
-        out += moved[rows]
-
-
-def crowding_growth(cover: Array, growth: Array, pressure: Array, aspect: float) -> Array:
-    r"""Growth of the displacement of the cells that edges cut under pressures as they are, as the edges move.
-
-    That of min(1/c_i, 1/c_j) is -dc/c^2 of the cell with the larger part of material. Multiplied with the forces, it is
-    the energy that a moving edge releases.
-
-    Parameters
-    ----------
-    cover : (nx, ny) array
-    growth : (keys, nx, ny) array
-        dc, zero in cells in which no edge runs.
-    pressure : (nx, ny) array
-    aspect : float
-        dy/dx.
-
-    Returns
-    -------
-    (keys, nx, ny) array
-        In cell widths dx times the pressure over E*.
-
-    Examples
-    --------
-    >>> cover, growth, pressure = np.array([[1.0], [0.5]]), np.array([[[0.0], [0.1]]]), np.array([[7.0], [3.0]])
-    >>> crowding_growth(cover, growth, pressure, 1.0).round(4)[0, :, 0]  # -0.94 * 1.1222 * 3 * 0.1/0.5^2
-    array([ 0.    , -1.2658])
-    """
-    displaced = np.zeros(growth.shape)
-    column, row = np.nonzero(((cover > 0.0) & ((cover < 1.0) | growth.any(axis=0))).T)
-    if not row.size:
-        return displaced
-    one, other, start = _partners(column)
-    parts, grown = cover[row, column], growth[:, row, column]
-    by_part = -grown / parts**2
-    of_one = np.where(parts[one] == parts[other], 0.5, parts[one] > parts[other])
-    change = of_one * by_part[:, one] + (1.0 - of_one) * by_part[:, other]
-    change *= CROWDING * influence_coefficients((len(cover), 1), aspect)[np.abs(row[one] - row[other]), 0]
-    displaced[:, row, column] = np.add.reduceat(change * pressure[row, column][other], start, axis=1)
-    return displaced
-
-
-def _partners(slices: Indices) -> tuple[Indices, Indices, Indices]:
-    """Pairs of cells of one slice (pairs,) and where they begin for each cell (n,), of cells slice after slice."""
-    first = np.searchsorted(slices, slices)
-    count = np.searchsorted(slices, slices, side="right") - first
-    start = np.cumsum(count) - count
-    one = np.repeat(np.arange(slices.size), count)
-    return one, np.arange(one.size) + np.repeat(first - start, count), start

@@ -10,7 +10,8 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.convolution import ALL, Convolution, Preconditioner, Rows, Window
-from loaded_tca.contact.edges import CutCells, FreeEdge, MirroredConvolution, amplification, limits, mirrors
+from loaded_tca.contact.cuts import CutCells, limits
+from loaded_tca.contact.edges import FreeEdge, MirroredConvolution, amplification, mirrors
 from loaded_tca.contact.levels import coarsen, merged, window_around
 from loaded_tca.contact.love import own_coefficient
 from loaded_tca.contact.problem import ContactProblem

@@ -4,6 +4,8 @@ Across a smooth edge the pressure grows as the root of the distance to it; its s
 an ellipse it is a quadratic.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -62,6 +64,19 @@ def top_weights(values: Array) -> Array:
     before, after = values[1] - values[0], values[1] - values[2]
     place = 0.5 * (before - after) / (before + after) if before + after > 0.0 else 0.0
     return np.array([0.5 * place * (place - 1.0), 1.0 - place**2, 0.5 * place * (place + 1.0)])
+
+
+def top_between(places: Array, values: Array, k: int) -> tuple[float, float]:
+    """Top of the parabola through the squares of three pressures: its place, and its root over the middle one."""
+    if not 0 < k < values.size - 1:
+        return float(places[k]), 1.0
+    s, square = places[k - 1 : k + 2] - places[k], (values[k - 1 : k + 2] / values[k]) ** 2
+    before, after = (square[0] - 1.0) / s[0], (square[2] - 1.0) / s[2]
+    bend = (after - before) / (s[2] - s[0])
+    slope = before - bend * s[0]
+    if bend >= 0.0:
+        return float(places[k]), 1.0
+    return float(places[k] - 0.5 * slope / bend), math.sqrt(1.0 - 0.25 * slope**2 / bend)
 
 
 def _weights_of_parabolas(square: Array) -> Array:

@@ -13,7 +13,8 @@ import numpy as np
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.contact import checks
-from loaded_tca.contact.edges import FreeEdge, check_edges, limits, without_material_beyond
+from loaded_tca.contact.cuts import limits
+from loaded_tca.contact.edges import FreeEdge, check_edges, without_material_beyond
 from loaded_tca.contact.love import own_coefficient
 
 Spacing = tuple[float, float]

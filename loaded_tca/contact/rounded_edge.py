@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import Array, count_problems, numbers, real
-from loaded_tca.contact.columns import column_borders
-from loaded_tca.contact.edges import SHARPEST, FreeEdge
+from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width
+from loaded_tca.contact.edges import ALIGNED, SHARPEST, FreeEdge, RoundedEdge
 from loaded_tca.contact.graded import guess, solve_graded
-from loaded_tca.contact.pressed_arc import ALIGNED, CELLS_ON_ARC, EdgePressure, PressedArc, RoundedEdge
+from loaded_tca.contact.patch import top_between
 from loaded_tca.contact.problem import GradedProblem
+from loaded_tca.contact.slope_jumps import growth, slope_jump
 from loaded_tca.contact.solution import GradedSolution
 from loaded_tca.errors import require
 
@@ -22,6 +23,32 @@ Gap = Callable[[Array, Array], Array]
 SliceCompliance = Callable[[Array, Array], Array]
 Box = tuple[tuple[float, float], tuple[float, float]]
 
+CELLS_ON_ARC = 5.0
+"""Cells across the pressed part of a rounding."""
+ALIGNED_ERROR, ASKEW_ERROR = 0.13, 0.8
+"""Relative error of the peak times the square of the cells across the pressed part, at the most: for columns of which
+one begins where the rounding does, and for others (``docs/studies/rounded_edge.md``)."""
+ASKEW_CELLS = 1.25
+"""How many times as many cells the others have: 6 of them, for 2 %."""
+ROWS_ON_ARC = 8.0
+"""Rows on the pressed part of a rounding, along it, for 5 cells across: where a contact crosses the edge and leaves it
+soon, not where it lies along the edge."""
+MOST_OF_ROWS = 0.7
+"""Part of the rows of a contact from which on it lies along an edge."""
+FEWEST_ON_ARC = 0.7
+"""Part of the cells asked for below which columns and rows are made anew."""
+LEAST_CHANGE = 0.25
+"""Of the pressed width from one solution to the next: a single cell tells little."""
+FIRST_WIDTH = 1.0 / 16.0
+"""Of the pressed part across the columns, over the box, to begin with."""
+MOST_ROWS = 384
+"""Cells along the columns."""
+MOST_FINE = 80
+"""Finest columns beside an oblique edge, which lies across them."""
+MOST_GROWTH = 0.01
+"""Of a peak on cells of half the size, where the slope of the gap jumps: from there on it is said to have no limit."""
+MARGIN_OF_GROWTH = 2.0
+"""The error over a smaller one: what a cell has there depends on where in it the line lies, too."""
 STEPS = (0.6, 1.0, 1.7, 2.9)
 """Of these in one solution after the other: the first tells the pressed width, and the peak of each is compared with
 that of the one before. The last two are made where the difference asks for them."""
@@ -37,6 +64,172 @@ SURELY_LESS = 0.92
 TOLERANCE = 1e-5
 """Of the contact conditions: pressures are within 2e-3 of the largest one. With twice as much the top between three
 cells was 1.4 % off."""
+
+
+@dataclass(frozen=True, eq=False)
+class EdgePressure:
+    """Peak pressure at a rounded edge.
+
+    Attributes
+    ----------
+    pressure : float [MPa]
+        Largest pressure on the rounding and within its pressed width beside it; NaN where the contact does not reach
+        the rounding.
+    place : (float, float) [mm]
+        Of the peak.
+    error : float
+        Estimated relative error of the discretisation: the change from coarser cells, and at least what the number of
+        cells is known to leave; infinite where the end of the box is what bounds the contact, where the pressure
+        along the edge rises to a sharp end of the material, and where the slope of the gap jumps at the peak, as at the
+        start of a linear relief: there finer rows find more and more.
+    ends_sharp : bool
+        Whether it does the latter: the corner is as sharp as that end.
+    pressed_width : float [mm]
+        How far the contact reaches onto the rounding, across the edge.
+    cells_on_arc : float
+        Cells on that width, along the axis that has fewer.
+    rows_on_arc : int
+        Rows that are pressed on the rounding.
+    solution : GradedSolution
+        Of the contact.
+    """
+
+    pressure: float
+    place: tuple[float, float]
+    error: float
+    ends_sharp: bool
+    pressed_width: float
+    cells_on_arc: float
+    rows_on_arc: int
+    solution: GradedSolution
+
+    def compared_with(self, coarser: EdgePressure) -> EdgePressure:
+        """Return this pressure with an error of at least its change from one on coarser cells.
+
+        Two solutions may agree by chance: the error is no less than what finer cells leave of the coarser one.
+        """
+        if math.isnan(self.pressure) or math.isnan(coarser.pressure):
+            return self
+        change = abs(self.pressure - coarser.pressure) / self.pressure
+        left = coarser.error * min(1.0, coarser.cells_on_arc / self.cells_on_arc) ** 2
+        return replace(self, error=max(self.error, change, left if math.isfinite(left) else 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class PressedArc:
+    """A rounded edge as solutions leave it: where it is, how far it is pressed, and where columns have to be fine.
+
+    ``length`` is that of its pressed part; infinite where the contact lies along the edge, whatever the rows.
+    """
+
+    edge: Array
+    normal: Array
+    width: float
+    middle: float
+    half_length: float
+    length: float
+
+    @classmethod
+    def first(cls, edge: RoundedEdge, low: Array, high: Array, load: float, modulus: float) -> PressedArc:
+        """From a contact that fills the box; across the columns no narrower than a sixteenth of the box.
+
+        What is pressed less is told in steps, which are cheaper than fine cells all along the columns.
+        """
+        normal, extent = edge.direction, high - low
+        half, along = 0.5 * float(np.abs(normal) @ extent), float(np.abs(normal[::-1]) @ extent)
+        arc = cls(np.array(edge.place, dtype=float), normal, 0.0, 0.0, 0.5 * float(extent[0]), math.inf)
+        middle = arc.y_at(0.5 * float(low[0] + high[0])) if abs(normal[1]) > ALIGNED else edge.place[1]
+        width = pressed_width(load / along, edge.radius, half, modulus)
+        return replace(arc, width=max(width, FIRST_WIDTH * abs(normal[0]) * float(extent[0])), middle=middle)
+
+    def y_at(self, x: float) -> float:
+        """Where the edge crosses a row."""
+        return float(self.edge[1] - (x - self.edge[0]) * self.normal[0] / self.normal[1])
+
+    def cells(self, on_arc: float) -> float:
+        """Cells on the pressed width: more where none of their borders can follow the edge."""
+        return on_arc * (ASKEW_CELLS if abs(self.normal[0]) > ALIGNED else 1.0)
+
+    def rows(self, on_arc: float, length: float) -> int:
+        """Rows of a box of this length, for so many cells on the pressed width; no more than their limit."""
+        along = ROWS_ON_ARC / CELLS_ON_ARC * on_arc / self.length
+        per_length = max(self.cells(on_arc) * abs(float(self.normal[0])) / self.width, along)
+        return min(math.ceil(per_length * length), MOST_ROWS)
+
+    def fine_enough(self, peak: EdgePressure, on_arc: float) -> bool:
+        """Whether a solution has the cells that are asked for, nearly, or rows at their limit."""
+        if math.isnan(peak.pressure):
+            return True
+        rows = FEWEST_ON_ARC * ROWS_ON_ARC / CELLS_ON_ARC * on_arc
+        enough = self.length == math.inf or peak.rows_on_arc >= rows or peak.solution.problem.cells[0] >= MOST_ROWS
+        return enough and peak.cells_on_arc >= FEWEST_ON_ARC * on_arc
+
+    def zone(self, on_arc: float) -> FineZone:
+        """Where columns are fine, for so many cells on the pressed width."""
+        along = abs(float(self.normal[1]))
+        finest = self.width / (self.cells(on_arc) * along)
+        oblique = self.half_length * abs(float(self.normal[0])) / along
+        return FineZone(self.middle, finest, EVEN * self.width / along + min(oblique, 0.5 * MOST_FINE * finest))
+
+    def peak(self, solution: GradedSolution, low: float) -> EdgePressure:
+        """The peak at this edge."""
+        problem, pressure = solution.problem, solution.pressure
+        x, y = low + problem.spacing * (np.arange(len(pressure)) + 0.5), problem.middles
+        beyond = (x - self.edge[0])[:, None] * self.normal[0] + (y - self.edge[1]) * self.normal[1]
+        along = 0.5 * np.abs(self.normal[0]) * problem.spacing + 0.5 * np.abs(self.normal[1]) * problem.widths
+        reached = (beyond + along)[pressure > 0.0]
+        width = float(reached.max()) if reached.size else 0.0
+        near = np.where(beyond > -width, pressure, 0.0) if width > 0.0 else np.zeros(pressure.shape)
+        if not near.any():
+            return EdgePressure(math.nan, (math.nan, math.nan), 0.0, False, 0.0, 0.0, 0, solution)
+        row, column = (int(k) for k in np.unravel_index(int(near.argmax()), near.shape))
+        sizes = np.array([problem.spacing, problem.widths[column]])
+        across = np.abs(self.normal) > ALIGNED
+        on_arc = float((width / (np.abs(self.normal) * sizes)[across]).min())
+        largest = float(pressure[row, column])
+        beside = pressure[max(0, row - 1) : row + 2, column]
+        x_top, in_x = top_between(x, pressure[:, column], row) if beside.all() else (float(x[row]), 1.0)
+        y_top, in_y = top_between(y, pressure[row], column)
+        peak = largest * in_x * in_y if problem.max_pressure is None else largest
+        error = (ASKEW_ERROR if across[0] else ALIGNED_ERROR) / on_arc**2
+        ends_sharp = _rises_to_sharp_end(solution, row, column, error)
+        growth = _growth_at_slope_jump(problem, row, column) / largest
+        error = max(error, MARGIN_OF_GROWTH * growth) if growth <= MOST_GROWTH else math.inf
+        if row in (0, x.size - 1) or column in (0, y.size - 1) or ends_sharp:
+            error = math.inf
+        rows = np.count_nonzero(((beyond + along > 0.0) & (pressure > 0.0)).any(axis=1))
+        return EdgePressure(peak, (x_top, y_top), error, ends_sharp, width, on_arc, int(rows), solution)
+
+    def after(self, peak: EdgePressure) -> PressedArc:
+        """The edge as a solution leaves it."""
+        if math.isnan(peak.pressure):
+            return self
+        problem = peak.solution.problem
+        pressed = (peak.solution.pressure > 0.0).any(axis=1)
+        half_length = 0.5 * problem.spacing * float(np.count_nonzero(pressed))
+        width = max(peak.pressed_width, LEAST_CHANGE * self.width)
+        middle = self.y_at(peak.place[0]) if abs(self.normal[1]) > ALIGNED else self.middle
+        length = math.inf
+        if peak.rows_on_arc < MOST_OF_ROWS * np.count_nonzero(pressed) and abs(self.normal[1]) > ALIGNED:
+            length = max(problem.spacing * peak.rows_on_arc, LEAST_CHANGE * min(self.length, 2.0 * half_length))
+        return replace(self, width=width, middle=middle, half_length=half_length, length=length)
+
+
+def _rises_to_sharp_end(solution: GradedSolution, row: int, column: int, error: float) -> bool:
+    """Whether the material ends within two rows of a peak, and pressures up to there differ by more than its error."""
+    near = np.s_[max(0, row - 2) : row + 3, column]
+    pressed = solution.pressure[near][solution.pressure[near] > 0.0]
+    return bool(np.isinf(solution.problem.gap[near]).any()) and bool(np.ptp(pressed) > error * pressed.max())
+
+
+def _growth_at_slope_jump(problem: GradedProblem, row: int, column: int) -> float:
+    """Pressure [MPa] by which a peak grows whenever cells are halved, where the slope of the gap jumps beside it.
+
+    Beside a line on which the slope jumps by J a half-space has the pressure E* J/(2 pi) ln(1/s), which has no limit.
+    """
+    x = problem.spacing * np.arange(problem.cells[0])
+    jump = math.hypot(slope_jump(x, problem.gap[:, column], row), slope_jump(problem.middles, problem.gap[row], column))
+    return growth(jump, problem.contact_modulus)
 
 
 def edge_pressures(

@@ -125,3 +125,20 @@ def _wide_bends(heights: Array, row: NDArray[np.intp], column: NDArray[np.intp])
     """4 D_k - D_2k at places, k being :data:`WIDE`."""
     near, far = (heights[row - k, column] + heights[row + k, column] for k in (WIDE, 2 * WIDE))
     return np.asarray(4.0 * near - far - 6.0 * heights[row, column])
+
+
+def slope_jump(places: Array, heights: Array, k: int) -> float:
+    """Jump of a slope upwards within two samples of the k-th, zero without one.
+
+    Where the curvature alone jumps, as where an arc begins, two samples together bend no more than the sharper bend
+    beside them; where the slope jumps they do.
+    """
+    near = slice(max(0, k - 4), k + 5)
+    finite = np.isfinite(heights[near])
+    y, h = places[near][finite], heights[near][finite]
+    if y.size < 6:
+        return 0.0
+    turns, widths = np.diff(np.diff(h) / np.diff(y)), 0.5 * (y[2:] - y[:-2])
+    bends = turns / widths
+    jumps = turns[1:-2] + turns[2:-1] - np.maximum(bends[:-3], bends[3:]) * (widths[1:-2] + widths[2:-1])
+    return max(0.0, float(jumps.max()))

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.edges.places import edge_distances
 from loaded_tca.loaded.balance import PowerLaw
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import point_contact
 from loaded_tca.unloaded import ContactPoint, relative_curvature
 from loaded_tca.unloaded.curvature import relative_curvatures
-from loaded_tca.unloaded.scan import edge_distances
 
 SLENDER, LINE_EXPONENT = 4.0, 0.9
 """Deformation of a contact along the face: so many times F/(E* b), and its growth with the force."""

@@ -28,8 +28,8 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
+from loaded_tca.edges.free import edge_compliances
 from loaded_tca.errors import AccuracyWarning, InputError, LoadedTCAError
-from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.load_sharing import torque_shared
 from loaded_tca.loaded.together import Ends, Gap, Result, Steps, Trace
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice

@@ -17,9 +17,9 @@ from loaded_tca.arrays import Array
 from loaded_tca.contact import ContactProblem
 from loaded_tca.contact.solution import ContactSolution, ContactStatus
 from loaded_tca.contact.solver import solve_problems
+from loaded_tca.edges.free import edge_compliances
 from loaded_tca.errors import LoadedTCAError
 from loaded_tca.loaded.first_guess import ExpectedLine, expected_lines
-from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.separation.box import Box
@@ -77,7 +77,7 @@ class Task(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """Compliance that free edges add to the slices of a grid; see :func:`loaded_tca.loaded.free_edges`."""
+    """Compliance that free edges add to the slices of a grid; see :mod:`loaded_tca.edges.free`."""
 
     separation: Separation
     gears: GearPair | None = None

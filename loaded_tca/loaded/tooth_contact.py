@@ -18,6 +18,7 @@ from loaded_tca.contact import ContactProblem, ContactSolution
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.patch import ends_at_material, values_at_ends
+from loaded_tca.edges.places import arcs_at, has_relief_starts, relief_start_distances
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import LoadedContact
@@ -27,7 +28,6 @@ from loaded_tca.plain import plain
 from loaded_tca.separation import Separation
 from loaded_tca.separation.strips import strip_pressure
 from loaded_tca.unloaded import ContactPoint
-from loaded_tca.unloaded.scan import arcs_at, has_relief_starts, relief_start_distances
 
 Coupling = Callable[[Separation], Array | None]
 """Displacement of the slices of a tooth pair's grid (ny,) [mm] by what the other pairs carry; None if nothing bends."""

@@ -202,6 +202,11 @@ class GearPair:
         x, y, z = np.moveaxis((point - self.wheel_origin) @ self.wheel_axes.T, -1, 0)
         return np.hypot(x, y), np.arctan2(y, x), z
 
+    def on_flanks(self, points: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Places (rho, z) on the flanks of pinion and wheel of points (..., 3) of the fixed frame [mm]."""
+        radius, _, axial = self.to_wheel(points)
+        return (np.hypot(points[..., 0], points[..., 1]), points[..., 2]), (radius, axial)
+
     def wheel_basis(self, theta: Array) -> Array:
         """e_rho, e_theta, e_z of the wheel at the azimuth theta, in rows, in the fixed frame: (..., 3, 3)."""
         return cylindrical_basis(theta) @ self.wheel_axes

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank, edge_places
@@ -270,16 +270,8 @@ def _draw_on_flank(
 
 def picture_of(pair: GearPair, gear: GearName) -> ToPicture:
     """What takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a gear's flank."""
-
-    def on_pinion(points: Array) -> Array:
-        radius = np.hypot(points[..., 0], points[..., 1])
-        return np.stack(pair.pinion.flank.frame.to_picture(radius, points[..., 2]), axis=-1)
-
-    def on_wheel(points: Array) -> Array:
-        radius, _, axial = pair.to_wheel(points)
-        return np.stack(pair.wheel.flank.frame.to_picture(radius, axial), axis=-1)
-
-    return on_pinion if gear == "pinion" else on_wheel
+    number, frame = GEARS.index(gear), getattr(pair, gear).flank.frame
+    return lambda points: np.stack(frame.to_picture(*pair.on_flanks(points)[number]), axis=-1)
 
 
 def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:

@@ -24,6 +24,7 @@ from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.arrays import Array, Mask, real
 from loaded_tca.contact import SubsurfaceStress
+from loaded_tca.edges.places import edge_distances
 from loaded_tca.errors import require
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.pairs.gear_pair import GearPair
@@ -47,7 +48,6 @@ from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.stress_below import NAMES, Quantity, StressBelow, depth_of_largest
 from loaded_tca.results.support_growth import standing
 from loaded_tca.separation import slice_middles
-from loaded_tca.unloaded.scan import edge_distances
 
 PRESSURE = "contact pressure [MPa]"
 TICKS = 5

@@ -11,9 +11,9 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress
+from loaded_tca.edges.rounded import NOT_REACHED, PeakAtEdge
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.loaded_contact import EQUAL, LoadedContact
-from loaded_tca.loaded.rounded_edges import NOT_REACHED, PeakAtEdge
 from loaded_tca.loaded.standing import StandingCycle
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact

@@ -15,9 +15,9 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import SumOfParts, model_of
+from loaded_tca.edges.free import edge_compliances
 from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.force_lines import bending_by_shift
-from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.sensitivity import LoadedStates, Tangents, loaded_states
 from loaded_tca.loaded.tooth_contact import contact_problem

@@ -19,9 +19,9 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel, SumOfParts
-from loaded_tca.contact.edges import crowding_growth
+from loaded_tca.contact.cuts import crowding_growth
+from loaded_tca.edges.free import MovedSlices, edge_deflection_growth
 from loaded_tca.loaded.force_lines import LoadedSlices
-from loaded_tca.loaded.free_edge_growth import MovedSlices, edge_deflection_growth
 from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.pairs.gear_pair import GearPair

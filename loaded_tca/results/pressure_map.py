@@ -12,13 +12,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import binary_dilation, distance_transform_edt
+from scipy.ndimage import distance_transform_edt
 
 from loaded_tca.arrays import Array, Mask
+from loaded_tca.edges.places import arcs_at, dilated, edge_distances
 from loaded_tca.errors import InputError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.quantities import LAID_END_TO_END, MAP_CELLS, MAP_PARTS, SIZES
-from loaded_tca.unloaded.scan import arcs_at, edge_distances
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class PressureMap:
     def beside_end(self) -> Mask:
         """Cells (nx, ny) beside the end of the material or of the grid, or beyond that of the material."""
         beyond = np.pad(np.isinf(self.gap), 1, constant_values=True)
-        return np.asarray(binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1])
+        return dilated(beyond)[1:-1, 1:-1]
 
     def near_end(self, distance: float) -> Mask:
         """Cells (nx, ny) beside the end of the material or of the grid, or within a distance [mm] of the material's."""
@@ -192,7 +192,7 @@ def maps_from(arrays: Mapping[str, Array]) -> Maps:
 
 def arc_cells(pair: GearPair, one: PressureMap) -> Mask:
     """Cells (nx, ny, 8) of a map on the arc of each edge of both flanks, the cells beside them with them."""
-    return np.asarray(binary_dilation(arcs_at(pair, one.points), np.ones((3, 3, 1), dtype=bool)))
+    return dilated(arcs_at(pair, one.points))
 
 
 def sharp_edge_cell(pair: GearPair, one: PressureMap) -> tuple[int, int]:

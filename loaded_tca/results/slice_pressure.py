@@ -27,13 +27,12 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.patch import peak_pressure, reaches_border, top_weights
+from loaded_tca.edges.places import arcs_at, dilated, relief_start_distances
 from loaded_tca.loaded.line_load import SliceLoads, stretch_parts
-from loaded_tca.loaded.lines_of_edges import dilated
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
-from loaded_tca.unloaded.scan import arcs_at, relief_start_distances
 
 ROUNDS, BETWEEN = 2, 17
 """How often places between those beside the largest pressure are tried, and how many."""
@@ -122,12 +121,12 @@ def _inner_peak(pair: GearPair, separation: Separation, pressure: Array, of_slic
 def _rough_cells(pair: GearPair, separation: Separation) -> Mask:
     """Cells (nx, ny) beside those that an edge cuts or an arc lies on, and on both sides of a relief start."""
     points = separation.points
-    rough = dilated(separation.cover < 1.0, 1)
+    rough = dilated(separation.cover < 1.0)
     if pair.sharp is not pair:
-        rough |= dilated(np.asarray(arcs_at(pair, points).any(axis=-1)), 1)
+        rough |= dilated(arcs_at(pair, points).any(axis=-1))
     beyond = np.moveaxis(relief_start_distances(pair, points) > 0.0, -1, 0)
     for one in beyond:
-        rough |= dilated(one, 1) & dilated(~one, 1)
+        rough |= dilated(one) & dilated(~one)
     return rough
 
 

@@ -17,11 +17,12 @@ from loaded_tca.arrays import GEARS, Array, Mask
 from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.compliance.model import HeldBodies
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
+from loaded_tca.edges.places import edge_distances
+from loaded_tca.edges.rounded import PeakAtEdge
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.rounded_edges import PeakAtEdge
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plain import plain
@@ -31,7 +32,6 @@ from loaded_tca.results.pressure_map import arc_cells, mean_pressure_of
 from loaded_tca.results.support_growth import standing
 from loaded_tca.scene import Scene
 from loaded_tca.scene.section import values_of
-from loaded_tca.unloaded.scan import edge_distances
 from loaded_tca.unloaded.tooth_cycle import REACH
 
 THICKEST_CONTACT = 0.25

@@ -23,15 +23,15 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from loaded_tca.arrays import GEARS, Array, Mask
+from loaded_tca.edges.places import arcs_of, lengths_past_tangents
 from loaded_tca.flanks.removal import ModifiedFlank
-from loaded_tca.flanks.rounding import Arc, RoundedFlank, sharp
+from loaded_tca.flanks.rounding import sharp
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.pair_change import Distance, PairChange, Places, edge_distance, grown, rises, start_distance
 from loaded_tca.separation.sample import Separation
 from loaded_tca.unloaded import ContactPoint
 from loaded_tca.unloaded.curvature import relative_curvatures
-from loaded_tca.unloaded.scan import lengths_past_tangents
 
 BESIDE = 1e-3
 """Distance of the points beside the contact point that slopes are taken of, over the module."""
@@ -102,7 +102,7 @@ class _Stencil:
             ]
         self.curvatures, self.beside = relative_curvatures(pair, contacts), BESIDE * pair.module
         if _beside_arcs(pair, contacts[:1]).any():  # then all are
-            self.beside = BESIDE_ON_ARC * min(arc.radius for arc in _arcs(pair))
+            self.beside = BESIDE_ON_ARC * min(arc.radius for _, arc in arcs_of(pair).values())
         self.axes = np.array([one.axes for one in self.curvatures])
         parts = [0.0, -1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0, 1.0]
         x, y = (self.beside * np.tile(part, (len(contacts), 1)) for part in parts)
@@ -170,12 +170,6 @@ def point_changes(
             for one in fields(PointChanges)
         }
     )
-
-
-def _arcs(pair: GearPair) -> list[Arc]:
-    """Arcs of the rounded edges of both flanks."""
-    flanks = pair.pinion.flank, pair.wheel.flank
-    return [arc for flank in flanks if isinstance(flank, RoundedFlank) for arc in flank.arcs]
 
 
 def _beside_arcs(pair: GearPair, contacts: Sequence[ContactPoint]) -> Mask:

@@ -18,9 +18,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import binary_dilation
 
 from loaded_tca.arrays import Array, Indices, Mask
+from loaded_tca.edges.places import arcs_at, dilated
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.contact_points import PointChanges, point_changes
@@ -37,7 +37,6 @@ from loaded_tca.separation.pair_change import (
 )
 from loaded_tca.separation.sample import Separation
 from loaded_tca.unloaded import ContactPoint
-from loaded_tca.unloaded.scan import arcs_at
 
 OF_GRIDS = MOTIONS + 3
 """Motions of a grid: in its plane, tilts of its normal along x and y, along the normal."""
@@ -213,7 +212,7 @@ def contact_changes(
         steps = np.concatenate([none, dx, none]), np.concatenate([none, none, dy])
         return met.at(np.tile(contact[cell], 3), np.tile(x[cell], 3) + steps[0], np.tile(y[cell], 3) + steps[1])[0]
 
-    near = np.concatenate([_near_edges(grid.cover)[own] for grid, own in zip(separations, cells, strict=True)])
+    near = np.concatenate([dilated(grid.cover < 1.0)[own] for grid, own in zip(separations, cells, strict=True)])
     on_arcs = np.concatenate([_near_arcs(pair, *one) for one in zip(separations, cells, strict=True)])
     cell, of_arcs = np.flatnonzero(near), np.flatnonzero(on_arcs.any(axis=-1))
     border = BorderCells.of(pair, beside(cell), cell, changes)
@@ -229,7 +228,7 @@ def _near_arcs(pair: GearPair, grid: Separation, cells: Mask) -> Mask:
         places = grid.origin + grid.x[:, None, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
         on = arcs_at(pair, places)
         for edge in np.flatnonzero(on.any(axis=(0, 1))).tolist():
-            near[:, edge] = binary_dilation(on[..., edge], np.ones((3, 3), dtype=bool))[cells]
+            near[:, edge] = dilated(on[..., edge])[cells]
     return near
 
 
@@ -265,8 +264,3 @@ class _Met:
         ]
         tilts = self.at_points.tilts[:, contact]
         return Places(points, planes, growth, np.array(heights), tilts, rising, grid_motions(x, y)), levers
-
-
-def _near_edges(cover: Array) -> Mask:
-    """Cells (nx, ny) that an edge may cut, or that have a cell beside them that one does."""
-    return np.asarray(binary_dilation(cover < 1.0, np.ones((3, 3), dtype=bool)))

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, Mask
+from loaded_tca.edges.places import lengths_past_tangents
 from loaded_tca.flanks.base import EDGE_NAMES, Flank
 from loaded_tca.flanks.rounding import RoundedFlank
 from loaded_tca.pairs.gear_pair import GearPair
@@ -28,47 +29,9 @@ FLATTEST = 0.1
 """Ratio of singular values below which two edges that are left count as one."""
 
 
-def edge_distances(pair: GearPair, points: Array) -> Array:
-    """Distances (..., 8) [mm] of points (..., 3) of the fixed frame to the edges of both flanks, negative beyond."""
-    radius, _, axial = pair.to_wheel(points)
-    pinion = pair.pinion.flank.edges(np.hypot(points[..., 0], points[..., 1]), points[..., 2])
-    edges = [*pinion, *pair.wheel.flank.edges(radius, axial)]
-    return np.stack([np.broadcast_to(edge.value, points.shape[:-1]) for edge in edges], axis=-1)
-
-
-def relief_start_distances(pair: GearPair, points: Array) -> Array:
-    """Distances (..., n) [mm] of points (..., 3) of the fixed frame to the relief starts of both flanks, beyond > 0."""
-    radius, _, axial = pair.to_wheel(points)
-    pinion = pair.pinion.flank.relief_starts(np.hypot(points[..., 0], points[..., 1]), points[..., 2])
-    values = [jet.value for jet in (*pinion, *pair.wheel.flank.relief_starts(radius, axial))]
-    return np.stack(np.broadcast_arrays(*values, axial)[:-1], axis=-1) if values else np.zeros((*axial.shape, 0))
-
-
-def has_relief_starts(pair: GearPair) -> bool:
-    """Whether any flank has a linear relief."""
-    nowhere = np.zeros(0)
-    return any(gear.flank.relief_starts(nowhere, nowhere) for gear in (pair.pinion, pair.wheel))
-
-
 def past_tangents(station: Station) -> Array:
     """Lengths (n, 8) [mm] from where the arcs of all edges begin, the pinion's first; -inf at sharp edges."""
     return lengths_past_tangents(station.pair, (station.rho, station.z), (station.wheel_rho, station.wheel_z))
-
-
-def arcs_at(pair: GearPair, points: Array) -> Mask:
-    """Edges (..., 8) on whose arcs points (..., 3) of the fixed frame [mm] lie, seen along the edges' surfaces."""
-    radius, _, axial = pair.to_wheel(points)
-    pinion = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
-    return np.asarray(lengths_past_tangents(pair, pinion, (radius, axial)) > 0.0)
-
-
-def lengths_past_tangents(pair: GearPair, *places: tuple[Array, ...]) -> Array:
-    """The same (..., 8) [mm] of places (rho, z) [mm] of pinion and wheel, seen along the edges' surfaces."""
-    lengths: list[Array] = []
-    for gear, (rho, z) in zip((pair.pinion, pair.wheel), places, strict=True):
-        flank, none = gear.flank, [np.full(rho.shape, -np.inf)] * len(EDGE_NAMES)
-        lengths += flank.past_tangents(rho, z) if isinstance(flank, RoundedFlank) else none
-    return np.stack(lengths, axis=-1)
 
 
 def on_arcs(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Mask:

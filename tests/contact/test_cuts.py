@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.contact import ContactProblem, contact_stiffness, solve_problem
-from loaded_tca.contact.edges import CROWDING, CutCells, crowding_growth
+from loaded_tca.contact.cuts import CROWDING, CutCells, crowding_growth
 from loaded_tca.contact.grid import Grids
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.errors import InputError

@@ -8,8 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.contact import RoundedEdge, edge_pressures, solve_contact
-from loaded_tca.contact.pressed_arc import EdgePressure
-from loaded_tca.contact.rounded_edge import _Wedges
+from loaded_tca.contact.rounded_edge import EdgePressure, _Wedges
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.reference.punch import RoundedPunch
 from tests.refusals import refusals
@@ -193,7 +192,7 @@ def test_edge_along_the_columns_is_met_by_fine_rows():
 
 @pytest.mark.thorough
 def test_few_cells_on_an_oblique_edge_are_told(monkeypatch):
-    monkeypatch.setattr("loaded_tca.contact.pressed_arc.MOST_ROWS", 32)
+    monkeypatch.setattr("loaded_tca.contact.rounded_edge.MOST_ROWS", 32)
 
     def gap(x, y):
         return x[:, None] ** 2 / 20.0 + y**2 / 2000.0 + np.maximum(x[:, None] + y - 1.0, 0.0) ** 2 / (4.0 * RADIUS)

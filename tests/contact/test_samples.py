@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.contact.columns import slope_jump
+from loaded_tca.contact.slope_jumps import slope_jump
 
 RADIUS = 0.05
 JUMP = 0.02

@@ -31,7 +31,7 @@ from skfem import (
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from loaded_tca.compliance.flexibility import depth_displacement
-from loaded_tca.loaded.free_edges import DEPTH, edge_compliance
+from loaded_tca.edges.free import DEPTH, edge_compliance
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import parse_scene

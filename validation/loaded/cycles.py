@@ -51,7 +51,7 @@ PARTS = {
     "rest of the solver": ("loaded_tca/contact/",),
     "gaps": ("loaded_tca/separation/", "loaded_tca/flanks/", "unloaded/curvature.py", "pairs/gear_pair.py"),
     "unloaded contact": ("loaded_tca/unloaded/",),
-    "teeth and edges": ("loaded_tca/compliance/", "loaded/free_edges.py"),
+    "teeth and edges": ("loaded_tca/compliance/", "edges/free.py"),
     "balance": ("loaded/balance.py", "loaded/load_sharing.py"),
 }
 """Where a function stands, the first that fits; those of libraries count where they are called from."""

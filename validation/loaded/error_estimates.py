@@ -20,10 +20,9 @@ import numpy as np
 from loaded_tca import AccuracyWarning
 from loaded_tca.compliance import tooth_compliance
 from loaded_tca.compliance.model import BendingModel
+from loaded_tca.edges.rounded import pressure_at_rounded_edge, reached_arcs
 from loaded_tca.errors import LoadedTCAError
-from loaded_tca.loaded.lines_of_edges import reached_edges
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.rounded_edges import pressure_at_rounded_edge
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.slice_pressure import largest_slice_pressures
@@ -116,7 +115,7 @@ def estimates_at_roundings(seed: int) -> Iterator[Estimate]:
     for pair, contact, load, accuracy, bending in _contacts(scene, rng, LEAST_AT_ROUNDING):
         try:
             loaded = solve_under_load(pair, contact, load, GridChoice(accuracy=accuracy, free_edges=True), bending)
-            if not loaded.at_arc or not (edges := reached_edges(pair, loaded)):
+            if not loaded.at_arc or not (edges := reached_arcs(pair, loaded)):
                 continue
             peak = pressure_at_rounded_edge(pair, loaded, edges, bending, 0, free_edges=True)
             if math.isnan(peak.pressure) or math.isinf(peak.error):

@@ -23,7 +23,7 @@ from loaded_tca import AccuracyWarning, analyse, read_scene, sample_separation, 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.flexibility import FOLDER
 from loaded_tca.compliance.influence import forget
-from loaded_tca.loaded.free_edges import edge_compliance
+from loaded_tca.edges.free import edge_compliance
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
 from validation.loaded import mesh_stiffness

@@ -27,12 +27,11 @@ import numpy as np
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.contact import edge_pressures, pressed_arc, rounded_edge
-from loaded_tca.loaded import rounded_edges as edges_of_gears
+from loaded_tca.contact import edge_pressures, rounded_edge
+from loaded_tca.edges import rounded as edges_of_gears
+from loaded_tca.edges.rounded import PeakAtEdge, ReachedArc, pressure_at_rounded_edge, reached_arcs
 from loaded_tca.loaded.cycle import Carried
-from loaded_tca.loaded.lines_of_edges import ReachedEdge, reached_edges
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.rounded_edges import PeakAtEdge, pressure_at_rounded_edge
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -146,14 +145,14 @@ class Solved:
         return cls(cycle, *found.call_args.args, found.call_args.kwargs["free_edges"])
 
     @cached_property
-    def reached(self) -> dict[Place, tuple[LoadedContact, list[ReachedEdge]]]:
+    def reached(self) -> dict[Place, tuple[LoadedContact, list[ReachedArc]]]:
         """Contacts that reach rounded edges, by torque, position and tooth pair, the highest bound first."""
         found = {
             (t, n, k): (loaded, edges)
             for t, positions in enumerate(self.carried.contacts)
             for n, row in enumerate(positions)
             for k, loaded in enumerate(row)
-            if loaded is not None and loaded.at_arc and (edges := reached_edges(self.pair, loaded))
+            if loaded is not None and loaded.at_arc and (edges := reached_arcs(self.pair, loaded))
         }
         return dict(sorted(found.items(), key=lambda item: -item[1][1][0].bound))
 
@@ -178,12 +177,12 @@ def finer_columns(fineness: float) -> Iterator[None]:
             "CELLS_ACROSS": fineness * edges_of_gears.CELLS_ACROSS,
             "CELLS_ALONG": fineness * edges_of_gears.CELLS_ALONG,
             "edge_pressures": partial(
-                edge_pressures, cells_on_arc=fineness * pressed_arc.CELLS_ON_ARC, accuracy=math.inf
+                edge_pressures, cells_on_arc=fineness * rounded_edge.CELLS_ON_ARC, accuracy=math.inf
             ),
         },
-        pressed_arc: {
-            "MOST_ROWS": math.ceil(fineness * pressed_arc.MOST_ROWS),
-            "MOST_FINE": math.ceil(fineness * pressed_arc.MOST_FINE),
+        rounded_edge: {
+            "MOST_ROWS": math.ceil(fineness * rounded_edge.MOST_ROWS),
+            "MOST_FINE": math.ceil(fineness * rounded_edge.MOST_FINE),
         },
     }
     with ExitStack() as stack:
@@ -277,7 +276,7 @@ def corner_peaks() -> tuple[float, ...]:
 
         with (
             patch.object(edges_of_gears, "edge_pressures", pressures),
-            patch.object(pressed_arc, "MOST_ROWS", CORNER_ROWS[-1]),
+            patch.object(rounded_edge, "MOST_ROWS", CORNER_ROWS[-1]),
         ):
             return solved.peak(place).pressure
 
@@ -329,7 +328,7 @@ def over_radii() -> dict[float, tuple[float, float]]:
         number, contact = int(solved.carried.pairs[place[2]]), solved.reached[place][0].contact
         grid = GridChoice((48, 48), free_edges=solved.free_edges)
         held = solve_under_load(solved.pair, contact, force, grid, solved.bending, number)
-        edges = reached_edges(solved.pair, held)
+        edges = reached_arcs(solved.pair, held)
         one = pressure_at_rounded_edge(solved.pair, held, edges, solved.bending, number, free_edges=solved.free_edges)
         cycle = solved.cycle
         found[radius] = float(np.nanmax(cycle.edge_pressure[cycle.edge_is_rounded])), one.pressure

@@ -3,6 +3,17 @@ r"""Pressure at rounded edges of teeth: contacts that reach one, solved once mor
 The grid on which tooth pairs share the load resolves the contact, not the few micrometres of a rounding that are
 pressed. So the gap of the rounded flanks is sampled anew on columns of graded width that follow the edge, and the same
 force is spread over them, with teeth that bend, free edges and other tooth pairs as before.
+
+What a contact can come to is told beforehand by its cell beside the edge. Beside a sharp edge pressure rises as
+:math:`K/\sqrt{s}`, so that a cell of the width h has the mean :math:`p = 2 K/\sqrt{h}`, and a rounding of the radius R
+turns that into
+
+.. math:: p_{max} = 1.80\, K/\sqrt{d}, \qquad d = \frac{1}{2} \left(\frac{3 \sqrt{2} \pi K R}{E^*}\right)^{2/3},
+
+the limit of small d of a flat punch with rounded ends (Ciavarella, Hills & Monno 1998). That is :math:`0.90\, p
+\sqrt{h/d}`; :math:`0.90\, p \sqrt{h/d + 1.5}` is a bound that holds on fine cells, too
+(``validation/loaded/rounded_edges.py``). It tells which contacts can hold the largest pressure of a mesh cycle. There
+is no bound where a sharp edge ends a rounded one within the contact, or a relief start crosses it.
 """
 
 from __future__ import annotations
@@ -10,19 +21,23 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.contact.pressed_arc import EdgePressure, RoundedEdge
-from loaded_tca.contact.rounded_edge import SURELY_LESS, edge_pressures
+from loaded_tca.contact.edges import RoundedEdge
+from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, edge_pressures
+from loaded_tca.edges.free import edge_compliances
+from loaded_tca.edges.places import arcs_of, dilated, edge_distances, lengths_past_tangents, relief_start_distances
 from loaded_tca.errors import InputError
+from loaded_tca.flanks.base import EDGE_NAMES
+from loaded_tca.flanks.rounding import Arc, material_cosines
 from loaded_tca.loaded.cycle import Carried, told_where
-from loaded_tca.loaded.free_edges import edge_compliances
-from loaded_tca.loaded.lines_of_edges import PARALLEL, ReachedEdge, dilated, reached_edges
 from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.normal_gap import NormalGap
 
@@ -38,6 +53,151 @@ estimate with this; with 0.05, which was enough for 38 of mesh cycles, three hav
 (``validation/loaded/error_estimates.py``)."""
 LEFT_BESIDE_CROSSING = 0.12
 """The same where two edges cross: one of them lies across the columns of the other."""
+PEAK_OF_ROUNDING = 1.80
+"""Of the pressure at a rounded edge, over K/sqrt(d)."""
+ON_FINE_CELLS = 1.5
+"""Added to h/d in the bound: cells narrower than the pressed part of a rounding have nearly its peak."""
+STEP = 0.1
+"""Of the lengths of a cell: that over which the direction of an edge is told."""
+STEPS_TO_EDGE = 2
+"""From a cell to where an arc begins: the second leaves what bends on a cell's length, to the fourth power."""
+SIDES = {EDGE_NAMES.index("lower side"), EDGE_NAMES.index("upper side")}
+"""Numbers of the ends of the face among the edges of a gear."""
+PARALLEL = 0.1
+"""Sine of the angle between two edges below which they are those of both gears at one end."""
+
+
+class ReachedArc(NamedTuple):
+    """The arc of an edge, or of those of both gears at one place, within a cell of a contact's pressure.
+
+    Attributes
+    ----------
+    lines : tuple of RoundedEdge
+        Where it begins, in the plane of the contact's grid: one, or those of both gears within a cell of each other.
+    bound : float [MPa]
+        Of the pressure there, away from sharp edges.
+    ends_sharp, at_relief_start : bool
+        Whether a sharp edge ends it, and whether a relief start crosses it, within a cell of the contact.
+    """
+
+    lines: tuple[RoundedEdge, ...]
+    bound: float
+    ends_sharp: bool = False
+    at_relief_start: bool = False
+
+    @property
+    def limit(self) -> float:
+        """Of the pressure there, all along the edge [MPa]."""
+        return math.inf if self.ends_sharp or self.at_relief_start else self.bound
+
+
+class _BesideCell(NamedTuple):
+    """A rounded edge, the pressure of the cell beside it [MPa], its width [mm], and what takes the limit from it."""
+
+    line: RoundedEdge
+    pressure: float
+    width: float
+    ends_sharp: bool
+    at_relief_start: bool
+
+
+def reached_arcs(pair: GearPair, loaded: LoadedContact) -> list[ReachedArc]:
+    """Arcs of edges within a cell of the pressure of a contact, the one with the highest bound first.
+
+    An edge is a straight line beside the cell there with the largest pressure.
+    """
+    grid, arcs = loaded.separation, arcs_of(pair)
+    seen = _SeenAlongNormal(pair, loaded)
+    lengths, (dx, dy) = seen.lengths(grid.x[:, None], grid.y), grid.spacing
+    distances, pressed = edge_distances(pair, grid.points), dilated(loaded.solution.pressure_on_material > 0.0)
+    beyond_start = relief_start_distances(pair, grid.points) > 0.0
+    groups: list[list[_BesideCell]] = []
+    for edge, (gear, arc) in arcs.items():
+        pressure = np.where(lengths[..., edge] > -math.hypot(dx, dy), loaded.solution.pressure_on_material, 0.0)
+        if not pressure.any():
+            continue
+        row, column = np.unravel_index(int(pressure.argmax()), pressure.shape)
+        place, slope = seen.nearest(edge, np.array([grid.x[row], grid.y[column]]))
+        line = RoundedEdge(
+            (float(place[0]), float(place[1])),
+            (float(slope[0]), float(slope[1])),
+            arc.radius,
+            _material_angle(pair, gear, arc, grid.points[row, column]),
+            pair.contact_modulus / gear.material.plane_strain_modulus,
+        )
+        width = float(np.abs(slope) @ (dx, dy)) / math.hypot(*slope)
+        group = next((one for one in groups if _is_beside(one[0].line, line, width)), None)
+        if group is None:
+            groups.append(group := [])
+        beyond_sharp = (distances[..., [other for other in _ends_of(edge) if other not in arcs]] < 0.0).any(axis=-1)
+        beside = pressed & dilated(lengths[..., edge] > 0.0)
+        ends_sharp = bool((beside & dilated(beyond_sharp)).any())
+        crossed = bool((beyond_start[beside].any(axis=0) & ~beyond_start[beside].all(axis=0)).any())
+        group.append(_BesideCell(line, float(pressure.max()), width, ends_sharp, crossed))
+    return sorted((_joined(group, pair.contact_modulus) for group in groups), key=lambda one: -one.bound)
+
+
+class _SeenAlongNormal:
+    """Where arcs begin on the flanks of a contact, in the plane of its grid.
+
+    Flanks leave that plane by up to some tenths of a millimetre, together: the surface in which an edge lies is seldom
+    normal to the plane, and crosses it elsewhere than the flank.
+    """
+
+    def __init__(self, pair: GearPair, loaded: LoadedContact) -> None:
+        self.pair, self.spacing = pair, np.array(loaded.separation.spacing)
+        self.flanks = NormalGap(pair.sharp, loaded.contact, loaded.separation.axes)
+
+    def lengths(self, x: Array, y: Array) -> Array:
+        """Lengths (..., 8) [mm] past the beginnings of the arcs, of the points of sharp flanks at places."""
+        places = self.flanks.places(*(part[None] for part in np.broadcast_arrays(x, y)))
+        return lengths_past_tangents(self.pair, *places)[0]
+
+    def nearest(self, edge: int, place: Array) -> tuple[Array, Array]:
+        """Place (2,) where an arc begins, the nearest to one within a cell or two, and how fast lengths grow there."""
+        ways = np.diag(STEP * self.spacing)
+        around = np.concatenate([np.zeros((1, 2)), ways, -ways])
+        for _ in range(STEPS_TO_EDGE):
+            length, *beside = self.lengths(*(place + around).T)[:, edge]
+            slope = np.subtract(beside[:2], beside[2:]) / (2.0 * STEP * self.spacing)
+            place = place - length / (slope @ slope) * slope
+        return place, slope
+
+
+def _ends_of(edge: int) -> list[int]:
+    """Edges of both gears that can cross an edge: sides a tip or a root, tips and roots a side."""
+    count = len(EDGE_NAMES)
+    return [other for other in range(2 * count) if (other % count in SIDES) != (edge % count in SIDES)]
+
+
+def _is_beside(line: RoundedEdge, other: RoundedEdge, distance: float) -> bool:
+    """Whether two edges face the same way within a distance [mm]: those of both gears where the faces are flush."""
+    normal, direction = line.direction, other.direction
+    apart = abs(float(normal @ np.subtract(other.place, line.place)))
+    return bool(abs(normal[0] * direction[1] - normal[1] * direction[0]) < PARALLEL and normal @ direction > 0.0) and (
+        apart < distance
+    )
+
+
+def _joined(group: list[_BesideCell], contact_modulus: float) -> ReachedArc:
+    """An edge of the lines that lie beside each other: the gap opens as fast as with one radius, 1/r = sum 1/r_k."""
+    lines, pressures, widths, ends_sharp, at_relief_start = zip(*group, strict=True)
+    radius = 1.0 / sum(1.0 / line.radius for line in lines)
+    bound = largest_pressure(max(pressures), max(widths), radius, contact_modulus)
+    return ReachedArc(lines, bound, any(ends_sharp), any(at_relief_start))
+
+
+def largest_pressure(mean: float, width: float, radius: float, contact_modulus: float) -> float:
+    """Pressure [MPa] that a rounded edge can have if a cell beside it, so wide [mm], has this mean pressure [MPa]."""
+    intensity = 0.5 * mean * math.sqrt(width)
+    pressed = 0.5 * (3.0 * math.sqrt(2.0) * math.pi * intensity * radius / contact_modulus) ** (2.0 / 3.0)
+    return 0.5 * PEAK_OF_ROUNDING * mean * math.sqrt(width / pressed + ON_FINE_CELLS)
+
+
+def _material_angle(pair: GearPair, gear: Gear, arc: Arc, point: Array) -> float:
+    """Angle [rad] of the material between the flank and the surface beyond an arc, beside a point of the contact."""
+    place = pair.on_flanks(point)[gear is pair.wheel]
+    return math.acos(float(material_cosines(gear.flank, arc.edge, *place)))
 
 
 @dataclass(frozen=True)
@@ -131,7 +291,7 @@ def pressures_at_rounded_edges(
             (t, n, k): (loaded, edges)
             for n, row in enumerate(positions)
             for k, loaded in enumerate(row)
-            if loaded is not None and loaded.at_arc and (edges := reached_edges(pair, loaded))
+            if loaded is not None and loaded.at_arc and (edges := reached_arcs(pair, loaded))
         }
         limits = {place: max(edge.limit for edge in edges) for place, (_, edges) in reached.items()}
         peaks, largest = dict[tuple[int, int, int], PeakAtEdge](), 0.0
@@ -156,7 +316,7 @@ def pressures_at_rounded_edges(
 def pressure_at_rounded_edge(
     pair: GearPair,
     loaded: LoadedContact,
-    edges: list[ReachedEdge],
+    edges: list[ReachedArc],
     bending: BendingModel | None,
     number: int,
     *,
@@ -172,7 +332,7 @@ def pressure_at_rounded_edge(
     ----------
     pair : GearPair
     loaded : LoadedContact
-    edges : list of ReachedEdge
+    edges : list of ReachedArc
         The one with the highest bound first.
     bending : BendingModel or None
     number : int

@@ -11,13 +11,18 @@ from numpy.testing import assert_allclose
 from loaded_tca.analysis import analyse
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import RoundedEdge, edge_pressures, solve_contact
+from loaded_tca.edges import rounded
+from loaded_tca.edges.rounded import (
+    ReachedArc,
+    _ContactAlongEdge,
+    largest_pressure,
+    pressure_at_rounded_edge,
+    reached_arcs,
+)
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
-from loaded_tca.loaded import rounded_edges
-from loaded_tca.loaded.lines_of_edges import ReachedEdge, largest_pressure, reached_edges
 from loaded_tca.loaded.load_sharing import share_load
-from loaded_tca.loaded.rounded_edges import _ContactAlongEdge, pressure_at_rounded_edge
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.loaded.tooth_pairs import tooth_pairs_at
 from loaded_tca.material import Material
@@ -47,7 +52,7 @@ def loaded(rounding=SIDE, load=LOAD, pitches=0.0, cells=(24, 32), free_edges=Fal
 
 
 def found(pair, one, edges=None, free_edges=False):
-    edges = reached_edges(pair, one) if edges is None else edges
+    edges = reached_arcs(pair, one) if edges is None else edges
     return pressure_at_rounded_edge(pair, one, edges, None, 0, free_edges=free_edges)
 
 
@@ -61,14 +66,14 @@ def solutions(monkeypatch):
         kept.extend(answer)
         return answer
 
-    monkeypatch.setattr(rounded_edges, "edge_pressures", solved)
+    monkeypatch.setattr(rounded, "edge_pressures", solved)
     return kept
 
 
 def test_edges_are_where_the_arcs_begin():
     """An arc over a right angle begins its radius before the end of the face, 20 mm wide."""
     pair, one = loaded()
-    edges = reached_edges(pair, one)
+    edges = reached_arcs(pair, one)
     assert [len(edge.lines) for edge in edges] == [2, 2], "both ends, of both gears"
     for line in (line for edge in edges for line in edge.lines):
         assert_allclose(np.abs(line.place[1]), 10.0 - 0.2, rtol=1e-6)
@@ -96,7 +101,7 @@ def test_force_is_kept(solutions, free_edges):
 @pytest.mark.parametrize("free_edges", [False, True])
 def test_both_ends_of_a_symmetric_contact_have_the_same_peak(free_edges):
     pair, one = loaded(free_edges=free_edges)
-    peaks = [found(pair, one, [edge], free_edges) for edge in reached_edges(pair, one)]
+    peaks = [found(pair, one, [edge], free_edges) for edge in reached_arcs(pair, one)]
     assert_allclose([peak.pressure for peak in peaks], peaks[0].pressure, rtol=MIRRORED)
     assert_allclose([abs(peak.place[1]) for peak in peaks], abs(peaks[0].place[1]), rtol=MIRRORED)
     assert {math.copysign(1.0, peak.place[1]) for peak in peaks} == {-1.0, 1.0}
@@ -107,7 +112,7 @@ def test_peak_does_not_depend_on_the_order_of_the_edges():
     """Of the tip and the end of a misaligned helical pair, too, which cross each other."""
     for options in ({}, SKEW):
         pair, one = loaded(**options)
-        edges = reached_edges(pair, one)
+        edges = reached_arcs(pair, one)
         assert len(edges) > 1
         first, last = found(pair, one, edges), found(pair, one, edges[::-1])
         assert_allclose(last.pressure, first.pressure, rtol=first.error + last.error)
@@ -180,7 +185,7 @@ def test_peak_beside_another_pair_with_bending_is_that_of_a_fine_grid(side):
     shares = share_load(pair, pairs, 80e3, GridChoice((24, 32), free_edges=False), bending=bending).shares
     assert len(shares) == 2
     for one, other in (shares, shares[::-1]):
-        number, edges = one.tooth_pair.pair, reached_edges(pair, one.loaded)
+        number, edges = one.tooth_pair.pair, reached_arcs(pair, one.loaded)
         fine = sample_separation(pair, one.loaded.contact, cells=(32, 1024), box=(0.25, 3.05))
         tilted = bending.between((number, fine), (other.tooth_pair.pair, other.loaded.separation))
         displaced = tilted @ other.loaded.slice_force
@@ -204,7 +209,7 @@ def test_share_of_a_gear_in_the_compliance_is_that_of_its_material(materials):
     """(1 - nu^2)/E of the gear that ends, over the sum of both: steel on plastic hardly tilts, plastic does."""
     pair, one = loaded(materials=materials, load=100.0)
     compliances = [(1.0 - material.poisson_ratio**2) / material.youngs_modulus for material in materials]
-    for edge in reached_edges(pair, one):
+    for edge in reached_arcs(pair, one):
         assert_allclose([line.share for line in edge.lines], np.array(compliances) / sum(compliances), rtol=1e-12)
 
 
@@ -223,7 +228,7 @@ def test_edges_of_bent_flanks_are_where_the_gap_begins_to_open():
     both = read_scene(SCENES / "mesh_cycle_bevel.toml").with_changes(dict.fromkeys(names, 0.1)).pair()
     contact = trace_contact(both, [-0.9 * both.pitch], warn=False)[0]
     one = solve_under_load(both, contact, 3000.0, GridChoice((24, 32)))
-    edges = reached_edges(both, one)
+    edges = reached_arcs(both, one)
     assert len(edges) == 2
     for (line,) in (edge.lines for edge in edges):
         x, y = np.array(line.place)[:, None] + line.direction[:, None] * [-1e-3, 1e-3]
@@ -238,16 +243,16 @@ def test_edge_that_a_relief_start_crosses_has_no_bound():
     """The start of the relief of a helical pinion crosses one of the two face ends that a contact reaches."""
     relief = FlankModifications(tip_relief=0.03, tip_relief_start=106.0, tip_relief_form="linear")
     helical = {"teeth": (34, 57), "width": 25.0, "helix_deg": 15.0}
-    edges = reached_edges(*loaded(pitches=-0.3, pinion=relief, **helical))
+    edges = reached_arcs(*loaded(pitches=-0.3, pinion=relief, **helical))
     assert [edge.at_relief_start for edge in edges] == [True, False]
     assert [edge.limit == math.inf for edge in edges] == [True, False]
 
 
 def test_contact_that_ends_before_the_arc_has_no_peak():
     pair, one = loaded(load=100.0, pinion=FlankModifications(lead_crowning=0.02))
-    assert reached_edges(pair, one) == []
+    assert reached_arcs(pair, one) == []
     assert not one.at_arc
-    beyond = ReachedEdge((RoundedEdge((0.0, 9.8), (0.0, 1.0), 0.2),), 1000.0)
+    beyond = ReachedArc((RoundedEdge((0.0, 9.8), (0.0, 1.0), 0.2),), 1000.0)
     assert math.isnan(found(pair, one, [beyond]).pressure)
     assert math.isnan(found(pair, one, [beyond]).error)
 
@@ -256,7 +261,7 @@ def test_contact_that_ends_before_the_arc_has_no_peak():
 def test_tip_between_sharp_face_ends_has_no_bound(rounding, sharp):
     """Nor has it where the bound of the tip alone is too low: it is looked at whatever other contacts have."""
     pair, one = loaded(rounding, pitches=0.8, pinion=NONE)
-    tips = [edge for edge in reached_edges(pair, one) if abs(edge.lines[0].direction[0]) > 0.5]
+    tips = [edge for edge in reached_arcs(pair, one) if abs(edge.lines[0].direction[0]) > 0.5]
     assert [edge.ends_sharp for edge in tips] == [sharp]
     assert (tips[0].limit == math.inf) == sharp
     if sharp:
@@ -268,7 +273,7 @@ def test_tip_between_sharp_face_ends_has_no_bound(rounding, sharp):
 def test_edges_that_cross_are_solved_together_whatever_one_of_them_can_come_to():
     """Alone, on columns of its own, an edge beside a crossing has another pressure."""
     pair, one = loaded(**SKEW)
-    edges = reached_edges(pair, one)
+    edges = reached_arcs(pair, one)
     peak = found(pair, one, edges)
     low = [edges[0], *(edge._replace(bound=1.0) for edge in edges[1:])]  # MPa, next to nothing
     again = pressure_at_rounded_edge(pair, one, low, None, 0, free_edges=False, at_least=0.99 * peak.pressure)

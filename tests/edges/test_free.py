@@ -12,11 +12,11 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import read_scene, sample_separation, trace_contact
 from loaded_tca.contact import solve_contact, wedge_factor
+from loaded_tca.edges.free import DEPTH, REACHES, edge_compliance, edge_compliances
+from loaded_tca.edges.rounded import Columns
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
-from loaded_tca.loaded.free_edges import DEPTH, REACHES, edge_compliance, edge_compliances
-from loaded_tca.loaded.rounded_edges import Columns
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import bevel_pair
@@ -294,7 +294,7 @@ def test_grids_found_together_are_as_each_alone(monkeypatch):
         grid_of(pair, box=(0.3, 1.0)),
     ]
     alone = [edge_compliance(pair, grid) for grid in grids]
-    monkeypatch.setattr("loaded_tca.loaded.free_edges.PAIRS", 50)
+    monkeypatch.setattr("loaded_tca.edges.free.PAIRS", 50)
     together = edge_compliances(pair, grids)
     assert [one is None for one in together] == [False, False, False, True]
     for found, expected in zip(together[:3], alone[:3], strict=True):

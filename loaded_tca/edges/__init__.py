@@ -1,0 +1,1 @@
+"""Edges of the flanks of a pair: where they lie, how they soften a tooth, what pressure their roundings carry."""

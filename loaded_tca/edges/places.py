@@ -1,0 +1,75 @@
+"""Edges, arcs and relief starts of both flanks of a pair, seen from points of the fixed frame.
+
+The edges of a pair are counted as in ``EDGE_NAMES``, those of the pinion first (0 to 3), then those of the wheel (4 to
+7). A distance to an edge is positive on the flank. Where an edge is rounded, an arc begins before it: lengths past its
+beginning are positive on the arc.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from scipy.ndimage import binary_dilation
+
+from loaded_tca.arrays import Array, Mask
+from loaded_tca.flanks.base import EDGE_NAMES
+from loaded_tca.flanks.rounding import Arc, RoundedFlank
+from loaded_tca.pairs.gear import Gear
+from loaded_tca.pairs.gear_pair import GearPair
+
+
+def edge_distances(pair: GearPair, points: Array) -> Array:
+    """Distances (..., 8) [mm] of points (..., 3) of the fixed frame to the edges of both flanks, negative beyond."""
+    return _distances(pair, points, "edges")
+
+
+def relief_start_distances(pair: GearPair, points: Array) -> Array:
+    """Distances (..., n) [mm] of points (..., 3) of the fixed frame to the relief starts of both flanks, beyond > 0."""
+    return _distances(pair, points, "relief_starts")
+
+
+def _distances(pair: GearPair, points: Array, lines: Literal["edges", "relief_starts"]) -> Array:
+    """Distances (..., n) [mm] of points (..., 3) to lines of both flanks."""
+    gears = zip((pair.pinion, pair.wheel), pair.on_flanks(points), strict=True)
+    jets = [jet for gear, place in gears for jet in getattr(gear.flank, lines)(*place)]
+    shape = points.shape[:-1]
+    return np.stack([np.broadcast_to(jet.value, shape) for jet in jets], axis=-1) if jets else np.zeros((*shape, 0))
+
+
+def has_relief_starts(pair: GearPair) -> bool:
+    """Whether any flank has a linear relief."""
+    return relief_start_distances(pair, np.zeros((0, 3))).shape[-1] > 0
+
+
+def arcs_of(pair: GearPair) -> dict[int, tuple[Gear, Arc]]:
+    """Arcs of the rounded edges of both flanks, and their gears, by the numbers of the edges."""
+    return {
+        first + arc.edge: (gear, arc)
+        for first, gear in ((0, pair.pinion), (len(EDGE_NAMES), pair.wheel))
+        if isinstance(gear.flank, RoundedFlank)
+        for arc in gear.flank.arcs
+    }
+
+
+def lengths_past_tangents(pair: GearPair, *places: tuple[Array, Array]) -> Array:
+    """Lengths (..., 8) [mm] from where the arcs of all edges begin; -inf at sharp edges.
+
+    Of places (rho, z) [mm] of pinion and wheel, along the flank towards the edge, seen along the edge's surface.
+    """
+    lengths: list[Array] = []
+    for gear, (rho, z) in zip((pair.pinion, pair.wheel), places, strict=True):
+        flank, none = gear.flank, [np.full(rho.shape, -np.inf)] * len(EDGE_NAMES)
+        lengths += flank.past_tangents(rho, z) if isinstance(flank, RoundedFlank) else none
+    return np.stack(lengths, axis=-1)
+
+
+def arcs_at(pair: GearPair, points: Array) -> Mask:
+    """Edges (..., 8) on whose arcs points (..., 3) of the fixed frame [mm] lie, seen along the edges' surfaces."""
+    return np.asarray(lengths_past_tangents(pair, *pair.on_flanks(points)) > 0.0)
+
+
+def dilated(cells: Array | np.bool, steps: int = 1) -> Mask:
+    """Some cells (nx, ny, ...) of a grid, and those so many steps away from one of them."""
+    beside = np.ones((3, 3) + (1,) * (np.ndim(cells) - 2), dtype=bool)
+    return np.asarray(binary_dilation(np.asarray(cells), beside, steps))
