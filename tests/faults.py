@@ -726,20 +726,15 @@ FAULTS = (
     *(
         Fault(f"units: {text}", file, text, wrong, UNITS)
         for file, text, wrong in (
-            ("output/result_files.py", '("tooth_deflection_um", 1.0)', '("tooth_deflection_um", 1e3)'),
-            ("output/result_files.py", '("contact_deformation_um", 1.0)', '("contact_deformation_um", 1e3)'),
-            ("output/result_files.py", '("hertz_width_mm", 2.0)', '("hertz_width_mm", 1.0)'),
-            ("output/result_files.py", '("edge_pinion_diameter_mm", 2.0)', '("edge_pinion_diameter_mm", 1.0)'),
-            (
-                "output/result_files.py",
-                '("root_compression_angle_deg", 1.0)',
-                '("root_compression_angle_deg", 2.0)',
+            *(
+                ("results/quantities.py", f'column="{column}"', f'column="{column}", times=1e3')
+                for column in ("tooth_deflection_um", "contact_deformation_um", "root_compression_angle_deg")
             ),
-            (
-                "results/numbers.py",
-                "return MICROMETRES * self.wheel_base_radius",
-                "return self.wheel_base_radius",
+            *(
+                ("results/quantities.py", f'column="{column}", times=2.0', f'column="{column}"')
+                for column in ("hertz_width_mm", "edge_pinion_diameter_mm")
             ),
+            ("results/declared.py", "return MICROMETRES * float(", "return float("),
             ("units.py", '"um": Unit("um", "mm", 1e-3)', '"um": Unit("um", "mm", 1e-6)'),
             ("units.py", '"Nm": Unit("N m", "N mm", 1e3)', '"Nm": Unit("N m", "N mm", 1.0)'),
             ("units.py", "math.radians(1.0 / 3600.0)", "math.radians(1.0 / 60.0)"),

@@ -65,7 +65,7 @@ def revolution_json(revolution: Revolution) -> str:
         {"pinion_torque_Nm": 1e-3 * float(torque), **{name: known(value, name) for name, value in figures.items()}}
         for torque, figures in zip(revolution.torque, revolution.key_figures(), strict=True)
     ]
-    content = {"title": revolution.scene.title, "torques": rows, "warnings": list(revolution.warnings)}
+    content = {"title": revolution.scene.title, "torques": rows, "warnings": revolution.warnings or ()}
     return json_text(content)
 
 
@@ -205,7 +205,7 @@ def stage_json(result: StageResult) -> str:
         "torques": rows,
         "orders_under_the_last_torque": orders,
         "findings": list(result.findings()),
-        "warnings": list(result.warnings),
+        "warnings": result.warnings or (),
     }
     return json_text(content)
 

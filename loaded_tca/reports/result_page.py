@@ -218,7 +218,7 @@ def stage_content(result: StageResult) -> dict[str, Any]:
         "findings": result.findings(),
         "orders": _orders(result),
         "files": FILES[1:],
-        "warnings": explained(result.warnings),
+        "warnings": explained(result.warnings or ()),
         "pictures": pictures_of(stage_figures(result), STAGE_CAPTIONS, result.stage.title),
     }
 

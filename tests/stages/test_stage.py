@@ -216,7 +216,7 @@ def test_table_and_summary_have_every_torque(result):
     assert "orders that equal planets cancel" in result.summary()
     assert "1, 3, 5" in result.summary()
     assert repr(result) == "StageResult(4 planets, 2 torques, 8 positions)"
-    with pytest.raises(AttributeError, match="no nothing"):
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = result.nothing
 
 
