@@ -728,8 +728,9 @@ FAULTS = (
         for file, text, wrong in (
             *(
                 ("results/quantities.py", f'column="{column}"', f'column="{column}", times=1e3')
-                for column in ("tooth_deflection_um", "contact_deformation_um", "root_compression_angle_deg")
+                for column in ("tooth_deflection_um", "contact_deformation_um")
             ),
+            ("results/declared.py", 'ending = "deg" if', 'ending = "rad" if'),
             *(
                 ("results/quantities.py", f'column="{column}", times=2.0', f'column="{column}"')
                 for column in ("hertz_width_mm", "edge_pinion_diameter_mm")

@@ -21,7 +21,7 @@ PAIRS = (*CYCLE, "pair")
 OVER_CYCLE = (*CYCLE, "gear")
 
 ENGINEERS_UNITS = {"rad": "arcsec", "N mm": "Nm"}
-"""Unit of a result -> ending of its column, where tables have another unit."""
+"""Unit of a result -> ending of its column, where tables have another unit; angles by their name are in degrees."""
 ABOUT = ("version", "date", "warnings")
 """Attributes of a dataset: version of the package, date and accuracy warnings of the analysis, a line each."""
 
@@ -59,8 +59,8 @@ class Number(_Part):
     column : str
         Its head in tables, and its name as a key figure; default: its name with its unit in the engineer's units.
     columns : tuple of str
-        Heads in the table of positions, with {} for what counts along its last axis; default: one for numbers over
-        torque and position, also of tooth pairs, of which the table has one, and one for each gear.
+        Heads in the table of positions, with {} for what counts along its last axis; default: one for the torque and
+        for numbers over positions, also of tooth pairs, of which the table has one, and one for each gear.
     at_base_circle : bool
         Whether the table has an angle as a length at the base circle [um], too.
     times : float
@@ -108,6 +108,7 @@ class Number(_Part):
     def head(self, name: str) -> str:
         """Head of its column under a name."""
         ending = ENGINEERS_UNITS.get(self.unit) or as_ending(self.unit)
+        ending = "deg" if ending == "arcsec" and name.endswith("_angle") else ending
         return self.column or (f"{name}_{ending}" if ending else name)
 
     def heads(self, name: str) -> tuple[str, ...]:
@@ -118,8 +119,7 @@ class Number(_Part):
             return (f"{{}}_{self.head(name)}",)
         if self.at_base_circle:
             return self.head(name), f"{name}_um"
-        over_cycle = self.dims in (CYCLE, PAIRS) or (bool(self.column) and self.dims in (CYCLE[:1], CYCLE[1:]))
-        return (self.head(name),) if over_cycle else ()
+        return (self.head(name),) if self.dims in (CYCLE, PAIRS, CYCLE[1:]) or name == "torque" else ()
 
     def factor(self, head: str) -> float:
         """Factor to the unit that a head tells."""
@@ -157,7 +157,11 @@ class Numbers:
     NUMBERS: ClassVar[Mapping[str, Number]] = {}
     COORDINATES: ClassVar[tuple[str, ...]] = ()
     BASE_RADIUS: ClassVar[str] = "wheel_base_radius"
-    dataset: xarray.Dataset
+    if TYPE_CHECKING:
+
+        @property
+        def dataset(self) -> xarray.Dataset:
+            """All numbers, with their units."""
 
     def __getattr__(self, name: str) -> Any:
         if name in self.NUMBERS:
@@ -183,10 +187,6 @@ class Numbers:
     def values(self, name: str) -> Array:
         """Array of a number that the result has."""
         return np.asarray(self.dataset[name].values)
-
-    def at_position(self, name: str) -> Array:
-        """One number for each torque and position, of one that tooth pairs have."""
-        raise AttributeError(f"{name}: {type(self).__name__} has no tooth pairs")
 
     def along(self, axis: str) -> list[Any]:
         """What counts along an axis: gears by their names, directions, numbers of tooth pairs."""

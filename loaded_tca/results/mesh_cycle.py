@@ -27,7 +27,7 @@ from loaded_tca.results.key_figures import UnderTorque
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import arrays_of_maps, maps_from
 from loaded_tca.results.quantities import IN_FILES, MOTIONS, PATH_PARTS, SIZES
-from loaded_tca.results.result import Result
+from loaded_tca.results.result import AnalysisResult
 from loaded_tca.results.root_stress import RootStressMap, root_stress_maps
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import signed, summary_text
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class MeshCycle(CycleNumbers, Result):
+class MeshCycle(CycleNumbers, AnalysisResult):
     """Loaded contact over the positions of a pitch, under each torque.
 
     Every name of ``QUANTITIES`` and, with root stress, of ``ROOT_PARTS`` is an attribute too: ``result.peak_pressure``
@@ -283,11 +283,11 @@ class MeshCycle(CycleNumbers, Result):
             self.root_tension  # noqa: B018 (raises a NotAskedError where there is none)
         return super().to_netcdf()
 
-    def beside(self) -> dict[str, Any]:
-        """Paths and maps, as files have them."""
+    def stored(self) -> xarray.Dataset:
+        """The dataset with paths and maps, as files have them."""
         paths = (self.path, *self.paths)
         arrays = {f"path_{name}": np.stack([getattr(path, name) for path in paths]) for name in PATH_PARTS}
-        return variables_of(IN_FILES, arrays | arrays_of_maps(self.maps))
+        return self.dataset.assign(variables_of(IN_FILES, arrays | arrays_of_maps(self.maps)))
 
     @classmethod
     def problem_of(cls, file: xarray.Dataset) -> str:

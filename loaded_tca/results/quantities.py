@@ -11,7 +11,7 @@ QUANTITIES: dict[str, Part] = {
     "pair": Number(
         ("pair",), "1", "tooth pair: 0 is in contact at the pitch point at phi1 = 0, +1 follows it", column="tooth_pair"
     ),
-    "pinion_angle": Number(("position",), "rad", "angle of the pinion phi1", column="pinion_angle_deg"),
+    "pinion_angle": (("position",), "rad", "angle of the pinion phi1"),
     "wheel_base_radius": ((), "mm", "base radius of the wheel"),
     "face_width": ((), "mm", "common face width"),
     "coupled_pitches": (
@@ -109,15 +109,8 @@ OF_THE_EDGE = frozenset({"edge_pressure", "edge_is_rounded", "edge_pressure_erro
 ROOT_QUANTITIES: dict[str, Part] = {
     "root_tension": (OVER_CYCLE, "MPa", "largest stress at the roots of all teeth of pinion and wheel, on both sides"),
     "root_compression": (OVER_CYCLE, "MPa", "smallest stress there, negative in compression"),
-    "root_tension_angle": Number(
-        OVER_CYCLE,
-        "rad",
-        "tangent of the fillet to the middle of the tooth, at the tension",
-        column="root_tension_angle_deg",
-    ),
-    "root_compression_angle": Number(
-        OVER_CYCLE, "rad", "the same at the compression", column="root_compression_angle_deg"
-    ),
+    "root_tension_angle": (OVER_CYCLE, "rad", "tangent of the fillet to the middle of the tooth, at the tension"),
+    "root_compression_angle": (OVER_CYCLE, "rad", "the same at the compression"),
     "root_tension_axial": (OVER_CYCLE, "mm", "axial coordinate on the gear itself, at the tension"),
     "root_compression_axial": (OVER_CYCLE, "mm", "the same at the compression"),
     "root_tension_place": (
@@ -289,32 +282,23 @@ IN_FILES: dict[str, Part] = {
 }
 """What a file has beside ``QUANTITIES``: the paths, that of the leading contact before those of the pairs; the maps."""
 
-ROOT_STRESS = numbers(
-    ROOT_PARTS,
-    Asked(
-        lambda scene, _: scene.analysis.root_stress, "the result has no root stress; set analysis.root_stress = true"
-    ),
+ROOTS_ASKED = Asked(
+    lambda scene, _: scene.analysis.root_stress, "the result has no root stress; set analysis.root_stress = true"
+)
+SUPPORTS_ASKED = Asked(
+    lambda scene, _: scene.is_supported, "the scene has no supports; [pinion.support] or [wheel.support] gives them"
+)
+SHAFT_ASKED = Asked(
+    lambda scene, gear: getattr(scene, gear).shaft is not None, "the gear has no shaft; [{gear}.shaft] gives it"
+)
+ROLLING_ASKED = Asked(  # which a file has where the scene does
+    lambda *_: False, "the gear has no rolling bearings; type of [[{gear}.shaft.bearings]] gives them"
 )
 OF_SUPPORTS = {
-    name: number
-    for parts, by, lacks in (
-        (
-            SUPPORT_QUANTITIES,
-            lambda scene, _: scene.is_supported,
-            "the scene has no supports; [pinion.support] or [wheel.support] gives them",
-        ),
-        (
-            BEARING_QUANTITIES,
-            lambda scene, gear: getattr(scene, gear).shaft is not None,
-            "the gear has no shaft; [{gear}.shaft] gives it",
-        ),
-        (
-            ROLLING_QUANTITIES,
-            lambda *_: False,  # a file has them where the scene does
-            "the gear has no rolling bearings; type of [[{gear}.shaft.bearings]] gives them",
-        ),
-    )
-    for name, number in numbers(parts, Asked(by, lacks)).items()
+    **numbers(SUPPORT_QUANTITIES, SUPPORTS_ASKED),
+    **numbers(BEARING_QUANTITIES, SHAFT_ASKED),
+    **numbers(ROLLING_QUANTITIES, ROLLING_ASKED),
 }
+ROOT_STRESS = numbers(ROOT_PARTS, ROOTS_ASKED)
 CYCLE_NUMBERS = numbers(QUANTITIES) | OF_SUPPORTS | ROOT_STRESS
 """All numbers of mesh cycles by their names: those that all have, of supports, of root stress."""

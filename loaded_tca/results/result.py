@@ -53,10 +53,6 @@ class Result(Numbers, ABC):
         Attribute that was analysed: its title, and its text in files.
     FIGURES : mapping
         Key figures by their names; numbers under a torque that have a label follow them.
-    BESIDE : mapping
-        Dimensions, unit and long name of arrays that files have beside the dataset.
-    ABOUT : tuple of str
-        Attributes of the dataset that files keep.
     """
 
     KIND: ClassVar[str] = ""
@@ -64,8 +60,6 @@ class Result(Numbers, ABC):
     TITLE: ClassVar[str]
     SUBJECT: ClassVar[str] = "scene"
     FIGURES: ClassVar[Mapping[str, Figure]] = {}
-    BESIDE: ClassVar[Mapping[str, Part]] = {}
-    ABOUT: ClassVar[tuple[str, ...]] = ABOUT
 
     @property
     def title(self) -> str:
@@ -157,11 +151,26 @@ class Result(Numbers, ABC):
         """Return the bytes of the file that ``save`` writes, with the same errors."""
         about = {"title": self.title, f"{self.SUBJECT}_toml": getattr(self, self.SUBJECT).to_toml()}
         kind = {"kind": self.KIND} if self.KIND else {}
-        return netcdf_of(self.dataset.assign(self.beside()).assign_attrs(kind | about))
+        return netcdf_of(self.stored().assign_attrs(kind | about))
 
-    def beside(self) -> dict[str, Any]:
-        """Variables of ``BESIDE``."""
-        return {}
+    def stored(self) -> xarray.Dataset:
+        """The dataset as files have it."""
+        return self.dataset
+
+
+class AnalysisResult(Result):
+    """Result of an analysis, which its file holds whole, with the text of what was analysed.
+
+    Attributes
+    ----------
+    BESIDE : mapping
+        Dimensions, unit and long name of arrays that files have beside the dataset.
+    ABOUT : tuple of str
+        Attributes of the dataset that files keep.
+    """
+
+    BESIDE: ClassVar[Mapping[str, Part]] = {}
+    ABOUT: ClassVar[tuple[str, ...]] = ABOUT
 
     @classmethod
     @checked

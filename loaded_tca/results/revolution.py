@@ -25,7 +25,7 @@ from loaded_tca.results.files import REVOLUTION
 from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.quantities import COORDINATES, CYCLE_NUMBERS, OF_SUPPORTS
-from loaded_tca.results.result import Result, figures_of
+from loaded_tca.results.result import AnalysisResult, figures_of
 from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 from loaded_tca.units import without_unit
@@ -156,7 +156,7 @@ FIGURES: dict[str, Figure] = {
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Revolution(Result):
+class Revolution(AnalysisResult):
     """Loaded contact over the positions of a whole revolution, under each torque.
 
     Attributes

@@ -19,7 +19,7 @@ from loaded_tca.results import MeshCycle
 from loaded_tca.results.declared import CYCLE, Asked, Number, numbers
 from loaded_tca.results.figure import Figure, Figures
 from loaded_tca.results.files import STAGE, Buffer, FilePath, replace_together
-from loaded_tca.results.result import Result, figures_of
+from loaded_tca.results.result import AnalysisResult, figures_of
 from loaded_tca.results.summary import kind_of_edge, shown_torque
 from loaded_tca.stages.files import parse_stage
 from loaded_tca.stages.kinematics import neutralised
@@ -38,12 +38,7 @@ MESH_NAMES = {"sun": "sun and planet", "ring": "planet and ring"}
 STAGE_NUMBERS = numbers(
     {
         "torque": Number(TORQUE, "N mm", "torque of the sun", column="sun_torque_Nm", label="sun torque"),
-        "sun_angle": Number(
-            ("position",),
-            "rad",
-            "angle of the sun against the carrier, over one pitch of the sun",
-            column="sun_angle_deg",
-        ),
+        "sun_angle": (("position",), "rad", "angle of the sun against the carrier, over one pitch of the sun"),
         "planet": (PLANETS, "1", "planet, from 0"),
         "planet_angle": (PLANETS, "rad", "angle of the planet on the carrier"),
         "sun_mesh_phase": (PLANETS, "1", "phase of the mesh of sun and planet, in mesh cycles"),
@@ -164,7 +159,7 @@ class Order:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class StageResult(Result):
+class StageResult(AnalysisResult):
     """Planets of a stage over one pitch of the sun, under each torque.
 
     Attributes
@@ -185,7 +180,7 @@ class StageResult(Result):
     NUMBERS: ClassVar = STAGE_NUMBERS | EDGES | ROOTS
     COORDINATES: ClassVar = COORDINATES
     FIGURES: ClassVar = FIGURES
-    ABOUT: ClassVar = (*Result.ABOUT, "mesh_warnings")
+    ABOUT: ClassVar = (*AnalysisResult.ABOUT, "mesh_warnings")
 
     stage: Stage
     dataset: xarray.Dataset
