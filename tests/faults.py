@@ -1697,6 +1697,32 @@ FAULTS = (
         "turns = points.turns + 0.0 * ways * rates",
         "results/test_sensitivities.py::test_bending_follows_a_contact_that_a_relief_moves_up_the_tooth",
     ),
+    *(
+        Fault(f"numbers of results: {what}", file, text, wrong, f"results/test_result.py::{test}")
+        for what, file, text, wrong, test in (
+            (
+                "figures of numbers are in the units of the dataset",
+                "results/result.py",
+                "of=partial(_number, name, number.factor(head))",
+                "of=partial(_number, name, 1.0)",
+                "test_numbers_are_where_they_are_declared_to_be_and_one_more_is_declared_once",
+            ),
+            (
+                "a file need not have what all results have",
+                "results/result.py",
+                "if number.asked is None or number.asked.by(",
+                "if number.asked is not None and number.asked.by(",
+                "test_numbers_are_where_they_are_declared_to_be_and_one_more_is_declared_once",
+            ),
+            (
+                "the file of tribology keeps no warnings",
+                "tribology/tribology.py",
+                '"warnings": "\\n".join(self.warnings)',
+                '"warnings": ""',
+                "test_numbers_of_tribology_are_where_they_are_declared_to_be",
+            ),
+        )
+    ),
 )
 
 

@@ -14,19 +14,9 @@ import numpy as np
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
-from loaded_tca.results.declared import OVER_CYCLE, PAIRS
-from loaded_tca.results.files import Buffer, FilePath, Part, replace_together
+from loaded_tca.results.declared import PAIRS
+from loaded_tca.results.files import Buffer, FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.quantities import (
-    BEARING_QUANTITIES,
-    CYCLE_NUMBERS,
-    MAP_PARTS,
-    PATH_PARTS,
-    QUANTITIES,
-    ROLLING_QUANTITIES,
-    ROOT_PARTS,
-    SUPPORT_QUANTITIES,
-)
 from loaded_tca.results.summary import without_rounding
 from loaded_tca.results.warnings import EDGES, reached_edges
 
@@ -158,43 +148,3 @@ def cell(value: Any, name: str) -> str:
     if isinstance(value, str):
         return value
     return "" if math.isnan(value) else f"{without_rounding(value, name):.9g}"
-
-
-def describe_results() -> str:
-    """Return the reference of a result in Markdown: one table for the dataset, the paths and the maps.
-
-    Examples
-    --------
-    >>> print(describe_results().splitlines()[4])
-    | `torque` | (torque) | N mm | pinion torque | `pinion_torque_Nm` |
-    """
-    of_supports = SUPPORT_QUANTITIES | BEARING_QUANTITIES | ROLLING_QUANTITIES
-    sections: tuple[tuple[str, Mapping[str, Part], bool], ...] = (
-        ("The result and `result.dataset`", QUANTITIES, True),
-        ("Supports, where the scene has them", of_supports, True),
-        ("Root stress, where the scene asks for it", ROOT_PARTS, True),
-        ("`result.path` and `result.paths[pair]`: the unloaded contact", PATH_PARTS, False),
-        ("`result.maps[torque][position][pair]`: one pressure map", MAP_PARTS, False),
-    )
-    return "\n".join(
-        "\n".join([f"### {title}", "", *_described(parts, in_tables), ""]) for title, parts, in_tables in sections
-    )
-
-
-def _described(parts: Mapping[str, Part], in_tables: bool) -> list[str]:
-    """A table of arrays, with their columns in the tables of a result."""
-    titles = ["name", "axes", "unit", "what it is", *(["in the tables"] if in_tables else [])]
-    rows = [titles, ["---"] * len(titles)]
-    for name, (axes, unit, text) in parts.items():
-        cells = [f"`{name}`", f"({', '.join(axes)})" if axes else "", "-" if unit == "1" else unit, text]
-        rows.append([*cells, *([", ".join(f"`{head}`" for head in _heads(name))] if in_tables else [])])
-    return [f"| {' | '.join(cells)} |" for cells in rows]
-
-
-def _heads(name: str) -> Iterator[str]:
-    """Columns of a number in the tables of contacts and of positions."""
-    number = CYCLE_NUMBERS[name]
-    some = GEARS if number.dims == OVER_CYCLE else ("0", "...")
-    of_contacts = (number.head(name),) if number.dims == PAIRS or (number.column and number.dims != OVER_CYCLE) else ()
-    for head in dict.fromkeys((*of_contacts, *number.heads(name))):
-        yield from (head.format(one) for one in some) if "{" in head else [head]
