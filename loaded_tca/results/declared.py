@@ -102,7 +102,7 @@ class Number(_Part):
         return number
 
     def changed(self, **changes: Any) -> Number:
-        """The same with other texts, columns or needs."""
+        """Return a copy with other texts, columns or needs."""
         return Number(**{**self._asdict(), **vars(self), **changes})
 
     def head(self, name: str) -> str:

@@ -294,6 +294,7 @@ SHAFT_ASKED = Asked(
 ROLLING_ASKED = Asked(  # which a file has where the scene does
     lambda *_: False, "the gear has no rolling bearings; type of [[{gear}.shaft.bearings]] gives them"
 )
+"""When a result has numbers of root stress, of supports, of shafts and of rolling bearings."""
 OF_SUPPORTS = {
     **numbers(SUPPORT_QUANTITIES, SUPPORTS_ASKED),
     **numbers(BEARING_QUANTITIES, SHAFT_ASKED),

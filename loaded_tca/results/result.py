@@ -39,9 +39,9 @@ def _number(name: str, factor: float, under: Row) -> float:
 
 
 class Result(Numbers, ABC):
-    """Numbers of a result with what is read off them under each torque, told, tabled and kept in a file.
+    """Numbers of a result with their key figures under each torque, summary, table and file.
 
-    A kind of result declares its ``NUMBERS`` and its ``FIGURES``; all below follows.
+    A kind of result declares its ``NUMBERS`` and its ``FIGURES``; all of this follows.
 
     Attributes
     ----------
@@ -75,8 +75,8 @@ class Result(Numbers, ABC):
 
     def key_figures(self) -> tuple[dict[str, float], ...]:
         """Return the figures for each torque, by names that end in their unit; NaN: not known."""
-        under = (self.under(torque) for torque in range(self.dataset.sizes["torque"]))
-        return tuple({name: figure.of(one) for name, figure in self.figures.items()} for one in under)
+        rows = (self.under(torque) for torque in range(self.dataset.sizes["torque"]))
+        return tuple({name: figure.of(row) for name, figure in self.figures.items()} for row in rows)
 
     def under(self, torque: int) -> Row:
         """What figures are read off: the result under a torque, by its index."""

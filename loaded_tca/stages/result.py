@@ -106,9 +106,9 @@ COORDINATES = "torque", "sun_angle", "planet"
 
 def _of_mesh(mesh: str) -> dict[str, Figure]:
     """Pressures of a mesh under the largest share."""
-    edge = f"{mesh}_mesh_edge_pressure"
+    peak, edge = f"{mesh}_mesh_peak_pressure", f"{mesh}_mesh_edge_pressure"
     return {
-        **figures_of({name: part for name, part in STAGE_NUMBERS.items() if name == f"{mesh}_mesh_peak_pressure"}),
+        **figures_of({peak: STAGE_NUMBERS[peak]}),
         f"{edge}_MPa": Figure(
             of=lambda under: float(getattr(under, edge)) if under.result.has(edge) else math.nan, label="  {edge}"
         ),

@@ -127,7 +127,7 @@ NUMBERS: dict[str, Number] = {
         )
     },
 }
-"""The same with the torque and the places of extremes."""
+"""Names in ``Tribology.dataset`` with the torque and the places of extremes, and what each is."""
 
 COLUMNS: dict[str, tuple[str, str, frozenset[str]]] = {
     "position": ("1", "position, an index", frozenset()),

@@ -475,8 +475,8 @@ class Tribology(Result):
         speed : int
             Index of the speed of a list.
         """
-        under = (self.under(torque, speed) for torque in range(len(self.result.torque)))
-        return tuple({name: figure.of(one) for name, figure in self.figures.items()} for one in under)
+        rows = (self.under(torque, speed) for torque in range(len(self.result.torque)))
+        return tuple({name: figure.of(row) for name, figure in self.figures.items()} for row in rows)
 
     def to_table(self) -> dict[str, Array]:
         """Return what is known of the mesh at each speed and torque, and where extremes lie, as columns."""
