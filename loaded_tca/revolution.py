@@ -29,7 +29,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import Place, numbers_and_maps
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.revolution import OF_TEETH, Revolution, open_turns, revolution_dataset
+from loaded_tca.results.revolution import OF_TEETH, Revolution, open_turns
 from loaded_tca.results.root_stress import root_stress_of_gear
 from loaded_tca.results.supports import support_arrays, warn_of_supports
 from loaded_tca.results.warnings import at_places, place_of, reasons_of, rotation_reasons, warn_of_gears
@@ -132,7 +132,7 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
             "warnings": "\n".join(dict.fromkeys(warned)),
         }
         kept = {(t + first, n): row for first, one in _in_order(numbers) for (t, n), row in one.maps.items()}
-        return Revolution(scene=scene, dataset=revolution_dataset(arrays, **about), maps=kept)
+        return Revolution(scene=scene, dataset=Revolution.dataset_of(arrays, **about), maps=kept)
 
 
 def _asked(scene: Scene) -> RevolutionSection:
@@ -339,7 +339,7 @@ class _Numbers:
         yield from rotation_reasons(self.pair, self.torques, rotation, rate, bodies)
 
     def whole(self) -> dict[str, Array]:
-        """Arrays of ``REVOLUTION_QUANTITIES``, and of ``ROOTS`` if asked for."""
+        """Arrays of ``REVOLUTION_QUANTITIES``, those of root stress if asked for."""
         pair, path, arrays = self.pair, self.path, dict(self.arrays)
         rotation, stiffness = arrays.pop("rotation"), arrays.pop("stiffness")
         return arrays | {

@@ -54,6 +54,9 @@ UNITS = {
     "kg_m3": Unit("kg/m³", "kg/m³", 1.0),
     "W_mK": Unit("W/(m K)", "W/(m K)", 1.0),
     "J_kgK": Unit("J/(kg K)", "J/(kg K)", 1.0),
+    "MPa_m_per_s": Unit("MPa m/s", "MPa m/s", 1.0),
+    "W": Unit("W", "W", 1.0),
+    "K": Unit("K", "K", 1.0),
 }
 """Ending of a name -> unit; of several that fit, the first."""
 MICROMETRES = 1.0 / UNITS["um"].factor

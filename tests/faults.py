@@ -726,20 +726,16 @@ FAULTS = (
     *(
         Fault(f"units: {text}", file, text, wrong, UNITS)
         for file, text, wrong in (
-            ("output/result_files.py", '("tooth_deflection_um", 1.0)', '("tooth_deflection_um", 1e3)'),
-            ("output/result_files.py", '("contact_deformation_um", 1.0)', '("contact_deformation_um", 1e3)'),
-            ("output/result_files.py", '("hertz_width_mm", 2.0)', '("hertz_width_mm", 1.0)'),
-            ("output/result_files.py", '("edge_pinion_diameter_mm", 2.0)', '("edge_pinion_diameter_mm", 1.0)'),
-            (
-                "output/result_files.py",
-                '("root_compression_angle_deg", 1.0)',
-                '("root_compression_angle_deg", 2.0)',
+            *(
+                ("results/quantities.py", f'column="{column}"', f'column="{column}", times=1e3')
+                for column in ("tooth_deflection_um", "contact_deformation_um")
             ),
-            (
-                "results/numbers.py",
-                "return MICROMETRES * self.wheel_base_radius",
-                "return self.wheel_base_radius",
+            ("results/declared.py", 'ending = "deg" if', 'ending = "rad" if'),
+            *(
+                ("results/quantities.py", f'column="{column}", times=2.0', f'column="{column}"')
+                for column in ("hertz_width_mm", "edge_pinion_diameter_mm")
             ),
+            ("results/declared.py", "return MICROMETRES * float(", "return float("),
             ("units.py", '"um": Unit("um", "mm", 1e-3)', '"um": Unit("um", "mm", 1e-6)'),
             ("units.py", '"Nm": Unit("N m", "N mm", 1e3)', '"Nm": Unit("N m", "N mm", 1.0)'),
             ("units.py", "math.radians(1.0 / 3600.0)", "math.radians(1.0 / 60.0)"),
@@ -1798,6 +1794,32 @@ FAULTS = (
         "for first, gear in ((0, pair.pinion), (len(EDGE_NAMES), pair.wheel))",
         "for first, gear in ((0, pair.wheel), (len(EDGE_NAMES), pair.pinion))",
         "edges/test_places.py::test_arcs_have_the_numbers_of_their_edges_and_begin_a_radius_before_the_end_of_a_face",
+    ),
+    *(
+        Fault(f"numbers of results: {what}", file, text, wrong, f"results/test_result.py::{test}")
+        for what, file, text, wrong, test in (
+            (
+                "figures of numbers are in the units of the dataset",
+                "results/result.py",
+                "of=partial(_number, name, number.factor(head))",
+                "of=partial(_number, name, 1.0)",
+                "test_numbers_are_where_they_are_declared_to_be_and_one_more_is_declared_once",
+            ),
+            (
+                "a file need not have what all results have",
+                "results/result.py",
+                "if number.asked is None or number.asked.by(",
+                "if number.asked is not None and number.asked.by(",
+                "test_numbers_are_where_they_are_declared_to_be_and_one_more_is_declared_once",
+            ),
+            (
+                "the file of tribology keeps no warnings",
+                "tribology/tribology.py",
+                '"warnings": "\\n".join(self.warnings)',
+                '"warnings": ""',
+                "test_numbers_of_tribology_are_where_they_are_declared_to_be",
+            ),
+        )
     ),
 )
 

@@ -2,7 +2,8 @@
 
 from loaded_tca.output.other_results import write_revolution, write_stage, write_tribology
 from loaded_tca.output.overview import describe_scene
-from loaded_tca.output.result_files import describe_results, write_report
+from loaded_tca.output.result_fields import describe_results
+from loaded_tca.output.result_files import write_report
 from loaded_tca.output.rexs import write_rexs
 from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
 from loaded_tca.output.tables import (

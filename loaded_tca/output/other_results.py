@@ -16,11 +16,12 @@ from loaded_tca.loaded.shaft_lines import ShaftLine
 from loaded_tca.output.result_files import csv_table, json_text, known
 from loaded_tca.plain import plain
 from loaded_tca.results.files import Buffer, FilePath, replace_together
+from loaded_tca.results.result import Result
 from loaded_tca.results.revolution import Revolution
 from loaded_tca.stages import StageResult
 from loaded_tca.supports import RollingBearing
 from loaded_tca.tribology import Tribology
-from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, PLACES, QUANTITIES, TORQUE
+from loaded_tca.tribology.quantities import COLUMNS
 from loaded_tca.units import MICROMETRES, as_ending
 
 REVOLUTION_FILES = "revolution.nc", "revolution.json", "revolution.csv", "teeth.csv", "orders.csv"
@@ -50,7 +51,7 @@ def write_revolution(revolution: Revolution, directory: FilePath, more: Mapping[
         If they cannot be written.
     """
     texts = (
-        revolution_json(revolution),
+        figures_json(revolution, warnings=revolution.warnings or ()),
         csv_table(revolution.to_table()),
         teeth_csv(revolution),
         orders_csv(revolution),
@@ -59,14 +60,10 @@ def write_revolution(revolution: Revolution, directory: FilePath, more: Mapping[
     return replace_together(directory, {**dict(zip(REVOLUTION_FILES, contents, strict=True)), **more})
 
 
-def revolution_json(revolution: Revolution) -> str:
-    """Return the figures of each torque as JSON, null where one is not known."""
-    rows = [
-        {"pinion_torque_Nm": 1e-3 * float(torque), **{name: known(value, name) for name, value in figures.items()}}
-        for torque, figures in zip(revolution.torque, revolution.key_figures(), strict=True)
-    ]
-    content = {"title": revolution.scene.title, "torques": rows, "warnings": list(revolution.warnings)}
-    return json_text(content)
+def figures_json(result: Result, **more: Any) -> str:
+    """Return the title, the figures of each torque, null where one is not known, and more of a result as JSON."""
+    rows = [{name: known(value, name) for name, value in figures.items()} for figures in result.key_figures()]
+    return json_text({"title": result.title, "torques": rows, **more})
 
 
 def teeth_csv(revolution: Revolution) -> str:
@@ -122,25 +119,8 @@ def write_tribology(tribology: Tribology, directory: FilePath, more: Mapping[str
     InputError
         If they cannot be written.
     """
-    contents = tribology.to_netcdf(), tribology_csv(tribology).encode(), slices_csv(tribology).encode()
+    contents = tribology.to_netcdf(), csv_table(tribology.to_table()).encode(), slices_csv(tribology).encode()
     return replace_together(directory, {**dict(zip(TRIBOLOGY_FILES, contents, strict=True)), **more})
-
-
-def tribology_csv(tribology: Tribology) -> str:
-    """Return a row for each speed and torque: numbers of the mesh that are known, and where extremes lie."""
-    result, speeds = tribology.result, tribology.conditions.speeds
-    torques = range(len(result.torque))
-    columns: dict[str, list[float]] = {
-        "pinion_speed_rpm": [float(speed) for speed in speeds for _ in torques],
-        "pinion_torque_Nm": [1e-3 * float(torque) for _ in speeds for torque in result.torque],
-    }
-    for name, quantity in QUANTITIES.items():
-        if quantity.dims != TORQUE or tribology.lacking(name):
-            continue
-        columns[_column(name, quantity.unit)] = tribology.by_speed(name).ravel().tolist()
-        for end, (unit, _) in PLACES.items() if name in EXTREMES else ():
-            columns[_column(f"{name}_{end}", unit)] = tribology.by_speed(f"{name}_{end}").ravel().tolist()
-    return csv_table(columns)
 
 
 def slices_csv(tribology: Tribology) -> str:
@@ -149,14 +129,11 @@ def slices_csv(tribology: Tribology) -> str:
     for torque, moment in enumerate(tribology.result.torque):
         table = tribology.slices(torque)
         columns.setdefault("pinion_torque_Nm", []).extend([1e-3 * float(moment)] * len(table))
-        for name in table:
-            columns.setdefault(_column(str(name), COLUMNS[str(name)][0]), []).extend(table[name].astype(float).tolist())
+        for name in map(str, table):
+            ending = as_ending(COLUMNS[name][0])
+            head = f"{name}_{ending}" if ending else name
+            columns.setdefault(head, []).extend(table[name].astype(float).tolist())
     return csv_table(columns)
-
-
-def _column(name: str, unit: str) -> str:
-    """Head of a column: its name with its unit."""
-    return f"{name}_{ending}" if (ending := as_ending(unit)) else name
 
 
 @checked
@@ -187,7 +164,6 @@ def write_stage(result: StageResult, directory: FilePath, more: Mapping[str, Buf
 
 def stage_json(result: StageResult) -> str:
     """Return the figures of each torque, phases and orders as JSON, null where a figure is not known."""
-    rows = [{name: known(value, name) for name, value in figures.items()} for figures in result.key_figures()]
     orders = [
         {
             "order": one.order,
@@ -198,16 +174,14 @@ def stage_json(result: StageResult) -> str:
         }
         for one in result.orders()
     ]
-    content = {
-        "title": result.stage.title,
-        "sun_mesh_phase": result.sun_mesh_phase.tolist(),
-        "ring_mesh_phase": result.ring_mesh_phase.tolist(),
-        "torques": rows,
-        "orders_under_the_last_torque": orders,
-        "findings": list(result.findings()),
-        "warnings": list(result.warnings),
-    }
-    return json_text(content)
+    return figures_json(
+        result,
+        sun_mesh_phase=result.sun_mesh_phase.tolist(),
+        ring_mesh_phase=result.ring_mesh_phase.tolist(),
+        orders_under_the_last_torque=orders,
+        findings=result.findings(),
+        warnings=result.warnings or (),
+    )
 
 
 FORCES = "force_x_N", "force_y_N", "force_z_N", "moment_x_Nm", "moment_y_Nm", "moment_z_Nm"

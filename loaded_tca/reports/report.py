@@ -105,7 +105,7 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
             template, content = "design.html.j2", design_content(subject)
         elif isinstance(subject, StageResult):
             template, content = "stage.html.j2", stage_content(subject)
-            date = date or str(subject.dataset.attrs.get("date", ""))
+            date = date or subject.date
         elif is_study:
             template, content = "study.html.j2", study_content(subject, rank_by)
         else:

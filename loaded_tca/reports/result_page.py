@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.output.overview import HELD, geometry_of_meshes, scene_sections, stage_sections
 from loaded_tca.plain import plain
 from loaded_tca.plots import (
@@ -29,7 +28,8 @@ from loaded_tca.results.summary import known_rows, limits_of, shown
 from loaded_tca.scene import Scene
 from loaded_tca.stages import Stage, StageResult
 from loaded_tca.stages.result import FILES
-from loaded_tca.tribology.summary import summary_rows
+from loaded_tca.tribology import tribology_of
+from loaded_tca.tribology.summary import unknown_in_words
 from loaded_tca.warning_kinds import Kind, kind_of
 
 MOST_TORQUES = 5
@@ -67,15 +67,14 @@ def _lubrication(result: MeshCycle) -> dict[str, Any] | None:
     """What the oil sees, of scenes that say how the pair runs: a line for each number, notes, pictures."""
     if result.scene.operation is None and result.scene.lubricant is None:
         return None
-    with noted_accuracy_warnings(given=False) as sentences:
-        tribology = result.tribology()
-    _, about, *lines = tribology.summary().split("\n")
-    rows, lacking = summary_rows(tribology), [line for line in lines if line.startswith("not known")]
+    tribology = tribology_of(result, warn=False)
+    rows = tribology.rows(tribology.key_figures())
+    lacking = (f"not known: {sentence}" for sentence in unknown_in_words(tribology))
     captions = {name: picture.caption for name, picture in TRIBOLOGY_PICTURES.items()}
     return {
-        "about": about,
+        "about": tribology.scope,
         "table": Table(tuple(rows[1:]), rows[0]),
-        "notes": [*lacking, *dict.fromkeys(sentences)],
+        "notes": [*lacking, *tribology.warnings],
         "pictures": pictures_of(tribology_figures(tribology), captions, result.scene.title),
     }
 
@@ -208,7 +207,7 @@ def stage_content(result: StageResult) -> dict[str, Any]:
     head, *phases = stage_sections(result.stage)["phases"]
     return {
         "title": result.stage.title or "Planetary stage",
-        "analysed_by": str(result.dataset.attrs.get("version", "")),
+        "analysed_by": result.version,
         "held": HELD,
         **stage_geometry(result.stage),
         "phases": Table(tuple(phases[:-1]), ("", f"{head[1]} mesh", f"{head[2]} mesh")),
@@ -218,7 +217,7 @@ def stage_content(result: StageResult) -> dict[str, Any]:
         "findings": result.findings(),
         "orders": _orders(result),
         "files": FILES[1:],
-        "warnings": explained(result.warnings),
+        "warnings": explained(result.warnings or ()),
         "pictures": pictures_of(stage_figures(result), STAGE_CAPTIONS, result.stage.title),
     }
 

@@ -19,7 +19,6 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.numbers import dataset_of
 from loaded_tca.results.pressure_map import PressureMap, place_on_material, sharp_edge_cell
 from loaded_tca.results.root_stress import root_stress_arrays
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, rough_peaks
@@ -99,7 +98,7 @@ def mesh_cycle(
         warn_of_root_stress(carried.torque, arrays["root_tension"], arrays["root_compression"])
     return MeshCycle(
         scene=scene,
-        dataset=dataset_of(
+        dataset=MeshCycle.dataset_of(
             arrays, version=version("loaded_tca"), date=date, warnings="\n".join(dict.fromkeys(warnings))
         ),
         path=path,

@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.results.key_figures import UnderTorque, mean_over_a_pitch
+from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.units import unit_of
@@ -43,6 +43,8 @@ COMPARED: dict[str, dict[str, float]] = {
 """Kind of gears -> by how many percent key figures with such words in their names differ from finite elements in the
 studies of the documentation: the mesh cycle, and root stress. Gears of other kinds were not compared."""
 NO_ESTIMATE = "no estimate"
+ROOT = "root_tension"
+"""Array that all results with root stress have."""
 
 
 def saying(sentence: str) -> Note:
@@ -143,7 +145,7 @@ class Figure:
     Attributes
     ----------
     of : callable
-        Its number under a torque; NaN: not known.
+        Its number, of the result under a torque; NaN: not known.
     label : str
         What lines of text call it, without its unit; {edge} stands for the kind of edge.
     below : str
@@ -160,15 +162,13 @@ class Figure:
         Its derivatives.
     is_part : bool
         Whether it is a part of one, that texts show in %.
-    is_of_roots : bool
-        Whether results without root stress do not have it.
     needs : str
         Array of a result without which it does not have it; default: all have it.
     accuracy : callable, optional
         What is to be known of its accuracy, of name, result, slice of torques and figures under each.
     """
 
-    of: Callable[[UnderTorque], float]
+    of: Callable[[Any], float]
     label: str = ""
     below: str = ""
     column: str = ""
@@ -179,9 +179,13 @@ class Figure:
     rank: int | None = None
     slope: Slope | None = None
     is_part: bool = False
-    is_of_roots: bool = False
     needs: str = ""
     accuracy: Note | None = None
+
+    @property
+    def is_of_roots(self) -> bool:
+        """Whether results without root stress do not have it."""
+        return self.needs == ROOT
 
 
 class Slope(NamedTuple):

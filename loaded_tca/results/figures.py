@@ -14,6 +14,7 @@ import numpy as np
 
 from loaded_tca.arrays import GEARS
 from loaded_tca.results.figure import (
+    ROOT,
     Figure,
     Line,
     Slope,
@@ -59,11 +60,7 @@ def key_figures(result: CycleNumbers, torque: int) -> dict[str, float]:
         Index of the torque.
     """
     under = UnderTorque(result, torque)
-    return {
-        name: figure.of(under)
-        for name, figure in FIGURES.items()
-        if (result.has_root_stress or not figure.is_of_roots) and (not figure.needs or figure.needs in result.dataset)
-    }
+    return {name: figure.of(under) for name, figure in FIGURES.items() if not figure.needs or result.has(figure.needs)}
 
 
 def _of_order(order: int) -> Figure:
@@ -87,7 +84,7 @@ def _of_standard(name: str, axis: str) -> Figure:
 
 def _of_roots(name: str, **texts: Any) -> Figure:
     """Figure of root stress."""
-    return Figure(of=lambda under: under.root[name], is_of_roots=True, **texts)
+    return Figure(of=lambda under: under.root[name], needs=ROOT, **texts)
 
 
 def _of_gear(gear: int) -> dict[str, Figure]:

@@ -21,8 +21,19 @@ if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes
     import xarray
 
 FORMAT = "loaded_tca"
-REVOLUTION, STAGE, STUDY, DESIGN = "revolution", "stage", "study", "design"
+REVOLUTION, STAGE, TRIBOLOGY, STUDY, DESIGN = "revolution", "stage", "tribology", "study", "design"
 """Attribute ``kind`` of files that hold something else than the result of a mesh cycle."""
+KINDS = {
+    REVOLUTION: ("a whole revolution", "read it with Revolution.load"),
+    STAGE: (
+        "a planetary stage",
+        "sun_mesh.nc and ring_mesh.nc beside it are such results; StageResult.load reads the stage",
+    ),
+    TRIBOLOGY: ("tribology", "its numbers are read off a result again by result.tribology()"),
+    STUDY: ("a study", "read it with loaded_tca.studies.load_study"),
+    DESIGN: ("a design", "read it with loaded_tca.studies.load_design"),
+}
+"""What messages call each kind, and how it is read."""
 FORMAT_VERSION = 8
 """Raised whenever the code of one version cannot read the files of another."""
 DIGITS = 64
@@ -185,6 +196,30 @@ def read_dataset(path: FilePath) -> xarray.Dataset:
     if not content[place]:
         raise InputError(f"{path}: damaged: it has no digest of its bytes; run the scene again")
     return dataset
+
+
+def read_kind(path: FilePath, kind: str, what: str) -> xarray.Dataset:
+    """Read a file of one kind as ``read_dataset``.
+
+    Parameters
+    ----------
+    path : str or path
+    kind : str
+        Attribute ``kind``; nothing: of a mesh cycle.
+    what : str
+        What messages call it.
+
+    Raises
+    ------
+    InputError
+        As there, and if it is of another kind, with how to read it.
+    """
+    file = read_dataset(path)
+    of_file = str(file.attrs.get("kind", ""))
+    if of_file != kind:
+        found, reader = KINDS.get(of_file, ("", "read it with load_result"))
+        raise InputError(f"{path}: {found + ', ' if found else ''}not {what}; {reader}")
+    return file
 
 
 @contextmanager

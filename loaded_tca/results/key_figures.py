@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.results.declared import Row
 from loaded_tca.results.load_factors import face_load_factor_by_positions, face_load_factor_error
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.root_stress import root_figures
@@ -140,8 +141,8 @@ def reduced(reduction: Any, values: Array) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class UnderTorque:
-    """A result under one torque.
+class UnderTorque(Row):
+    """A mesh cycle under one torque.
 
     Attributes
     ----------
@@ -151,11 +152,6 @@ class UnderTorque:
     """
 
     result: CycleNumbers
-    row: int
-
-    def __getattr__(self, name: str) -> Any:
-        """Return the numbers of this torque of an array of the result whose first axis is the torque."""
-        return getattr(self.result, name)[self.row]
 
     @cached_property
     def peak(self) -> Contact:

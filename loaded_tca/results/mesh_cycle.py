@@ -6,55 +6,33 @@ Which edges of the two flanks a loaded contact reaches: the tips, the roots, the
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import GEARS
-from loaded_tca.errors import InputError, require
+from loaded_tca.arrays import Array
+from loaded_tca.errors import require
 from loaded_tca.plain import plain
+from loaded_tca.results.declared import PAIRS
 from loaded_tca.results.derivatives import sensitivities
 from loaded_tca.results.dynamics import dynamics_of
-from loaded_tca.results.figures import key_figures
-from loaded_tca.results.files import (
-    DESIGN,
-    REVOLUTION,
-    STAGE,
-    STUDY,
-    Buffer,
-    FilePath,
-    arrays_of,
-    netcdf_of,
-    read_dataset,
-    replace_file,
-    variables_of,
-)
-from loaded_tca.results.numbers import CycleNumbers, dataset_of
+from loaded_tca.results.figures import FIGURES
+from loaded_tca.results.files import Buffer, variables_of
+from loaded_tca.results.key_figures import UnderTorque
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import arrays_of_maps, maps_from
-from loaded_tca.results.quantities import (
-    ABOUT,
-    BEARING_QUANTITIES,
-    IN_FILES,
-    MOTIONS,
-    PAIRS,
-    PATH_PARTS,
-    QUANTITIES,
-    ROLLING_QUANTITIES,
-    ROOT_PARTS,
-    SIZES,
-    SUPPORT_QUANTITIES,
-    not_asked,
-)
+from loaded_tca.results.quantities import IN_FILES, MOTIONS, PATH_PARTS, SIZES
+from loaded_tca.results.result import AnalysisResult
 from loaded_tca.results.root_stress import RootStressMap, root_stress_maps
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import signed, summary_text
 from loaded_tca.results.warnings import findings_of
-from loaded_tca.scene import parse_scene
+from loaded_tca.scene import Scene
 from loaded_tca.unloaded import ContactPath
 
 if TYPE_CHECKING:
@@ -64,7 +42,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class MeshCycle(CycleNumbers):
+class MeshCycle(CycleNumbers, AnalysisResult):
     """Loaded contact over the positions of a pitch, under each torque.
 
     Every name of ``QUANTITIES`` and, with root stress, of ``ROOT_PARTS`` is an attribute too: ``result.peak_pressure``
@@ -91,6 +69,11 @@ class MeshCycle(CycleNumbers):
         the result comes from a file, which does not keep them: they are made again of the maps when needed, to the last
         bit.
     """
+
+    WHAT: ClassVar = "the result of a mesh cycle"
+    TITLE: ClassVar = "Loaded tooth contact"
+    FIGURES: ClassVar = FIGURES
+    BESIDE: ClassVar = IN_FILES
 
     def __repr__(self) -> str:
         peak = np.nanmax(self.peak_pressure, initial=0.0)
@@ -258,12 +241,17 @@ class MeshCycle(CycleNumbers):
         highest edge pressure; "there": at that of the highest peak where Hertz holds.
         Means are over the positions. NaN: not known.
         """
-        return tuple(key_figures(self, torque) for torque in range(len(self.torque)))
+        return super().key_figures()
+
+    def under(self, torque: int) -> UnderTorque:
+        """What figures are read off: the result under a torque, with its highest pressures and largest force."""
+        return UnderTorque(self, torque)
 
     def summary(self) -> str:
         """Return the key figures in the engineer's units, one column per torque, and the warnings of the analysis."""
-        about = self.key_figures(), self.warnings or (), self.findings()
-        return summary_text(self.scene.title, self.scope, *about)
+        figures = self.key_figures()
+        more = [row for row, name in zip(self.rows(figures), self.figures, strict=True) if name not in self.FIGURES]
+        return summary_text(self.title or self.TITLE, self.scope, figures, self.warnings or (), self.findings(), more)
 
     def findings(self) -> tuple[str, ...]:
         """Return sentences on the largest pressures, if edges make them.
@@ -289,82 +277,33 @@ class MeshCycle(CycleNumbers):
             carrying = "one tooth pair carries the whole load (load sharing off)"
         return f"{where}; {carrying}; {self.bending}"
 
-    @checked
-    def save(self, path: FilePath) -> None:
-        """Write everything to a NetCDF-3 file, whole or not at all; ``load`` reads it back unchanged.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, NetCDF-3 has no type for what was added to the dataset, or the scene asks for
-            root stress that the result does not have.
-        """
-        replace_file(path, self.to_netcdf())
-
     def to_netcdf(self) -> Buffer:
         """Return the bytes of the file that ``save`` writes, with the same errors."""
-        if self.scene.analysis.root_stress and not self.has_root_stress:
-            raise not_asked("scene")
+        if self.scene.analysis.root_stress:
+            self.root_tension  # noqa: B018 (raises a NotAskedError where there is none)
+        return super().to_netcdf()
+
+    def stored(self) -> xarray.Dataset:
+        """The dataset with paths and maps, as files have them."""
         paths = (self.path, *self.paths)
-        arrays = {f"path_{name}": np.stack([getattr(one, name) for one in paths]) for name in PATH_PARTS}
-        arrays |= arrays_of_maps(self.maps)
-        whole = self.dataset.assign(variables_of(IN_FILES, arrays))
-        return netcdf_of(whole.assign_attrs(title=self.scene.title, scene_toml=self.scene.to_toml()))
+        arrays = {f"path_{name}": np.stack([getattr(path, name) for path in paths]) for name in PATH_PARTS}
+        return self.dataset.assign(variables_of(IN_FILES, arrays | arrays_of_maps(self.maps)))
 
     @classmethod
-    @checked
-    def load(cls, path: FilePath) -> MeshCycle:
-        """Read a file that ``save`` wrote.
+    def problem_of(cls, file: xarray.Dataset) -> str:
+        """That a file, as of sensitivities, has neither paths nor maps."""
+        return "" if IN_FILES.keys() & file.variables.keys() else "it has neither paths of contact nor maps"
 
-        Raises
-        ------
-        InputError
-            If it cannot be read, is damaged, or is no such file.
-        """
-        file = read_dataset(path)
-        kind = file.attrs.get("kind")
-        if kind == REVOLUTION:
-            raise InputError(
-                f"{path}: a whole revolution, not the result of a mesh cycle; read it with Revolution.load"
-            )
-        if kind == STAGE:
-            beside = "sun_mesh.nc and ring_mesh.nc beside it are such results; StageResult.load reads the stage"
-            raise InputError(f"{path}: a planetary stage, not the result of a mesh cycle; {beside}")
-        if kind in (STUDY, DESIGN):
-            reader = f"loaded_tca.studies.load_{kind}"
-            raise InputError(f"{path}: a {kind}, not the result of a mesh cycle; read it with {reader}")
-        if not IN_FILES.keys() & file.variables.keys():  # as of sensitivities, rather than a line for all it lacks
-            raise InputError(f"{path}: not the result of a mesh cycle: it has neither paths of contact nor maps")
-        try:
-            scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml", folder=None)
-            supported = SUPPORT_QUANTITIES if scene.is_supported else {}
-            on_shafts = [gear for gear in GEARS if getattr(scene, gear).shaft is not None]
-            supported = supported | {
-                name: BEARING_QUANTITIES[name] for name in map("{}_bearing_force".format, on_shafts)
-            }
-            supported |= {name: part for name, part in ROLLING_QUANTITIES.items() if name in file.variables}
-            in_dataset = (
-                QUANTITIES | supported | (ROOT_PARTS if scene.analysis.root_stress or "root_tension" in file else {})
-            )
-            arrays = arrays_of(file, in_dataset | IN_FILES)
-            expected = {**SIZES, "end": 2, "edge": 8, "path": 1 + file.sizes["pair"]}
-            expected |= {"motion": MOTIONS} if supported else {}
-            checks = [(name, file.sizes[name] == size, f"{size}") for name, size in expected.items()]
-            checks += [(name, file.sizes[name] > 0, "at least 1") for name in PAIRS]
-            require(*((holds, f"{name}: {file.sizes[name]} long, expected {size}") for name, holds, size in checks))
-            maps = maps_from(arrays)
-        except InputError as error:
-            raise InputError([f"{path}: not the result of a mesh cycle", *error.problems]) from None
-        about = {"version": "", **{name: str(file.attrs[name]) for name in ABOUT if name in file.attrs}}
-        added = {name: file.variables[name] for name in file.data_vars if name not in in_dataset | IN_FILES}
+    @classmethod
+    def parts_of(cls, subject: Scene, file: xarray.Dataset, arrays: Mapping[str, Array]) -> dict[str, Any]:  # noqa: ARG003
+        """Paths and maps of a file."""
+        lengths = {**SIZES, "motion": MOTIONS, "end": 2, "edge": 8, "path": 1 + file.sizes["pair"]}
+        expected = {name: length for name, length in lengths.items() if name in file.sizes}
+        checks = [(name, file.sizes[name] == length, f"{length}") for name, length in expected.items()]
+        checks += [(name, file.sizes[name] > 0, "at least 1") for name in PAIRS]
+        require(*((holds, f"{name}: {file.sizes[name]} long, expected {length}") for name, holds, length in checks))
         leading, *paths = (
             ContactPath(**{entry.name: arrays[f"path_{entry.name}"][k] for entry in fields(ContactPath)})
             for k in range(expected["path"])
         )
-        return cls(
-            scene=scene,
-            dataset=dataset_of(arrays, **about).assign(added),
-            path=leading,
-            paths=tuple(paths),
-            maps=maps,
-        )
+        return {"path": leading, "paths": tuple(paths), "maps": maps_from(arrays)}

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,44 +15,22 @@ from loaded_tca.compliance.body import body_torsion
 from loaded_tca.errors import InputError, NotAskedError
 from loaded_tca.loaded.sensitivity import LoadedStates
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.files import variables_of
+from loaded_tca.results.declared import PAIRS, Numbers
 from loaded_tca.results.pressure_map import Maps
 from loaded_tca.results.quantities import (
-    BEARING_QUANTITIES,
     COORDINATES,
+    CYCLE_NUMBERS,
     OF_THE_EDGE,
     OF_THE_PEAK,
-    PAIRS,
-    QUANTITIES,
     ROLLING_QUANTITIES,
-    ROOT_PARTS,
-    SUPPORT_QUANTITIES,
-    not_asked,
+    ROOT_STRESS,
 )
 from loaded_tca.scene import Scene
-from loaded_tca.units import MICROMETRES
 from loaded_tca.unloaded import ContactPath
 from loaded_tca.unloaded.teeth import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
-
-
-OF_SUPPORTS = (*SUPPORT_QUANTITIES, *BEARING_QUANTITIES, *ROLLING_QUANTITIES)
-"""Numbers of results whose gears give way as a whole."""
-
-
-def dataset_of(arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
-    """Make the dataset of a mesh cycle of the arrays of all ``QUANTITIES`` and the attributes of ``ABOUT``.
-
-    Those of ``ROOT_PARTS`` and ``SUPPORT_QUANTITIES`` are part of it where there are any.
-    """
-    import xarray
-
-    optional = SUPPORT_QUANTITIES | BEARING_QUANTITIES | ROLLING_QUANTITIES | ROOT_PARTS
-    variables = variables_of(QUANTITIES | {name: part for name, part in optional.items() if name in arrays}, arrays)
-    coordinates = {name: variables.pop(name) for name in COORDINATES}
-    return xarray.Dataset(variables, coordinates, about)
 
 
 def index_or_largest(torques: Array, torque: int | None = None) -> int:
@@ -62,12 +39,15 @@ def index_or_largest(torques: Array, torque: int | None = None) -> int:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class CycleNumbers:
+class CycleNumbers(Numbers):
     """Numbers of the loaded contact over the positions of a pitch, under each torque, and what is looked up in them.
 
     What is computed from these numbers is computed when it is asked for, so that it follows what is written into the
     dataset. Attributes are those of :class:`loaded_tca.results.MeshCycle`, which adds texts, files and derivatives.
     """
+
+    NUMBERS: ClassVar = CYCLE_NUMBERS
+    COORDINATES: ClassVar = COORDINATES
 
     scene: Scene
     dataset: xarray.Dataset
@@ -77,54 +57,15 @@ class CycleNumbers:
     states: tuple[Scene, tuple[LoadedStates, ...]] | None = field(default=None, repr=False, compare=False)
 
     def __getattr__(self, name: str) -> Any:
-        if name in (*ROOT_PARTS, "root_stress") and not self.has_root_stress:
-            raise not_asked(name)
-        if name in SUPPORT_QUANTITIES and name not in self.dataset:
-            raise NotAskedError(f"{name}: the scene has no supports; [pinion.support] or [wheel.support] gives them")
-        if name in BEARING_QUANTITIES and name not in self.dataset:
-            raise NotAskedError(f"{name}: the gear has no shaft; [{name.partition('_')[0]}.shaft] gives it")
-        if name in ROLLING_QUANTITIES and name not in self.dataset:
-            gear = name.partition("_")[0]
-            raise NotAskedError(
-                f"{name}: the gear has no rolling bearings; type of [[{gear}.shaft.bearings]] gives them"
-            )
-        if name not in (*QUANTITIES, *OF_SUPPORTS, *ROOT_PARTS) or name not in self.dataset:
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-        values = self.dataset[name].values
-        return values if values.ndim else values.item()
-
-    def __dir__(self) -> list[str]:
-        return [
-            *super().__dir__(),
-            *QUANTITIES,
-            *(name for name in (*OF_SUPPORTS, *ROOT_PARTS) if name in self.dataset),
-        ]
-
-    @property
-    def version(self) -> str:
-        """Version of the package that made the result."""
-        return str(self.dataset.attrs["version"])
-
-    @property
-    def date(self) -> str:
-        """Date of the analysis after ISO 8601, in UTC; empty if the file of the result does not have it."""
-        return str(self.dataset.attrs.get("date", ""))
-
-    @property
-    def warnings(self) -> tuple[str, ...] | None:
-        """Sentences of the accuracy warnings of the analysis; None if the file of the result does not have them."""
-        sentences = self.dataset.attrs.get("warnings")
-        return None if sentences is None else tuple(str(sentences).splitlines())
+        if name == "root_stress":  # whose NotAskedError is an AttributeError, after which Python asks here
+            name = next(iter(ROOT_STRESS))
+            raise NotAskedError(f"root_stress: {self.lacking(name)}")
+        return super().__getattr__(name)
 
     @cached_property
     def gear_pair(self) -> GearPair:
         """The gears of the scene in space."""
         return self.scene.pair()
-
-    @property
-    def um_per_rad(self) -> float:
-        """What a transmission error of one rad is at the base circle of the wheel [um]."""
-        return MICROMETRES * self.wheel_base_radius
 
     @property
     def has_root_stress(self) -> bool:
@@ -181,11 +122,7 @@ class CycleNumbers:
             For any other name.
         """
         if not isinstance(name, str) or name not in self.dataset or self.dataset[name].dims != PAIRS:
-            known = (
-                f"; result.{name} has its numbers as they are"
-                if name in (*QUANTITIES, *OF_SUPPORTS, *ROOT_PARTS)
-                else ""
-            )
+            known = f"; result.{name} has its numbers as they are" if name in self.NUMBERS else ""
             raise InputError(f"name: {name!r} is no array (torque, position, pair) of the result{known}")
         values = self.dataset[name].values
         if name in OF_THE_PEAK:

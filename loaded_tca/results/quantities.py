@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from loaded_tca.arrays import GEARS as GEARS
-from loaded_tca.errors import NotAskedError
+from loaded_tca.results.declared import CYCLE, OVER_CYCLE, PAIRS, Asked, Number, numbers
 from loaded_tca.results.files import Part
 
-CYCLE = ("torque", "position")
-PAIRS = (*CYCLE, "pair")
-
 QUANTITIES: dict[str, Part] = {
-    "torque": (("torque",), "N mm", "pinion torque"),
-    "pair": (("pair",), "1", "tooth pair: 0 is in contact at the pitch point at phi1 = 0, +1 follows it"),
+    "torque": Number(("torque",), "N mm", "pinion torque", column="pinion_torque_Nm"),
+    "pair": Number(
+        ("pair",), "1", "tooth pair: 0 is in contact at the pitch point at phi1 = 0, +1 follows it", column="tooth_pair"
+    ),
     "pinion_angle": (("position",), "rad", "angle of the pinion phi1"),
     "wheel_base_radius": ((), "mm", "base radius of the wheel"),
     "face_width": ((), "mm", "common face width"),
@@ -21,14 +20,16 @@ QUANTITIES: dict[str, Part] = {
         "most pitches between two tooth pairs that the bending of the teeth couples; 0 where no teeth bend",
     ),
     "max_pressure": ((), "MPa", "cap on the pressure; NaN: elastic"),
-    "unloaded_transmission_error": (("position",), "rad", "unloaded transmission error, absolute"),
+    "unloaded_transmission_error": Number(
+        ("position",), "rad", "unloaded transmission error, absolute", at_base_circle=True
+    ),
     "face_load_factor": (("torque",), "1", "face load factor K_Hbeta, from 30 strips of the face"),
     "transverse_load_factor": (("torque",), "1", "transverse load factor K_Halpha; NaN for bevel gears"),
-    "transmission_error": (CYCLE, "rad", "loaded transmission error, absolute"),
+    "transmission_error": Number(CYCLE, "rad", "loaded transmission error, absolute", at_base_circle=True),
     "mesh_stiffness": (CYCLE, "N/(mm um)", "tangent of the force over the face width to the transmission error"),
     "secant_stiffness": (CYCLE, "N/(mm um)", "force over the face width, over the transmission error it adds"),
     "loaded_pairs": (CYCLE, "1", "number of tooth pairs under load"),
-    "load_share": (PAIRS, "1", "share of the tooth pair in the torque"),
+    "load_share": Number(PAIRS, "1", "share of the tooth pair in the torque", columns=("load_share_pair_{}",)),
     "normal_force": (PAIRS, "N", "normal force on the tooth pair"),
     "peak_pressure": (
         PAIRS,
@@ -44,28 +45,44 @@ QUANTITIES: dict[str, Part] = {
     ),
     "edge_is_rounded": (PAIRS, "1", "whether that edge is rounded; the pressure at a sharp one is mesh-dependent"),
     "edge_pressure_error": (PAIRS, "1", "estimated relative error of the pressure at a rounded edge by its columns"),
-    "edge_radius": (PAIRS, "mm", "radius on the pinion of the edge pressure"),
-    "edge_axial": (PAIRS, "mm", "axial coordinate on the pinion of the edge pressure"),
+    "edge_radius": Number(
+        PAIRS, "mm", "radius on the pinion of the edge pressure", column="edge_pinion_diameter_mm", times=2.0
+    ),
+    "edge_axial": Number(
+        PAIRS, "mm", "axial coordinate on the pinion of the edge pressure", column="edge_pinion_axial_mm"
+    ),
     "central_pressure": (
         PAIRS,
         "MPa",
         "contact pressure beside the unloaded contact point, mesh-dependent where that is on a sharp edge",
     ),
-    "peak_radius": (PAIRS, "mm", "radius on the pinion of the peak pressure"),
-    "peak_axial": (PAIRS, "mm", "axial coordinate on the pinion of the peak pressure"),
+    "peak_radius": Number(
+        PAIRS, "mm", "radius on the pinion of the peak pressure", column="peak_pinion_diameter_mm", times=2.0
+    ),
+    "peak_axial": Number(
+        PAIRS, "mm", "axial coordinate on the pinion of the peak pressure", column="peak_pinion_axial_mm"
+    ),
     "hertz_pressure": (
         PAIRS,
         "MPa",
         "peak pressure after Hertz at the contact point or of the line; NaN where Hertz does not hold",
     ),
-    "hertz_semi_minor": (PAIRS, "mm", "half width across the contact after Hertz"),
-    "hertz_semi_major": (PAIRS, "mm", "half length of the Hertz ellipse, or of the loaded line"),
+    "hertz_semi_minor": Number(
+        PAIRS, "mm", "half width across the contact after Hertz", column="hertz_width_mm", times=2.0
+    ),
+    "hertz_semi_major": Number(
+        PAIRS, "mm", "half length of the Hertz ellipse, or of the loaded line", column="hertz_length_mm", times=2.0
+    ),
     "contact_width": (PAIRS, "mm", "full width of the contact across, from the pressure map"),
     "contact_length": (PAIRS, "mm", "full length of the contact, from the pressure map, but not beyond the face"),
     "line_load": (PAIRS, "N/mm", "largest force per length along the contact; at a face end mesh-dependent"),
     "line_load_ratio": (PAIRS, "1", "largest line load over the force spread evenly along the whole face"),
-    "contact_deformation": (PAIRS, "mm", "approach of the two flanks as half-spaces, along the normal"),
-    "tooth_deflection": (PAIRS, "mm", "deflection of the teeth and bodies along the normal"),
+    "contact_deformation": Number(
+        PAIRS, "mm", "approach of the two flanks as half-spaces, along the normal", column="contact_deformation_um"
+    ),
+    "tooth_deflection": Number(
+        PAIRS, "mm", "deflection of the teeth and bodies along the normal", column="tooth_deflection_um"
+    ),
     "on_edge": (PAIRS, "1", "whether the contact reaches an edge of a flank"),
     "on_relief_start": (PAIRS, "1", "whether the start of a linear relief lies in the contact"),
     "cells_across": (PAIRS, "1", "cells of the grid across the contact"),
@@ -89,7 +106,6 @@ OF_THE_PEAK = frozenset(
 """Numbers whose value at a position is that of the pair with the highest peak pressure."""
 OF_THE_EDGE = frozenset({"edge_pressure", "edge_is_rounded", "edge_pressure_error", "edge_radius", "edge_axial"})
 
-OVER_CYCLE = ("torque", "position", "gear")
 ROOT_QUANTITIES: dict[str, Part] = {
     "root_tension": (OVER_CYCLE, "MPa", "largest stress at the roots of all teeth of pinion and wheel, on both sides"),
     "root_compression": (OVER_CYCLE, "MPa", "smallest stress there, negative in compression"),
@@ -266,10 +282,24 @@ IN_FILES: dict[str, Part] = {
 }
 """What a file has beside ``QUANTITIES``: the paths, that of the leading contact before those of the pairs; the maps."""
 
-ABOUT = ("version", "date", "warnings")
-"""Attributes of the dataset: version of the package, date and accuracy warnings of the analysis, a line each."""
-
-
-def not_asked(name: str) -> NotAskedError:
-    """Error of a result without root stress."""
-    return NotAskedError(f"{name}: the result has no root stress; set analysis.root_stress = true")
+ROOTS_ASKED = Asked(
+    lambda scene, _: scene.analysis.root_stress, "the result has no root stress; set analysis.root_stress = true"
+)
+SUPPORTS_ASKED = Asked(
+    lambda scene, _: scene.is_supported, "the scene has no supports; [pinion.support] or [wheel.support] gives them"
+)
+SHAFT_ASKED = Asked(
+    lambda scene, gear: getattr(scene, gear).shaft is not None, "the gear has no shaft; [{gear}.shaft] gives it"
+)
+ROLLING_ASKED = Asked(  # which a file has where the scene does
+    lambda *_: False, "the gear has no rolling bearings; type of [[{gear}.shaft.bearings]] gives them"
+)
+"""When a result has numbers of root stress, of supports, of shafts and of rolling bearings."""
+OF_SUPPORTS = {
+    **numbers(SUPPORT_QUANTITIES, SUPPORTS_ASKED),
+    **numbers(BEARING_QUANTITIES, SHAFT_ASKED),
+    **numbers(ROLLING_QUANTITIES, ROLLING_ASKED),
+}
+ROOT_STRESS = numbers(ROOT_PARTS, ROOTS_ASKED)
+CYCLE_NUMBERS = numbers(QUANTITIES) | OF_SUPPORTS | ROOT_STRESS
+"""All numbers of mesh cycles by their names: those that all have, of supports, of root stress."""

@@ -10,41 +10,25 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array, index_checks
-from loaded_tca.errors import InputError, require
+from loaded_tca.errors import require
+from loaded_tca.results.declared import CYCLE, OVER_CYCLE, Number, Row
 from loaded_tca.results.dynamics import PARTS, TORQUE, teeth_and_radii
-from loaded_tca.results.files import (
-    REVOLUTION,
-    FilePath,
-    Part,
-    arrays_of,
-    netcdf_of,
-    read_dataset,
-    replace_file,
-    variables_of,
-)
+from loaded_tca.results.figure import ROOT, Figure
+from loaded_tca.results.files import REVOLUTION
 from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.quantities import (
-    BEARING_QUANTITIES,
-    CYCLE,
-    OVER_CYCLE,
-    QUANTITIES,
-    ROLLING_QUANTITIES,
-    ROOT_QUANTITIES,
-    SUPPORT_QUANTITIES,
-)
-from loaded_tca.results.summary import shown
-from loaded_tca.scene import Scene, parse_scene
+from loaded_tca.results.quantities import COORDINATES, CYCLE_NUMBERS, OF_SUPPORTS
+from loaded_tca.results.result import AnalysisResult, figures_of
+from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
-from loaded_tca.units import MICROMETRES
+from loaded_tca.units import without_unit
 
 if TYPE_CHECKING:
     import xarray
@@ -52,31 +36,37 @@ if TYPE_CHECKING:
 SIDEBANDS = 5
 """Orders of a gear beside a mesh order that are named its sidebands."""
 
-OF_TEETH: dict[str, Part] = {
-    "pinion_tooth": (("position", "pair"), "1", "tooth of the pinion, from 0"),
-    "wheel_tooth": (("position", "pair"), "1", "tooth of the wheel, from 0"),
+OF_TEETH = {
+    f"{gear}_tooth": Number(("position", "pair"), "1", f"tooth of the {gear}, from 0", columns=(f"{gear}_tooth",))
+    for gear in GEARS
 }
-REVOLUTION_QUANTITIES: dict[str, Part] = {
-    "torque": QUANTITIES["torque"],
-    "pinion_angle": (("position",), "rad", "angle of the pinion phi1, from 0 at the first position"),
-    "pair": (("pair",), "1", "tooth pair: 0 comes to the pitch point where the pitch begins, +1 after it"),
-    "wheel_base_radius": QUANTITIES["wheel_base_radius"],
-    "face_width": QUANTITIES["face_width"],
+REVOLUTION_QUANTITIES: dict[str, Number] = {
+    "torque": CYCLE_NUMBERS["torque"].changed(label="pinion torque"),
+    "pinion_angle": CYCLE_NUMBERS["pinion_angle"].changed(
+        text="angle of the pinion phi1, from 0 at the first position"
+    ),
+    "pair": Number(("pair",), "1", "tooth pair: 0 comes to the pitch point where the pitch begins, +1 after it"),
+    **{name: CYCLE_NUMBERS[name] for name in ("wheel_base_radius", "face_width")},
     **OF_TEETH,
-    "rigid_transmission_error": (("position",), "rad", "transmission error without load, absolute"),
-    **{name: QUANTITIES[name] for name in ("transmission_error", "mesh_stiffness", "loaded_pairs", "load_share")},
-    **{name: QUANTITIES[name] for name in ("normal_force", "peak_pressure", "tooth_deflection", "on_edge")},
+    "rigid_transmission_error": Number(
+        ("position",), "rad", "transmission error without load, absolute", columns=("rigid_transmission_error_um",)
+    ),
+    "transmission_error": CYCLE_NUMBERS["transmission_error"].changed(columns=("transmission_error_um",)),
+    **{name: CYCLE_NUMBERS[name] for name in ("mesh_stiffness", "loaded_pairs")},
+    "load_share": CYCLE_NUMBERS["load_share"].changed(columns=("load_share_pair_{:+d}",)),
+    "normal_force": CYCLE_NUMBERS["normal_force"].changed(columns=()),
+    "peak_pressure": CYCLE_NUMBERS["peak_pressure"].changed(columns=("peak_pressure_pair_{:+d}_MPa",)),
+    **{name: CYCLE_NUMBERS[name].changed(columns=()) for name in ("tooth_deflection", "on_edge")},
+    **OF_SUPPORTS,
+    **{name: CYCLE_NUMBERS[name] for name in ("root_tension", "root_compression")},
+    "root_tension_tooth": Number(
+        OVER_CYCLE,
+        "1",
+        "tooth of the pinion and of the wheel that has the tension, from 0",
+        asked=CYCLE_NUMBERS["root_tension"].asked,
+    ),
 }
-"""Name in ``Revolution.dataset`` -> dimensions, unit, long name."""
-ROOTS: dict[str, Part] = {
-    "root_tension": ROOT_QUANTITIES["root_tension"],
-    "root_compression": ROOT_QUANTITIES["root_compression"],
-    "root_tension_tooth": (OVER_CYCLE, "1", "tooth of the pinion and of the wheel that has the tension, from 0"),
-}
-"""Those of scenes that ask for root stress."""
-OF_SUPPORTS = SUPPORT_QUANTITIES | BEARING_QUANTITIES | ROLLING_QUANTITIES
-"""Those of gears on supports; of shafts and of rolling bearings where there are any."""
-COORDINATES = "torque", "pinion_angle", "pair"
+"""Numbers of a revolution: those that all have, of gears on supports, of root stress."""
 
 
 class Spectrum(NamedTuple):
@@ -98,8 +88,75 @@ class Spectrum(NamedTuple):
     kind: Array
 
 
+class UnderTorque(Row):
+    """A revolution under one torque."""
+
+    @cached_property
+    def amplitudes(self) -> dict[str, float]:
+        """Amplitudes of the transmission error [um] by the kinds of their orders."""
+        spectrum = self.result.spectrum(self.row)
+        return dict(zip(spectrum.kind.tolist(), spectrum.amplitude.tolist(), strict=True))
+
+    def place(self, name: str, *end: int) -> tuple[int, ...]:
+        """Indices of the largest number of an array (position, ...), at an end of its axes."""
+        values = getattr(self, name)[(..., *end)]
+        known = np.where(np.isfinite(values), values, -math.inf)
+        return (*map(int, np.unravel_index(int(known.argmax()), known.shape)), *end)
+
+    def largest(self, name: str, *end: int) -> float:
+        """The largest number itself."""
+        return float(getattr(self, name)[self.place(name, *end)])
+
+
+def _deviation(name: str, *, rigid: bool = False) -> Figure:
+    """Composite deviation by the name of the method that has it."""
+    return Figure(of=lambda under: getattr(under.result, name)(None if rigid else under.row))
+
+
+def _largest_of_pairs(figure: str, name: str) -> dict[str, Figure]:
+    """The largest number of tooth pairs, and the teeth of the pair that has it."""
+    return {
+        figure: Figure(of=lambda under: under.largest(name)),
+        **{f"{gear}_tooth_of_{without_unit(figure)}": Figure(of=partial(_tooth, gear, name)) for gear in GEARS},
+    }
+
+
+def _tooth(gear: str, name: str, under: UnderTorque) -> int:
+    return int(getattr(under.result, f"{gear}_tooth")[under.place(name)])
+
+
+def _root_tension(k: int) -> dict[str, Figure]:
+    """The largest root tension of a gear, and the tooth that has it."""
+    return {
+        f"{GEARS[k]}_root_tension_MPa": Figure(of=lambda under: under.largest(ROOT, k), needs=ROOT),
+        f"{GEARS[k]}_tooth_of_root_tension": Figure(
+            of=lambda under: int(under.root_tension_tooth[under.place(ROOT, k)]), needs=ROOT
+        ),
+    }
+
+
+FIGURES: dict[str, Figure] = {
+    **figures_of(REVOLUTION_QUANTITIES),
+    "total_single_flank_deviation_um": _deviation("total_deviation"),
+    "tooth_to_tooth_single_flank_deviation_um": _deviation("tooth_to_tooth_deviation"),
+    "rigid_total_single_flank_deviation_um": _deviation("total_deviation", rigid=True),
+    "rigid_tooth_to_tooth_single_flank_deviation_um": _deviation("tooth_to_tooth_deviation", rigid=True),
+    "first_mesh_order_um": Figure(of=lambda under: under.amplitudes.get("mesh 1", math.nan)),
+    "largest_sideband_um": Figure(
+        of=lambda under: max(
+            (size for kind, size in under.amplitudes.items() if kind.startswith("mesh 1 ")), default=math.nan
+        )
+    ),
+    **_largest_of_pairs("largest_load_share", "load_share"),
+    **_largest_of_pairs("peak_pressure_MPa", "peak_pressure"),
+    **_root_tension(0),
+    **_root_tension(1),
+}
+"""Key figures of a revolution by their names."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Revolution:
+class Revolution(AnalysisResult):
     """Loaded contact over the positions of a whole revolution, under each torque.
 
     Attributes
@@ -114,6 +171,13 @@ class Revolution:
         Pressure maps by the indices of torque and position, for each pair one or None, of the positions whose maps were
         asked for; files do not have them.
     """
+
+    KIND: ClassVar = REVOLUTION
+    WHAT: ClassVar = "a whole revolution"
+    TITLE: ClassVar = "Whole revolution"
+    NUMBERS: ClassVar = REVOLUTION_QUANTITIES
+    COORDINATES: ClassVar = COORDINATES
+    FIGURES: ClassVar = FIGURES
 
     scene: Scene
     dataset: xarray.Dataset
@@ -141,21 +205,6 @@ class Revolution:
     def per_pitch(self) -> int:
         """Positions in each pitch."""
         return self._asked.positions_per_pitch
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Sentences of the accuracy warnings of the analysis."""
-        return tuple(str(self.dataset.attrs.get("warnings", "")).splitlines())
-
-    @property
-    def torque(self) -> Array:
-        """Pinion torques (m,) [N mm]."""
-        return self.dataset["torque"].values
-
-    @property
-    def um_per_rad(self) -> float:
-        """What a transmission error of one rad is at the base circle of the wheel [um]."""
-        return MICROMETRES * float(self.dataset["wheel_base_radius"])
 
     @property
     def counted_by(self) -> int:
@@ -267,81 +316,18 @@ class Revolution:
         parts["pinion_angle"] = (("torque", "tooth"), where, self.dataset["pinion_angle"].attrs)
         return xarray.Dataset(parts, {"torque": self.torque, "tooth": np.arange(count)})
 
-    def key_figures(self) -> tuple[dict[str, float], ...]:
-        """Return the figures of the revolution for each torque, by names that end in their unit."""
-        return tuple(self._figures(torque) for torque in range(len(self.torque)))
-
-    def _figures(self, torque: int) -> dict[str, float]:
-        spectrum = self.spectrum(torque)
-        kinds = dict(zip(spectrum.kind.tolist(), spectrum.amplitude.tolist(), strict=True))
-        sidebands = [size for kind, size in kinds.items() if kind.startswith("mesh 1 ")]
-        figures = {
-            "total_single_flank_deviation_um": self.total_deviation(torque),
-            "tooth_to_tooth_single_flank_deviation_um": self.tooth_to_tooth_deviation(torque),
-            "rigid_total_single_flank_deviation_um": self.total_deviation(),
-            "rigid_tooth_to_tooth_single_flank_deviation_um": self.tooth_to_tooth_deviation(),
-            "first_mesh_order_um": kinds.get("mesh 1", math.nan),
-            "largest_sideband_um": max(sidebands, default=math.nan),
-        }
-        for name, figure in (("largest_load_share", "largest_load_share"), ("peak_pressure", "peak_pressure_MPa")):
-            values = self.dataset[name.removeprefix("largest_")].values[torque]
-            known = np.where(np.isfinite(values), values, -math.inf)
-            at = np.unravel_index(int(known.argmax()), known.shape)
-            figures[figure] = float(values[at])
-            for gear in GEARS:
-                figures[f"{gear}_tooth_of_{name}"] = int(self.dataset[f"{gear}_tooth"].values[at])
-        if "root_tension" in self.dataset:
-            tension = self.dataset["root_tension"].values[torque]
-            for k, gear in enumerate(GEARS):
-                place = int(np.nanargmax(tension[:, k]))
-                figures[f"{gear}_root_tension_MPa"] = float(tension[place, k])
-                tooth = self.dataset["root_tension_tooth"].values[torque, place, k]
-                figures[f"{gear}_tooth_of_root_tension"] = int(tooth)
-        return figures
-
-    def summary(self) -> str:
-        """Return the figures, a column for each torque, and the warnings of the analysis."""
-        figures = self.key_figures()
-        rows = {"pinion torque [N m]": [f"{1e-3 * torque:.4g}" for torque in self.torque]}
-        for name in figures[0]:
-            label, _, unit = name.rpartition("_")
-            titled = f"{label} [{unit}]" if unit in ("um", "MPa") else name
-            rows[titled.replace("_", " ")] = [shown(one[name], name) for one in figures]
-        width = 2 + max(len(cell) for cells in rows.values() for cell in cells)
-        labels = max(map(len, rows))
-        table = [f"{name:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for name, cells in rows.items()]
-        scope = f"{self.pitches} pitches, {self.per_pitch} positions each, teeth counted from 0"
-        warned = [f"warning: {sentence}" for sentence in self.warnings]
-        return "\n".join([self.scene.title or "Whole revolution", scope, *table, *warned])
-
-    def to_table(self) -> dict[str, Array]:
-        """Return the numbers of every torque and position as columns, by names that end in their unit."""
-        data, torques = self.dataset, len(self.torque)
-        positions = data.sizes["position"]
-        tooth = {gear: data[f"{gear}_tooth"].values[:, self._column_of_zero] for gear in GEARS}
-        columns = {
-            "pinion_torque_Nm": np.repeat(1e-3 * self.torque, positions),
-            "pinion_angle_deg": np.tile(np.degrees(data["pinion_angle"].values), torques),
-            "pinion_tooth": np.tile(tooth["pinion"], torques),
-            "wheel_tooth": np.tile(tooth["wheel"], torques),
-            "rigid_transmission_error_um": np.tile(self.um_per_rad * data["rigid_transmission_error"].values, torques),
-            "transmission_error_um": self.um_per_rad * data["transmission_error"].values.ravel(),
-            "mesh_stiffness_N_per_mm_um": data["mesh_stiffness"].values.ravel(),
-            "loaded_pairs": data["loaded_pairs"].values.ravel(),
-        }
-        for k, pair in enumerate(data["pair"].values.tolist()):
-            columns[f"load_share_pair_{pair:+d}"] = data["load_share"].values[..., k].ravel()
-            columns[f"peak_pressure_pair_{pair:+d}_MPa"] = data["peak_pressure"].values[..., k].ravel()
-        for name in (name for name in ROOTS if name in data):
-            for k, gear in enumerate(GEARS):
-                unit = "" if name.endswith("tooth") else "_MPa"
-                columns[f"{gear}_{name}{unit}"] = data[name].values[..., k].ravel()
-        return columns
+    def under(self, torque: int) -> UnderTorque:
+        """What figures are read off: the revolution under a torque, by its index."""
+        return UnderTorque(self, torque)
 
     @property
-    def _column_of_zero(self) -> int:
-        """Column of tooth pair 0, or of the one next to it."""
-        return int(np.abs(self.dataset["pair"].values).argmin())
+    def scope(self) -> str:
+        """Pitches and positions, in words."""
+        return f"{self.pitches} pitches, {self.per_pitch} positions each, teeth counted from 0"
+
+    def at_position(self, name: str) -> Array:
+        """Numbers of tooth pair 0, or of the one next to it, at each position."""
+        return self.values(name)[..., int(np.abs(self.pair).argmin())]
 
     def to_dynamics(self) -> xarray.Dataset:
         """Return curves over the revolution in SI units, for models of gear dynamics, as ``MeshCycle.to_dynamics``.
@@ -374,51 +360,6 @@ class Revolution:
         arrays["pitches"] = ((), self.pitches, {"units": "1"})
         coordinates = {TORQUE: 1e-3 * self.torque, angle: data["pinion_angle"].values}
         return xarray.Dataset(arrays, coordinates, {"title": self.scene.title})
-
-    @checked
-    def save(self, path: FilePath) -> None:
-        """Write everything but pressure maps to a NetCDF-3 file, whole or not at all; ``load`` reads it back."""
-        replace_file(path, self.to_netcdf())
-
-    def to_netcdf(self) -> bytes | bytearray:
-        """Return the bytes of the file that ``save`` writes."""
-        about = {"kind": REVOLUTION, "title": self.scene.title, "scene_toml": self.scene.to_toml()}
-        return netcdf_of(self.dataset.assign_attrs(about))
-
-    @classmethod
-    @checked
-    def load(cls, path: FilePath) -> Revolution:
-        """Read a file that ``save`` wrote.
-
-        Raises
-        ------
-        InputError
-            If it cannot be read, is damaged, or is no such file.
-        """
-        file = read_dataset(path)
-        if file.attrs.get("kind") != REVOLUTION:
-            raise InputError(f"{path}: not a whole revolution; read it with load_result")
-        try:
-            scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml", folder=None)
-            on_supports = {name: part for name, part in OF_SUPPORTS.items() if name in file}
-            arrays = arrays_of(file, REVOLUTION_QUANTITIES | (ROOTS if "root_tension" in file else {}) | on_supports)
-        except InputError as error:
-            raise InputError([f"{path}: not a whole revolution", *error.problems]) from None
-        about = {name: str(file.attrs[name]) for name in ("version", "date", "warnings") if name in file.attrs}
-        return cls(scene=scene, dataset=revolution_dataset(arrays, **about))
-
-
-def revolution_dataset(arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
-    """Make the dataset of a revolution of the arrays of ``REVOLUTION_QUANTITIES``.
-
-    With those of ``ROOTS`` and ``OF_SUPPORTS`` that there are.
-    """
-    import xarray
-
-    parts = REVOLUTION_QUANTITIES | {name: part for name, part in (ROOTS | OF_SUPPORTS).items() if name in arrays}
-    variables = variables_of(parts, arrays)
-    coordinates = {name: variables.pop(name) for name in COORDINATES}
-    return xarray.Dataset(variables, coordinates, about)
 
 
 def open_turns(scene: Scene, pitches: int) -> list[str]:

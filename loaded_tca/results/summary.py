@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from loaded_tca.plain import plain
 from loaded_tca.results.figure import Figures
@@ -31,10 +31,38 @@ BESIDE_ISO = (
 """What stands beside stress by the standard."""
 
 
-def summary_text(
-    title: str, scope: str, figures: Sequence[Figures], warnings: Sequence[str] = (), findings: Sequence[str] = ()
+def summary_of(
+    title: str, scope: str, rows: Sequence[Sequence[str]], sentences: Mapping[str, Sequence[str]], beside: str = ""
 ) -> str:
-    """Return the summary: title, scope, one line per figure with a column per torque, notes, findings, warnings.
+    """Return the summary of any result: title, scope, a table, and below it sentences of several kinds.
+
+    Parameters
+    ----------
+    title, scope : str
+        First lines.
+    rows : sequence of (str, ...)
+        Of the table: a label, and a cell for each torque.
+    sentences : mapping of str to sequence of str
+        Word that each of some sentences begins with -> the sentences.
+    beside : str
+        A line below the table.
+    """
+    width = 2 + max(len(cell) for _, *cells in rows for cell in cells)
+    labels = max(len(label) for label, *_ in rows)
+    table = [f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for label, *cells in rows]
+    below = [f"{word}: {sentence}" for word, some in sentences.items() for sentence in some]
+    return "\n".join([title, scope, *table, *([beside] if beside else []), *below])
+
+
+def summary_text(
+    title: str,
+    scope: str,
+    figures: Sequence[Figures],
+    warnings: Sequence[str] = (),
+    findings: Sequence[str] = (),
+    more: Sequence[Sequence[str]] = (),
+) -> str:
+    """Return the summary of a mesh cycle: one line per figure with a column per torque, notes, findings, warnings.
 
     Parameters
     ----------
@@ -44,23 +72,20 @@ def summary_text(
         Of each torque, as ``MeshCycle.key_figures`` gives them.
     warnings, findings : sequence of str
         Accuracy warnings of the analysis, and what ``MeshCycle.findings`` says.
+    more : sequence of (str, ...)
+        Further rows.
     """
     edge = kind_of_edge([entry for entry in figures if not math.isnan(entry.get("edge_pressure_MPa", math.nan))])
     rows = [
         (
             label.format(edge=edge),
-            [" | ".join(shown(entry.get(name, math.nan), name) for name in names) for entry in figures],
+            *(" | ".join(shown(entry.get(name, math.nan), name) for name in names) for entry in figures),
         )
         for label, names in known_rows(figures)
     ]
-    width = 2 + max(len(cell) for _, cells in rows for cell in cells)
-    labels = max(len(label) for label, _ in rows)
-    table = [f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for label, cells in rows]
-    beside = [WHERE_REASONS_ARE] if any(reasons_beside(*figures)) else []
-    notes = [f"note: {sentence}" for sentence in limits_of(figures)]
-    notes += [f"finding: {sentence}" for sentence in findings]
-    warned = [f"warning: {sentence}" for sentence in warnings]
-    return "\n".join([title or "Loaded tooth contact", scope, *table, *beside, *notes, *warned])
+    beside = WHERE_REASONS_ARE if any(reasons_beside(*figures)) else ""
+    sentences = {"note": [*limits_of(figures)], "finding": findings, "warning": warnings}
+    return summary_of(title, scope, [*rows, *more], sentences, beside)
 
 
 def known_rows(figures: Sequence[Figures]) -> list[tuple[str, tuple[str, ...]]]:

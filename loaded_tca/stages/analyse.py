@@ -20,7 +20,7 @@ from loaded_tca.results import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.stages.balance import Deflections, Shares, balance, directions_of, pin_errors
 from loaded_tca.stages.kinematics import mesh_phases
-from loaded_tca.stages.result import EDGES, StageResult, stage_dataset
+from loaded_tca.stages.result import EDGES, StageResult
 from loaded_tca.stages.sections import PLACE, RING_MESH, SUN_MESH, Stage, in_words_of
 from loaded_tca.stages.warnings import MeshWarnings
 
@@ -79,7 +79,7 @@ def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult
     }
     for sentence in sentences:
         give_accuracy_warning(sentence)
-    return StageResult(stage=stage, dataset=stage_dataset(arrays, **about), sun_mesh=of_sun, ring_mesh=of_ring)
+    return StageResult(stage=stage, dataset=StageResult.dataset_of(arrays, **about), sun_mesh=of_sun, ring_mesh=of_ring)
 
 
 def _largest_loads(stage: Stage, arrays: Mapping[str, Array]) -> tuple[float, tuple[float, float]]:
@@ -132,7 +132,7 @@ def rebalanced(result: StageResult, changes: Mapping[str, Any]) -> StageResult:
     if "mesh_warnings" in about:
         warned = MeshWarnings.from_text(about["mesh_warnings"])
         about["warnings"] = "\n".join(warned.under(forces, *_largest_loads(stage, arrays)))
-    return replace(result, stage=stage, dataset=stage_dataset(arrays, **about))
+    return replace(result, stage=stage, dataset=StageResult.dataset_of(arrays, **about))
 
 
 def _part_of(progress: Progress | None, begin: int, total: int) -> Progress | None:

@@ -8,9 +8,11 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.result import figures_of
 from loaded_tca.revolution import analyse_revolution
 from loaded_tca.scene import Scene
 from loaded_tca.tribology import tribology_of
+from loaded_tca.tribology.quantities import NUMBERS
 
 
 def revolution_figures(scene: Scene) -> dict[str, Array]:
@@ -41,24 +43,11 @@ def revolution_figures(scene: Scene) -> dict[str, Array]:
         rows = run_study(Study(scene, seeds), figures=revolution_figures)
         rows["total_single_flank_deviation_um"]
     """
-    revolution = analyse_revolution(scene)
-    rows = revolution.key_figures()
-    figures = {name: np.array([row[name] for row in rows], dtype=float) for name in rows[0]}
-    return {"pinion_torque_Nm": 1e-3 * revolution.torque} | figures
+    return analyse_revolution(scene).figure_arrays()
 
 
-FIGURES = {
-    "loss_factor": "loss_factor",
-    "mean_friction": "mean_friction",
-    "efficiency": "efficiency",
-    "bulk_temperature_C": "bulk_temperature",
-    "largest_contact_temperature_C": "largest_contact_temperature",
-    "least_film_thickness_um": "least_film_thickness",
-    "least_film_ratio": "least_film_ratio",
-    "scuffing_safety": "scuffing_safety",
-    "micropitting_safety": "micropitting_safety",
-}
-"""Name in a study, which ends in its unit -> name in ``Tribology``."""
+FIGURES = tuple(figures_of(NUMBERS))
+"""Names in a study, which end in their unit: numbers of tribology that have a line in its summary."""
 
 
 def tribology_figures(result: MeshCycle) -> dict[str, Array]:
@@ -79,8 +68,6 @@ def tribology_figures(result: MeshCycle) -> dict[str, Array]:
     scene = result.scene
     if scene.operation is None and scene.lubricant is None:
         return {}
-    found, unknown = tribology_of(result, warn=False), np.full(len(result.torque), math.nan)
-    return {
-        name: unknown if found.lacking(attribute) else np.asarray(getattr(found, attribute), dtype=float)
-        for name, attribute in FIGURES.items()
-    }
+    unknown = np.full(len(result.torque), math.nan)
+    tribology = tribology_of(result, warn=False)
+    return dict.fromkeys(FIGURES, unknown) | tribology.figure_arrays()

@@ -269,9 +269,7 @@ def figures(scene: Scene) -> dict[str, Array]:
 
 def figures_of(result: MeshCycle) -> dict[str, Array]:
     """Key figures of a result, (torques,) each, and those of tribology where its scene says how the pair runs."""
-    rows = result.key_figures()
-    figures = {name: np.array([row[name] for row in rows], dtype=float) for name in rows[0]}
-    return figures | tribology_figures(result)
+    return result.figure_arrays() | tribology_figures(result)
 
 
 MAIN = declared(lambda figure: figure.is_scattered)

@@ -10,8 +10,6 @@ from collections.abc import Collection
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from loaded_tca.arrays import Array
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.input_files import is_place
@@ -81,11 +79,10 @@ def stage_figures(stage: Stage) -> dict[str, Array]:
     own = as_table(stage.stage)
     changes = {key: own.get(key.removeprefix("stage.")) for key in OF_BALANCE}
     result = rebalanced(_meshes_of(plain.to_toml()), changes)
-    for sentence in result.warnings:
+    for sentence in result.warnings or ():
         give_accuracy_warning(sentence)
-    rows = result.key_figures()
-    names = [*(name for name in FIRST if name in rows[0]), *(name for name in rows[0] if name not in FIRST)]
-    return {name: np.array([row[name] for row in rows], dtype=float) for name in names}
+    figures = result.figure_arrays()
+    return {name: figures[name] for name in dict.fromkeys((*filter(figures.__contains__, FIRST), *figures))}
 
 
 @lru_cache(maxsize=KEPT)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from loaded_tca.results.declared import CYCLE, PAIRS, Number
+from loaded_tca.results.quantities import CYCLE_NUMBERS
 
 TORQUE = ("torque",)
-CYCLE = ("torque", "position")
-PAIRS = ("torque", "position", "pair")
-GEARS = ("torque", "position", "pair", "gear")
+GEARS = (*PAIRS, "gear")
 
 NEEDS = {
     "load_sharing": "of one tooth pair alone no mesh is known; set analysis.load_sharing = true and run the scene",
@@ -21,26 +20,6 @@ NEEDS = {
     "permissible": "needs permissible_film_ratio, or lubricant.permissible_film_ratio in the scene",
 }
 """What a number may lack, in the order in which it is told -> what the error says."""
-
-
-class Quantity(NamedTuple):
-    """A number of tribology.
-
-    Attributes
-    ----------
-    dims : tuple of str
-    unit, text : str
-    needs : frozenset of str
-        Of ``NEEDS``; those that follow from the arguments are added when it is asked for.
-    over_speed : bool
-        Whether it has the dimension speed where several are given.
-    """
-
-    dims: tuple[str, ...]
-    unit: str
-    text: str
-    needs: frozenset[str] = frozenset()
-    over_speed: bool = True
 
 
 OF_PITCH = frozenset({"load_sharing", "positions"})
@@ -61,39 +40,71 @@ EXTREMES = {
 }
 """Number under a torque -> number of slices whose extreme it is; least ones begin so, the others are largest."""
 
-QUANTITIES: dict[str, Quantity] = {
-    "loss_factor": Quantity(TORQUE, "1", "load loss factor H_VL", OF_PITCH, over_speed=False),
-    "mean_friction": Quantity(TORQUE, "1", "mean coefficient of friction, weighted with the loss", OF_PITCH | FRICTION),
-    "bulk_temperature": Quantity(TORQUE, "°C", "bulk temperature of the teeth", BULK),
-    "mean_friction_power": Quantity(TORQUE, "W", "friction power, mean over a pitch", OF_PITCH | FLASH),
-    "efficiency": Quantity(TORQUE, "1", "1 less friction power over the power at the pinion", OF_PITCH | FRICTION),
-    "largest_flash_temperature": Quantity(TORQUE, "K", "largest flash temperature", FLASH),
-    "largest_contact_temperature": Quantity(TORQUE, "°C", "largest contact temperature", HOT),
-    "least_film_thickness": Quantity(TORQUE, "um", "least film thickness", FILM),
-    "least_film_ratio": Quantity(TORQUE, "1", "least film ratio lambda_GF", FILM | {"roughness"}),
-    "pressure_velocity": Quantity(TORQUE, "MPa m/s", "largest product of pressure and sliding velocity", SPEED),
-    "scuffing_safety": Quantity(
-        TORQUE, "1", "safety against scuffing by the contact temperature, S_B", HOT | {"lubricant", "load_stage"}
+QUANTITIES: dict[str, Number] = {
+    "loss_factor": Number(TORQUE, "1", "load loss factor H_VL", OF_PITCH, label="loss factor H_VL"),
+    "mean_friction": Number(
+        TORQUE,
+        "1",
+        "mean coefficient of friction, weighted with the loss",
+        OF_PITCH | FRICTION,
+        label="mean coefficient of friction",
     ),
-    "micropitting_safety": Quantity(
-        TORQUE, "1", "safety against micropitting, S_lambda", FILM | {"roughness", "permissible"}
+    "mean_friction_power": Number(
+        TORQUE, "W", "friction power, mean over a pitch", OF_PITCH | FLASH, label="friction power, mean"
     ),
-    "friction_power": Quantity(CYCLE, "W", "friction power of all tooth pairs", FLASH | {"load_sharing"}),
-    "sliding_velocity": Quantity(PAIRS, "m/s", "largest sliding velocity of the tooth pair", SPEED),
-    "sum_velocity": Quantity(PAIRS, "m/s", "sum of both rolling velocities there", SPEED),
-    "friction": Quantity(PAIRS, "1", "largest coefficient of friction", FRICTION),
-    "flash_temperature": Quantity(PAIRS, "K", "largest flash temperature", FLASH),
-    "contact_temperature": Quantity(PAIRS, "°C", "largest contact temperature", HOT),
-    "film_thickness": Quantity(PAIRS, "um", "least film thickness", FILM),
-    "isothermal_film_thickness": Quantity(
+    "efficiency": Number(
+        TORQUE,
+        "1",
+        "1 less friction power over the power at the pinion",
+        OF_PITCH | FRICTION,
+        label="efficiency of the mesh",
+    ),
+    "bulk_temperature": Number(TORQUE, "°C", "bulk temperature of the teeth", BULK, label="bulk temperature"),
+    "largest_flash_temperature": Number(
+        TORQUE, "K", "largest flash temperature", FLASH, label="largest flash temperature"
+    ),
+    "largest_contact_temperature": Number(
+        TORQUE, "°C", "largest contact temperature", HOT, label="largest contact temperature"
+    ),
+    "scuffing_safety": Number(
+        TORQUE,
+        "1",
+        "safety against scuffing by the contact temperature, S_B",
+        HOT | {"lubricant", "load_stage"},
+        label="safety against scuffing S_B",
+    ),
+    "least_film_thickness": Number(TORQUE, "um", "least film thickness", FILM, label="least film thickness"),
+    "least_film_ratio": Number(
+        TORQUE, "1", "least film ratio lambda_GF", FILM | {"roughness"}, label="least film ratio"
+    ),
+    "micropitting_safety": Number(
+        TORQUE,
+        "1",
+        "safety against micropitting, S_lambda",
+        FILM | {"roughness", "permissible"},
+        label="safety against micropitting S_lambda",
+    ),
+    "pressure_velocity": Number(
+        TORQUE,
+        "MPa m/s",
+        "largest product of pressure and sliding velocity",
+        SPEED,
+        label="largest pressure times sliding velocity",
+    ),
+    "friction_power": Number(CYCLE, "W", "friction power of all tooth pairs", FLASH | {"load_sharing"}),
+    "sliding_velocity": Number(PAIRS, "m/s", "largest sliding velocity of the tooth pair", SPEED),
+    "sum_velocity": Number(PAIRS, "m/s", "sum of both rolling velocities there", SPEED),
+    "friction": Number(PAIRS, "1", "largest coefficient of friction", FRICTION),
+    "flash_temperature": Number(PAIRS, "K", "largest flash temperature", FLASH),
+    "contact_temperature": Number(PAIRS, "°C", "largest contact temperature", HOT),
+    "film_thickness": Number(PAIRS, "um", "least film thickness", FILM),
+    "isothermal_film_thickness": Number(
         PAIRS, "um", "least film thickness without the thinning by the heat of sliding, S_GF = 1", FILM
     ),
-    "film_ratio": Quantity(PAIRS, "1", "least film ratio lambda_GF", FILM | {"roughness"}),
-    "rolling_velocity": Quantity(GEARS, "m/s", "rolling velocity of each gear where the pair slides most", SPEED),
-    "specific_sliding": Quantity(
-        GEARS, "1", "specific sliding of each gear where the pair slides most", over_speed=False
-    ),
-    "friction_torque": Quantity(
+    "film_ratio": Number(PAIRS, "1", "least film ratio lambda_GF", FILM | {"roughness"}),
+    "rolling_velocity": Number(GEARS, "m/s", "rolling velocity of each gear where the pair slides most", SPEED),
+    "specific_sliding": Number(GEARS, "1", "specific sliding of each gear where the pair slides most"),
+    "friction_torque": Number(
         GEARS, "N mm", "torque of friction on each gear, positive in its sense of motion", FRICTION
     ),
 }
@@ -105,6 +116,18 @@ PLACES: dict[str, tuple[str, str]] = {
     "axial": ("mm", "axial coordinate on the pinion"),
 }
 """Ends of the names of the places of extremes, as ``least_film_ratio_radius``: unit and long name."""
+NUMBERS: dict[str, Number] = {
+    "torque": CYCLE_NUMBERS["torque"].changed(label="pinion torque"),
+    **{
+        name + end: number.changed(unit=unit, text=f"{text} of the {number.text}", label="") if end else number
+        for name, number in QUANTITIES.items()
+        for end, unit, text in (
+            ("", "", ""),
+            *((f"_{end}", *about) for end, about in PLACES.items() if name in EXTREMES),
+        )
+    },
+}
+"""Names in ``Tribology.dataset`` with the torque and the places of extremes, and what each is."""
 
 COLUMNS: dict[str, tuple[str, str, frozenset[str]]] = {
     "position": ("1", "position, an index", frozenset()),
@@ -143,23 +166,13 @@ LEAST = {"film_thickness", "isothermal_film_thickness", "film_ratio"}
 """Numbers of slices whose extreme is the least one."""
 
 
-SUMMARY = {
-    "loss_factor": "loss factor H_VL",
-    "mean_friction": "mean coefficient of friction",
-    "mean_friction_power": "friction power, mean",
-    "efficiency": "efficiency of the mesh",
-    "bulk_temperature": "bulk temperature",
-    "largest_flash_temperature": "largest flash temperature",
-    "largest_contact_temperature": "largest contact temperature",
-    "scuffing_safety": "safety against scuffing S_B",
-    "least_film_thickness": "least film thickness",
-    "least_film_ratio": "least film ratio",
-    "micropitting_safety": "safety against micropitting S_lambda",
-    "pressure_velocity": "largest pressure times sliding velocity",
-}
-"""Names of the lines of the summary, and their labels."""
 WITH_PLACES = ("largest_contact_temperature", "least_film_thickness")
 """Extremes under whose line the summary says where they lie; of the least film ratio it is the place of the film."""
+
+
+def over_speed(number: Number) -> bool:
+    """Whether a number has the dimension speed where several are given: it takes more than positions of a pitch."""
+    return bool(number.needs - OF_PITCH)
 
 
 def place_of(name: str) -> tuple[str, str]:

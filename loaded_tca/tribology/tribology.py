@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array, GearName, Indices, place_checks
 from loaded_tca.errors import NotAskedError, require
 from loaded_tca.reference.iso6336_20 import scuffing_safety, scuffing_temperature
-from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replace_file
+from loaded_tca.results.declared import Row
+from loaded_tca.results.figure import Figures
+from loaded_tca.results.files import TRIBOLOGY
 from loaded_tca.results.numbers import CycleNumbers
+from loaded_tca.results.result import Result
+from loaded_tca.results.summary import summary_of
+from loaded_tca.scene import Scene
 from loaded_tca.tribology.conditions import Conditions
 from loaded_tca.tribology.evaluate import MILLI, Evaluation, pitch_weights
 from loaded_tca.tribology.quantities import (
@@ -23,14 +27,18 @@ from loaded_tca.tribology.quantities import (
     EXTREMES,
     LEAST,
     NEEDS,
+    NUMBERS,
     OF_PITCH,
-    PLACES,
     QUANTITIES,
     SCUFFING,
+    TORQUE,
+    WITH_PLACES,
+    over_speed,
     place_of,
 )
 from loaded_tca.tribology.slices import Slices, cells_of_flank, cylindrical_mesh, slices_of
-from loaded_tca.tribology.summary import summary_text
+from loaded_tca.tribology.summary import places_in_words, unknown_in_words
+from loaded_tca.tribology.warnings import accuracy_sentences
 
 if TYPE_CHECKING:
     import pandas
@@ -42,8 +50,18 @@ FEWEST = 5
 """Positions of a mean over a pitch: of three or four the loss factor of a spur pair is a quarter too small."""
 
 
+@dataclass(frozen=True, eq=False)
+class UnderTorque(Row):
+    """Tribology under one torque at one speed, by their indices."""
+
+    speed: int
+
+    def __getattr__(self, name: str) -> Any:
+        return self.result.by_speed(name)[self.speed][self.row]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Tribology:
+class Tribology(Result):
     """Loss, temperatures, films and safeties of a result; every name of ``QUANTITIES`` is an attribute.
 
     With a list of speeds arrays that depend on the speed have it as their first axis. NaN where a pair carries nothing.
@@ -55,6 +73,11 @@ class Tribology:
     conditions : Conditions
         Speed, oil, roughness and factors, as given or from the scene.
     """
+
+    KIND: ClassVar = TRIBOLOGY
+    WHAT: ClassVar = "tribology"
+    TITLE: ClassVar = "Tribology"
+    NUMBERS: ClassVar = NUMBERS
 
     result: CycleNumbers
     conditions: Conditions
@@ -80,19 +103,18 @@ class Tribology:
         return Evaluation(self.result, self.sweep, self.conditions)
 
     def __getattr__(self, name: str) -> Any:
-        if name in QUANTITIES:
-            self._require(name, QUANTITIES[name].needs)
-            return self._shaped(name)
         if name == "scuffing_temperature":  # its NotAskedError is an AttributeError, after which Python asks here
             self._require(name, SCUFFING)
-        extreme, end = place_of(name)
-        if extreme:
-            self._require(name, QUANTITIES[extreme].needs)
-            return self._place(extreme, end)
-        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        return super().__getattr__(name)
 
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *QUANTITIES, *(f"{name}_{end}" for name in EXTREMES for end in PLACES)]
+    def has(self, name: str) -> bool:
+        """Whether a number lacks nothing."""
+        return not self.lacking(name)
+
+    @property
+    def scene(self) -> Scene:
+        """Scene of the result."""
+        return self.result.scene
 
     @cached_property
     def missing(self) -> frozenset[str]:
@@ -113,8 +135,8 @@ class Tribology:
         return frozenset(name for name, lack in lacks.items() if lack)
 
     def lacking(self, name: str) -> str:
-        """What a number of ``QUANTITIES`` lacks, as its error says it; nothing if it is known."""
-        return self._lacking(QUANTITIES[name].needs)
+        """What a number lacks, as its error says it; nothing if it is known."""
+        return self._lacking(self.NUMBERS[name].needs)
 
     def by_speed(self, name: str) -> Array:
         """A number under each torque, or a place of one, (speed, torque), whatever it depends on."""
@@ -140,8 +162,8 @@ class Tribology:
 
     def with_speeds(self, name: str) -> Array:
         """A number of ``QUANTITIES`` that depends on the speed, with that as its first axis even of one speed."""
-        self._require(name, QUANTITIES[name].needs)
-        values = self._shaped(name)
+        self._require(name, self.NUMBERS[name].needs)
+        values = self.values(name)
         return values if self.conditions.several else values[None]
 
     def _lacking(self, needs: frozenset[str]) -> str:
@@ -162,13 +184,17 @@ class Tribology:
         if sentence := self._lacking(needs):
             raise NotAskedError(f"{name}: {sentence}")
 
-    def _shaped(self, name: str) -> Array:
-        """A number of ``QUANTITIES``, with the axis of speeds where several are given."""
-        quantity = QUANTITIES[name]
+    def values(self, name: str) -> Array:
+        """A number or place, with the axis of speeds where several are given."""
+        if name == "torque":
+            return np.asarray(self.result.torque)
+        extreme, end = place_of(name)
+        if extreme:
+            return self._place(extreme, end)
         if name not in self._kept:
             self._kept[name] = self._found(name)
         values = self._kept[name]
-        return values if self.conditions.several or not quantity.over_speed else values[0]
+        return values if self.conditions.several or not over_speed(self.NUMBERS[name]) else values[0]
 
     def _found(self, name: str) -> Array:
         """A number of ``QUANTITIES``, with the axis of speeds where it depends on them."""
@@ -190,7 +216,7 @@ class Tribology:
             if values.ndim == 2:
                 return self._per_pair(values)
             both = np.stack([self._per_pair(rows) for rows in values], axis=-1)
-            return both if QUANTITIES[name].over_speed else both[0]
+            return both if over_speed(self.NUMBERS[name]) else both[0]
         values = getattr(numbers, name)
         reduced = np.fmin if name in LEAST else np.fmax
         return self._per_pair(reduced.reduceat(values, parts.starts, axis=-1) if len(parts) else values)
@@ -280,22 +306,27 @@ class Tribology:
         import xarray
 
         variables: dict[str, Any] = {}
-        for name, quantity in QUANTITIES.items():
-            if self.lacking(name):
-                continue
-            before = ("speed",) if self.conditions.several and quantity.over_speed else ()
-            about = {"units": quantity.unit, "long_name": quantity.text}
-            variables[name] = (before + quantity.dims, self._shaped(name), about)
-            for end, (unit, text) in PLACES.items() if name in EXTREMES else ():
-                place = {"units": unit, "long_name": f"{text} of the {quantity.text}"}
-                variables[f"{name}_{end}"] = (before + quantity.dims, self._place(name, end), place)
+        for name in filter(self.has, [name for name in self.NUMBERS if name != "torque"]):
+            before = ("speed",) if self.conditions.several and over_speed(self.NUMBERS[name]) else ()
+            about = {"units": self.NUMBERS[name].unit, "long_name": self.NUMBERS[name].text}
+            variables[name] = (before + self.NUMBERS[name].dims, self.values(name), about)
         of_contact = self.result.dataset
         coordinates: dict[str, Any] = {name: of_contact[name] for name in ("torque", "pinion_angle", "pair")}
         coordinates["gear"] = ("gear", [*GEARS])
         if self.conditions.several:
             speed = {"units": "1/min", "long_name": "speed of the pinion"}
             coordinates["speed"] = ("speed", self.conditions.speeds, speed)
-        return xarray.Dataset(variables, coordinates, {"title": self.result.scene.title})
+        about = {"title": self.title, "version": self.result.version, "warnings": "\n".join(self.warnings)}
+        return xarray.Dataset(variables, coordinates, about)
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences of accuracy warnings: where a number is at a limit of its standard or of the positions."""
+        return tuple(dict.fromkeys(accuracy_sentences(self)))
+
+    def under(self, torque: int, speed: int = 0) -> UnderTorque:
+        """What figures are read off: the numbers under a torque at a speed, by their indices."""
+        return UnderTorque(self, torque, speed)
 
     def slices(self, torque: int = 0, speed: int = 0) -> pandas.DataFrame:
         """Table of all slices under one torque.
@@ -406,6 +437,18 @@ class Tribology:
         coordinates = {"height": middles[0], "lengthwise": middles[1]}
         return xarray.DataArray(grid, coordinates, ("height", "lengthwise"), name, about)
 
+    @property
+    def scope(self) -> str:
+        """Speed, oil and roughness, in words."""
+        return self.conditions.in_words(0)
+
+    def rows(self, figures: Sequence[Figures], speed: int = 0) -> list[tuple[str, ...]]:
+        """Lines of the summary, with places below some extremes."""
+        places = {self.NUMBERS[name].head(name): name for name in WITH_PLACES}
+        rows = zip(self.figures, super().rows(figures), strict=True)
+        below = ((row, places_in_words(self, places[name], speed) if name in places else ()) for name, row in rows)
+        return [line for row, more in below for line in (row, *more)]
+
     def summary(self, speed: int = 0) -> str:
         """Return what the mesh comes to under each torque, in a few lines, and what is missing for more.
 
@@ -419,19 +462,32 @@ class Tribology:
         InputError
             If there is no such speed.
         """
-        return summary_text(self, speed)
+        self.check(0, speed)
+        sentences = {"not known": tuple(unknown_in_words(self)), "warning": self.warnings}
+        rows = self.rows(self.key_figures(speed), speed)
+        return summary_of(self.title or self.TITLE, self.conditions.in_words(speed), rows, sentences)
 
-    @checked
-    def save(self, path: FilePath) -> None:
-        """Write the dataset to a NetCDF-3 file, whole or not at all.
+    def key_figures(self, speed: int = 0) -> tuple[dict[str, float], ...]:
+        """Return the numbers of the mesh that are known under each torque, by names that end in their unit.
 
-        Raises
-        ------
-        InputError
-            If it cannot be written.
+        Parameters
+        ----------
+        speed : int
+            Index of the speed of a list.
         """
-        replace_file(path, self.to_netcdf())
+        rows = (self.under(torque, speed) for torque in range(len(self.result.torque)))
+        return tuple({name: figure.of(row) for name, figure in self.figures.items()} for row in rows)
 
-    def to_netcdf(self) -> Buffer:
-        """Return the bytes of the file that ``save`` writes; in it gears are 0, the pinion, and 1, the wheel."""
-        return netcdf_of(self.dataset.drop_vars("gear").assign_attrs(kind="tribology"))
+    def to_table(self) -> dict[str, Array]:
+        """Return what is known of the mesh at each speed and torque, and where extremes lie, as columns."""
+        shape = self.conditions.speeds.size, len(self.result.torque)
+        columns = {"pinion_speed_rpm": np.broadcast_to(self.conditions.speeds[:, None], shape)}
+        for name, number in self.NUMBERS.items():
+            if number.dims == TORQUE and self.has(name):
+                head = number.head(name)
+                columns[head] = number.factor(head) * self.by_speed(name)
+        return {head: values.ravel() for head, values in columns.items()}
+
+    def stored(self) -> xarray.Dataset:
+        """The dataset as files have it: gears are 0, the pinion, and 1, the wheel."""
+        return self.dataset.drop_vars("gear")

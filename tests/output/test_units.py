@@ -148,13 +148,12 @@ def expected_positions():
     """Columns of ``positions.csv`` (torque, position): values, and how they are written here."""
     cycle = filled()
     columns = {name: column_everywhere(cycle, of)[..., 0] * factor for name, (of, factor) in EVERYWHERE.items()}
-    columns["pinion_angle_deg"] = np.tile(DEGREES * cycle.path.pinion_angle, (2, 1))
-    point = {
-        **CONTACT_POINT,
-        "unloaded_transmission_error_arcsec": ("transmission_error", ARCSECONDS),
-        "unloaded_transmission_error_um": ("transmission_error", LENGTH),
+    unloaded = {
+        "unloaded_transmission_error_arcsec": ("unloaded_transmission_error", ARCSECONDS),
+        "unloaded_transmission_error_um": ("unloaded_transmission_error", LENGTH),
     }
-    columns |= {name: np.tile(factor * getattr(cycle.path, of), (2, 1)) for name, (of, factor) in point.items()}
+    columns |= {name: np.tile(factor * getattr(cycle.path, of), (2, 1)) for name, (of, factor) in CONTACT_POINT.items()}
+    columns |= {name: np.tile(factor * getattr(cycle, of), (2, 1)) for name, (of, factor) in unloaded.items()}
     columns |= {name: factor * getattr(cycle, of) for name, (of, factor) in OF_POSITIONS.items()}
     highest = {"force": cycle.normal_force, "peak": cycle.peak_pressure, "edge": cycle.edge_pressure}
     for name, (of, factor, by) in OF_PAIRS.items():

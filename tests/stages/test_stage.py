@@ -15,6 +15,7 @@ from loaded_tca.scene import InternalScene
 from loaded_tca.stages import StageResult, analyse_stage, parse_stage, read_stage, rebalanced
 from loaded_tca.stages.analyse import _largest_loads, deflections_of
 from tests.refusals import refused_calls
+from tests.samples.declared import assert_comes_back, assert_declared, with_more_numbers
 from tests.samples.root_stress import coarsely
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "stages"
@@ -223,7 +224,7 @@ def test_table_and_summary_have_every_torque(result):
     assert "orders that equal planets cancel" in result.summary()
     assert "1, 3, 5" in result.summary()
     assert repr(result) == "StageResult(4 planets, 2 torques, 8 positions)"
-    with pytest.raises(AttributeError, match="no nothing"):
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = result.nothing
 
 
@@ -280,3 +281,10 @@ def test_shortest_stage_of_the_guide_can_be_built():
     assert sun.transverse_contact_ratio > 1.2
     assert ring.transverse_contact_ratio > 1.2
     assert not internal_interferences(ring, "")
+
+
+def test_numbers_are_where_they_are_declared_to_be_and_one_more_is_declared_once(result, tmp_path):
+    more = with_more_numbers(result)
+    again = assert_comes_back(more, assert_declared(more, tmp_path))
+    assert again.to_table()["added_curve_um"][-1] == pytest.approx(again.added_curve.size)
+    assert [row["added_MPa"] for row in again.key_figures()] == [100.0, 101.0]

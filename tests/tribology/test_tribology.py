@@ -16,7 +16,7 @@ from loaded_tca.reference import iso6336_22
 from loaded_tca.reference.friction import xu_kahraman
 from loaded_tca.tribology import Lubricant
 from loaded_tca.tribology.evaluate import Evaluation
-from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, PLACES, QUANTITIES
+from loaded_tca.tribology.quantities import COLUMNS, EXTREMES, PLACES, QUANTITIES, over_speed
 from tests.refusals import refused_calls
 from tests.samples.tribology import FAMILIES, OIL, ROUGHNESS, known, shared
 
@@ -73,8 +73,8 @@ def test_speeds_in_a_list_are_a_dimension(result):
     assert several.dataset.sizes["speed"] == 2
     for name, quantity in QUANTITIES.items():
         if name in one.dataset:
-            assert several.dataset[name].dims == (("speed",) if quantity.over_speed else ()) + quantity.dims
-            of_second = several.dataset[name].isel(speed=1) if quantity.over_speed else several.dataset[name]
+            assert several.dataset[name].dims == (("speed",) if over_speed(quantity) else ()) + quantity.dims
+            of_second = several.dataset[name].isel(speed=1) if over_speed(quantity) else several.dataset[name]
             assert_allclose(of_second, one.dataset[name], rtol=ROUNDING, err_msg=name)
 
 

@@ -1,0 +1,223 @@
+"""The base of all results: figures, summary, table and file of the numbers that each kind of result declares."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.results.declared import ABOUT, CYCLE, Number, Numbers, Row
+from loaded_tca.results.figure import Figure, Figures, labelled
+from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_kind, replace_file
+from loaded_tca.results.summary import shown, summary_of
+from loaded_tca.scene import parse_scene
+from loaded_tca.units import without_unit
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def figures_of(numbers: Mapping[str, Number]) -> dict[str, Figure]:
+    """Key figures that numbers under a torque are by their label, by the heads of their columns."""
+    return {
+        head: Figure(of=partial(_number, name, number.factor(head)), label=number.label, needs=name)
+        for name, number in numbers.items()
+        if number.label
+        for head in (number.head(name),)
+    }
+
+
+def _number(name: str, factor: float, under: Row) -> float:
+    return factor * float(getattr(under, name))
+
+
+class Result(Numbers, ABC):
+    """Numbers of a result with their key figures under each torque, summary, table and file.
+
+    A kind of result declares its ``NUMBERS`` and its ``FIGURES``; all of this follows.
+
+    Attributes
+    ----------
+    KIND, WHAT : str
+        Attribute ``kind`` of its files, and what messages call them.
+    TITLE : str
+        First line of the summary of what has no title.
+    SUBJECT : str
+        Attribute that was analysed: its title, and its text in files.
+    FIGURES : mapping
+        Key figures by their names; numbers under a torque that have a label follow them.
+    """
+
+    KIND: ClassVar[str] = ""
+    WHAT: ClassVar[str]
+    TITLE: ClassVar[str]
+    SUBJECT: ClassVar[str] = "scene"
+    FIGURES: ClassVar[Mapping[str, Figure]] = {}
+
+    @property
+    def title(self) -> str:
+        """Title of what was analysed."""
+        return str(getattr(self, self.SUBJECT).title)
+
+    @property
+    def figures(self) -> dict[str, Figure]:
+        """Key figures that the result has, by their names, which end in their unit."""
+        declared = {**figures_of(self.NUMBERS), **self.FIGURES}
+        names = dict.fromkeys((*self.FIGURES, *declared))
+        return {name: declared[name] for name in names if not (needs := declared[name].needs) or self.has(needs)}
+
+    def key_figures(self) -> tuple[dict[str, float], ...]:
+        """Return the figures for each torque, by names that end in their unit; NaN: not known."""
+        rows = (self.under(torque) for torque in range(self.dataset.sizes["torque"]))
+        return tuple({name: figure.of(row) for name, figure in self.figures.items()} for row in rows)
+
+    def under(self, torque: int) -> Row:
+        """What figures are read off: the result under a torque, by its index."""
+        return Row(self, torque)
+
+    def figure_arrays(self) -> dict[str, Array]:
+        """Return the key figures as arrays (torques,) by their names, as studies take them."""
+        rows = self.key_figures()
+        return {name: np.array([row[name] for row in rows], dtype=float) for name in rows[0]}
+
+    @property
+    @abstractmethod
+    def scope(self) -> str:
+        """What was analysed, in a line."""
+
+    def labels(self) -> dict[str, str]:
+        """Labels of the lines of the summary with their units, by the names of key figures."""
+        return {
+            name: labelled(name, figure.label or without_unit(name).replace("_", " "))
+            for name, figure in self.figures.items()
+        }
+
+    def rows(self, figures: Sequence[Figures]) -> list[tuple[str, ...]]:
+        """Lines of the summary: label with unit, and a cell for each torque."""
+        return [(label, *(shown(row[name], name) for row in figures)) for name, label in self.labels().items()]
+
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on what limits the figures."""
+        return ()
+
+    def summary(self) -> str:
+        """Return the figures in the engineer's units, a column for each torque, notes, and accuracy warnings."""
+        sentences = {"note": self.notes(), "warning": self.warnings or ()}
+        return summary_of(self.title or self.TITLE, self.scope, self.rows(self.key_figures()), sentences)
+
+    def to_table(self) -> dict[str, Array]:
+        """Return the numbers of every torque and position as columns, by names that end in their unit."""
+        shape = tuple(self.dataset.sizes[axis] for axis in CYCLE)
+        return {head: np.broadcast_to(values, shape).ravel() for head, values in self._columns()}
+
+    def _columns(self) -> Iterator[tuple[str, Array]]:
+        for name, number in self.NUMBERS.items():
+            for head in number.heads(name) if self.has(name) else ():
+                at_base = number.unit == "rad" and head.endswith("_um")
+                factor = self.um_per_rad if at_base else number.factor(head)
+                if "{" in head:
+                    for k, label in enumerate(self.along(number.dims[-1])):
+                        yield head.format(label), factor * self.values(name)[..., k]
+                    continue
+                values = factor * (self.at_position(name) if "pair" in number.dims else self.values(name))
+                yield head, values[:, None] if number.dims == CYCLE[:1] else values
+
+    @checked
+    def save(self, path: FilePath) -> tuple[Path, ...]:
+        """Write everything to a NetCDF-3 file, whole or not at all; ``load`` reads it back unchanged.
+
+        Returns
+        -------
+        tuple of Path
+            The file.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, NetCDF-3 has no type for what was added to the dataset, or the scene asks for
+            numbers that the result does not have.
+        """
+        replace_file(path, self.to_netcdf())
+        return (Path(path),)
+
+    def to_netcdf(self) -> Buffer:
+        """Return the bytes of the file that ``save`` writes, with the same errors."""
+        about = {"title": self.title, f"{self.SUBJECT}_toml": getattr(self, self.SUBJECT).to_toml()}
+        kind = {"kind": self.KIND} if self.KIND else {}
+        return netcdf_of(self.stored().assign_attrs(kind | about))
+
+    def stored(self) -> xarray.Dataset:
+        """The dataset as files have it."""
+        return self.dataset
+
+
+class AnalysisResult(Result):
+    """Result of an analysis, which its file holds whole, with the text of what was analysed.
+
+    Attributes
+    ----------
+    BESIDE : mapping
+        Dimensions, unit and long name of arrays that files have beside the dataset.
+    ABOUT : tuple of str
+        Attributes of the dataset that files keep.
+    """
+
+    BESIDE: ClassVar[Mapping[str, Part]] = {}
+    ABOUT: ClassVar[tuple[str, ...]] = ABOUT
+
+    @classmethod
+    @checked
+    def load(cls, path: FilePath) -> Self:
+        """Read a file that ``save`` wrote.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read, is damaged, or is no such file.
+        """
+        file = read_kind(path, cls.KIND, cls.WHAT)
+        if problem := cls.problem_of(file):
+            raise InputError(f"{path}: not {cls.WHAT}: {problem}")
+        try:
+            subject = cls.parse(str(file.attrs.get(f"{cls.SUBJECT}_toml", "")), source=f"{cls.SUBJECT}_toml")
+            there = {
+                name: number
+                for name, number in cls.NUMBERS.items()
+                if number.asked is None or number.asked.by(subject, name.partition("_")[0]) or name in file.variables
+            }
+            arrays = arrays_of(file, {**there, **cls.BESIDE})
+            parts = cls.parts_of(subject, file, arrays)
+        except InputError as error:
+            raise InputError([f"{path}: not {cls.WHAT}", *error.problems]) from None
+        about = {name: str(file.attrs[name]) for name in cls.ABOUT if name in file.attrs}
+        added = {name: file.variables[name] for name in file.data_vars if name not in {**there, **cls.BESIDE}}
+        dataset = cls.dataset_of(arrays, **about).assign(added)
+        whole = {cls.SUBJECT: subject, "dataset": dataset, **parts, **cls.parts_beside(Path(path), subject)}
+        return cls(**whole)
+
+    @staticmethod
+    def parse(text: str, source: str) -> Any:
+        """What was analysed, of its text."""
+        return parse_scene(text, source=source, folder=None)
+
+    @classmethod
+    def problem_of(cls, file: xarray.Dataset) -> str:  # noqa: ARG003
+        """Why a file is of something else, rather than a line for all that it lacks; nothing if it may be one."""
+        return ""
+
+    @classmethod
+    def parts_of(cls, subject: Any, file: xarray.Dataset, arrays: Mapping[str, Array]) -> dict[str, Any]:  # noqa: ARG003
+        """What else the result consists of, of the arrays of a file; with checks of their lengths."""
+        return {}
+
+    @classmethod
+    def parts_beside(cls, path: Path, subject: Any) -> dict[str, Any]:  # noqa: ARG003
+        """What else the result consists of, of files beside its own."""
+        return {}
