@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 
 # Solvers, finite elements and what is derived of them, a few of each: as long as half a minute on two cores.
-KERNEL_TESTS := tests/contact tests/separation tests/loaded/test_balance.py tests/loaded/test_free_edges.py \
+KERNEL_TESTS := tests/contact tests/separation tests/loaded/test_balance.py tests/edges/test_free.py \
 	tests/loaded/test_load_sharing.py tests/loaded/test_cut_contacts.py tests/compliance/test_dissection.py \
 	tests/compliance/test_influence.py tests/compliance/test_finite_elements.py tests/results/test_dynamics.py \
 	tests/results/test_figure_slopes.py tests/results/test_mesh_cycle.py tests/flanks/test_tensor_spline.py \
