@@ -23,8 +23,8 @@ from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.moved_gears import loads_at
 from loaded_tca.loaded.moved_gears import pitches_apart as pitches_of_cycle
-from loaded_tca.loaded.revolution import STATES_AT_A_TIME, CarriedPart, carried_over_revolution, pitches_apart
-from loaded_tca.loaded.standing import POSITIONS, GearsUnderTorques, Standing, widest_apart
+from loaded_tca.loaded.revolution import STATES_AT_A_TIME, RevolutionPart, pitches_apart, solve_revolution
+from loaded_tca.loaded.standing import POSITIONS, GearsUnderTorques, Standing, pair_span
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import Place, numbers_and_maps
@@ -170,7 +170,7 @@ def _over_revolution(
             path = unloaded if standing.loads is None else _trace(scene, standing.pair, pitches, standing)
             report = None if progress is None else partial(_report, progress, done, len(path) * len(torques))
             one = _Numbers(standing, path, grid, roots, maps)
-            for part in carried_over_revolution(path, standing, grid, report):
+            for part in solve_revolution(path, standing, grid, report):
                 one.add(part)
             numbers.append(one)
             done += len(path) * standing.torques.size
@@ -264,9 +264,9 @@ class _Numbers:
     @property
     def pitches_apart(self) -> int:
         """How many pitches two tooth pairs that carry load at a position are apart at the most."""
-        return widest_apart(self.path.pairs, self.arrays["load_share"])
+        return pair_span(self.path.pairs, self.arrays["load_share"])
 
-    def add(self, part: CarriedPart) -> None:
+    def add(self, part: RevolutionPart) -> None:
         """Take what a part of the positions has of each contact, and let the contacts go."""
         begin, shape = part.positions.start, (len(self.torques), len(part.positions), len(self.path.pairs))
         rows = slice(begin, part.positions.stop)

@@ -35,7 +35,7 @@ from loaded_tca.edges.places import arcs_of, dilated, edge_distances, lengths_pa
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import Arc, material_cosines
-from loaded_tca.loaded.cycle import Carried, told_where
+from loaded_tca.loaded.cycle import CycleSolution, told_where
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
@@ -258,14 +258,14 @@ class Columns:
 
 
 def pressures_at_rounded_edges(
-    pair: GearPair, carried: Carried, bending: BendingModel | None, *, free_edges: bool, every: bool
+    pair: GearPair, carried: CycleSolution, bending: BendingModel | None, *, free_edges: bool, every: bool
 ) -> dict[tuple[int, int, int], PeakAtEdge]:
     """Peak pressures at rounded edges of the contacts of a mesh cycle.
 
     Parameters
     ----------
     pair : GearPair
-    carried : Carried
+    carried : CycleSolution
     bending : BendingModel or None
         Of the teeth, as they carried.
     free_edges : bool

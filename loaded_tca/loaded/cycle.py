@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, named
-from loaded_tca.loaded.load_sharing import torque_shared
+from loaded_tca.loaded.load_sharing import load_sharing_steps
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.sensitivity import LoadedStates, loaded_states
-from loaded_tca.loaded.together import Steps, found_together, with_gears
+from loaded_tca.loaded.together import Steps, run_stacked, with_gears
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice, contact_under_load
 from loaded_tca.loaded.tooth_pairs import SharedLoad, ToothPair, tooth_pairs_at
 from loaded_tca.pairs.gear_pair import GearPair
@@ -34,7 +34,7 @@ Contacts = list[list[list[LoadedContact | None]]]
 
 
 @dataclass(frozen=True, eq=False)
-class Carried:
+class CycleSolution:
     """What the tooth pairs carry.
 
     Attributes
@@ -74,7 +74,7 @@ class Carried:
         return np.where(np.isnan(self.rotation), math.nan, self.states.stiffness.reshape(self.rotation.shape))
 
 
-def carried_by_one(
+def solve_single_pair(
     pair: GearPair,
     path: ContactPath,
     torques: Array,
@@ -82,7 +82,7 @@ def carried_by_one(
     bending: BendingModel | None = None,
     progress: Progress | None = None,
     displacement: Coupling | None = None,
-) -> Carried:
+) -> CycleSolution:
     """Let the tooth pair at the pitch point carry the whole load.
 
     Parameters
@@ -99,10 +99,10 @@ def carried_by_one(
     displacement : callable, optional
         Displacement of the slices of a grid that does not depend on the forces; default: none.
     """
-    return carried_together([OnePairsCycle(pair, path, torques, grid, bending, displacement)], progress)[0]
+    return solve_cycles([OnePairsCycle(pair, path, torques, grid, bending, displacement)], progress)[0]
 
 
-def carried_by_all(
+def solve_mesh_cycle(
     pair: GearPair,
     mesh: MeshPath,
     torques: Array,
@@ -110,7 +110,7 @@ def carried_by_all(
     bending: BendingModel | None = None,
     progress: Progress | None = None,
     displacement: Coupling | None = None,
-) -> Carried:
+) -> CycleSolution:
     """Let all tooth pairs in contact share the load.
 
     Parameters
@@ -118,9 +118,9 @@ def carried_by_all(
     mesh : MeshPath
         Unloaded contact of all teeth, :func:`loaded_tca.unloaded.trace_teeth`.
     pair, torques, grid, bending, progress, displacement
-        As of :func:`carried_by_one`.
+        As of :func:`solve_single_pair`.
     """
-    return carried_together([AllPairsCycle(pair, mesh, torques, grid, bending, displacement)], progress)[0]
+    return solve_cycles([AllPairsCycle(pair, mesh, torques, grid, bending, displacement)], progress)[0]
 
 
 class MeshStates(Protocol):
@@ -133,11 +133,11 @@ class MeshStates(Protocol):
     def steps(self) -> list[Steps[Any]]:
         """Steps of every state, torque by torque."""
 
-    def carried(self, results: Sequence[Any]) -> Carried:
+    def carried(self, results: Sequence[Any]) -> CycleSolution:
         """What the tooth pairs carry by the results of the steps."""
 
 
-def carried_together(cycles: Sequence[MeshStates], progress: Progress | None = None) -> list[Carried]:
+def solve_cycles(cycles: Sequence[MeshStates], progress: Progress | None = None) -> list[CycleSolution]:
     """What the tooth pairs carry in several pairs of gears, whose states are worked on together."""
     alone = len(cycles) == 1
     steps = [one.steps() for one in cycles]
@@ -147,13 +147,13 @@ def carried_together(cycles: Sequence[MeshStates], progress: Progress | None = N
         for own in of_cycle
     ]
     report = None if progress is None else lambda done: progress(done, len(every))
-    results = iter(found_together(cycles[0].pair, every, report))
+    results = iter(run_stacked(cycles[0].pair, every, report))
     return [cycle.carried([*islice(results, len(own))]) for cycle, own in zip(cycles, steps, strict=True)]
 
 
 @dataclass(frozen=True, eq=False)
 class OnePairsCycle:
-    """States of one tooth pair that carries the whole load; arguments as of :func:`carried_by_one`."""
+    """States of one tooth pair that carries the whole load; arguments as of :func:`solve_single_pair`."""
 
     pair: GearPair
     path: ContactPath
@@ -178,7 +178,7 @@ class OnePairsCycle:
                 )
             )
 
-    def carried(self, results: Sequence[LoadedContact | None]) -> Carried:
+    def carried(self, results: Sequence[LoadedContact | None]) -> CycleSolution:
         """What the tooth pair carries by the results of the steps."""
         shape = len(self.torques), len(self.path)
         contacts: Contacts = [[[None] for _ in range(shape[1])] for _ in range(shape[0])]
@@ -194,12 +194,12 @@ class OnePairsCycle:
         number = np.zeros(1, dtype=int)
         states = _loaded_states(number, contacts, self.bending)
         paths, deflections = (self.path,), deflection[..., None]
-        return Carried(self.path, self.torques, number, paths, contacts, rotation, states, share, deflections)
+        return CycleSolution(self.path, self.torques, number, paths, contacts, rotation, states, share, deflections)
 
 
 @dataclass(frozen=True, eq=False)
 class AllPairsCycle:
-    """States of all tooth pairs, which share the load; arguments as of :func:`carried_by_all`."""
+    """States of all tooth pairs, which share the load; arguments as of :func:`solve_mesh_cycle`."""
 
     pair: GearPair
     mesh: MeshPath
@@ -214,7 +214,7 @@ class AllPairsCycle:
         positions = list(zip(angles.tolist(), tooth_pairs, strict=True))
         return steps_of_shared(self.pair, positions, self.torques, self.grid, self.bending, self.displacement)
 
-    def carried(self, results: Sequence[SharedLoad]) -> Carried:
+    def carried(self, results: Sequence[SharedLoad]) -> CycleSolution:
         """What the tooth pairs carry by the results of the steps."""
         mesh, torques, shape = self.mesh, self.torques, (len(self.torques), len(self.mesh))
         carrying = {0} | {share.tooth_pair.pair for one in results for share in one.shares}
@@ -228,7 +228,7 @@ class AllPairsCycle:
                 contacts[t][n][place[2]], deflection[place] = part.loaded, part.tooth_deflection
                 share[place] = part.torque / torques[t] if shared.torque > 0.0 else 1.0
         leading, paths = in_gear_angles(mesh)
-        return Carried(
+        return CycleSolution(
             path=leading,
             torque=torques,
             pairs=mesh.pairs[columns],
@@ -241,7 +241,7 @@ class AllPairsCycle:
         )
 
 
-def torques_shared(
+def share_loads(
     pair: GearPair,
     positions: Sequence[tuple[float, Sequence[ToothPair]]],
     torques: Array,
@@ -257,7 +257,7 @@ def torques_shared(
     positions : sequence of (float, sequence of ToothPair)
         Pinion angle [rad], and all pairs that may come into contact there.
     pair, torques, grid, bending, progress, displacement
-        As of :func:`carried_by_one`.
+        As of :func:`solve_single_pair`.
 
     Returns
     -------
@@ -267,7 +267,7 @@ def torques_shared(
     shape = len(torques), len(positions)
     steps = steps_of_shared(pair, positions, torques, grid, bending, displacement)
     report = None if progress is None else lambda done: progress(done, len(steps))
-    return dict(zip(np.ndindex(shape), found_together(pair, steps, report), strict=True))
+    return dict(zip(np.ndindex(shape), run_stacked(pair, steps, report), strict=True))
 
 
 def steps_of_shared(
@@ -278,14 +278,14 @@ def steps_of_shared(
     bending: BendingModel | None = None,
     displacement: Coupling | None = None,
 ) -> list[Steps[SharedLoad]]:
-    """Steps of every torque at every position, torque by torque; arguments as of :func:`torques_shared`."""
+    """Steps of every torque at every position, torque by torque; arguments as of :func:`share_loads`."""
     alike = [one.contact for _, all_at in positions for one in all_at if one.gears is None]
     relative_curvatures(pair, alike)  # kept for all torques
 
     def steps(t: int, n: int) -> Steps[SharedLoad]:
         angle, tooth_pairs = positions[n]
         with told_where(torques[t], angle):
-            return (yield from torque_shared(pair, tooth_pairs, float(torques[t]), grid, bending, displacement))
+            return (yield from load_sharing_steps(pair, tooth_pairs, float(torques[t]), grid, bending, displacement))
 
     return [steps(*state) for state in np.ndindex(len(torques), len(positions))]
 

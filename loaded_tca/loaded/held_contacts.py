@@ -30,7 +30,7 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.edges.free import edge_compliances
 from loaded_tca.errors import AccuracyWarning, InputError, LoadedTCAError
-from loaded_tca.loaded.load_sharing import torque_shared
+from loaded_tca.loaded.load_sharing import load_sharing_steps
 from loaded_tca.loaded.together import Ends, Gap, Result, Steps, Trace
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
 from loaded_tca.loaded.tooth_pairs import SharedLoad, ToothPair, tooth_pairs_at
@@ -371,7 +371,7 @@ class ShapedContacts:
         beyond = [one.initial_separation + self._lowest[one.contact] / one.contact.wheel_lever for one in there]
         first = min(beyond)
         tooth_pairs = [replace(one, initial_separation=rest - first) for one, rest in zip(there, beyond, strict=True)]
-        steps = torque_shared(pair, tooth_pairs, torque, grid, contacts.bending, contacts.displacement)
+        steps = load_sharing_steps(pair, tooth_pairs, torque, grid, contacts.bending, contacts.displacement)
         answer = yield from self._answered(steps)
         unloaded = float(contacts.mesh.transmission_error[position])
         return unloaded - pair.driving * (first + answer.rotation), answer

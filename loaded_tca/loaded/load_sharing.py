@@ -42,7 +42,7 @@ from loaded_tca.errors import ConvergenceError, InputError, named
 from loaded_tca.loaded.balance import balance
 from loaded_tca.loaded.first_guess import ExpectedLine, first_law
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.together import Gap, Line, Steps, Trace, found_alone, with_gears
+from loaded_tca.loaded.together import Gap, Line, Steps, Trace, run_alone, with_gears
 from loaded_tca.loaded.tooth_contact import FIRST_CELLS, Coupling, GridChoice, contact_under_load, expected_pressure
 from loaded_tca.loaded.tooth_pairs import Share, SharedLoad, ToothPair
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
@@ -124,10 +124,10 @@ def share_load(
     >>> [round(share.torque / 130e3, 3) for share in shared.shares]
     [0.5, 0.5]
     """
-    return found_alone(pair, torque_shared(pair, tooth_pairs, torque, grid, bending))
+    return run_alone(pair, load_sharing_steps(pair, tooth_pairs, torque, grid, bending))
 
 
-def torque_shared(
+def load_sharing_steps(
     pair: GearPair,
     tooth_pairs: Sequence[ToothPair],
     torque: float,
@@ -169,7 +169,7 @@ class _Balance:
         self.pair, self.tooth_pairs, self.torque, self.grid = pair, tooth_pairs, torque, grid
         self.displacement, self.on_moved_gears = displacement, displacement is not None
         self.mean_displacement = np.zeros(len(tooth_pairs))  # [mm], over the force of each pair
-        self.bending, self.lines_held = bending, grid.lines_held
+        self.bending, self.forces_on_grid_axis = bending, grid.forces_on_grid_axis
         self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
         self.first_gaps = np.zeros(len(tooth_pairs))  # [mm], where the grid of a pair touches first: it grows, is cut
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
@@ -178,9 +178,9 @@ class _Balance:
         self.laws, self.half_lengths = [law for law, _ in firsts], [length for _, length in firsts]
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
-        self.grids_apart: dict[int, Separation] = {}  # of pairs that carried nothing yet
+        self.grids_of_unloaded_pairs: dict[int, Separation] = {}  # of pairs that carried nothing yet
         self.deflections: dict[tuple[int, int], tuple[Separation, LoadedContact, Array]] = {}
-        self.on_grids = self.on_moved_gears or grid.lines_held  # all pairs, since displacements go with grids
+        self.on_grids = self.on_moved_gears or grid.forces_on_grid_axis  # all pairs, since displacements go with grids
         usual = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
         self.agreement = usual if grid.agreement is None else grid.agreement
 
@@ -190,7 +190,7 @@ class _Balance:
         if self.bending is not None:
             self.compliance = yield from self._first_compliance(self.bending)
         for count in range(1, MOST_BALANCES + 1):
-            self.lines_held = self.lines_held or count > SWINGING
+            self.forces_on_grid_axis = self.forces_on_grid_axis or count > SWINGING
             if cap is not None and shared is not None and count > SWINGING and count % SWINGING != 1:
                 forces = yield from self._solve_at_common_rotation(shared)
             else:  # also now and then there, since pairs that are apart may come under load
@@ -242,7 +242,7 @@ class _Balance:
                 if middle is not contact and middle.in_contact:
                     moved[index] = moved[index].at_middle(middle)
                     self.levers[1, index] = middle.wheel_lever
-                    self.grids_apart.pop(index, None)
+                    self.grids_of_unloaded_pairs.pop(index, None)
         self.tooth_pairs = tuple(moved)
 
     def _first_compliance(self, bending: BendingModel) -> Steps[Array]:
@@ -260,7 +260,7 @@ class _Balance:
                 lines.append((tooth_pair.pair, line))
             shares.append(force / force.sum())
         if self.on_moved_gears:
-            displaced = [self._displaced(grid) for grid in self.grids_apart.values()]
+            displaced = [self._displaced(grid) for grid in self.grids_of_unloaded_pairs.values()]
             self.mean_displacement = np.array([own @ one for own, one in zip(shares, displaced, strict=True)])
         compliance = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
         for (i, one), (j, other) in combinations(enumerate(lines), 2):
@@ -270,10 +270,12 @@ class _Balance:
 
     def _grid_apart(self, index: int) -> Steps[Separation]:
         """Grid of a pair that carried nothing yet, in the box that it would have under all of the torque."""
-        if index not in self.grids_apart:
+        if index not in self.grids_of_unloaded_pairs:
             contact, gears = self.tooth_pairs[index].contact, self.tooth_pairs[index].gears
-            self.grids_apart[index] = yield Gap(contact, FIRST_CELLS, load=self.laws[index].load, gears=gears)
-        return self.grids_apart[index]
+            self.grids_of_unloaded_pairs[index] = yield Gap(
+                contact, FIRST_CELLS, load=self.laws[index].load, gears=gears
+            )
+        return self.grids_of_unloaded_pairs[index]
 
     def _solve(self, index: int, forces: Array, same_box: tuple[float, float]) -> Steps[None]:
         """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""
@@ -284,14 +286,21 @@ class _Balance:
             if before is not None and not before.solution.reaches_border:
                 least, most = (factor * before.solution.load for factor in same_box)
                 if least <= force <= most:
-                    if self.bending is not None and not self.lines_held:
-                        before = before.bent_by(self.bending, tooth_pair.pair, self.pair.module)
-                    loaded = yield from before.under(force, coupling(before.separation))
+                    if self.bending is not None and not self.forces_on_grid_axis:
+                        before = before.with_bending_lines(self.bending, tooth_pair.pair, self.pair.module)
+                    loaded = yield from before.at_load(force, coupling(before.separation))
             if loaded is None or loaded.solution.reaches_border:
                 contact, number, gears = tooth_pair.contact, tooth_pair.pair, tooth_pair.gears or self.pair
                 with named(f"tooth pair {number:+d}"):
                     steps = contact_under_load(
-                        gears, contact, force, self.grid, self.bending, number, coupling, goes_on=not self.lines_held
+                        gears,
+                        contact,
+                        force,
+                        self.grid,
+                        self.bending,
+                        number,
+                        coupling,
+                        solved_again=not self.forces_on_grid_axis,
                     )
                     loaded = yield from with_gears(tooth_pair.gears, steps)
         except ConvergenceError as error:
@@ -315,7 +324,7 @@ class _Balance:
 
         def solved_at(rotation: float) -> dict[int, LoadedContact]:
             approach = self.levers[1] * (rotation - self.separations)
-            return {index: loaded.at(float(approach[index]), coupling[index]) for index, loaded in before}
+            return {index: loaded.at_approach(float(approach[index]), coupling[index]) for index, loaded in before}
 
         def torque_missing(rotation: float) -> float:
             solved = solved_at(rotation).items()
@@ -434,7 +443,7 @@ class _Balance:
         could move each other further than themselves, and no balance would be found.
         """
         assert self.bending is not None
-        grids = {index: (self.tooth_pairs[index].pair, self.grids_apart[index]) for index in places}
+        grids = {index: (self.tooth_pairs[index].pair, self.grids_of_unloaded_pairs[index]) for index in places}
         for index, place in places.items():
             compliance[index, index] = self.bending.within(*grids[index])[place, place]
         for index, other in combinations(places, 2):
@@ -458,7 +467,7 @@ class _Balance:
                 moved = (now - loaded.coupling_deflection)[loaded.slice_force > 0.0]
                 if np.ptp(moved) > SETTLED * allowed[index]:
                     return False
-                if not self.lines_held and loaded.line_error(self.pair.module) > LINE_ERROR * self.pair.module:
+                if not self.forces_on_grid_axis and loaded.line_error(self.pair.module) > LINE_ERROR * self.pair.module:
                     return False
         return True
 

@@ -254,7 +254,7 @@ class LoadedContact:
             return deflection
         return float(deflection - self.coupling_deflection @ force / force.sum())
 
-    def bent_by(self, bending: BendingModel, number: int, module: float) -> LoadedContact:
+    def with_bending_lines(self, bending: BendingModel, number: int, module: float) -> LoadedContact:
         """Return the contact as it is, to be solved next with teeth that bend at the centres of its pressure.
 
         Where they moved by less than ``LINE_KEPT``, it is returned as it is.
@@ -273,7 +273,7 @@ class LoadedContact:
         force, moved = self.slice_force, np.abs(other.force_line - self.separation.force_line)
         return float(force @ moved / force.sum()) if force.any() else 0.0
 
-    def under(self, load: float, coupling: Array | None = None) -> Steps[LoadedContact]:
+    def at_load(self, load: float, coupling: Array | None = None) -> Steps[LoadedContact]:
         """Return the contact under another load > 0 [N] near this one, on the same grid and as closely solved.
 
         ``coupling``: displacement of the slices under the load of other pairs, if anything bends, (ny,) [mm].
@@ -288,7 +288,7 @@ class LoadedContact:
         solution = replace((yield Task(problem, self.tolerance, start)), coarser=before.coarser)
         return replace(self, solution=solution, coupling_deflection=coupling)
 
-    def at(self, approach: float, coupling: Array | None = None) -> LoadedContact:
+    def at_approach(self, approach: float, coupling: Array | None = None) -> LoadedContact:
         """Return the contact at another approach [mm], counted as the gap is, on the same grid; ``coupling`` as above.
 
         The estimated error is left as it is. The solution is closer than others: at a cap on the pressure the force

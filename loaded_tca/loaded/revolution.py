@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from loaded_tca.arrays import Array
-from loaded_tca.loaded.cycle import Progress, torques_shared
+from loaded_tca.loaded.cycle import Progress, share_loads
 from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.sensitivity import loaded_states
 from loaded_tca.loaded.standing import Standing, on_rigid_supports
@@ -20,7 +20,7 @@ STATES_AT_A_TIME = 128
 
 
 @dataclass(frozen=True, eq=False)
-class CarriedPart:
+class RevolutionPart:
     """What the tooth pairs carry at some positions.
 
     Attributes
@@ -41,9 +41,9 @@ class CarriedPart:
     drive_stiffness: Array
 
 
-def carried_over_revolution(
+def solve_revolution(
     path: RevolutionPath, standing: Standing, grid: GridChoice, progress: Progress | None = None
-) -> Iterator[CarriedPart]:
+) -> Iterator[RevolutionPart]:
     """Let all tooth pairs in contact share the load, position by position of a revolution.
 
     Parameters
@@ -57,7 +57,7 @@ def carried_over_revolution(
 
     Yields
     ------
-    CarriedPart
+    RevolutionPart
     """
     torques, bending = standing.torques, standing.giving_way
     count, whole = max(1, STATES_AT_A_TIME // len(torques)), len(path) * len(torques)
@@ -65,7 +65,7 @@ def carried_over_revolution(
         positions = range(first, min(first + count, len(path)))
         report = None if progress is None else partial(_report, progress, first * len(torques), whole)
         at = [(float(path.pinion_angle[n]), tooth_pairs_of(path, n)) for n in positions]
-        shared = torques_shared(path.pair, at, torques, grid, bending, report, standing.displacement)
+        shared = share_loads(path.pair, at, torques, grid, bending, report, standing.displacement)
         loaded = [[(one.tooth_pair.pair, one.loaded) for one in each.shares] for each in shared.values()]
         held = states = [[LoadedGrid.of(*one) for one in at] for at in loaded]
         if standing.supports is not None:
@@ -73,7 +73,7 @@ def carried_over_revolution(
         shape = len(torques), len(positions)
         drive = loaded_states(states, bending).stiffness.reshape(shape)
         stiffness = drive if held is states else loaded_states(held, standing.teeth).stiffness.reshape(shape)
-        yield CarriedPart(positions, shared, stiffness, drive)
+        yield RevolutionPart(positions, shared, stiffness, drive)
 
 
 def _report(progress: Progress, before: int, whole: int, done: int, _: int) -> None:

@@ -32,12 +32,12 @@ from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.errors import ConvergenceError, GeometryError, named
 from loaded_tca.loaded.cycle import (
     AllPairsCycle,
-    Carried,
     Contacts,
+    CycleSolution,
     OnePairsCycle,
     Progress,
-    carried_together,
     in_gear_angles,
+    solve_cycles,
 )
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.loaded_grid import LoadedGrid
@@ -150,7 +150,7 @@ class StandingCycle:
     Attributes
     ----------
     standing : Standing
-    carried : Carried
+    carried : CycleSolution
         Under its torques, from there on.
     loads : tuple of (n, 6 m) arrays
         Of the supports of pinion and wheel at the positions, NaN where nothing is in contact; none of rigid gears.
@@ -159,14 +159,14 @@ class StandingCycle:
     """
 
     standing: Standing
-    carried: Carried
+    carried: CycleSolution
     loads: tuple[Array, ...]
     mesh_rate: Array
 
     @property
     def pitches_apart(self) -> int:
         """How many pitches two tooth pairs that carry load at a position are apart at the most."""
-        return widest_apart(self.carried.pairs, self.carried.share)
+        return pair_span(self.carried.pairs, self.carried.share)
 
     @property
     def drive_rate(self) -> Array:
@@ -188,7 +188,7 @@ class _Cycle:
     def steps(self) -> list[Steps[Any]]:
         return [_told(own, self.standing) for own in self.states.steps()]
 
-    def carried(self, results: Sequence[Any]) -> Carried:
+    def carried(self, results: Sequence[Any]) -> CycleSolution:
         carried = self.states.carried(results)
         bending = self.standing.bending  # rigid supports included
         return replace(carried, states=replace(carried.states, bending=bending))
@@ -235,16 +235,16 @@ class GearsUnderTorques:
     def mesh_cycles(self, torques: Sequence[float] | Array, progress: Progress | None = None) -> list[StandingCycle]:
         """Mesh cycles under pinion torques [N mm], worked on together; errors are those of :meth:`standing`."""
         cycles = [self._cycle(one, self.angles, self.grid) for one in self.standing(torques)]
-        carried = carried_together(cycles, progress)
+        carried = solve_cycles(cycles, progress)
         for _ in range(MOST_AGAIN if len(self.angles) > ENOUGH else 0):
             pairs = zip(cycles, carried, strict=True)
             further = {t: moved for t, one in enumerate(pairs) if (moved := self._moved_further(*one)) is not None}
             again = [self._cycle(standing, self.angles, self.grid) for standing in further.values()]
-            for t, cycle, own in zip(further, again, carried_together(again) if again else (), strict=True):
+            for t, cycle, own in zip(further, again, solve_cycles(again) if again else (), strict=True):
                 cycles[t], carried[t] = cycle, own
         return [_standing_cycle(one.standing, own) for one, own in zip(cycles, carried, strict=True)]
 
-    def _moved_further(self, cycle: _Cycle, carried: Carried) -> Standing | None:
+    def _moved_further(self, cycle: _Cycle, carried: CycleSolution) -> Standing | None:
         """Where the mean load of a whole pitch moves the gears; None if that is no further than where they stand."""
         standing, (torque, *_) = cycle.standing, cycle.standing.torques.tolist()
         if standing.supports is None or torque == 0.0:
@@ -287,7 +287,7 @@ class GearsUnderTorques:
         left = [*loads]
         for step in range(MOST_STEPS):
             cycles = [self._cycle(self._moved(torque, loads[torque]), spread, roughly) for torque in left]
-            for torque, cycle, carried in zip([*left], cycles, carried_together(cycles), strict=True):
+            for torque, cycle, carried in zip([*left], cycles, solve_cycles(cycles), strict=True):
                 standing = cycle.standing
                 assert standing.supports is not None
                 assert standing.loads is not None
@@ -350,7 +350,7 @@ class GearsUnderTorques:
             return _Cycle(standing, OnePairsCycle(pair, trace_contact(pair, angles), torques, *what))
 
 
-def widest_apart(pairs: Indices, shares: Array) -> int:
+def pair_span(pairs: Indices, shares: Array) -> int:
     """How many pitches two tooth pairs (k,) with shares (..., k) above 0 in the same state are apart at the most."""
     rows = shares.reshape(-1, len(pairs))
     return max((int(np.ptp(pairs[row > 0.0])) for row in rows if (row > 0.0).any()), default=0)
@@ -361,7 +361,7 @@ def _halfway(one: Loads, other: Loads) -> Loads:
     return pinion, wheel
 
 
-def _mean_load(supports: SupportCompliance, carried: Carried, *, whole: bool = False) -> Loads:
+def _mean_load(supports: SupportCompliance, carried: CycleSolution, *, whole: bool = False) -> Loads:
     """Mean over the positions; of a ``whole`` pitch its end is the beginning of the next one."""
     pinion, wheel = loads_at(supports, carried.contacts[0])
     own = slice(None, -1 if whole else None)
@@ -387,7 +387,7 @@ def _told(steps: Steps[Result], standing: Standing) -> Steps[Result]:
         return (yield from steps)
 
 
-def _standing_cycle(standing: Standing, carried: Carried) -> StandingCycle:
+def _standing_cycle(standing: Standing, carried: CycleSolution) -> StandingCycle:
     """What the tooth pairs carry, with the loads of the supports, and the tangents without what these give way."""
     if standing.supports is None:
         return StandingCycle(standing, carried, (), carried.torque_rate)
@@ -408,7 +408,7 @@ def on_rigid_supports(number: int, loaded: LoadedContact, teeth: BendingModel | 
     return replace(one, problem=replace(one.problem, slice_compliance=slices), bending=bent)
 
 
-def all_torques(unloaded: MeshPath | ContactPath, cycles: Sequence[StandingCycle]) -> Carried:
+def all_torques(unloaded: MeshPath | ContactPath, cycles: Sequence[StandingCycle]) -> CycleSolution:
     """What the tooth pairs carry under all torques, under each in the pair as it stands.
 
     Parameters
@@ -420,7 +420,7 @@ def all_torques(unloaded: MeshPath | ContactPath, cycles: Sequence[StandingCycle
 
     Returns
     -------
-    Carried
+    CycleSolution
         Its paths are those of the unloaded pair, and of the moved one where a tooth pair comes into reach by load only;
         its rotation is that from the unloaded pair on, motions of the gears included.
     """
@@ -448,7 +448,7 @@ def all_torques(unloaded: MeshPath | ContactPath, cycles: Sequence[StandingCycle
                     contacts[first + t][n][column] = loaded
         first = rows.stop
     states = [one.carried.states for one in cycles]
-    return Carried(
+    return CycleSolution(
         path=path,
         torque=torque,
         pairs=numbers,

@@ -87,7 +87,7 @@ Request = Trace | Gap | Line | Ends | Task
 Steps = Generator[Request, Any, Result]
 
 
-def found_together(
+def run_stacked(
     pair: GearPair, all_steps: Sequence[Steps[Result]], progress: Callable[[int], None] | None = None
 ) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
@@ -137,9 +137,9 @@ def found_together(
     return [results[index] for index in range(len(all_steps))]
 
 
-def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
+def run_alone(pair: GearPair, steps: Steps[Result]) -> Result:
     """Answer what one generator asks for, until it returns."""
-    return found_together(pair, [steps])[0]
+    return run_stacked(pair, [steps])[0]
 
 
 def _answers(

@@ -22,7 +22,7 @@ from loaded_tca.edges.places import arcs_at, has_relief_starts, relief_start_dis
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.together import Ends, Gap, Steps, Task, found_alone
+from loaded_tca.loaded.together import Ends, Gap, Steps, Task, run_alone
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plain import plain
 from loaded_tca.separation import Separation
@@ -51,8 +51,8 @@ class GridChoice:
     """How finely a contact is resolved: on ``cells`` as given, or on as many as ``accuracy`` needs.
 
     ``free_edges``: whether the tips and faces of the teeth are softer than a half-space. ``agreement``: to which the
-    rotations of the tooth pairs agree, relative; None: as the cells or the accuracy ask for. ``lines_held``: whether
-    the forces of slices bend the teeth where their grid says, instead of at the centres of the pressure.
+    rotations of the tooth pairs agree, relative; None: as the cells or the accuracy ask for. ``forces_on_grid_axis``:
+    whether the forces of slices bend the teeth where their grid says, instead of at the centres of the pressure.
     """
 
     cells: tuple[int, int] | None = None
@@ -60,7 +60,7 @@ class GridChoice:
     tolerance: float = 1e-6
     free_edges: bool = False
     agreement: float | None = None
-    lines_held: bool = False
+    forces_on_grid_axis: bool = False
 
 
 def solve_under_load(
@@ -72,7 +72,7 @@ def solve_under_load(
     number: int = 0,
 ) -> LoadedContact:
     """Contact of one tooth pair at one position under a normal force; see :func:`contact_under_load`."""
-    return found_alone(pair, contact_under_load(pair, contact, load, grid, bending, number))
+    return run_alone(pair, contact_under_load(pair, contact, load, grid, bending, number))
 
 
 def contact_under_load(
@@ -84,7 +84,7 @@ def contact_under_load(
     number: int = 0,
     coupling: Coupling | None = None,
     *,
-    goes_on: bool = False,
+    solved_again: bool = False,
 ) -> Steps[LoadedContact]:
     """Contact of one tooth pair at one position under a normal force, step by step.
 
@@ -103,9 +103,9 @@ def contact_under_load(
         Of the tooth pair, as the bending model counts.
     coupling : callable, optional
         Displacement of the slices of a grid by what other tooth pairs carry at the same time; default: none.
-    goes_on : bool
-        Whether the contact is solved once more under another load, :meth:`LoadedContact.bent_by`: teeth then bend at
-        the centres of the pressure of the grid before where an accuracy is asked for.
+    solved_again : bool
+        Whether the contact is solved once more under another load, :meth:`LoadedContact.with_bending_lines`: teeth then
+        bend at the centres of the pressure of the grid before where an accuracy is asked for.
 
     Returns
     -------
@@ -131,7 +131,7 @@ def contact_under_load(
         separation = yield Gap(contact, cells, box=separation.box, polynomials=separation.polynomials)
     for _ in range(MOST_BOXES):
         contact_in_box = _InBox(pair, contact, load, grid, separation, bending, number, coupling)
-        loaded = yield from contact_in_box.steps(goes_on=goes_on)
+        loaded = yield from contact_in_box.steps(solved_again=solved_again)
         if not loaded.solution.reaches_border:
             break
         box = loaded.separation.box.grown(loaded.filled_ends, GROWTH)
@@ -184,19 +184,19 @@ class _InBox:
         self.ends: Array | None = None
         self.line_loads: list[Callable[[], SliceLoads]] = []
 
-    def steps(self, *, goes_on: bool) -> Steps[LoadedContact]:
+    def steps(self, *, solved_again: bool) -> Steps[LoadedContact]:
         loaded = yield from self._refined()
-        if self.grid.lines_held or self.load == 0.0:
+        if self.grid.forces_on_grid_axis or self.load == 0.0:
             return loaded
         if self.bending is None:
             return replace(loaded, separation=loaded.separation.loaded_by(loaded.solution.pressure, self.pair.module))
         if loaded.solution.reaches_border:
             return loaded
-        if goes_on and self.grid.cells is None:
+        if solved_again and self.grid.cells is None:
             return replace(loaded, judged=(float(loaded.solution.pressure.max()), self.load))
-        bent = loaded.bent_by(self.bending, self.number, self.pair.module)
+        bent = loaded.with_bending_lines(self.bending, self.number, self.pair.module)
         coupling = None if self.coupling is None else self.coupling(bent.separation)
-        bent = yield from bent.under(self.load, coupling)
+        bent = yield from bent.at_load(self.load, coupling)
         judged = loaded if self.grid.cells is None else bent  # the first lines on given cells are the axis of the grid
         return replace(bent, judged=(float(judged.solution.pressure.max()), self.load))
 
@@ -233,7 +233,7 @@ class _InBox:
         separation = self.first
         if separation.gap.shape != cells:
             separation = yield Gap(self.contact, cells, box=self.first.box, polynomials=self.first.polynomials)
-        if start is not None and self.bending is not None and not self.grid.lines_held:
+        if start is not None and self.bending is not None and not self.grid.forces_on_grid_axis:
             separation = separation.loaded_by(start, self.pair.module)
         self.separation = separation
         self.displaced = None if self.coupling is None else self.coupling(separation)

@@ -46,7 +46,7 @@ from loaded_tca.plots.style import (
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.stress_below import NAMES, Quantity, StressBelow, depth_of_largest
-from loaded_tca.results.support_growth import standing
+from loaded_tca.results.support_growth import gears_under_torque
 from loaded_tca.separation import slice_middles
 
 PRESSURE = "contact pressure [MPa]"
@@ -142,7 +142,7 @@ def draw_map(
     """
     one = result.maps[torque][at[0]][at[1]]
     assert one is not None
-    _draw_pressure(axes, standing(result, torque)[0].gear_pair, one, highest)
+    _draw_pressure(axes, gears_under_torque(result, torque)[0].gear_pair, one, highest)
     names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
     minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
     if math.isfinite(pressure):
@@ -367,7 +367,7 @@ def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array
     Of each map all cells, and from each position to the next the ridge of the pressure, which no place between sees
     anything higher than.
     """
-    pair = standing(result, torque)[0].gear_pair
+    pair = gears_under_torque(result, torque)[0].gear_pair
     for passage in zip(*result.maps[torque], strict=True):
         before = None
         for one in passage:

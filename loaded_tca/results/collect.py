@@ -12,7 +12,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress
 from loaded_tca.edges.rounded import NOT_REACHED, PeakAtEdge
-from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.cycle import CycleSolution
 from loaded_tca.loaded.loaded_contact import EQUAL, LoadedContact
 from loaded_tca.loaded.standing import StandingCycle
 from loaded_tca.pairs.gear_pair import GearPair
@@ -34,7 +34,7 @@ Place = tuple[int, int, int]
 def mesh_cycle(
     scene: Scene,
     pair: GearPair,
-    carried: Carried,
+    carried: CycleSolution,
     at_rounded_edges: Mapping[tuple[int, int, int], PeakAtEdge],
     roots: Sequence[RootStress],
     cycles: Sequence[StandingCycle],
@@ -49,7 +49,7 @@ def mesh_cycle(
     scene : Scene
     pair : GearPair
         Of the scene.
-    carried : Carried
+    carried : CycleSolution
     at_rounded_edges : mapping
         Peaks there by the indices of torque, position and tooth pair, as ``carried`` has them.
     roots : sequence of RootStress

@@ -99,7 +99,7 @@ def as_gears_stand(result: CycleNumbers) -> list[CycleNumbers]:
     return [under_one_torque(result, torque) for torque in range(len(result.torque))]
 
 
-def standing(result: CycleNumbers, torque: int) -> tuple[CycleNumbers, int]:
+def gears_under_torque(result: CycleNumbers, torque: int) -> tuple[CycleNumbers, int]:
     """A result whose gears stand as they do under a torque, by its index, and the index that it has there."""
     if _stand_alike(result):
         return result, torque

@@ -10,7 +10,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
-from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.cycle import CycleSolution
 from loaded_tca.loaded.standing import LoadedStanding, StandingCycle
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.numbers import CycleNumbers
@@ -150,12 +150,12 @@ def warn_of_motions(pair: GearPair, cycles: Sequence[LoadedStanding]) -> None:
         )
 
 
-def secant_on_rigid_supports(carried: Carried, cycles: Sequence[StandingCycle]) -> Array:
+def secant_on_rigid_supports(carried: CycleSolution, cycles: Sequence[StandingCycle]) -> Array:
     """Torque over the rotation (torque, position) [N mm/rad] without what the supports give way.
 
     Parameters
     ----------
-    carried : Carried
+    carried : CycleSolution
         Under all torques, its rotation with the supports.
     cycles : sequence of StandingCycle
         By torque.

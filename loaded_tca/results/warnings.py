@@ -21,7 +21,7 @@ from loaded_tca.edges.places import edge_distances
 from loaded_tca.edges.rounded import PeakAtEdge
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES
-from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.cycle import CycleSolution
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
@@ -29,7 +29,7 @@ from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import arc_cells, mean_pressure_of
-from loaded_tca.results.support_growth import standing
+from loaded_tca.results.support_growth import gears_under_torque
 from loaded_tca.scene import Scene
 from loaded_tca.scene.section import values_of
 from loaded_tca.unloaded.tooth_cycle import REACH
@@ -65,7 +65,7 @@ OF_THE_LARGEST = (kinds.ROUNDED_EDGE, kinds.BODY_TWIST, kinds.RIGID_BORES, kinds
 def warn_of_accuracy(
     pair: GearPair,
     grid: GridChoice,
-    carried: Carried,
+    carried: CycleSolution,
     at_rounded_edges: Mapping[tuple[int, int, int], PeakAtEdge],
     *,
     mesh_rate: Array,
@@ -78,7 +78,7 @@ def warn_of_accuracy(
     ----------
     pair : GearPair
     grid : GridChoice
-    carried : Carried
+    carried : CycleSolution
     at_rounded_edges : mapping
         Peaks there by the indices of torque, position and tooth pair.
     mesh_rate : (m, n) array [N mm/rad]
@@ -379,7 +379,7 @@ def reached_edges(result: CycleNumbers) -> NDArray[np.bool_]:
 
 def edges_of_contact(result: CycleNumbers, torque: int, position: int, column: int) -> NDArray[np.bool_]:
     """Edges (8,) that one contact of a result reaches, given by its indices; see :func:`reached_edges`."""
-    result, torque = standing(result, torque)
+    result, torque = gears_under_torque(result, torque)
     pair, path = result.gear_pair, result.paths[column]
     reached = path.edges[position] & bool(result.normal_force[torque, position, column] > 0.0)
     one = result.maps[torque][position][column]
@@ -406,7 +406,7 @@ def findings_of(result: CycleNumbers) -> tuple[str, ...]:
 def _edges_of_pressure(result: CycleNumbers, torque: int, position: int, column: int) -> NDArray[np.bool_]:
     """Edges (8,) that a contact reaches where its edge pressure lies: the nearest, and those within two cells of it."""
     reached = edges_of_contact(result, torque, position, column)
-    one, pair = result.maps[torque][position][column], standing(result, torque)[0].gear_pair
+    one, pair = result.maps[torque][position][column], gears_under_torque(result, torque)[0].gear_pair
     if one is None or not reached.any():
         return reached
     place = np.array([result.edge_radius[torque, position, column], result.edge_axial[torque, position, column]])

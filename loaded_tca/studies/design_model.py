@@ -31,7 +31,7 @@ from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.moved_gears import pitches_apart
 from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.loaded.standing import GearsUnderTorques
-from loaded_tca.loaded.together import found_together
+from loaded_tca.loaded.together import run_stacked
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.loaded.tooth_pairs import SharedLoad
 from loaded_tca.scene import Scene
@@ -223,7 +223,9 @@ class DesignModel:
         """
         values = self.values(x)
         ends, agreement = self.scene.analysis.free_edges, AGREEMENT * self.tolerance
-        grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=ends, agreement=agreement, lines_held=True)
+        grid = GridChoice(
+            self.cells, tolerance=self.tolerance, free_edges=ends, agreement=agreement, forces_on_grid_axis=True
+        )
         states = list(np.ndindex(len(self.held), self.torques.size, self.positions))
         solved: dict[tuple[int, ...], tuple[float, SharedLoad]] = {}
         while states:
@@ -231,7 +233,7 @@ class DesignModel:
             for by_torque, own in zip(self.held, values + self.own_deviations, strict=True):
                 shaped |= {held: ShapedContacts(held, own) for held in dict.fromkeys(by_torque)}
             steps = [shaped[self.held[s][t]].shared(n, float(self.torques[t]), grid) for s, t, n in states]
-            solved |= zip(states, found_together(self.held[0][0].pair, steps), strict=True)
+            solved |= zip(states, run_stacked(self.held[0][0].pair, steps), strict=True)
             # once more those on grids that another state has outgrown meanwhile
             states = [state for state, (_, one) in solved.items() if not self.held[state[0]][state[1]].holds(one)]
         idle = sorted({t for (_, t, _), (_, one) in solved.items() if one.torque == 0.0})

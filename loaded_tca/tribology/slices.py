@@ -23,7 +23,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.pairs.kinematics import PlaneMotion, surface_motions
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap, arc_cells
-from loaded_tca.results.support_growth import standing
+from loaded_tca.results.support_growth import gears_under_torque
 from loaded_tca.separation import slice_middles
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
@@ -152,7 +152,7 @@ def _swept(result: CycleNumbers) -> Slices:
     rough = result.on_edge.astype(bool) | result.on_relief_start.astype(bool)
     parts = []
     for number, (place, one) in enumerate(zip(places, maps, strict=True)):
-        moved = standing(result, place[0])[0].gear_pair
+        moved = gears_under_torque(result, place[0])[0].gear_pair
         at_edge = bool(result.on_edge[place])
         parts.append(_of_map(moved, one, (*motions, sliding), number, rough=bool(rough[place]), edge=at_edge))
     names = ("x", "y", "step", "line_load", "rolling_1", "rolling_2", "sliding", "loss", "torque_1", "torque_2", "edge")
@@ -260,7 +260,7 @@ def _curvatures(
     longest = int(counts.max(initial=1))
     size = max(1, TOGETHER // longest)
     for some in _together(result, places, size):
-        pair = standing(result, places[some[0]][0])[0].gear_pair
+        pair = gears_under_torque(result, places[some[0]][0])[0].gear_pair
         contacts = [_own_contact(result, places[number], maps[number]) for number in some]
         gap = NormalGap(pair, contacts, np.array([maps[number].axes for number in some]))
         rows = [slice(ends[number] - counts[number], ends[number]) for number in some]
@@ -281,7 +281,7 @@ def _curvatures(
 
 def _together(result: CycleNumbers, places: Sequence[tuple[int, int, int]], most: int) -> Iterator[Sequence[int]]:
     """Numbers of the places that are asked together: of gears that stand alike, no more than ``most`` at once."""
-    for _, alike in groupby(range(len(places)), lambda number: id(standing(result, places[number][0])[0])):
+    for _, alike in groupby(range(len(places)), lambda number: id(gears_under_torque(result, places[number][0])[0])):
         numbers = list(alike)
         yield from (numbers[begin : begin + most] for begin in range(0, len(numbers), most))
 
@@ -289,7 +289,7 @@ def _together(result: CycleNumbers, places: Sequence[tuple[int, int, int]], most
 def _own_contact(result: CycleNumbers, place: tuple[int, int, int], one: PressureMap) -> ContactPoint:
     """Contact point of a map with the angles of its own teeth: those of the gears less the pitches between them."""
     torque, position, column = place
-    under, _ = standing(result, torque)
+    under, _ = gears_under_torque(result, torque)
     pair, path = under.gear_pair, under.paths[column]
     turned = pair.pitch * float(result.pair[column])
     first = {entry.name: getattr(path, entry.name)[position] for entry in fields(path)}

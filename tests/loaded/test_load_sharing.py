@@ -162,12 +162,12 @@ def test_zero_from_which_gaps_count_moves_no_force(raised, monkeypatch):
     assert_allclose(forces, expected, rtol=10.0 * COMPATIBLE)
 
 
-@pytest.mark.parametrize(("pitches", "allowed"), [(-0.25, 4e-4), (0.4, 2e-5)])
+@pytest.mark.parametrize(("pitches", "allowed"), [(-0.25, 4e-4), (0.4, 1.5e-4)])
 def test_pinion_and_wheel_in_each_others_place_stand_to_each_other_as_before(pitches, allowed):
     """At first a tip carries more than a third beyond the path of contact.
 
     Contacts traced with the wheel alone turned back differ by 1e-3 at the tip, and peaks elsewhere by 4e-4. What is
-    left at the tip is of third order in the way of a pair under load.
+    left is of third order in the way at the tip, elsewhere the quarter by which the first guess of the way is too short.
     """
     scene = read_scene(SCENES / "fzg_c14.toml").with_changes({**FLANKS_ALONE, "analysis.cells": (24, 24)})
     ratio, (torque,) = scene.pair().ratio, scene.torques

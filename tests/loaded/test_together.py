@@ -6,7 +6,7 @@ import pytest
 from loaded_tca.contact import ContactProblem
 from loaded_tca.errors import ConvergenceError, GeometryError
 from loaded_tca.loaded import together
-from loaded_tca.loaded.together import Gap, Task, found_alone, found_together
+from loaded_tca.loaded.together import Gap, Task, run_alone, run_stacked
 from loaded_tca.unloaded import trace_contact
 from tests.samples.gear_pairs import sam_paper
 
@@ -31,10 +31,10 @@ def loads_doubled(load, times):
 
 def test_results_stand_in_order_and_are_those_found_alone():
     asked = [(float(load), times) for load, times in zip(range(10, 110), [1, 3, 0, 2] * 25, strict=True)]
-    found = found_together(PAIR, [loads_doubled(*one) for one in asked])
+    found = run_stacked(PAIR, [loads_doubled(*one) for one in asked])
     assert [len(one) for one in found] == [times for _, times in asked]
     for one, own in zip(asked[:8], found, strict=False):
-        for alone, beside in zip(found_alone(PAIR, loads_doubled(*one)), own, strict=True):
+        for alone, beside in zip(run_alone(PAIR, loads_doubled(*one)), own, strict=True):
             assert (alone == beside).all()
 
 
@@ -45,7 +45,7 @@ def test_grids_of_several_sizes_are_all_solved():
         return separation.gap.shape, solution.pressure.shape
 
     sizes = [8, 16, 24, 16, 8, 16]
-    assert found_together(PAIR, [on(cells) for cells in sizes]) == [((n, n), (n, n)) for n in sizes]
+    assert run_stacked(PAIR, [on(cells) for cells in sizes]) == [((n, n), (n, n)) for n in sizes]
 
 
 def test_every_end_is_told_and_no_more_are_under_way_than_allowed(monkeypatch):
@@ -58,13 +58,13 @@ def test_every_end_is_told_and_no_more_are_under_way_than_allowed(monkeypatch):
         yield from loads_doubled(10.0, times)
         running.discard(name)
 
-    found_together(PAIR, [counted(name, 1 + name % 3) for name in range(11)], told.append)
+    run_stacked(PAIR, [counted(name, 1 + name % 3) for name in range(11)], told.append)
     assert told == list(range(1, 12))
     assert max(most) == 3
 
 
 def test_nothing_to_do_is_done():
-    assert found_together(PAIR, []) == []
+    assert run_stacked(PAIR, []) == []
 
 
 @pytest.mark.parametrize("deals_with_it", [True, False])
@@ -80,12 +80,12 @@ def test_error_reaches_the_one_that_asked(monkeypatch, deals_with_it):
     monkeypatch.setattr("loaded_tca.contact.solver.MOST_ITERATIONS", 3)
     steps = [loads_doubled(0.0, 2), hopeless(), loads_doubled(0.0, 1)]
     if deals_with_it:
-        first, told, last = found_together(PAIR, steps)
+        first, told, last = run_stacked(PAIR, steps)
         assert (len(first), len(last)) == (2, 1)
         assert "contact not converged" in told
     else:
         with pytest.raises(ConvergenceError, match="contact not converged") as caught:
-            found_together(PAIR, steps)
+            run_stacked(PAIR, steps)
         assert caught.value.last.iterations == 3
 
 
@@ -100,4 +100,4 @@ def test_gap_that_cannot_be_sampled_is_an_error_of_the_one_that_asked():
     def somewhere():
         return (yield Gap(CONTACT, (8, 8), load=1.0)).gap.shape
 
-    assert found_together(PAIR, [nowhere(), somewhere()]) == ["told", (8, 8)]
+    assert run_stacked(PAIR, [nowhere(), somewhere()]) == ["told", (8, 8)]

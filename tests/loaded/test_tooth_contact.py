@@ -14,7 +14,7 @@ from loaded_tca.contact.patch import widths
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.line_load import SliceLoads, loaded_length, loaded_length_slopes
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.together import found_alone
+from loaded_tca.loaded.together import run_alone
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
@@ -262,8 +262,8 @@ def test_length_of_a_contact_at_an_edge_does_not_follow_whole_cells():
 
 def test_contact_at_another_approach_is_that_under_its_load():
     loaded = solved(sam_paper(), 2700.0)
-    deeper = loaded.at(1.1 * loaded.solution.approach)
-    found = found_alone(sam_paper(), loaded.under(deeper.solution.load))
+    deeper = loaded.at_approach(1.1 * loaded.solution.approach)
+    found = run_alone(sam_paper(), loaded.at_load(deeper.solution.load))
     assert_allclose(found.solution.approach, deeper.solution.approach, rtol=1e-5)
     assert deeper.solution.problem.load == deeper.solution.load > 2700.0
 
@@ -352,7 +352,7 @@ def test_pressure_on_fine_slices_does_not_scatter_as_its_own_forces_bend_the_tee
     loaded = solve_under_load(pair, contact, 650.0, GridChoice(cells=(16, 256)), bending)
     peaks = [float(loaded.solution.pressure.max())]
     for _ in range(3):
-        loaded = found_alone(pair, loaded.bent_by(bending, 0, MODULE).under(650.0))
+        loaded = run_alone(pair, loaded.with_bending_lines(bending, 0, MODULE).at_load(650.0))
         peaks.append(float(loaded.solution.pressure.max()))
     assert np.abs(np.diff(peaks)[1:]).max() < SETTLED * peaks[0], (
         "33 %, and more from time to time, on lines that scatter"
@@ -368,7 +368,7 @@ def test_peak_that_moves_by_more_than_its_load_has_no_smaller_error():
         moved = replace(loaded, judged=(before, 2700.0))
         assert_allclose([moved.peak_change, moved.peak_error], 0.5, rtol=ROUNDING)
     loaded = replace(loaded, judged=(largest, 2700.0))
-    heavier = found_alone(sam_paper(), loaded.under(3000.0))
+    heavier = run_alone(sam_paper(), loaded.at_load(3000.0))
     assert heavier.solution.pressure.max() > loaded.solution.pressure.max()
     assert heavier.peak_change == 0.0, "a peak grows with its load"
 

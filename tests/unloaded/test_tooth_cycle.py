@@ -63,7 +63,7 @@ def test_every_tooth_outside_the_reach_lags_beyond_it(pair):
     assert (lag[(own < low) | (own > high)] > REACH * pair.module).all()
 
 
-def widest_apart(pair, positions):
+def pair_span(pair, positions):
     """Pitches between tooth pairs within reach at positions of a pitch."""
     mesh = trace_teeth(pair, pair.pitch * np.linspace(-0.5, 0.5, positions))
     return max(int(np.ptp(mesh.pairs[near])) for near in np.isfinite(mesh.initial_separation).T)
@@ -71,11 +71,11 @@ def widest_apart(pair, positions):
 
 @pytest.mark.parametrize("pair", [*KINDS, gear_pair(BOTH, width=10.0), gear_pair(BOTH, helix_deg=15.0)])
 def test_pitches_within_reach_are_those_of_many_positions(pair):
-    assert pitches_within_reach(pair) == widest_apart(pair, 33)
+    assert pitches_within_reach(pair) == pair_span(pair, 33)
 
 
 def test_pitches_within_reach_do_not_follow_from_both_ends_of_a_pitch():
-    assert widest_apart(KINDS[0], 2) < pitches_within_reach(KINDS[0])
+    assert pair_span(KINDS[0], 2) < pitches_within_reach(KINDS[0])
 
 
 @kinds

@@ -15,7 +15,7 @@ import numpy as np
 
 from loaded_tca.compliance import MeshDensity, tooth_compliance
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.loaded.cycle import Carried, carried_by_all
+from loaded_tca.loaded.cycle import CycleSolution, solve_mesh_cycle
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
@@ -196,11 +196,11 @@ class Model:
         whole = 1e3 * torque * self.face_width / FACE_WIDTH
         torques = whole * np.array(LOAD_STEPS)
         start = time.process_time()
-        carried = carried_by_all(pair, trace_teeth(pair, np.asarray(angles)), torques, GRID, self.bending)
+        carried = solve_mesh_cycle(pair, trace_teeth(pair, np.asarray(angles)), torques, GRID, self.bending)
         seconds = (time.process_time() - start) / (len(torques) * len(angles))
         return [self._position(pair, carried, n, seconds) for n in range(len(angles))]
 
-    def _position(self, pair: GearPair, carried: Carried, n: int, seconds: float) -> Position:
+    def _position(self, pair: GearPair, carried: CycleSolution, n: int, seconds: float) -> Position:
         """Position of the last torque; stiffness from the last two, as in the reference."""
         first, second = pair.base_radii
         setback = carried.path.transmission_error[n] - pair.driving * carried.rotation[-1, n]

@@ -23,7 +23,7 @@ import numpy as np
 
 from loaded_tca import AccuracyWarning, read_scene
 from loaded_tca.compliance import tooth_compliance
-from loaded_tca.loaded.cycle import carried_by_one
+from loaded_tca.loaded.cycle import solve_single_pair
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.unloaded import trace_contact
@@ -144,22 +144,22 @@ def kept(mesh: str = FINEST, setback: float = TOUCHING) -> Loaded:
 
 
 @cache
-def here(free_edges: bool = True, lines_held: bool = False) -> Loaded:
+def here(free_edges: bool = True, forces_on_grid_axis: bool = False) -> Loaded:
     """Result of the package at all positions, its lines on the layers of the kept ones.
 
     Parameters
     ----------
     free_edges : bool
-    lines_held : bool
+    forces_on_grid_axis : bool
         Whether the forces of the slices act in the middle of the cells.
     """
     scene = read_scene(SCENE)
     pair = scene.pair()
     path = trace_contact(pair, np.array([pinion_angle(position) for position in POSITIONS]))
-    grid = GridChoice(free_edges=free_edges, lines_held=lines_held)
+    grid = GridChoice(free_edges=free_edges, forces_on_grid_axis=forces_on_grid_axis)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        carried = carried_by_one(pair, path, np.asarray(scene.torques), grid, tooth_compliance(pair))
+        carried = solve_single_pair(pair, path, np.asarray(scene.torques), grid, tooth_compliance(pair))
     contacts = [contact for (contact,) in carried.contacts[0] if contact is not None]
     error = 1e3 * pair.base_radii[1] * (path.transmission_error - carried.rotation[0])
     reference = kept().lines
@@ -232,7 +232,7 @@ def rows() -> list[Row]:
 def page() -> Page:
     """Page and picture."""
     reference, ours = kept(), here()
-    held, flanks = here(lines_held=True), here(free_edges=False)
+    held, flanks = here(forces_on_grid_axis=True), here(free_edges=False)
     (of_error, of_step), (by_setback, step_by_setback) = change(kept("medium")), change(kept(setback=UNDER_LOAD))
     columns = {
         "finite elements": reference.transmission_error,

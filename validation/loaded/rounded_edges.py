@@ -30,7 +30,7 @@ from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import edge_pressures, rounded_edge
 from loaded_tca.edges import rounded as edges_of_gears
 from loaded_tca.edges.rounded import PeakAtEdge, ReachedArc, pressure_at_rounded_edge, reached_arcs
-from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.cycle import CycleSolution
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.pairs.gear_pair import GearPair
@@ -131,7 +131,7 @@ class Solved:
 
     cycle: MeshCycle
     pair: GearPair
-    carried: Carried
+    carried: CycleSolution
     bending: BendingModel | None
     free_edges: bool
 
