@@ -167,7 +167,7 @@ def test_pinion_and_wheel_in_each_others_place_stand_to_each_other_as_before(pit
     """At first a tip carries more than a third beyond the path of contact.
 
     Contacts traced with the wheel alone turned back differ by 1e-3 at the tip, and peaks elsewhere by 4e-4. What is
-    left is of third order in the way at the tip, elsewhere the quarter by which the first guess of the way is too short.
+    left is of third order in the way at the tip, elsewhere a quarter: the first guess of the way is too short.
     """
     scene = read_scene(SCENES / "fzg_c14.toml").with_changes({**FLANKS_ALONE, "analysis.cells": (24, 24)})
     ratio, (torque,) = scene.pair().ratio, scene.torques
