@@ -313,8 +313,10 @@ PITCH_DEVIATIONS = Kind(
     "`loaded-tca revolution`, or `analyse_revolution`",
 )
 OPEN_REVOLUTION = Kind(
-    "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: the ends of the curve do not meet",
-    "amplitudes of a curve that is not closed leak into neighbouring orders; spans hold for the part that is there",
+    "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: the ends of the curve do not meet, so "
+    "that orders of the gears mix and deviations are those of this part",
+    "amplitudes of a curve that is not closed leak into neighbouring orders, whichever gear they are named after; "
+    "spans hold for the part that is there",
     '`pitches = "hunting"`, or a multiple of the number of teeth of that gear',
 )
 

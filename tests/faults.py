@@ -1821,6 +1821,20 @@ FAULTS = (
             ),
         )
     ),
+    Fault(
+        "designs: contacts of every torque are held in the boxes of the largest one",
+        "studies/design_model.py",
+        "HeldContacts(scene, mesh, ranges, t, self.cells, *bending) for t in",
+        "HeldContacts(scene, mesh, ranges, float(self.torques.max()), self.cells, *bending) for t in",
+        "studies/test_design.py::test_figures_under_a_torque_are_those_without_a_larger_one_beside_it",
+    ),
+    Fault(
+        "tables: counts and numbers of teeth are no whole numbers",
+        "results/result.py",
+        "return values if factor == 1.0 else factor * values",
+        "return factor * values",
+        "test_revolution.py::test_root_stress_is_that_of_one_pitch_and_names_its_teeth",
+    ),
 )
 
 

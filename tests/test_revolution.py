@@ -365,6 +365,7 @@ def test_root_stress_is_that_of_one_pitch_and_names_its_teeth(tmp_path):
     columns = turn.to_table()
     assert_allclose(columns["wheel_root_tension_MPa"], turn.dataset.root_tension.values[0, :, 1])
     assert columns["wheel_root_tension_tooth"].tolist() == teeth[:, 1].tolist()
+    assert columns["wheel_root_tension_tooth"].dtype.kind == "i"
 
 
 def test_warnings_of_contacts_name_their_tooth_pairs(monkeypatch):

@@ -54,7 +54,7 @@ QUANTITIES: dict[str, Part] = {
     "central_pressure": (
         PAIRS,
         "MPa",
-        "contact pressure beside the unloaded contact point, mesh-dependent where that is on a sharp edge",
+        "contact pressure beside the point that the grid grows from, mesh-dependent where that is on a sharp edge",
     ),
     "peak_radius": Number(
         PAIRS, "mm", "radius on the pinion of the peak pressure", column="peak_pinion_diameter_mm", times=2.0

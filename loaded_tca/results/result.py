@@ -124,10 +124,15 @@ class Result(Numbers, ABC):
                 factor = self.um_per_rad if at_base else number.factor(head)
                 if "{" in head:
                     for k, label in enumerate(self.along(number.dims[-1])):
-                        yield head.format(label), factor * self.values(name)[..., k]
+                        yield head.format(label), self._times(factor, self.values(name)[..., k])
                     continue
-                values = factor * (self.at_position(name) if "pair" in number.dims else self.values(name))
+                values = self._times(factor, self.at_position(name) if "pair" in number.dims else self.values(name))
                 yield head, values[:, None] if number.dims == CYCLE[:1] else values
+
+    @staticmethod
+    def _times(factor: float, values: Array) -> Array:
+        """Values times a factor; counts stay whole numbers."""
+        return values if factor == 1.0 else factor * values
 
     @checked
     def save(self, path: FilePath) -> tuple[Path, ...]:

@@ -442,10 +442,10 @@ def _edge_finding(result: CycleNumbers, torque: int) -> str:
         if any(where in name for name in edges)
     ]
     deflection = 1e3 * float(np.nansum([result.contact_deformation[at], result.tooth_deflection[at]]))
-    amount = f"{plain(deflection, 2)} um, by which the pair deflects"
+    amount = f"{plain(deflection, 2)} um, the deflection of the pair"
     if result.paths[k].edges[n].any():
-        amount = f"more than {amount}, since it touches there without load, too"
-    remedy = f"{' or '.join(remedies) or 'a relief'} of {amount}, takes the load off it"
+        amount = f"more than {amount} (the edge is the first place to touch already without load)"
+    remedy = f"load leaves the edge with {' or '.join(remedies) or 'a relief'} of {amount}"
     share = f"{plain(100.0 * result.load_share[at], 3)} % of the torque"
     largest = float(np.nanmax(result.edge_pressure[torque]))
     beyond = (

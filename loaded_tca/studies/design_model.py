@@ -267,7 +267,7 @@ class DesignModel:
         return scattered
 
     def _sample(self, deviation: Mapping[str, float], own: Array) -> tuple[HeldContacts, ...]:
-        """Held contacts of a sample, torque by torque, where the gears stand: the same for all of rigid gears."""
+        """Held contacts of a sample, torque by torque, where the gears stand, each in boxes of its own torque."""
         scene = self.scene.with_changes(self._at(deviation, dict(zip(self.keys, self.start.tolist(), strict=True))))
         pair = scene.pair()
         angles = pair.pitch * (np.arange(self.positions) / self.positions - 0.5)
@@ -281,9 +281,8 @@ class DesignModel:
         def under(apart: int) -> list[HeldContacts]:
             gears, held = GearsUnderTorques(pair, model_of(scene, pair, apart), angles, grid), list[HeldContacts]()
             for one in gears.standing(self.torques):
-                mesh, largest = trace_teeth(one.pair, angles), float(one.torques.max())
-                what = ranges, largest, self.cells, one.giving_way, one.displacement
-                held += [HeldContacts(scene, mesh, *what)] * one.torques.size
+                mesh, bending = trace_teeth(one.pair, angles), (one.giving_way, one.displacement)
+                held += [HeldContacts(scene, mesh, ranges, t, self.cells, *bending) for t in one.torques.tolist()]
             return held
 
         return tuple(with_enough_teeth(pitches_apart(pair, supports, self.torques.tolist()), under))

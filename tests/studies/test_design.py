@@ -141,6 +141,15 @@ def test_a_contact_that_outgrows_its_grid_gets_a_larger_one(monkeypatch):
     assert_allclose(length * found, length * wanted, atol=20.0)  # on other cells of a grid of 16 x 24 of them
 
 
+def test_figures_under_a_torque_are_those_without_a_larger_one_beside_it():
+    """Boxes and cells are those of the contacts under the torque itself."""
+    alone, beside = (
+        model(scatter={}, torques=torques, **FEW).evaluate([5.0, 2.0, 9.0]) for torques in ([60e3], [60e3, 400e3])
+    )
+    for name in ("edge_pressure_norm_MPa", "span_um"):
+        assert_array_equal(beside.figures[name][:, :1], alone.figures[name])
+
+
 def test_keys_that_bend_the_gap_are_followed():
     """The start of a relief is no amount: gaps at its values, slopes anew for each design."""
     start = "pinion.modifications.tip_relief_start_roll_deg"
