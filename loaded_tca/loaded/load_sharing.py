@@ -167,7 +167,7 @@ class _Balance:
         # in one order, whatever the numbers: a pitch later the same steps, each of the next pair
         tooth_pairs = tuple(sorted(tooth_pairs, key=lambda tooth_pair: tooth_pair.pair, reverse=True))
         self.pair, self.tooth_pairs, self.torque, self.grid = pair, tooth_pairs, torque, grid
-        self.displacement, self.on_moved_gears = displacement, displacement is not None
+        self.displacement = displacement
         self.mean_displacement = np.zeros(len(tooth_pairs))  # [mm], over the force of each pair
         self.bending, self.forces_on_grid_axis = bending, grid.forces_on_grid_axis
         self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
@@ -353,6 +353,11 @@ class _Balance:
     def _loaded(self) -> Iterator[tuple[int, LoadedContact]]:
         """Place and contact of the pairs that were solved under a load."""
         return ((n, loaded) for n, loaded in enumerate(self.solved) if loaded is not None and loaded.solution.load > 0)
+
+    @property
+    def on_moved_gears(self) -> bool:
+        """Whether slices are displaced by what has moved the gears."""
+        return self.displacement is not None
 
     def _displaced(self, separation: Separation) -> Array:
         """Displacement of the slices of a grid (ny,) [mm] that does not depend on the forces; an array of its own."""

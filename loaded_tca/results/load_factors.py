@@ -134,7 +134,8 @@ def face_load_factor_by_positions(
         strips[place % 2] += sum(strip_forces(pair, one, borders)[0] for one in row if one is not None)
     if not strips.any(axis=-1).all():
         return math.nan
-    whole = strips.sum(axis=0) / strips.sum(axis=0).mean()
+    together = strips.sum(axis=0)
+    whole = together / together.mean()
     halves = strips / strips.mean(axis=-1, keepdims=True)
     return float(np.abs(halves - whole).max() / whole.max())
 
