@@ -201,13 +201,6 @@ FAULTS = (
         "stages/test_balance.py::test_planet_whose_pin_is_far_off_carries_nothing",
     ),
     Fault(
-        "tribology: curvatures of tooth pairs beside the first are found at the angles of the gears",
-        "tribology/slices.py",
-        "turned = pair.pitch * float(result.pair[column])",
-        "turned = 0.0 * float(result.pair[column])",
-        "tribology/test_slices.py::test_involutes_roll_by_their_roll_lengths",
-    ),
-    Fault(
         "tribology: both ends of the pitch count as whole positions",
         "tribology/evaluate.py",
         "weights[[0, -1]] *= 0.5",

@@ -287,18 +287,12 @@ def _together(result: CycleNumbers, places: Sequence[tuple[int, int, int]], most
 
 
 def _own_contact(result: CycleNumbers, place: tuple[int, int, int], one: PressureMap) -> ContactPoint:
-    """Contact point of a map with the angles of its own teeth: those of the gears less the pitches between them."""
+    """Contact point of a map at the angles of its own teeth, which are a whole number of pitches beside the gears'."""
     torque, position, column = place
     under, _ = gears_under_torque(result, torque)
-    pair, path = under.gear_pair, under.paths[column]
-    turned = pair.pitch * float(result.pair[column])
-    first = {entry.name: getattr(path, entry.name)[position] for entry in fields(path)}
-    contact = replace(
-        ContactPoint(**first),
-        pinion_angle=first["pinion_angle"] - turned,
-        wheel_angle=first["wheel_angle"] - turned * pair.ratio,
-    )
-    pinion, wheel = angles_through(pair, contact, one.origin)
+    path = under.paths[column]
+    contact = ContactPoint(**{entry.name: getattr(path, entry.name)[position] for entry in fields(path)})
+    pinion, wheel = angles_through(under.gear_pair, contact, one.origin)
     return replace(contact, point=one.origin, pinion_angle=pinion, wheel_angle=wheel)
 
 
