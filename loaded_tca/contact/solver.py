@@ -377,13 +377,14 @@ def _solve_on_finest(
         part = whole if window == grids.whole else grids.part(window)
         descent = Descent(part, start, displaced, threads, exact)
         descent.run(RESERVE * tolerance[rows], MOST_ITERATIONS - iterations[rows])
-        settled, pressure = part.settled(descent.pressure), np.zeros(whole.gap.shape)
-        pressure[:, *window] = settled
+        iterations[rows] += descent.iterations
+        convolutions[rows] += descent.convolutions + 1
+        pressure = np.zeros(whole.gap.shape)
+        pressure[:, *window] = part.settled(descent.pressure)
+        del descent  # its work arrays are a sixth of what a large grid takes at most
         displacement = whole.operator(window, threads=threads)(pressure, np.empty(pressure.shape))
         state = judge(whole, pressure, displacement + whole.gap)
         approach, residual = state.approach[:, 0, 0], state.residual[:, 0, 0]
-        iterations[rows] += descent.iterations
-        convolutions[rows] += descent.convolutions + 1
         ended = (residual <= tolerance[rows]) | (iterations[rows] >= MOST_ITERATIONS) | (check == MOST_CHECKS - 1)
         for k in np.flatnonzero(ended).tolist():
             problem, own = problems[rows[k]], pressure[k] / _unit(problems[rows[k]])
