@@ -34,7 +34,7 @@ class Growth(NamedTuple):
 
 
 def solve(code: str, threads: int, n: int, runs: int) -> tuple[float, float]:
-    """Least time [s] of warm solves, and peak memory [bytes] of the first above the imports; for a process of its own."""
+    """Least time [s] of warm solves, peak memory [bytes] of the first above the imports; for a process of its own."""
     CODES[code](Problem.make("circle", 32, 1e-6))()  # what is imported late
     before = peak_memory()
     problem = Problem.make("circle", n, 1e-6)
