@@ -24,7 +24,7 @@ from loaded_tca.edges.free import MovedSlices, edge_deflection_growth
 from loaded_tca.loaded.force_lines import LoadedSlices
 from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.sensitivity import Tangents
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.slice_pressure import SlicePeak
@@ -170,9 +170,13 @@ def _growth(
 ) -> tuple[GapGrowth, Mask]:
     """Growth with each change, and by which of them edges of both gears at one place part."""
     pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
-    separations = [grid.separation for grid in grids]
+    separations, count = [grid.separation for grid in grids], len(changes)
+    # contacts are traced at the middles of their ways, from where the pinion goes on
+    first_angles = result.pinion_angle[positions] - result.pair[pairs] * pair.pitch
+    ways = first_angles - [grid.contact.pinion_angle for grid in grids]
+    followed = [*changes, _along_paths(pair)] if (np.abs(ways) > NO_WAY).any() else changes
     held = contact_changes(
-        pair, [grid.contact for grid in grids], separations, [grid.pressed for grid in grids], changes
+        pair, [grid.contact for grid in grids], separations, [grid.pressed for grid in grids], followed
     )
     pressures = np.concatenate([grid.pressure[grid.pressed] for grid in grids])
     growth, points = held.followed(pressures, separations), held.at_points
@@ -180,19 +184,52 @@ def _growth(
     touching = np.array([grid.contact.transmission_error for grid in grids])
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
     levers = np.array([(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in grids]).T
-    # contacts are traced at the middles of their ways, from where the pinion goes on
-    own = result.pinion_angle[positions] - result.pair[pairs] * pair.pitch
-    ways = own - [grid.contact.pinion_angle for grid in grids]
     rates = (points.levers[0] - levers[0] / levers[1] * points.levers[1]) / levers[1]
     turns = points.turns - pair.driving * ways * rates
+    lever_torques = result.normal_force[places] * points.levers[0]
+    turns[count:] = lever_torques[count:] = 0.0  # along its path a contact keeps what it has of the first one
     active = np.concatenate([grid.active[grid.pressed] for grid in grids])
     gaps = growth.gaps[:, active]
     for row, closed in zip(gaps, turns * levers[1] - turned * points.levers[1], strict=True):
         row += closed[tangents.grid]
-    lever_torques = result.normal_force[places] * points.levers[0]
-    lever_torques += _add_displaced(result, tangents, bending, changes, growth, gaps)
-    whole = GapGrowth(gaps, lever_torques, growth.motions, points.turns, points.tilts, points.shifts)
-    return whole, held.border.has_kinks
+    lever_torques += _add_displaced(result, tangents, bending, followed, growth, gaps)
+    if len(followed) > count:
+        by_ways = ways * rates[:count] - 0.5 * pair.driving * (
+            _rotation_growth(tangents, gaps[:count], lever_torques[:count]) - turns[:count]
+        )
+        along = np.where(np.abs(ways) > NO_WAY, by_ways * levers[1] / levers[0], 0.0)
+        gaps[:count] += along[:, tangents.grid] * gaps[count]
+        lever_torques[:count] += along * lever_torques[count]
+    motions, turned_back, tilts, shifts = (
+        values[:count] for values in (growth.motions, points.turns, points.tilts, points.shifts)
+    )
+    whole = GapGrowth(gaps[:count], lever_torques[:count], motions, turned_back, tilts, shifts)
+    return whole, held.border.has_kinks[:count]
+
+
+NO_WAY = 1e-12
+"""Turn of the pinion [rad] that is none: the contact of a pair that the first balance did not close is the first."""
+PATH_STEP = 1e-5
+"""Turn of the pinion [rad] of which differences along the paths of contacts are taken."""
+
+
+def _along_paths(pair: GearPair) -> PairChange:
+    """Motion of contacts along their paths, per radian of the pinion's angle.
+
+    Seen from the pinion the wheel goes about its axis, against that turn; then it is turned back into contact.
+    """
+    turn = cylindrical_basis(np.asarray(0.5 * pair.sense * PATH_STEP))
+    below, above = (
+        replace(pair, wheel_origin=by @ pair.wheel_origin, wheel_axes=pair.wheel_axes @ by.T) for by in (turn.T, turn)
+    )
+    return PairChange("mounting.path", below, above, PATH_STEP)
+
+
+def _rotation_growth(tangents: Tangents, gaps: Array, lever_torques: Array) -> Array:
+    """Growth of the rotation under load (keys, grids) [rad per unit]."""
+    first = np.flatnonzero(np.diff(tangents.state, prepend=-1))
+    torques = -np.add.reduceat(lever_torques, first, axis=1)
+    return tangents.rotation_change(gaps, torques)[:, tangents.state]
 
 
 def _add_displaced(

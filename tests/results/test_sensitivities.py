@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.loaded.together import Trace
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.scene import parse_scene
 from tests.refusals import refusals
@@ -89,6 +90,32 @@ def test_bending_follows_a_contact_that_a_relief_moves_up_the_tooth(name, agreem
     expected = slope_through_analyses("mesh_cycle_spur", True, key, 1.0, name)
     found = getattr(analysed("mesh_cycle_spur", True).sensitivities([key]), name)[0, ..., 0]
     assert_allclose(np.nan_to_num(found), np.nan_to_num(expected), rtol=0, atol=agreement * np.nanmax(np.abs(expected)))
+
+
+WAYS = 0.05
+"""Agreement of what ways do to derivatives, of the largest: middles lie after a first balance, by laws after Hertz."""
+
+
+def test_contacts_go_along_their_paths_by_half_of_what_a_key_adds_to_their_ways(monkeypatch):
+    key, step, middles = "mounting.pinion_axial_mm", 1e-3, {}
+    grid = {"analysis.cells": (16, 16), "analysis.positions": 3}
+    scene = read_scene(SCENES / "straight_bevel.toml").with_changes(grid)
+
+    def traced(contacts, angles, gears):
+        """At the middles that the contacts of the scene have."""
+        angles = [middles.setdefault(round(one.pinion_angle, 9), at) for one, at in zip(contacts, angles, strict=True)]
+        return Trace(contacts, angles, gears)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # contacts on edges are wanted
+        moved = analyse(scene.with_changes({key: step}))
+        monkeypatch.setattr("loaded_tca.loaded.load_sharing.Trace", traced)
+        base, held = analyse(scene), analyse(scene.with_changes({key: step}))
+    found = base.sensitivities([key]).transmission_error
+    monkeypatch.setattr("loaded_tca.results.gap_growth.NO_WAY", np.inf)
+    by_ways = (found - base.sensitivities([key]).transmission_error)[0, :, 0]
+    expected = (moved.transmission_error - held.transmission_error)[0] / step
+    assert_allclose(by_ways, expected, rtol=0, atol=WAYS * np.abs(expected).max())
 
 
 @pytest.mark.thorough
