@@ -46,6 +46,7 @@ from loaded_tca.loaded.together import Gap, Line, Steps, Trace, run_alone, with_
 from loaded_tca.loaded.tooth_contact import FIRST_CELLS, Coupling, GridChoice, contact_under_load, expected_pressure
 from loaded_tca.loaded.tooth_pairs import Share, SharedLoad, ToothPair
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+from loaded_tca.plain import signed
 from loaded_tca.separation import Separation
 
 SMALLEST_SHARED = 1e-12
@@ -290,7 +291,7 @@ class _Balance:
                     loaded = yield from before.at_load(force, coupling(before.separation))
             if loaded is None or loaded.solution.reaches_border:
                 contact, number, gears = tooth_pair.contact, tooth_pair.pair, tooth_pair.gears or self.pair
-                with named(f"tooth pair {number:+d}"):
+                with named(f"tooth pair {signed(number)}"):
                     steps = contact_under_load(
                         gears,
                         contact,
@@ -303,7 +304,7 @@ class _Balance:
                     )
                     loaded = yield from with_gears(tooth_pair.gears, steps)
         except ConvergenceError as error:
-            raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
+            raise ConvergenceError(f"tooth pair {signed(tooth_pair.pair)}: {error}", error.last) from error
         self.solved[index], self.first_gaps[index] = loaded, loaded.separation.cut_gap.min()
         deformation = loaded.contact_deformation - self.first_gaps[index]
         if loaded.solution.load > 0.0 and deformation > 0.0:
