@@ -34,6 +34,11 @@ def plain(value: float, digits: int = 4, sign: str = "") -> str:
     return f"{rounded:{sign}.{digits}g}"
 
 
+def signed(number: int) -> str:
+    """Return the number of a tooth pair as summaries and pictures show it: 0, +1, -1."""
+    return f"{number:+d}" if number else "0"
+
+
 class Sentence(string.Formatter):
     """Formatter of sentences: numbers in general format (``g``) are plain."""
 

@@ -122,10 +122,8 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
             path = _trace(scene, pair, pitches)
             numbers = _over_revolution(scene, pair, path, grid, frozenset(maps), progress)
             arrays = _joined(scene, path, numbers)
-            bodies = held_bodies(scene, pair)
-            for one in numbers:
-                for sentence in one.sentences(bodies):
-                    give_accuracy_warning(sentence)
+            for sentence in _sentences(pair, numbers, held_bodies(scene, pair)):
+                give_accuracy_warning(sentence)
         about = {
             "version": version("loaded_tca"),
             "date": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -223,6 +221,22 @@ def _in_order(numbers: Sequence[_Numbers]) -> Iterator[tuple[int, _Numbers]]:
     for one in numbers:
         yield first, one
         first += one.torques.size
+
+
+def _sentences(pair: GearPair, numbers: Sequence[_Numbers], bodies: HeldBodies) -> Iterator[str]:
+    """Accuracy warnings of all contacts under all torques, each reason once."""
+    places: dict[str, list[str]] = {}
+    for one in numbers:
+        for torque, forces in zip(one.torques.tolist(), one.arrays["normal_force"], strict=True):
+            if torque > 0.0 and not forces.any():
+                yield kinds.NO_TORQUE.sentence(torque=1e-3 * torque)
+        for reason, at in one.places.items():
+            places.setdefault(reason, []).extend(at)
+    solved = sum(one.solved for one in numbers)
+    yield from (at_places(reason, at, solved) for reason, at in places.items())
+    torques = np.concatenate([one.torques for one in numbers])
+    rotation, rate = (np.concatenate([one.arrays[name] for one in numbers]) for name in ("rotation", "stiffness"))
+    yield from rotation_reasons(pair, torques, rotation, rate, bodies)
 
 
 AS_AT_REST = {"pinion_angle", "pair", "wheel_base_radius", "face_width", *OF_TEETH, "rigid_transmission_error"}
@@ -328,15 +342,6 @@ class _Numbers:
             steps = -self.pair.sense if gear == 0 else self.pair.sense
             counted = tooth + steps * stresses["root_tension_place"][..., 0]
             self.arrays["root_tension_tooth"][:, rows, gear] = counted % self.pair.teeth[gear]
-
-    def sentences(self, bodies: HeldBodies) -> Iterator[str]:
-        """Accuracy warnings of all contacts."""
-        for torque, forces in zip(self.torques.tolist(), self.arrays["normal_force"], strict=True):
-            if torque > 0.0 and not forces.any():
-                yield kinds.NO_TORQUE.sentence(torque=1e-3 * torque)
-        yield from (at_places(reason, at, self.solved) for reason, at in self.places.items())
-        rotation, rate = self.arrays["rotation"], self.arrays["stiffness"]
-        yield from rotation_reasons(self.pair, self.torques, rotation, rate, bodies)
 
     def whole(self) -> dict[str, Array]:
         """Arrays of ``REVOLUTION_QUANTITIES``, those of root stress if asked for."""

@@ -1,6 +1,7 @@
 """Whole revolutions under load: limits, slopes, shares, files, refusals."""
 
 import math
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -9,8 +10,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import InputError, Revolution, analyse, analyse_revolution, load_result, read_scene
-from loaded_tca.revolution import _Numbers, expected_revolution_effort
+from loaded_tca import warning_kinds as kinds
+from loaded_tca.revolution import _Numbers, _sentences, expected_revolution_effort
 from loaded_tca.studies import Study, revolution_figures, run_study
+from loaded_tca.unloaded.tooth_cycle import REACH
 from tests.refusals import refused_calls
 from tests.samples.root_stress import coarsely
 
@@ -132,6 +135,17 @@ def test_teeth_are_counted_from_the_first_pair():
     data = small_turn().dataset.sel(pair=0)
     assert data.pinion_tooth.values[[0, 4, 60]].tolist() == [3, 4, (3 + 15) % 17]
     assert data.wheel_tooth.values[[0, 4, 95]].tolist() == [7, 8, (7 + 23) % 24]
+
+
+def test_tooth_of_shares_that_tie_is_that_of_the_highest_pressure():
+    data, pair = small_turn().dataset.copy(deep=True), 1
+    data.load_share.values[...] = np.minimum(data.load_share.values, 0.9)
+    data.load_share.values[0, [8, 41], pair] = 1.0, 1.0 - 1e-12
+    data.peak_pressure.values[0, [8, 41], pair] = 500.0, 600.0
+    figures = replace(small_turn(), dataset=data).key_figures()[0]
+    assert figures["largest_load_share"] == 1.0
+    for gear in ("pinion", "wheel"):
+        assert figures[f"{gear}_tooth_of_largest_load_share"] == data[f"{gear}_tooth"].values[41, pair]
 
 
 def test_composite_deviations_are_spans_of_the_curve():
@@ -375,6 +389,25 @@ def test_warnings_of_contacts_name_their_tooth_pairs(monkeypatch):
     _Numbers._note(numbers, {(0, 0, 0): object(), (0, 0, 1): None, (0, 0, 2): object()}, 1)
     where = "60 N m, pinion angle 5 deg, tooth pair"
     assert numbers.places == {"reason": [f"{where} -1", f"{where} +2"]}
+
+
+def test_warnings_of_several_torques_are_given_once():
+    """Gears on supports stand elsewhere under each torque, and are worked on one by one."""
+    of_torques = [
+        SimpleNamespace(
+            torques=np.array([torque]),
+            arrays={"normal_force": np.ones((1, 1, 1)), "rotation": np.array([[turn]]), "stiffness": np.ones((1, 1))},
+            places={"reason": [f"{torque:g}"] * count},
+            solved=5,
+        )
+        for torque, turn, count in ((1.0, 1e-3, 2), (2.0, 2e-3, 1))
+    ]
+    pair = SimpleNamespace(base_radii=(1.0, 300.0), module=1.0)
+    sentences = [*_sentences(pair, of_torques, SimpleNamespace(torsion=0.0, stiffening=0.0))]
+    assert sentences == [
+        "reason (at 3 of 10 pressure maps; the first: 1)",
+        kinds.DEFLECTION.sentence(deflection=0.6, reach=REACH),
+    ]
 
 
 test_refusals_of_teeth = refused_calls(

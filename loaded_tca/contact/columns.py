@@ -18,8 +18,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from loaded_tca.arrays import Array, real
+from loaded_tca.arrays import Array, Indices, real
 from loaded_tca.errors import require, require_positive
 
 GROWTH = 1.3
@@ -29,6 +30,22 @@ EVEN = 1.5
 SAMPLES = 4000
 """Places at which the density of columns is told between two edges."""
 MOST_COLUMNS = 2000
+
+
+ROUNDING = 1e-6
+"""Part of a cell that asks for no other one: lengths in the ratio of whole numbers of cells end on a border, but for
+the tolerance of solutions."""
+
+
+def whole_cells(count: ArrayLike) -> Indices:
+    """Fewest whole cells for numbers of cells that lengths ask for, whatever the unit of these.
+
+    Examples
+    --------
+    >>> whole_cells([19.3, 20.0 - 1e-9, 20.0 + 1e-9]).tolist()
+    [20, 20, 20]
+    """
+    return np.asarray(np.ceil(np.asarray(count) - ROUNDING).astype(int))
 
 
 def pressed_width(line_load: float, radius: float, half_width: float, contact_modulus: float) -> float:
@@ -143,7 +160,7 @@ def column_borders(low: float, high: float, zones: Sequence[FineZone], widest: f
             grown = (growth - 1.0) / math.log(growth) / (zone.width + (growth - 1.0) * beyond)
             density = np.maximum(density, np.where(beyond > 0.0, grown, 1.0 / zone.width))
         count = np.concatenate(([0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(y))))
-        columns = max(1, math.ceil(count[-1] - 1e-9))
+        columns = max(1, int(whole_cells(count[-1])))
         require((columns <= MOST_COLUMNS, f"zones: {columns} columns from {start:g} to {stop:g} mm are above 2000"))
         borders.append(np.interp(np.linspace(0.0, count[-1], columns + 1)[1:-1], count, y))
         borders.append(np.array([stop]))

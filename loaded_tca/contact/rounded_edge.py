@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import Array, count_problems, numbers, real
-from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width
+from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width, whole_cells
 from loaded_tca.contact.edges import ALIGNED, SHARPEST, FreeEdge, RoundedEdge
 from loaded_tca.contact.graded import guess, solve_graded
 from loaded_tca.contact.patch import top_between
@@ -154,7 +154,7 @@ class PressedArc:
         """Rows of a box of this length, for so many cells on the pressed width; no more than their limit."""
         along = ROWS_ON_ARC / CELLS_ON_ARC * on_arc / self.length
         per_length = max(self.cells(on_arc) * abs(float(self.normal[0])) / self.width, along)
-        return min(math.ceil(per_length * length), MOST_ROWS)
+        return min(int(whole_cells(per_length * length)), MOST_ROWS)
 
     def fine_enough(self, peak: EdgePressure, on_arc: float) -> bool:
         """Whether a solution has the cells that are asked for, nearly, or rows at their limit."""

@@ -28,6 +28,7 @@ from scipy.interpolate import make_interp_spline
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
+from loaded_tca.contact.columns import whole_cells
 from loaded_tca.contact.edges import RoundedEdge
 from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, edge_pressures
 from loaded_tca.edges.free import edge_compliances
@@ -466,7 +467,7 @@ class _ContactAlongEdge:
         width, length = np.ptp(rows) * grid.spacing[0], np.ptp(columns) * grid.spacing[1]
         ways = np.abs(self.turn) / ((width + grid.spacing[0]) / CELLS_ACROSS, (length + grid.spacing[1]) / CELLS_ALONG)
         x, y = zip(low.tolist(), high.tolist(), strict=True)
-        cells = np.maximum(np.ceil((high - low) * ways.max(axis=1)), 4.0).astype(int).tolist()
+        cells = np.maximum(whole_cells((high - low) * ways.max(axis=1)), 4).tolist()
         return (x, y), (cells[0], cells[1])
 
     def gap(self, x: Array, y: Array) -> Array:

@@ -46,6 +46,7 @@ from loaded_tca.loaded.together import Gap, Line, Steps, Trace, run_alone, with_
 from loaded_tca.loaded.tooth_contact import FIRST_CELLS, Coupling, GridChoice, contact_under_load, expected_pressure
 from loaded_tca.loaded.tooth_pairs import Share, SharedLoad, ToothPair
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+from loaded_tca.plain import signed
 from loaded_tca.separation import Separation
 
 SMALLEST_SHARED = 1e-12
@@ -68,7 +69,7 @@ LINE_ERROR = 1e-3
 force: 2 um on module 2, less than 1 nm of transmission error. Forces that swing keep their places."""
 SAME_BOX, GUESSED_BOX = (0.75, 1.25), (0.9, 1.1)
 """Loads over the one a box was made for, between which it is kept, if the contact does not reach its border; the second
-for forces by which teeth bend as guessed: kept, slopes of analyses on 64 cells scattered by 1 %."""
+for forces of contacts that give way as guessed: kept, slopes of analyses on 64 cells scattered by 1 %."""
 FAR = 2.0
 """Initial separation, over the rotation, of pairs that others do not bend into contact: by less than they close."""
 
@@ -179,8 +180,7 @@ class _Balance:
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
         self.grids_of_unloaded_pairs: dict[int, Separation] = {}  # of pairs that carried nothing yet
-        self.deflections: dict[tuple[int, int], tuple[Separation, LoadedContact, Array]] = {}
-        self.on_grids = self.on_moved_gears or grid.forces_on_grid_axis  # all pairs, since displacements go with grids
+        self.deflections: dict[tuple[int, int], tuple[ContactGrid, LoadedContact, Array]] = {}
         usual = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
         self.agreement = usual if grid.agreement is None else grid.agreement
 
@@ -200,7 +200,7 @@ class _Balance:
                     forces = 0.5 * (before + forces)
                 if count == 1:
                     yield from self._move_to_middles(forces)
-                box = GUESSED_BOX if count == 2 and self.bending is not None and not self.on_grids else SAME_BOX
+                box = GUESSED_BOX if count == 2 and not self.grid.forces_on_grid_axis else SAME_BOX
                 for index in np.flatnonzero(forces).tolist():
                     yield from self._solve(index, forces, box)
             self.compliance = yield from self._corrected()
@@ -250,7 +250,7 @@ class _Balance:
         lines: list[tuple[int, ContactGrid]] = []
         shares: list[Array] = []
         for index, tooth_pair in enumerate(self.tooth_pairs):
-            if self.on_grids:
+            if self.grid.forces_on_grid_axis:
                 grid = yield from self._grid_apart(index)
                 force = expected_pressure(grid).sum(axis=0)
                 lines.append((tooth_pair.pair, grid))
@@ -260,7 +260,7 @@ class _Balance:
                 lines.append((tooth_pair.pair, line))
             shares.append(force / force.sum())
         if self.on_moved_gears:
-            displaced = [self._displaced(grid) for grid in self.grids_of_unloaded_pairs.values()]
+            displaced = [self._displaced(line) for _, line in lines]
             self.mean_displacement = np.array([own @ one for own, one in zip(shares, displaced, strict=True)])
         compliance = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
         for (i, one), (j, other) in combinations(enumerate(lines), 2):
@@ -291,7 +291,7 @@ class _Balance:
                     loaded = yield from before.at_load(force, coupling(before.separation))
             if loaded is None or loaded.solution.reaches_border:
                 contact, number, gears = tooth_pair.contact, tooth_pair.pair, tooth_pair.gears or self.pair
-                with named(f"tooth pair {number:+d}"):
+                with named(f"tooth pair {signed(number)}"):
                     steps = contact_under_load(
                         gears,
                         contact,
@@ -304,7 +304,7 @@ class _Balance:
                     )
                     loaded = yield from with_gears(tooth_pair.gears, steps)
         except ConvergenceError as error:
-            raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
+            raise ConvergenceError(f"tooth pair {signed(tooth_pair.pair)}: {error}", error.last) from error
         self.solved[index], self.first_gaps[index] = loaded, loaded.separation.cut_gap.min()
         deformation = loaded.contact_deformation - self.first_gaps[index]
         if loaded.solution.load > 0.0 and deformation > 0.0:
@@ -359,22 +359,22 @@ class _Balance:
         """Whether slices are displaced by what has moved the gears."""
         return self.displacement is not None
 
-    def _displaced(self, separation: Separation) -> Array:
+    def _displaced(self, grid: ContactGrid) -> Array:
         """Displacement of the slices of a grid (ny,) [mm] that does not depend on the forces; an array of its own."""
-        displaced = None if self.displacement is None else self.displacement(separation)
-        return np.zeros(len(separation.y)) if displaced is None else displaced.copy()
+        displaced = None if self.displacement is None else self.displacement(grid)
+        return np.zeros(len(grid.y)) if displaced is None else displaced.copy()
 
-    def _coupling(self, index: int, forces: Array, separation: Separation) -> Array | None:
+    def _coupling(self, index: int, forces: Array, grid: ContactGrid) -> Array | None:
         """Displacement of a pair's slices (ny,) [mm] by the forces of the others; None if nothing bends.
 
         The force of another pair is spread over its slices as in its last solution.
         """
-        displaced = self._displaced(separation)
+        displaced = self._displaced(grid)
         if self.bending is None:
             return displaced if self.on_moved_gears else None
         for n, other in self._loaded():
             if n != index and forces[n] > 0.0:
-                displaced += forces[n] * self._deflection(index, separation, n, other)
+                displaced += forces[n] * self._deflection(index, grid, n, other)
         return displaced
 
     def _coupled(self, index: int, other: int) -> bool:
@@ -382,17 +382,17 @@ class _Balance:
         apart = abs(self.tooth_pairs[index].pair - self.tooth_pairs[other].pair)
         return self.bending is not None and apart <= self.bending.neighbours
 
-    def _deflection(self, index: int, separation: Separation, other: int, loaded: LoadedContact) -> Array:
+    def _deflection(self, index: int, grid: ContactGrid, other: int, loaded: LoadedContact) -> Array:
         """Deflection (m,) [mm/N] of the slices of a pair's grid by the force of another one, spread as in its solution.
 
         Kept as long as grid and solution are the last ones that were asked for.
         """
         assert self.bending is not None
         known = self.deflections.get((index, other))
-        if known is None or known[0] is not separation or known[1] is not loaded:
+        if known is None or known[0] is not grid or known[1] is not loaded:
             pair, other_pair = self.tooth_pairs[index].pair, self.tooth_pairs[other].pair
             under = (other_pair, loaded.separation)
-            known = separation, loaded, self.bending.deflection((pair, separation), under, loaded.slice_shares)
+            known = grid, loaded, self.bending.deflection((pair, grid), under, loaded.slice_shares)
             self.deflections[index, other] = known
         return known[2]
 
@@ -409,7 +409,7 @@ class _Balance:
             compliance[index, other] = compliance[other, index] = one.slice_shares @ displaced
         loaded_pairs = dict(self._loaded())
         turned = [self.separations[n] + one.solution.approach / self.levers[1, n] for n, one in loaded_pairs.items()]
-        near = self.on_grids | (self.separations <= FAR * max(turned))
+        near = self.on_moved_gears | self.grid.forces_on_grid_axis | (self.separations <= FAR * max(turned))
         places: dict[int, int] = {}
         for index in np.flatnonzero(near).tolist():
             if index not in loaded_pairs:

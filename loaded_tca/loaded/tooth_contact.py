@@ -23,13 +23,13 @@ from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.together import Ends, Gap, Steps, Task, run_alone
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.plain import plain
 from loaded_tca.separation import Separation
 from loaded_tca.separation.strips import strip_pressure
 from loaded_tca.unloaded import ContactPoint
 
-Coupling = Callable[[Separation], Array | None]
+Coupling = Callable[[ContactGrid], Array | None]
 """Displacement of the slices of a tooth pair's grid (ny,) [mm] by what the other pairs carry; None if nothing bends."""
 
 

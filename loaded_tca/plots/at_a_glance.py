@@ -11,6 +11,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
 from loaded_tca.errors import require
+from loaded_tca.plain import signed
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import colour_scale, draw_on_pinion, loaded_maps
 from loaded_tca.plots.pressure_map import draw_envelope
@@ -20,7 +21,7 @@ from loaded_tca.results.figures import key_figures
 from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.quantities import GEARS
-from loaded_tca.results.summary import shown, signed
+from loaded_tca.results.summary import shown
 
 A4 = (11.7, 8.3)
 """Inches, lying."""

@@ -21,7 +21,7 @@ from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank, edge_places
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.plain import plain
+from loaded_tca.plain import plain, signed
 from loaded_tca.plots.style import (
     ACCENT,
     COLOURS,
@@ -35,7 +35,6 @@ from loaded_tca.plots.style import (
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.summary import signed
 
 ToPicture = Callable[[Array], Array]
 """Takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a flank."""

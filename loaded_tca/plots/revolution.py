@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from loaded_tca.errors import require
@@ -135,7 +134,7 @@ def _group(kind: str) -> str:
 
 
 def plot_revolution_shares(revolution: Revolution, torque: int | None = None) -> Figure:
-    """Share of every tooth of both gears: the band of its tooth pairs over the revolution, with the peak pressure.
+    """Share of all tooth pairs as a band over their mesh, and the highest pressure of each tooth of both gears.
 
     Parameters
     ----------
@@ -148,8 +147,8 @@ def plot_revolution_shares(revolution: Revolution, torque: int | None = None) ->
     matplotlib.figure.Figure
     """
     torque = style.torque_or_largest(revolution.torque, torque)
-    figure = Figure(figsize=(9.0, 6.0), layout="constrained")
-    curves, teeth = figure.subplots(2, 1)
+    figure = Figure(figsize=(9.0, 8.0), layout="constrained")
+    curves, *teeth = figure.subplots(3, 1, height_ratios=(4.0, 3.0, 3.0))
     data = revolution.dataset
     share, zero = data["load_share"].values[torque], data["pair"].values.tolist()
     turn = np.arange(len(share)) // revolution.per_pitch
@@ -171,24 +170,18 @@ def plot_revolution_shares(revolution: Revolution, torque: int | None = None) ->
     under_load = places[known][high > 0.0]
     if under_load.size:
         curves.set_xlim(under_load[0] - BESIDE_MESH, under_load[-1] + BESIDE_MESH)
-    _draw_teeth(teeth, revolution, torque)
-    for axes in (curves, teeth):
+    curves.legend(fontsize="small", ncols=3, loc="best")
+    teeth[1].sharey(teeth[0])
+    for axes, gear, colour, marker in zip(teeth, GEARS, ("#009e73", "#d55e00"), "so", strict=True):
+        highest = revolution.by_tooth(gear)["peak_pressure"].values[torque]
+        axes.plot(np.arange(len(highest)), highest, marker + "-", color=colour, markersize=4.0, linewidth=0.8)
+        axes.set_xlabel(f"tooth of the {gear}, from 0")
+        axes.set_ylabel("peak pressure,\nhighest [MPa]")
+    for axes in (curves, *teeth):
         axes.grid(alpha=0.3)
-        axes.legend(fontsize="small", ncols=3, loc="best")
     about = f"share and pressure of every tooth, pinion torque {shown_torque(revolution.torque[torque])}"
     style.write_title(figure, revolution.scene.title, about, _scope(revolution))
     return figure
-
-
-def _draw_teeth(axes: Axes, revolution: Revolution, torque: int) -> None:
-    """Highest pressure of each tooth of both gears."""
-    for gear, colour, marker in zip(GEARS, ("#009e73", "#d55e00"), "so", strict=True):
-        highest = revolution.by_tooth(gear)["peak_pressure"].values[torque]
-        axes.plot(
-            np.arange(len(highest)), highest, marker + "-", color=colour, markersize=4.0, linewidth=0.8, label=gear
-        )
-    axes.set_xlabel("tooth, from 0")
-    axes.set_ylabel("highest peak pressure [MPa]")
 
 
 def plot_revolution_waterfall(revolution: Revolution) -> Figure:

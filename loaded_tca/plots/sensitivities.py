@@ -176,6 +176,10 @@ SENSITIVITY_PICTURES = "tornado", "sensitivity_curves", "transmission_error_band
 """Names of the pictures of sensitivities, without their ending."""
 
 
+WITHOUT_MOUNTING = "mounting errors move whole gears: they turn the wheel by a constant, and are left out here"
+"""Why a panel has fewer keys than the others."""
+
+
 def sensitivity_pictures(
     sensitivities: Sensitivities, tolerances: Mapping[str, float], torque: int
 ) -> dict[str, Figure]:
@@ -249,7 +253,8 @@ def plot_tornado(
         unit = label.partition(" [")[2].rstrip("]")
         by = "keys but mounting errors" if without else "all keys"
         title = f"now {shown(now[name], name)} {unit}, standard deviation by {by} {plain(together, 3)} {unit}"
-        axes.set_title(" ".join(title.split()).replace(" ,", ","), fontsize="small")
+        why = f"\n{WITHOUT_MOUNTING}" if without else ""
+        axes.set_title(" ".join(title.split()).replace(" ,", ",") + why, fontsize="small")
         axes.set_xlabel(f"change of the {label}")
     drawing.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize="small")
     left_out = f", {bars} of {len(labels)} keys" * (bars < len(labels))

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
-from loaded_tca.plain import plain
+from loaded_tca.plain import plain, signed
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks, loaded_maps
 from loaded_tca.plots.style import (
@@ -36,7 +36,6 @@ from loaded_tca.plots.style import (
 from loaded_tca.results.load_factors import face_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.summary import signed
 from loaded_tca.separation import slice_middles
 from loaded_tca.unloaded.path import contact_span, path_letters, roll_lengths_of_flanks
 

@@ -26,12 +26,12 @@ from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import require
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.input_files import is_place
-from loaded_tca.plain import plain
+from loaded_tca.plain import plain, signed
 from loaded_tca.plots.layout import estimated_at_first
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.files import FilePath, replace_file
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.summary import shown_torque, signed
+from loaded_tca.results.summary import shown_torque
 from loaded_tca.units import unit_of, without_unit
 
 COLOURS = "viridis"
@@ -100,8 +100,10 @@ def one_panel(height: float = 5.0) -> tuple[Figure, Axes]:
 
 
 def finished(figure: Figure, axes: Axes, result: CycleNumbers, *about: str, columns: int = 3) -> Figure:
-    """Return the figure with the legend of its panel below and its title, by default of all positions."""
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=columns, fontsize="small")
+    """Return the figure with the legend of its panel below, if that has labels, and its title."""
+    handles, labels = axes.get_legend_handles_labels()
+    if labels:
+        figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize="small")
     set_title(figure, result, *about)
     return figure
 

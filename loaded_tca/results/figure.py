@@ -67,6 +67,14 @@ def of_edge(_: str, __: CycleNumbers, ___: slice, figures: Sequence[Figures]) ->
     return "mesh-dependent at sharp edges: not for rating"
 
 
+def of_error_at_edge(_: str, __: CycleNumbers, ___: slice, figures: Sequence[Figures]) -> str:
+    """Why there is no estimate at a sharp edge, and what to do."""
+    at_edges = [entry for entry in figures if math.isfinite(entry["edge_pressure_MPa"])]
+    if all(entry["edge_is_rounded"] for entry in at_edges):
+        return ""
+    return f"{NO_ESTIMATE} at a sharp edge, where pressure grows with finer cells: give that edge its rounding"
+
+
 def of_face_load(_: str, result: CycleNumbers, __: slice, figures: Sequence[Figures]) -> str:
     """What strips and positions do to K_Hbeta."""
     moves = [entry["face_load_factor_by_positions"] for entry in figures]
@@ -106,7 +114,13 @@ def compared(name: str, result: CycleNumbers, *_: object) -> str:
         for words, percent in COMPARED[kind].items():
             if words in name:
                 return f"{kind}: those compared are within {percent:g} % of finite elements"
-    return f"{NO_ESTIMATE}: such gears were not compared with finite elements"
+    within = {kind: percent for kind, of in COMPARED.items() for words, percent in of.items() if words in name}
+    others = ", ".join(f"{kind} within {percent:g} %" for kind, percent in within.items())
+    kinds = "helical teeth" if math.isfinite(result.scene.transverse_angles[1]) else "teeth of bevel gears"
+    return (
+        f"{NO_ESTIMATE}: of {kinds} this figure was not compared with finite elements ({others}); compare it with "
+        "finite elements or a measurement of such gears"
+    )
 
 
 def in_percent(error: float) -> str:
@@ -124,7 +138,9 @@ def _errors_at_peak(result: CycleNumbers, part: slice) -> str:
         for torque in torques
         for place in (result.peak_contact(torque),)
     ]
-    return NO_ESTIMATE if np.isnan(errors).all() else ", ".join(map(in_percent, errors))
+    if np.isnan(errors).all():
+        return f"{NO_ESTIMATE}, since `cells` are given or nothing is under load: give `accuracy`, or compare two grids"
+    return ", ".join(map(in_percent, errors))
 
 
 def _kinds(result: CycleNumbers) -> Iterator[str]:

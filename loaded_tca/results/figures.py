@@ -22,6 +22,7 @@ from loaded_tca.results.figure import (
     length,
     of_bending,
     of_edge,
+    of_error_at_edge,
     of_face_load,
     of_largest,
     of_line_load,
@@ -174,7 +175,9 @@ FIGURES: dict[str, Figure] = {
         accuracy=of_edge,
     ),
     "edge_is_rounded": Figure(of=lambda under: under.edge.has("edge_is_rounded")),
-    "edge_pressure_error": Figure(of=lambda under: under.edge.number("edge_pressure_error"), is_part=True),
+    "edge_pressure_error": Figure(
+        of=lambda under: under.edge.number("edge_pressure_error"), is_part=True, accuracy=of_error_at_edge
+    ),
     "normal_force_at_edge_N": Figure(of=lambda under: under.edge.number("normal_force")),
     "pinion_angle_at_edge_deg": Figure(of=lambda under: math.degrees(under.edge.unloaded("pinion_angle"))),
     "pinion_diameter_at_edge_mm": Figure(of=lambda under: 2.0 * under.edge.number("edge_radius")),
@@ -333,7 +336,7 @@ SUMMARY: tuple[Line, ...] = (
     Line("  pinion diameter | axial position [mm]", ("pinion_diameter_at_edge_mm", "pinion_axial_at_edge_mm")),
     *(Line(*row) for row in STRESS_ROWS),
     Line(
-        "highest where Hertz holds | Hertz [MPa]",
+        "highest where Hertz holds (-: nowhere) | Hertz [MPa]",
         ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa"),
     ),
     Line("  length | width after Hertz [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
@@ -362,7 +365,7 @@ SUMMARY: tuple[Line, ...] = (
         ("mesh_stiffness_without_body_torsion_mean_N_per_mm_um",),
     ),
     Line(*STIFFNESS_ROW),
-    Line("  with supports [N/(mm um)]", ("drive_stiffness_mean_N_per_mm_um",)),
+    Line("  drive stiffness, mean, tangent with the supports [N/(mm um)]", ("drive_stiffness_mean_N_per_mm_um",)),
     Line("misalignment of the supports, mean [um]", ("misalignment_mean_um",)),
     Line("wind-up of the shafts in the transmission error, mean [um]", ("wind_up_mean_um",)),
     Line("largest element force in bearings of pinion | wheel [N]", tuple(f"{gear}_element_force_N" for gear in GEARS)),
@@ -370,7 +373,7 @@ SUMMARY: tuple[Line, ...] = (
     Line("  shortest life [million revolutions]", tuple(f"{gear}_bearing_life_Mrev" for gear in GEARS)),
     Line("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
     Line("  K_Hbeta too low by its cells, at the most [%]", ("face_load_factor_error",)),
-    Line("  strips of K_Hbeta moved by half of the positions [%]", ("face_load_factor_by_positions",)),
+    Line("  its strips of the face differ without every second position by [%]", ("face_load_factor_by_positions",)),
     Line(*LOAD_ROW),
     Line(
         "line load under the largest force; mesh-dependent at sharp ends [N/mm]",

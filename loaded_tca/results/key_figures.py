@@ -29,10 +29,10 @@ TRANSVERSE_LOAD = "largest_transverse_load_factor_iso_6336"
 
 STRESS_ROWS = (
     ("ISO 6336-2: sigma_H0 at the pitch point [MPa]", (STRESS,)),
-    ("  times Z_B | Z_D; in it Z_eps | Z_beta", (*SINGLE_CONTACT, CONTACT_RATIO, HELIX_ANGLE)),
+    ("  Z_B | Z_D, not in sigma_H0; Z_eps | Z_beta, in sigma_H0", (*SINGLE_CONTACT, CONTACT_RATIO, HELIX_ANGLE)),
 )
 STIFFNESS_ROW = "  ISO 6336-1 above 100 N/mm: c' | c_gamma_alpha [N/(mm um)]", (SINGLE_STIFFNESS, MESH_STIFFNESS)
-LOAD_ROW = "  ISO 6336-1: K_Halpha from 1 to", (TRANSVERSE_LOAD,)
+LOAD_ROW = "  upper bound of K_Halpha in ISO 6336-1, the lower one is 1", (TRANSVERSE_LOAD,)
 """Labels of lines of a summary, and their key figures."""
 
 AXES = {

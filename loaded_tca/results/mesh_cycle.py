@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
-from loaded_tca.plain import plain
+from loaded_tca.plain import plain, signed
 from loaded_tca.results.declared import PAIRS
 from loaded_tca.results.derivatives import sensitivities
 from loaded_tca.results.dynamics import dynamics_of
@@ -30,7 +30,7 @@ from loaded_tca.results.quantities import IN_FILES, MOTIONS, PATH_PARTS, SIZES
 from loaded_tca.results.result import AnalysisResult
 from loaded_tca.results.root_stress import RootStressMap, root_stress_maps
 from loaded_tca.results.sensitivities import Sensitivities
-from loaded_tca.results.summary import signed, summary_text
+from loaded_tca.results.summary import summary_text
 from loaded_tca.results.warnings import findings_of
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import ContactPath

@@ -165,7 +165,7 @@ SUPPORT_QUANTITIES: dict[str, Part] = {
         "rad",
         "part of the transmission error by the rotation of both gears about their axes against their shafts' ends",
     ),
-    "drive_stiffness": (CYCLE, "N/(mm um)", "mesh stiffness with what the supports give way"),
+    "drive_stiffness": (CYCLE, "N/(mm um)", "drive stiffness: mesh stiffness with what the supports give way"),
     **{
         f"{gear}_support_load": (
             ("torque", f"{gear}_support"),

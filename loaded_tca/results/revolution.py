@@ -33,6 +33,9 @@ from loaded_tca.units import without_unit
 if TYPE_CHECKING:
     import xarray
 
+ALIKE = 1e-6
+"""Relative difference of numbers of two tooth pairs that are alike: states a pitch apart, on the same grids, are solved
+to rounding and to the tolerance of the balance."""
 SIDEBANDS = 5
 """Orders of a gear beside a mesh order that are named its sidebands."""
 
@@ -53,9 +56,9 @@ REVOLUTION_QUANTITIES: dict[str, Number] = {
     ),
     "transmission_error": CYCLE_NUMBERS["transmission_error"].changed(columns=("transmission_error_um",)),
     **{name: CYCLE_NUMBERS[name] for name in ("mesh_stiffness", "loaded_pairs")},
-    "load_share": CYCLE_NUMBERS["load_share"].changed(columns=("load_share_pair_{:+d}",)),
+    "load_share": CYCLE_NUMBERS["load_share"].changed(columns=("load_share_pair_{}",)),
     "normal_force": CYCLE_NUMBERS["normal_force"].changed(columns=()),
-    "peak_pressure": CYCLE_NUMBERS["peak_pressure"].changed(columns=("peak_pressure_pair_{:+d}_MPa",)),
+    "peak_pressure": CYCLE_NUMBERS["peak_pressure"].changed(columns=("peak_pressure_pair_{}_MPa",)),
     **{name: CYCLE_NUMBERS[name].changed(columns=()) for name in ("tooth_deflection", "on_edge")},
     **OF_SUPPORTS,
     **{name: CYCLE_NUMBERS[name] for name in ("root_tension", "root_compression")},
@@ -98,14 +101,22 @@ class UnderTorque(Row):
         return dict(zip(spectrum.kind.tolist(), spectrum.amplitude.tolist(), strict=True))
 
     def place(self, name: str, *end: int) -> tuple[int, ...]:
-        """Indices of the largest number of an array (position, ...), at an end of its axes."""
+        """Indices of the largest number of an array (position, ...), at an end of its axes.
+
+        Of tooth pairs that have it alike, as those that carry all of the torque, the one with the highest pressure; of
+        those that have this alike as well, the first.
+        """
         values = getattr(self, name)[(..., *end)]
-        known = np.where(np.isfinite(values), values, -math.inf)
-        return (*map(int, np.unravel_index(int(known.argmax()), known.shape)), *end)
+        alike = np.ones(values.shape, dtype=bool)
+        for numbers in (values, self.peak_pressure) if values.shape == self.peak_pressure.shape else (values,):
+            known = np.where(alike & np.isfinite(numbers), numbers, -math.inf)
+            alike = known >= known.max() - ALIKE * abs(known.max(initial=0.0))
+        return (*map(int, np.unravel_index(int(alike.argmax()), alike.shape)), *end)
 
     def largest(self, name: str, *end: int) -> float:
         """The largest number itself."""
-        return float(getattr(self, name)[self.place(name, *end)])
+        values = getattr(self, name)[(..., *end)]
+        return float(np.nanmax(values)) if np.isfinite(values).any() else math.nan
 
 
 def _deviation(name: str, *, rigid: bool = False) -> Figure:

@@ -11,6 +11,7 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array, GearName, index_checks
 from loaded_tca.contact import SubsurfaceStress, subsurface_stress
 from loaded_tca.contact.subsurface import graded_depths
+from loaded_tca.edges.places import arcs_at, relief_start_distances
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 from loaded_tca.reference.hertz import LineContact, PointContact
@@ -18,6 +19,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.summary import shown_torque
+from loaded_tca.results.support_growth import gears_under_torque
 
 Quantity = Literal["max_shear", "von_mises"]
 NAMES: dict[Quantity, str] = {
@@ -26,6 +28,8 @@ NAMES: dict[Quantity, str] = {
 }
 DEPTHS = 31
 """Depths that are looked at unless told otherwise."""
+ON_START = 1e-6
+"""Distance over the module from a relief start within which a contact point lies on it: traced, it does to rounding."""
 
 
 @dataclass(frozen=True)
@@ -121,14 +125,21 @@ class StressBelow:
         None where the largest cell is no spike, or where the contact point itself lies within one: on an edge or a
         relief start, or nearer to an edge than half the contact is wide; or where its slice carries nothing.
         """
-        result, one, path = self.result, self.pressure_map, self.result.paths[self.column]
-        near = path.on_edge[self.position] or path.on_relief_start[self.position]
-        if not (self._peaks_at_edge or result.on_relief_start[self._at]) or near:
+        result, one = self.result, self.pressure_map
+        if not (self._peaks_at_edge or result.on_relief_start[self._at]) or self._is_on_arc_or_start:
             return None
         if result.on_edge[self._at] and one.flank_ends_within(0.5 * float(result.contact_width[self._at])):
             return None
         along = int(np.argmin(np.abs(one.y)))
         return along if one.pressure[:, along].any() else None
+
+    @property
+    def _is_on_arc_or_start(self) -> bool:
+        """Whether the contact point under load lies on the arc of an edge or on a relief start."""
+        pair = gears_under_torque(self.result, self.torque)[0].gear_pair
+        point = self.pressure_map.origin
+        from_starts = np.abs(relief_start_distances(pair, point))
+        return bool(arcs_at(pair, point).any() or (from_starts <= ON_START * pair.module).any())
 
     @property
     def _is_of_an_edge(self) -> bool:
@@ -186,7 +197,8 @@ class StressBelow:
         if math.isnan(pressure):
             return None
         # The stresses follow from the pressure and the axes; line load, modulus and approach do not matter for them.
-        if result.paths[self.column].on_line[self.position]:
+        over_mean = pressure * math.pi * major * minor / load  # 3/2 of an ellipse; 1 of a line of the length 2 major
+        if over_mean < 1.25:
             shear = LineContact(math.nan, math.nan, minor, pressure).subsurface_shear()
         else:
             ellipse = PointContact(load, math.nan, major, minor, pressure, math.nan)

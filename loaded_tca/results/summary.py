@@ -106,11 +106,6 @@ def kind_of_edge(figures: Sequence[Figures]) -> str:
     return "at an edge, mesh-dependent if sharp" if True in rounded else "at a sharp edge, mesh-dependent"
 
 
-def signed(number: int) -> str:
-    """Return the number of a tooth pair as summaries and pictures show it: 0, +1, -1."""
-    return f"{number:+d}" if number else "0"
-
-
 def without_rounding(value: float, name: str) -> float:
     """Zero for what is rounding in the engineer's units; residuals and errors of the grid stay what they are."""
     exact = "residual" in name or "discretisation" in name

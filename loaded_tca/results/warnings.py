@@ -25,7 +25,7 @@ from loaded_tca.loaded.cycle import CycleSolution
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.plain import plain
+from loaded_tca.plain import plain, signed
 from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import arc_cells, mean_pressure_of
@@ -198,7 +198,7 @@ def warn_of_contacts(result: CycleNumbers, reason: str, where: Mask, stacklevel:
 def place_of(torque: float, angle: float, number: int) -> str:
     """Torque [N mm], pinion angle [rad] and tooth pair of a contact in words."""
     turned = round(math.degrees(angle), 6) + 0.0  # what is left of a sum to 0 is none
-    return f"{plain(1e-3 * torque, 6)} N m, pinion angle {plain(turned)} deg, tooth pair {number:+d}"
+    return f"{plain(1e-3 * torque, 6)} N m, pinion angle {plain(turned)} deg, tooth pair {signed(number)}"
 
 
 def at_places(reason: str, places: Sequence[str], count: int) -> str:

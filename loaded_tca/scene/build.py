@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
-from loaded_tca.errors import named, require
+from loaded_tca.errors import InputError, named, require
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
@@ -20,7 +22,7 @@ from loaded_tca.pairs.tooth_deviations import ToothDeviations
 from loaded_tca.scene.flank_form import FITTED_DEGREE, FlankForm, Measurement
 from loaded_tca.scene.pitch import LARGEST_INDEX, Pitch
 from loaded_tca.scene.section import Section, as_table
-from loaded_tca.scene.sections import ElasticMaterial, GearSection
+from loaded_tca.scene.sections import ElasticMaterial, GearSection, Modifications
 from loaded_tca.tooth import ToothForm, ToothGeometry
 from loaded_tca.units import UNITS, ending_of, without_unit
 
@@ -56,6 +58,23 @@ def build_modifications(pinion: GearSection, wheel: GearSection) -> tuple[FlankM
         FlankModifications(**in_base_units(pinion.modifications)),
         FlankModifications(**in_base_units(wheel.modifications)),
     )
+
+
+KEYS = {without_unit(field.name): field.name for field in fields(Modifications) if "_" in without_unit(field.name)}
+ARGUMENT = re.compile(rf"\b({'|'.join(KEYS)})\b")
+"""Arguments of modifications, without unit, that are no words of a sentence; the keys that they have in files."""
+
+
+@contextmanager
+def modifications_by_keys() -> Iterator[None]:
+    """Name keys of files, with their units, where problems of modifications name arguments."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(
+            ARGUMENT.sub(lambda found: KEYS[found[0]], problem) if ".modifications." in problem else problem
+            for problem in error.problems
+        ) from None
 
 
 def build_rounding(gear: GearSection) -> EdgeRounding:

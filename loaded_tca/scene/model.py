@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
@@ -16,7 +16,14 @@ from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
 from loaded_tca.pairs.tooth_deviations import ToothDeviations, ToothFlanks
-from loaded_tca.scene.build import build_rounding, build_tooth_deviations, described_gear, in_base_units
+from loaded_tca.plain import plain
+from loaded_tca.scene.build import (
+    build_rounding,
+    build_tooth_deviations,
+    described_gear,
+    in_base_units,
+    modifications_by_keys,
+)
 from loaded_tca.scene.keys import Line, key
 from loaded_tca.scene.parse import scene_from_table, toml_lines
 from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
@@ -250,7 +257,9 @@ class Scene(WithStandards, ABC):
         """
         known = sense in (None, "positive", "negative")
         require((known, f"sense: {sense!r:.60} is not 'positive' or 'negative'"))
-        pair = self.analytic_pair(sense or self.sense)
+        with modifications_by_keys():
+            pair = self.analytic_pair(sense or self.sense)
+        require(*(check for number in range(len(GEARS)) for check in self._bore_on_shaft(number, pair.face_width)))
         side = pair.pinion.flank.side if sense in (None, self.sense) else -pair.pinion.flank.side
         described = replace(
             pair,
@@ -264,6 +273,16 @@ class Scene(WithStandards, ABC):
             wheel=seated.wheel if described.wheel.bore_diameter is None else described.wheel,
         )
         return described.rounded(build_rounding(self.pinion), build_rounding(self.wheel))
+
+    def _bore_on_shaft(self, number: int, face_width: float) -> Iterator[tuple[bool, str]]:
+        """Whether the shaft of a gear fills the bore that is given, anywhere under the face."""
+        gear, middle, half = (self.pinion, self.wheel)[number], self.face_middles[number], 0.5 * face_width
+        bore, shaft = gear.bore_diameter_mm, gear.shaft
+        seats = [] if shaft is None else shaft.diameters_between(middle - half, middle + half)
+        if bore is not None and seats:
+            name, seat = GEARS[number], max(seats)
+            problem = f"{name}.bore_diameter_mm: found {plain(bore, 9)}; allowed up to {plain(seat, 9)}"
+            yield bore <= seat, f"{problem}, outer_diameter_mm of [[{name}.shaft.sections]] under the face"
 
     def without_bores(self, pair: GearPair) -> GearPair:
         """Return a pair held as where no bores are given: at the seats of shafts, where bodies bend, or by default."""

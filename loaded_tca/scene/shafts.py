@@ -345,10 +345,13 @@ class ShaftSection(Section):
 
         None beyond the shaft.
         """
+        return min(self.diameters_between(place, place), default=None)
+
+    def diameters_between(self, low: float, high: float) -> list[float]:
+        """Outer diameters of the parts between two axial coordinates of the gear [mm]."""
         ends = self.start_mm + np.cumsum([0.0, *(part.length_mm for part in self.sections)])
-        here = (ends[:-1] <= place) & (place <= ends[1:])
-        diameters = [part.outer_diameter_mm for part, inside in zip(self.sections, here, strict=True) if inside]
-        return min(diameters, default=None)
+        here = (ends[:-1] <= high) & (low <= ends[1:])
+        return [part.outer_diameter_mm for part, inside in zip(self.sections, here, strict=True) if inside]
 
     @staticmethod
     def matrix_of(bearing: BearingSection) -> np.ndarray:

@@ -66,10 +66,11 @@ def test_mesh_orders_stand_at_multiples_of_the_teeth():
 
 
 def test_band_of_shares_holds_the_mean_and_every_tooth_its_pressure():
-    curves, teeth = plot_revolution_shares(turn(), 0).axes
+    curves, pinion, wheel_teeth = plot_revolution_shares(turn(), 0).axes
     mean = curves.lines[0].get_ydata()
     assert 0.9 < mean.max() <= 1.0
     assert_allclose(mean.sum(), 4.0, rtol=0.02)  # of each position all shares are one; ends of the turn are left out
     wheel = turn().by_tooth("wheel").peak_pressure.values[0]
-    assert_allclose(teeth.lines[1].get_ydata(), wheel)
+    assert_allclose(wheel_teeth.lines[0].get_ydata(), wheel)
+    assert_allclose(pinion.lines[0].get_ydata(), turn().by_tooth("pinion").peak_pressure.values[0])
     assert np.isfinite(wheel).all()

@@ -250,14 +250,14 @@ def test_accuracy_of_figures_is_what_the_studies_show(page):
 
 
 @pytest.mark.quick_cases(
-    "mesh_cycle_bevel-changes1-no estimate: such gears were not compared",
+    "mesh_cycle_bevel-changes1-no estimate: of teeth of bevel gears this figure was not compared",
     "mesh_cycle_spur-changes3-spur teeth on a face of 33 modules or more: those compared are",
 )
 @pytest.mark.parametrize(
     ("name", "changes", "note"),
     [
-        ("mesh_cycle_helical", {}, "no estimate: such gears were not compared"),
-        ("mesh_cycle_bevel", {}, "no estimate: such gears were not compared"),
+        ("mesh_cycle_helical", {}, "no estimate: of helical teeth this figure was not compared"),
+        ("mesh_cycle_bevel", {}, "no estimate: of teeth of bevel gears this figure was not compared"),
         ("mesh_cycle_spur", {}, "spur teeth on a face below 33 modules: those compared are within {} % of finite"),
         ("mesh_cycle_spur", {"face_width": 99.0}, "spur teeth on a face of 33 modules or more: those compared are"),
     ],

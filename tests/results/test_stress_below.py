@@ -179,6 +179,17 @@ def test_flank_of_a_map_ends_where_its_last_cell_with_material_does():
     assert wide.near_end(0.35)[:, 4].nonzero()[0].tolist() == [0, 5, 6, 7, 8, 9]  # the box ends at the first cell
 
 
+def test_unloaded_contact_decides_nothing():
+    """Of gears on supports it lies elsewhere: on an edge or not, a line or not."""
+    spiked, line = spike(), stress_below(result("fzg_c14", positions=1))
+    for below, flag in ((spiked, "on_edge"), (spiked, "on_relief_start"), (line, "on_line")):
+        path = below.result.paths[below.column]
+        paths = list(below.result.paths)
+        paths[below.column] = replace(path, **{flag: ~getattr(path, flag)})
+        other = replace(below, result=replace(below.result, paths=tuple(paths)))
+        assert (other.beside_spike, other.hertz_shear) == (below.beside_spike, below.hertz_shear)
+
+
 def test_contact_without_a_spike_has_no_other_plane():
     below = stress_below(result(positions=1))
     assert below.beside_spike is None

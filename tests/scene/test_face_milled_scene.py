@@ -238,7 +238,7 @@ CANNOT_BE = [
     (
         {"pinion.modifications.tip_relief_um": 5.0, "pinion.modifications.tip_relief_start_mm": 200.0},
         InputError,
-        r"pinion\.modifications\.tip_relief_start \(diameter on the active profile\): 200 mm is not between",
+        r"pinion\.modifications\.tip_relief_start_mm \(diameter on the active profile\): 200 mm is not between",
     ),
 ]
 

@@ -152,6 +152,16 @@ def test_supports_next_to_rigid_change_nothing() -> None:
     assert_allclose(result.peak_pressure, held.peak_pressure, rtol=1e-5)
 
 
+@pytest.mark.quick_cases("contact+tooth-helical")
+@pytest.mark.parametrize(("compliance", "name"), [("contact+tooth", "helical"), ("contact", "mesh_cycle_helical")])
+def test_supports_next_to_rigid_keep_boxes_and_grids(compliance: str, name: str) -> None:
+    """They add 1e-8 of what teeth give way; boxes of other loads and contacts elsewhere moved stiffness by 2e-3."""
+    chosen = {"analysis.cells": None, "analysis.accuracy": 0.2, "analysis.compliance": compliance}
+    scene = scene_of(name, **chosen)
+    result, held = analyse(on(scene, 1e-14 * np.eye(6), None)), analyse(scene)
+    assert_allclose(result.mesh_stiffness, held.mesh_stiffness, rtol=1e-6)  # linear systems are solved to 1e-6
+
+
 def test_rigid_supports_are_none() -> None:
     """To the last digit: nothing that the supports add is in the balance, which decides on boxes and grids."""
     changes = {"analysis.cells": None, "analysis.accuracy": 0.2, "analysis.load_sharing": False}

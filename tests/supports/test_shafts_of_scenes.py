@@ -179,7 +179,15 @@ def test_bores_that_a_warning_advises_are_those_that_a_scene_takes(scene: Scene,
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"pinion.shaft.start_mm": 10.0}, "pinion.shaft: torque_at: at -180 mm, beside the shaft"),
+        (
+            {"pinion.shaft.start_mm": 10.0, "pinion.bore_diameter_mm": None},
+            "pinion.shaft: torque_at: at -180 mm, beside the shaft",
+        ),
+        (
+            {"pinion.bore_diameter_mm": 46.0},
+            r"pinion.bore_diameter_mm: found 46; allowed up to 45, outer_diameter_mm of \[\[pinion.shaft.sections\]\] "
+            "under the face",
+        ),
         ({"pinion.shaft.bearings.0.axial_stiffness_N_per_um": 0.0}, "pinion.shaft: .* free along its axis"),
         ({"wheel.shaft.bearings.1.at_mm": -60.0}, "wheel.shaft: .* free about"),
         ({"wheel.shaft.sections.0.length_mm": 75.0, "wheel.shaft.torque_at_mm": -60.0}, "wheel.shaft: bearings: at 60"),
