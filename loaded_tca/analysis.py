@@ -77,7 +77,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
 
         def solved(apart: int) -> list[StandingCycle]:
             gears = GearsUnderTorques(
-                pair, model_of(scene, pair, apart), angles, grid, load_sharing=wanted.load_sharing
+                pair, model_of(scene, pair, apart), angles, grid, load_sharing=wanted.load_sharing, at_rest=unloaded
             )
             return gears.mesh_cycles(torques, progress)
 

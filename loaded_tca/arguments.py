@@ -19,13 +19,12 @@ from typing import Any, Never, TypeVar, cast
 
 import numpy as np
 
-from loaded_tca.arrays import OtherKindError, has_masked_cells, has_unit, numbers, shown
+from loaded_tca.arrays import FLOAT, OtherKindError, has_masked_cells, has_unit, numbers, shown
 from loaded_tca.errors import InputError, LoadedTCAError
 
 Checked = TypeVar("Checked", bound=Callable[..., Any])
 Unit = Callable[[], str | None]
 """Unit of a parameter, looked up where a value has one or a message needs it."""
-FLOAT = np.dtype(float)
 
 
 def checked(target: Checked) -> Checked:
@@ -108,9 +107,15 @@ def _with_checks(function: FunctionType, documented: object) -> FunctionType:
 
     @functools.wraps(function)
     def call_checked(*arguments: Any, **options: Any) -> Any:
+        count = len(arguments)
         for place, name, stays in quick:  # nearly all calls pass
-            value = arguments[place] if place < len(arguments) else options.get(name, MISSING)
-            if value is not MISSING and not stays(value) and not (value is None and name in optional):
+            if place < count:
+                value = arguments[place]
+            elif name in options:
+                value = options[name]
+            else:
+                continue
+            if not stays(value) and not (value is None and name in optional):
                 break
         else:
             return function(*arguments, **options)
@@ -177,14 +182,23 @@ def _array(name: str, value: Any, unit: Unit) -> Any:
     return value if _is_array(value) else numbers(name, value, unit())
 
 
+LARGEST_INT = 2**63
+"""Whole numbers up to here are told at once to be numbers."""
+
+
 def _is_array(value: Any) -> bool:
     """Whether a value is an array of floats, or one float."""
     kind = type(value)
-    return (kind is np.ndarray and value.dtype == FLOAT) or kind is float or kind is np.float64
+    return (kind is np.ndarray and value.dtype is FLOAT) or kind is float or kind is np.float64
 
 
-def _is_float(value: Any) -> bool:
-    return type(value) is float
+def _is_plain_number(value: Any) -> bool:
+    kind = type(value)
+    return kind is float or (kind is int and abs(value) <= LARGEST_INT)
+
+
+def _is_pair_of_floats(value: Any) -> bool:
+    return type(value) is tuple and len(value) == 2 and type(value[0]) is float and type(value[1]) is float
 
 
 def _never(value: Any) -> bool:  # noqa: ARG001
@@ -280,6 +294,9 @@ KINDS: dict[str, Kind] = {
     **{title: _instance(title) for title in CLASSES},
 }
 """Annotation of a parameter, less None -> what its argument becomes, with InputError if it is of no such kind."""
-AS_THEY_ARE: dict[Kind, Callable[[Any], bool]] = {_array: _is_array, _number: _is_float}
+AS_THEY_ARE: dict[Kind, Callable[[Any], bool]] = {
+    _array: _is_array,
+    _number: _is_plain_number,
+    _pair: _is_pair_of_floats,
+}
 """Kind -> whether a value is told at once to stay as it is; without an entry only the kind itself tells."""
-MISSING = object()

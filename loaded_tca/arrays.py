@@ -17,6 +17,7 @@ from loaded_tca.units import conversion
 Array = NDArray[Any]
 Indices = NDArray[np.int_]
 Mask = NDArray[np.bool_]
+FLOAT = np.dtype(float)
 GearName = Literal["pinion", "wheel"]
 GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
 """The gears of a pair in the order in which arrays and pairs of values have them."""
@@ -45,6 +46,8 @@ def numbers(name: str, values: Any, unit: str | None = None) -> Array:
     >>> numbers("gap", [1, 2.5])
     array([1. , 2.5])
     """
+    if type(values) is np.ndarray and values.dtype is FLOAT:
+        return values
     try:
         return _plain(name, values, unit)
     except InputError:

@@ -1777,8 +1777,8 @@ FAULTS = (
     Fault(
         "edges of both flanks: cells on the arc of one are beside all others",
         "edges/places.py",
-        "beside = np.ones((3, 3) + (1,) * (np.ndim(cells) - 2), dtype=bool)",
-        "beside = np.ones((3,) * np.ndim(cells), dtype=bool)",
+        "for axis in steps * (0, 1):",
+        "for axis in steps * tuple(range(np.ndim(cells))):",
         "edges/test_places.py::test_cells_beside_an_edge_stay_with_that_edge",
     ),
     Fault(
@@ -1862,6 +1862,13 @@ FAULTS = (
         "for numbers in (values, self.peak_pressure) if",
         "for numbers in (values,) if",
         "test_revolution.py::test_tooth_of_shares_that_tie_is_that_of_the_highest_pressure",
+    ),
+    Fault(
+        "estimated error of a peak: the cells from which its neighbours follow are cut off",
+        "contact/solution.py",
+        "NEAR_PEAK = 4",
+        "NEAR_PEAK = 1",
+        "contact/test_solution.py::test_change_beside_a_peak_is_that_of_whole_grids",
     ),
 )
 

@@ -73,13 +73,14 @@ def check_spacing(spacing: tuple[float, float]) -> list[str]:
         return list(error.problems)
     if widths.shape != (2,):
         return [f"spacing: {widths.tolist()} is not a pair of cell widths (dx, dy)"]
+    both = widths.tolist()
     problems = [
         f"spacing[{axis}]: {width} is not between {LEAST:g} and {MOST:g} mm"
-        for axis, width in enumerate(widths)
+        for axis, width in enumerate(both)
         if not LEAST <= width <= MOST
     ]
-    if not problems and widths.max() > MOST_SLENDER * widths.min():
-        problems.append(f"spacing: {widths.tolist()} are widths of a ratio above {MOST_SLENDER:g}")
+    if not problems and max(both) > MOST_SLENDER * min(both):
+        problems.append(f"spacing: {both} are widths of a ratio above {MOST_SLENDER:g}")
     return problems
 
 

@@ -36,6 +36,9 @@ LEAST_GROWTH = 1e-3
 # What a halving may add beside a jump of the slope, over its mean: a cell amidst which the jump lies has more pressure
 # than one at whose border it lies, by as much as a halving adds.
 MOST_OF_GROWTH = 2.0
+# Coarse cells either way of the largest one that tell the pressure expected in the fine cells about it: one beside it,
+# one more between which is interpolated, two from which the square is continued beyond the contact.
+NEAR_PEAK = 4
 
 
 MOST_ITERATIONS = 500
@@ -119,10 +122,15 @@ class CoarserGrid:
     def change_beside_peak(self) -> float:
         """Largest change of pressure in the cells about the largest one, over it."""
         merge = tuple(2 if 2 * m <= n + 1 else 1 for m, n in zip(self.pressure.shape, self.finer.shape, strict=True))
-        top = np.unravel_index(int(self.finer.argmax()), self.finer.shape)
-        beside = tuple(slice(max(0, k - 1), k + 2) for k in top)
-        expected = prolong(self.pressure, self.finer.shape, (merge[0], merge[1]))
-        return float(np.abs(expected[beside] - self.finer[beside]).max() / self.finer[top])
+        top = [int(k) for k in np.unravel_index(int(self.finer.argmax()), self.finer.shape)]
+        first = [max(0, k // m - NEAR_PEAK) for k, m in zip(top, merge, strict=True)]
+        last = [k // m + NEAR_PEAK + 1 for k, m in zip(top, merge, strict=True)]
+        coarse = self.pressure[first[0] : last[0], first[1] : last[1]]
+        fine = self.finer[merge[0] * first[0] : merge[0] * last[0], merge[1] * first[1] : merge[1] * last[1]]
+        expected = prolong(coarse, (fine.shape[0], fine.shape[1]), (merge[0], merge[1]))
+        places = [k - m * start for k, m, start in zip(top, merge, first, strict=True)]
+        beside = tuple(slice(max(0, k - 1), k + 2) for k in places)
+        return float(np.abs(expected[beside] - fine[beside]).max() / self.finer[top[0], top[1]])
 
 
 @dataclass(frozen=True, eq=False)

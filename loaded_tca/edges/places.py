@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from scipy.ndimage import binary_dilation
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.flanks.base import EDGE_NAMES
@@ -39,7 +38,7 @@ def _distances(pair: GearPair, points: Array, lines: Literal["edges", "relief_st
 
 def has_relief_starts(pair: GearPair) -> bool:
     """Whether any flank has a linear relief."""
-    return relief_start_distances(pair, np.zeros((0, 3))).shape[-1] > 0
+    return any(gear.flank.relief_starts(np.zeros(0), np.zeros(0)) for gear in (pair.pinion, pair.wheel))
 
 
 def arcs_of(pair: GearPair) -> dict[int, tuple[Gear, Arc]]:
@@ -71,5 +70,10 @@ def arcs_at(pair: GearPair, points: Array) -> Mask:
 
 def dilated(cells: Array | np.bool, steps: int = 1) -> Mask:
     """Some cells (nx, ny, ...) of a grid, and those so many steps away from one of them."""
-    beside = np.ones((3, 3) + (1,) * (np.ndim(cells) - 2), dtype=bool)
-    return np.asarray(binary_dilation(np.asarray(cells), beside, steps))
+    wider = np.array(cells, dtype=bool)
+    for axis in steps * (0, 1):
+        lines = np.moveaxis(wider, axis, 0)
+        before = lines.copy()
+        lines[1:] |= before[:-1]
+        lines[:-1] |= before[1:]
+    return wider

@@ -74,55 +74,6 @@ class CycleSolution:
         return np.where(np.isnan(self.rotation), math.nan, self.states.stiffness.reshape(self.rotation.shape))
 
 
-def solve_single_pair(
-    pair: GearPair,
-    path: ContactPath,
-    torques: Array,
-    grid: GridChoice,
-    bending: BendingModel | None = None,
-    progress: Progress | None = None,
-    displacement: Coupling | None = None,
-) -> CycleSolution:
-    """Let the tooth pair at the pitch point carry the whole load.
-
-    Parameters
-    ----------
-    pair : GearPair
-    path : ContactPath
-        Its unloaded contact, :func:`loaded_tca.unloaded.trace_contact`.
-    torques : (m,) array [N mm]
-        Of the pinion.
-    grid : GridChoice
-    bending : BendingModel, optional
-        Of the teeth beneath the contact; default: none.
-    progress : callable, optional
-    displacement : callable, optional
-        Displacement of the slices of a grid that does not depend on the forces; default: none.
-    """
-    return solve_cycles([OnePairsCycle(pair, path, torques, grid, bending, displacement)], progress)[0]
-
-
-def solve_mesh_cycle(
-    pair: GearPair,
-    mesh: MeshPath,
-    torques: Array,
-    grid: GridChoice,
-    bending: BendingModel | None = None,
-    progress: Progress | None = None,
-    displacement: Coupling | None = None,
-) -> CycleSolution:
-    """Let all tooth pairs in contact share the load.
-
-    Parameters
-    ----------
-    mesh : MeshPath
-        Unloaded contact of all teeth, :func:`loaded_tca.unloaded.trace_teeth`.
-    pair, torques, grid, bending, progress, displacement
-        As of :func:`solve_single_pair`.
-    """
-    return solve_cycles([AllPairsCycle(pair, mesh, torques, grid, bending, displacement)], progress)[0]
-
-
 class MeshStates(Protocol):
     """Positions of a pitch of one pair of gears under torques, to be solved beside those of other ones."""
 
@@ -153,7 +104,21 @@ def solve_cycles(cycles: Sequence[MeshStates], progress: Progress | None = None)
 
 @dataclass(frozen=True, eq=False)
 class OnePairsCycle:
-    """States of one tooth pair that carries the whole load; arguments as of :func:`solve_single_pair`."""
+    """States of the tooth pair at the pitch point, which carries the whole load.
+
+    Attributes
+    ----------
+    pair : GearPair
+    path : ContactPath
+        Its unloaded contact, :func:`loaded_tca.unloaded.trace_contact`.
+    torques : (m,) array [N mm]
+        Of the pinion.
+    grid : GridChoice
+    bending : BendingModel or None
+        Of the teeth beneath the contact.
+    displacement : callable or None
+        Displacement of the slices of a grid that does not depend on the forces.
+    """
 
     pair: GearPair
     path: ContactPath
@@ -199,7 +164,15 @@ class OnePairsCycle:
 
 @dataclass(frozen=True, eq=False)
 class AllPairsCycle:
-    """States of all tooth pairs, which share the load; arguments as of :func:`solve_mesh_cycle`."""
+    """States of all tooth pairs in contact, which share the load.
+
+    Attributes
+    ----------
+    mesh : MeshPath
+        Unloaded contact of all teeth, :func:`loaded_tca.unloaded.trace_teeth`.
+    pair, torques, grid, bending, displacement
+        As of :class:`OnePairsCycle`.
+    """
 
     pair: GearPair
     mesh: MeshPath
@@ -256,8 +229,9 @@ def share_loads(
     ----------
     positions : sequence of (float, sequence of ToothPair)
         Pinion angle [rad], and all pairs that may come into contact there.
-    pair, torques, grid, bending, progress, displacement
-        As of :func:`solve_single_pair`.
+    pair, torques, grid, bending, displacement
+        As of :class:`OnePairsCycle`.
+    progress : callable, optional
 
     Returns
     -------

@@ -259,14 +259,24 @@ class LoadedContact:
 
         Where they moved by less than ``LINE_KEPT``, it is returned as it is.
         """
-        separation = self.separation.loaded_by(self.solution.pressure, module)
+        separation = self._bending_lines(module)
         if self.bending is not None and self._moved(separation) <= LINE_KEPT * module:
             return self
         return replace(self, separation=separation, bending=bending.within(number, separation))
 
     def line_error(self, module: float) -> float:
         """How far the forces that bend the teeth are from the centres of the pressure, the mean over the force [mm]."""
-        return self._moved(self.separation.loaded_by(self.solution.pressure, module))
+        return self._moved(self._bending_lines(module))
+
+    def _bending_lines(self, module: float) -> Separation:
+        """The grid with its forces at the centres of the pressure; kept, as balance and next solution ask for it."""
+        if module not in self._lines_by_module:
+            self._lines_by_module[module] = self.separation.loaded_by(self.solution.pressure, module)
+        return self._lines_by_module[module]
+
+    @cached_property
+    def _lines_by_module(self) -> dict[float, Separation]:
+        return {}
 
     def _moved(self, other: Separation) -> float:
         """Distance of the line of the forces of the same grid, the mean over the force [mm]."""

@@ -208,14 +208,24 @@ class GearsUnderTorques:
     grid : GridChoice
     load_sharing : bool
         Whether all tooth pairs in contact share the load.
+    at_rest : MeshPath or ContactPath, optional
+        Unloaded contact of the gears at rest at these angles, if it is traced already: there rigid gears stay.
     """
 
     def __init__(
-        self, pair: GearPair, bending: SumOfParts | None, angles: Array, grid: GridChoice, *, load_sharing: bool = True
+        self,
+        pair: GearPair,
+        bending: SumOfParts | None,
+        angles: Array,
+        grid: GridChoice,
+        *,
+        load_sharing: bool = True,
+        at_rest: MeshPath | ContactPath | None = None,
     ) -> None:
         self.pair, self.bending = pair, bending
         self.supports = None if bending is None else bending.supports
         self.angles, self.grid, self.load_sharing = angles, grid, load_sharing
+        self.path_at_rest = at_rest
 
     def standing(self, torques: Sequence[float] | Array) -> list[Standing]:
         """Where the gears stand under pinion torques [N mm], in their order.
@@ -345,9 +355,12 @@ class GearsUnderTorques:
         pair, torques = standing.pair, standing.torques
         what = grid, standing.giving_way, standing.displacement
         with _told_of(standing):
-            if self.load_sharing:
-                return _Cycle(standing, AllPairsCycle(pair, trace_teeth(pair, angles), torques, *what))
-            return _Cycle(standing, OnePairsCycle(pair, trace_contact(pair, angles), torques, *what))
+            path = self.path_at_rest if self.supports is None else None
+            if path is None:
+                path = (trace_teeth if self.load_sharing else trace_contact)(pair, angles)
+        if isinstance(path, MeshPath):
+            return _Cycle(standing, AllPairsCycle(pair, path, torques, *what))
+        return _Cycle(standing, OnePairsCycle(pair, path, torques, *what))
 
 
 def pair_span(pairs: Indices, shares: Array) -> int:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from loaded_tca.contact import ContactStatus, solve_contact
+from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import AccuracyWarning
 
@@ -107,6 +108,18 @@ def test_estimate_remembers_the_change_before_two_grids_that_agree():
     estimate = dataclasses.replace(inside, coarser=coarser).error_estimate
     assert estimate.peak_pressure == pytest.approx(0.15 * 0.2)
     assert estimate.second_order < 0.5 * estimate.peak_pressure
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.4, -0.4])
+def test_change_beside_a_peak_is_that_of_whole_grids(slope):
+    """A contact that is three coarse cells wide, and runs across its grid askew: its ends are beside the peak."""
+    across, along = (np.arange(n) - (n - 1) / 2 for n in (24, 28))
+    coarse = np.sqrt(np.maximum(1.0 - ((across[:, None] - slope * along) / 1.7) ** 2 - (along / 11.0) ** 2, 0.0))
+    fine = np.sqrt(prolong(coarse, (48, 56), (2, 2)) * np.random.default_rng(3).uniform(0.9, 1.1, (48, 56)))
+    changes = np.abs(prolong(coarse, fine.shape, (2, 2)) - fine)
+    row, column = np.unravel_index(fine.argmax(), fine.shape)
+    largest = changes[row - 1 : row + 2, column - 1 : column + 2].max() / fine.max()
+    assert CoarserGrid(coarse, fine, 0.0).change_beside_peak == largest
 
 
 def test_peak_at_the_cap_has_the_least_error():

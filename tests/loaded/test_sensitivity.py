@@ -12,7 +12,7 @@ from loaded_tca import read_scene
 from loaded_tca.contact import ContactProblem, contact_stiffness
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.errors import ConvergenceError
-from loaded_tca.loaded.cycle import solve_single_pair
+from loaded_tca.loaded.cycle import OnePairsCycle, solve_cycles
 from loaded_tca.loaded.load_sharing import share_load
 from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.sensitivity import Tangents, loaded_states
@@ -291,7 +291,9 @@ def test_contacts_without_a_cell_between_the_bounds_have_no_part_in_the_rate():
 def test_rate_of_one_contact_is_that_of_a_flat_punch_of_its_cells():
     pair = read_scene(SCENES / "mesh_cycle_bevel.toml").pair()
     path = trace_contact(pair, pair.pitch * np.array([-0.1, 0.2]))
-    carried = solve_single_pair(pair, path, np.array([30e3, 0.0, 90e3]), GridChoice(cells=(32, 32), tolerance=1e-8))
+    carried = solve_cycles(
+        [OnePairsCycle(pair, path, np.array([30e3, 0.0, 90e3]), GridChoice(cells=(32, 32), tolerance=1e-8))]
+    )[0]
     levers = path.pinion_lever * path.wheel_lever
     punches = [[levers[n] * contact_stiffness(carried.contacts[t][n][0].solution) for n in (0, 1)] for t in (0, 2)]
     assert_allclose(carried.torque_rate[[0, 2]], punches, rtol=RATE)

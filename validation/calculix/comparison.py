@@ -15,7 +15,7 @@ import numpy as np
 
 from loaded_tca.compliance import MeshDensity, tooth_compliance
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.loaded.cycle import CycleSolution, solve_mesh_cycle
+from loaded_tca.loaded.cycle import AllPairsCycle, CycleSolution, solve_cycles
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
@@ -196,7 +196,9 @@ class Model:
         whole = 1e3 * torque * self.face_width / FACE_WIDTH
         torques = whole * np.array(LOAD_STEPS)
         start = time.process_time()
-        carried = solve_mesh_cycle(pair, trace_teeth(pair, np.asarray(angles)), torques, GRID, self.bending)
+        carried = solve_cycles(
+            [AllPairsCycle(pair, trace_teeth(pair, np.asarray(angles)), torques, GRID, self.bending)]
+        )[0]
         seconds = (time.process_time() - start) / (len(torques) * len(angles))
         return [self._position(pair, carried, n, seconds) for n in range(len(angles))]
 

@@ -23,7 +23,7 @@ import numpy as np
 
 from loaded_tca import AccuracyWarning, read_scene
 from loaded_tca.compliance import tooth_compliance
-from loaded_tca.loaded.cycle import solve_single_pair
+from loaded_tca.loaded.cycle import OnePairsCycle, solve_cycles
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.unloaded import trace_contact
@@ -159,7 +159,7 @@ def here(free_edges: bool = True, forces_on_grid_axis: bool = False) -> Loaded:
     grid = GridChoice(free_edges=free_edges, forces_on_grid_axis=forces_on_grid_axis)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        carried = solve_single_pair(pair, path, np.asarray(scene.torques), grid, tooth_compliance(pair))
+        carried = solve_cycles([OnePairsCycle(pair, path, np.asarray(scene.torques), grid, tooth_compliance(pair))])[0]
     contacts = [contact for (contact,) in carried.contacts[0] if contact is not None]
     error = 1e3 * pair.base_radii[1] * (path.transmission_error - carried.rotation[0])
     reference = kept().lines

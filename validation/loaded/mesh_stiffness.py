@@ -26,7 +26,7 @@ from loaded_tca.compliance import MeshDensity, tooth_compliance
 from loaded_tca.compliance.body import ToothFrame, gear_body, gear_nodes
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.loaded.cycle import solve_mesh_cycle
+from loaded_tca.loaded.cycle import AllPairsCycle, solve_cycles
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear import Gear
@@ -89,7 +89,7 @@ def mean_stiffness(
     cycle = trace_teeth(pair, pair.pitch * np.linspace(-0.5, 0.5, POSITIONS, endpoint=False))
     density = MeshDensity(lengthwise=layers or round(pair.face_width / LAYER))
     teeth = tooth_compliance(pair, neighbours=max(pitches_within_reach(pair), 1), density=density)
-    carried = solve_mesh_cycle(pair, cycle, np.array([torque]), GRID, teeth)
+    carried = solve_cycles([AllPairsCycle(pair, cycle, np.array([torque]), GRID, teeth)])[0]
     whole = float(np.mean(carried.torque_rate) / (1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width))
     return whole, 1.0 / (1.0 / whole - 1e3 * pair.face_width * sum(teeth.body_torsion))
 

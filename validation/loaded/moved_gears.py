@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import model_of
-from loaded_tca.loaded.cycle import solve_mesh_cycle
+from loaded_tca.loaded.cycle import AllPairsCycle, solve_cycles
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import trace_teeth
@@ -56,7 +56,7 @@ def settled(
         origin = pinion.T @ (origin - middles[0] - motions[0, :3]) + middles[0]
         moved = replace(pair, wheel_origin=origin, wheel_axes=pair.wheel_axes @ wheel.T @ pinion)
         teeth = None if bending is None else bending.mounted(moved)
-        carried = solve_mesh_cycle(moved, trace_teeth(moved, np.array([angle])), torque, grid, teeth)
+        carried = solve_cycles([AllPairsCycle(moved, trace_teeth(moved, np.array([angle])), torque, grid, teeth)])[0]
         loads = np.zeros((2, 6))
         at = [middles[0], moved.wheel_origin + scene.face_middles[1] * moved.wheel_axes[2]]
         for one in carried.contacts[0][0]:

@@ -20,7 +20,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import FlankLine, RootStress, tooth_compliance
 from loaded_tca.errors import AccuracyWarning
-from loaded_tca.loaded.cycle import solve_mesh_cycle
+from loaded_tca.loaded.cycle import AllPairsCycle, solve_cycles
 from loaded_tca.reference import iso6336_3
 from loaded_tca.scene import parse_scene
 from loaded_tca.unloaded import trace_teeth
@@ -128,7 +128,9 @@ def of_the_pair(changes: dict[str, object]) -> Uneven:
     bending = tooth_compliance(pair, neighbours=NEIGHBOURS)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # the load ends with the face
-        carried = solve_mesh_cycle(pair, trace_teeth(pair, np.zeros(1)), np.array([1e3 * TORQUE]), GRID, bending)
+        carried = solve_cycles(
+            [AllPairsCycle(pair, trace_teeth(pair, np.zeros(1)), np.array([1e3 * TORQUE]), GRID, bending)]
+        )[0]
     loaded = carried.contacts[0][0][carried.pairs.tolist().index(0)]
     assert loaded is not None
     line, _ = bending.lines(0, loaded.separation)

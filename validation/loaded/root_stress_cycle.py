@@ -18,7 +18,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.root_stress import DENSITY
 from loaded_tca.errors import AccuracyWarning
-from loaded_tca.loaded.cycle import solve_mesh_cycle
+from loaded_tca.loaded.cycle import AllPairsCycle, solve_cycles
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
@@ -117,7 +117,9 @@ def section_loads(ours: Model, variant: str, angles: Array) -> list[tuple[list[L
     torque = 1e3 * TORQUE * ours.face_width / FACE_WIDTH
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # tip corners in contact
-        carried = solve_mesh_cycle(pair, trace_teeth(pair, angles), np.array([torque]), GRID, ours.bending)
+        carried = solve_cycles(
+            [AllPairsCycle(pair, trace_teeth(pair, angles), np.array([torque]), GRID, ours.bending)]
+        )[0]
     whole = line_load(TORQUE)
     loads = []
     for contacts, shares in zip(carried.contacts[0], carried.share[0], strict=True):
