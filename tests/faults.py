@@ -1870,6 +1870,27 @@ FAULTS = (
         "NEAR_PEAK = 1",
         "contact/test_solution.py::test_change_beside_a_peak_is_that_of_whole_grids",
     ),
+    Fault(
+        "dissection: what a half leaves is added above the diagonal where its unknowns stand the other way round",
+        "compliance/dissection.py",
+        "if row >= column:",
+        "if True:",
+        "compliance/test_dissection.py::test_parts_that_are_alike_are_eliminated_once",
+    ),
+    Fault(
+        "dissection: blocks on the diagonal of what is left are not updated",
+        "compliance/dissection.py",
+        "rest[rows, : rows.stop] -= coupling[rows] @ coupling[: rows.stop].T",
+        "rest[rows, :first] -= coupling[rows] @ coupling[:first].T",
+        "compliance/test_dissection.py::test_solution_is_that_of_a_sparse_solver",
+    ),
+    Fault(
+        "dissection: of a load and a reading the last front that has both counts alone",
+        "compliance/dissection.py",
+        "result[used[middle:, None] - split, used[:middle]] += products",
+        "result[used[middle:, None] - split, used[:middle]] = products",
+        "compliance/test_dissection.py::test_flexibility_is_read_from_the_solution",
+    ),
 )
 
 

@@ -2,8 +2,12 @@
 
 The elements are halved again and again; inside each half all that no other element touches is eliminated, densely, so
 that nearly all the work is products of matrices. It is the multifrontal method, with the halves found from the whole
-coordinates of the logical mesh; a general sparse factorisation takes several times as long on gear bodies. Parts that
-are put together from the same elements in the same way, as the pitches of a rim are, are eliminated once.
+coordinates of the logical mesh: of the planes of nodes along all coordinates the one that parts the fewest unknowns for
+halves of about equal size. Cuts across the longest side alone take 1.6 times as many operations on the bodies of root
+stress. A general sparse factorisation takes several times as long on gear bodies. Parts that are put together from the
+same elements in the same way, as the pitches of a rim are, are eliminated once.
+
+Products of matrices are those of NumPy, which let other threads of the interpreter run.
 
 References
 ----------
@@ -13,14 +17,14 @@ multifrontal solution of indefinite sparse symmetric linear equations, ACM Trans
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cholesky, solve_triangular
-from scipy.sparse import csr_array
+from scipy.linalg import get_lapack_funcs
+from scipy.sparse import csr_array, vstack
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.checks import machine_memory
@@ -28,12 +32,13 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.threads import one_blas_thread
 
 Flags = NDArray[np.bool_]
-LEAF = 8
-"""Elements that are not halved any more."""
-RESERVE = 1.25
-"""Memory of an elimination over that of its matrices; measured: 1.1 to 1.2, of bodies of 0.05 to 0.7 GiB."""
-BYTES_OF_LOADS = 2.0**27
-"""Most memory of the displacements under loads that are passed through the fronts at a time."""
+LEAF = 27
+"""Elements that are not halved any more: with 8 the small fronts cost a fifth more in all, with 48 and more elements
+there is more to eliminate."""
+RESERVE = 1.1
+"""Memory of an elimination over that of its matrices; measured: 0.96 to 0.98, of bodies of 0.2 to 0.6 GiB."""
+COLUMNS, ROWS = 128, 256
+"""Columns that are eliminated at a time, and rows of the rest from which they are subtracted at a time."""
 LEAST_PIVOT = 1e-10
 """Least pivot over the largest diagonal entry of its elimination at which a body counts as held.
 
@@ -44,16 +49,43 @@ to 3000 elements with four BLAS kernels. Bodies of gears that are held have 3e-5
 
 @dataclass(frozen=True, eq=False)
 class _Front:
-    """What one elimination leaves: unknowns eliminated and unknowns beside them, L11 and L21 of the Cholesky factor."""
+    """What one elimination leaves.
+
+    Attributes
+    ----------
+    inside, beside : (n,), (m,) int array
+        Unknowns that are eliminated, and those beside them.
+    factor : (n + m, n) array
+        Columns of the Cholesky factor; blocks on the diagonal are inverted, so that products of matrices do the rest.
+    halves : int
+        How many earlier fronts are put together in it, 0 or 2: the last ones that no front between has taken.
+    """
 
     inside: Indices
     beside: Indices
     factor: Array
-    coupling: Array
+    halves: int
 
-    def renumbered(self, number: Indices) -> _Front:
-        """The same front with the unknown i called ``number[i]``."""
-        return _Front(number[self.inside], number[self.beside], self.factor, self.coupling)
+    def forward(self, values: Array) -> None:
+        """Divide values (n + m, k) by the factor, in place; below are those that are left for the unknowns beside."""
+        count = len(self.inside)
+        for block in _blocks(count):
+            values[block] = self.factor[block, block] @ (
+                values[block] - self.factor[block, : block.start] @ values[: block.start]
+            )
+        values[count:] -= self.factor[count:] @ values[:count]
+
+    def backward(self, values: Array) -> Array:
+        """Displacements (n, k) of the unknowns inside, of values (n + m, k) that have those beside at their end."""
+        for block in reversed(_blocks(len(self.inside))):
+            rest = values[block] - self.factor[block.stop :, block].T @ values[block.stop :]
+            values[block] = self.factor[block, block].T @ rest
+        return values[: len(self.inside)]
+
+
+def _blocks(count: int) -> list[slice]:
+    """Columns of a factor that are eliminated at a time."""
+    return [slice(first, min(first + COLUMNS, count)) for first in range(0, count, COLUMNS)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,55 +102,66 @@ class Factorisation:
 
     def solve(self, loads: Array) -> Array:
         """Displacements (size, m) under loads (size, m); zero where they are prescribed."""
-        displacements = np.zeros(loads.shape, self.dtype)
-        free = np.zeros(self.size, dtype=bool)
-        for front in self.fronts:
-            free[front.inside] = True
-        displacements[free] = loads[free]
-        _substitute(self.fronts, self.fronts, displacements)
+        values, displacements = np.array(loads, self.dtype), np.zeros(loads.shape, self.dtype)
+        with one_blas_thread():
+            for front in self.fronts:
+                order = np.concatenate([front.inside, front.beside])
+                part = values[order]
+                front.forward(part)
+                values[order] = part
+            for front in reversed(self.fronts):
+                below = np.concatenate([values[front.inside], displacements[front.beside]])
+                displacements[front.inside] = front.backward(below)
         return displacements
 
     def flexibility(self, loads: csr_array, readings: csr_array) -> Array:
-        """Values (p, m) of readings (p, size) of the displacements under loads (m, size), neither on a held unknown.
+        """Values (p, m) of readings (p, size) of the displacements under loads (m, size).
 
-        Only fronts between a load or a reading and the end of the elimination are passed.
+        Loads and readings alike are divided by the Cholesky factor, and what is left of them inside each front
+        multiplied: a front has to do with those alone that are inside it and below. Held unknowns do not move.
         """
-        above = self._reached(readings)
-        active = np.flatnonzero(above | self._reached(loads))
-        place = np.full(self.size, -1)
-        place[active] = np.arange(len(active))
-        up = [front.renumbered(place) for front in self.fronts if above[front.inside].any()]
-        result = np.empty((readings.shape[0], loads.shape[0]))
-        step = max(1, int(BYTES_OF_LOADS / (8.0 * max(1, len(active)))))
-        for first in range(0, loads.shape[0], step):
-            block = loads[first : first + step]
-            below = self._reached(block)
-            down = [front.renumbered(place) for front in self.fronts if below[front.inside].any()]
-            values = block[:, active].T.toarray().astype(self.dtype, copy=False)
-            _substitute(down, up, values)
-            result[:, first : first + step] = readings[:, active] @ values
+        columns = vstack([loads, readings]).T.tocsr()
+        columns.sum_duplicates()
+        result, split = np.zeros((readings.shape[0], loads.shape[0])), loads.shape[0]
+        touched = np.diff(columns.indptr) > 0
+        waiting: list[_Columns] = []
+        with one_blas_thread():  # the fronts are small: threads waiting for each other cost far more
+            for front in self.fronts:
+                parts = [waiting.pop() for _ in range(front.halves)]
+                if touched[front.inside].any():
+                    own = columns[front.inside].tocoo()
+                    here, which = np.unique(own.col, return_inverse=True)
+                    values = np.zeros((len(front.inside), len(here)), self.dtype)
+                    values[own.row, which] = own.data
+                    parts.append(_Columns(front.inside, here.astype(int), values))
+                used, values = self._put_together(front, parts)
+                count, middle = len(front.inside), int(np.searchsorted(used, split))
+                if len(used):
+                    front.forward(values)
+                    products = values[:count, middle:].T @ values[:count, :middle]
+                    result[used[middle:, None] - split, used[:middle]] += products
+                waiting.append(_Columns(front.beside, used, values[count:]))
         return result
 
-    def _reached(self, rows: csr_array) -> Flags:
-        """Unknowns (size,) that an elimination reaches from those in the rows of a sparse matrix."""
-        reached = np.zeros(self.size, dtype=bool)
-        reached[rows.indices] = True
-        for front in self.fronts:
-            if reached[front.inside].any():
-                reached[front.inside] = reached[front.beside] = True
-        return reached
+    def _put_together(self, front: _Front, parts: list[_Columns]) -> tuple[Indices, Array]:
+        """Which columns (k,) any of some parts has, and their sum (n + m, k) for the unknowns of a front."""
+        parts = [part for part in parts if len(part.numbers)]
+        used = np.unique(np.concatenate([np.empty(0, dtype=int), *(part.numbers for part in parts)]))
+        order = np.concatenate([front.inside, front.beside])
+        values, place = np.zeros((len(order), len(used)), self.dtype), np.empty(self.size, dtype=int)
+        place[order] = np.arange(len(order))
+        for part in parts:
+            values[place[part.unknowns][:, None], np.searchsorted(used, part.numbers)] += part.values
+        return used, values
 
 
-def _substitute(down: Sequence[_Front], up: Sequence[_Front], displacements: Array) -> None:
-    """Forward and backward substitution through fronts in the order of elimination, in place."""
-    with one_blas_thread():  # the fronts are small: threads waiting for each other cost far more
-        for front in down:
-            part = solve_triangular(front.factor, displacements[front.inside], lower=True, check_finite=False)
-            displacements[front.inside] = part
-            displacements[front.beside] -= front.coupling @ part
-        for front in reversed(up):
-            part = displacements[front.inside] - front.coupling.T @ displacements[front.beside]
-            displacements[front.inside] = solve_triangular(front.factor, part, lower=True, trans=1, check_finite=False)
+@dataclass(frozen=True, eq=False)
+class _Columns:
+    """Values (n, k) of some unknowns (n,) in those columns (k,) of all that are not zero there."""
+
+    unknowns: Indices
+    numbers: Indices
+    values: Array
 
 
 def factorise(
@@ -159,6 +202,7 @@ def factorise(
     places = np.column_stack([np.zeros(n, dtype=int) if blocks is None else blocks, places])
     plan = _Plan(kinds, np.where(free[dofs], dofs, size), places, np.bincount(dofs.ravel(), minlength=size))
     unknowns, last = plan.add(np.arange(n))
+    plan.arrange()
     needed, limit = plan.bytes + 8.0 * matrices.size, machine_memory()  # of single precision: it may be made again
     problem = f"{size} unknowns need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
     require((needed <= limit, f"mesh of the gear body: {problem}; take fewer elements"))
@@ -228,10 +272,11 @@ class _Plan:
         left, halves = np.ones(len(unknowns), dtype=bool), []
         if len(elements) > LEAF:
             left[:] = False
-            for half in self._halves(elements):
+            place = np.empty(len(self.touching), dtype=int)
+            place[unknowns] = np.arange(len(unknowns))
+            lower = self._lower_half(elements, dofs, len(unknowns))
+            for half in (elements[lower], elements[~lower]):
                 own, number = self.add(half)
-                place = np.empty(len(self.touching), dtype=int)
-                place[unknowns] = np.arange(len(unknowns))
                 step = self.steps[number]
                 halves.append((number, place[own]))
                 left[place[own][step.order[step.count :]]] = True
@@ -240,6 +285,23 @@ class _Plan:
         order = np.concatenate([eliminated, np.flatnonzero(~inner)])
         return _Step(len(unknowns), order, len(eliminated), elements, dofs, tuple(halves))
 
+    def arrange(self) -> None:
+        """Put the unknowns that each step leaves into the order that they have in the step it is a half of.
+
+        What halves leave then goes into the matrix of the whole in a few large pieces. Of parts that are alike, the
+        last one says the order.
+        """
+        arranged = set[int]()
+        for step in reversed(self.steps):
+            place = np.empty(step.size, dtype=int)
+            place[step.order] = np.arange(len(step.order))
+            for number, here in step.halves:
+                if number not in arranged:
+                    arranged.add(number)
+                    half = self.steps[number]
+                    left = half.order[half.count :]
+                    half.order[half.count :] = left[place[here[left]].argsort()]
+
     @property
     def bytes(self) -> float:
         """Most memory that the elimination takes at a time: factors so far, what is left of parts, and its work."""
@@ -247,8 +309,8 @@ class _Plan:
         live, uses = dict[int, float](), self._uses()
         for number, step in enumerate(self.steps):
             size, rest = len(step.order), len(step.order) - step.count
-            work = size**2 + max(2 * size**2 if step.halves else 0, 2 * (step.count + rest) * step.count + rest**2)
-            most = max(most, kept + sum(live.values()) + work)
+            work = COLUMNS * size if step.halves else size**2
+            most = max(most, kept + sum(live.values()) + size * step.count + rest**2 + work)
             kept += size * step.count
             live[number] = rest**2
             _drop(live, uses, step)
@@ -259,41 +321,70 @@ class _Plan:
         halves = [half for step in self.steps for half, _ in step.halves]
         return np.bincount(np.array(halves, dtype=int), minlength=len(self.steps)).tolist()
 
-    def factors(self, matrices: Array) -> list[tuple[Array, Array]]:
-        """L11 and L21 of the Cholesky factor of every step; what a step leaves is kept as long as another needs it."""
-        pairs, uses = [], self._uses()
+    def factors(self, matrices: Array) -> list[Array]:
+        """Columns of the Cholesky factor of every step; what a step leaves is kept as long as another needs it."""
+        factors, uses = list[Array](), self._uses()
         left: dict[int, Array] = {}
         for number, step in enumerate(self.steps):
-            factor, coupling, left[number] = _eliminated(self._matrix(step, matrices, left), step.count)
-            pairs.append((factor, coupling))
+            columns, left[number] = self._matrix(step, matrices, left)
+            _eliminate(columns, left[number])
+            factors.append(columns)
             _drop(left, uses, step)
-        return pairs
+        return factors
 
-    def _matrix(self, step: _Step, matrices: Array, left: dict[int, Array]) -> Array:
-        """Stiffness of the unknowns that are left before a step."""
+    def _matrix(self, step: _Step, matrices: Array, left: dict[int, Array]) -> tuple[Array, Array]:
+        """Stiffness of the unknowns that are left before a step: columns of those it eliminates, and of the others.
+
+        Of what is symmetric the lower triangle counts.
+        """
+        size, count = len(step.order), step.count
         if not step.halves:
-            return _assembled(step.dofs, matrices[self.kinds[step.elements]], step.order)
-        earlier = [self.steps[half] for half, _ in step.halves]
-        borders = [here[half.order[half.count :]] for (_, here), half in zip(step.halves, earlier, strict=True)]
-        return _sum(borders, [left[half] for half, _ in step.halves], step.order, step.size)
+            whole = _assembled(step.dofs, matrices[self.kinds[step.elements]], step.order)
+            return whole[:, :count].copy(), whole[count:, count:].copy()
+        columns, rest = np.zeros((size, count), matrices.dtype), np.empty((size - count,) * 2, matrices.dtype)
+        rest.fill(0.0)
+        place = np.empty(step.size, dtype=int)
+        place[step.order] = np.arange(size)
+        for number, here in step.halves:
+            half = self.steps[number]
+            _add(columns, rest, place[here[half.order[half.count :]]], left[number])
+        return columns, rest
 
-    def fronts(self, factors: list[tuple[Array, Array]], number: int, unknowns: Indices) -> Iterator[_Front]:
+    def fronts(self, factors: list[Array], number: int, unknowns: Indices) -> Iterator[_Front]:
         """Fronts in the order of elimination up to a step, in the numbers that its unknowns have in the whole."""
         step = self.steps[number]
         for half, here in step.halves:
             yield from self.fronts(factors, half, unknowns[here])
         order = unknowns[step.order]
-        yield _Front(order[: step.count], order[step.count :], *factors[number])
+        yield _Front(order[: step.count], order[step.count :], factors[number], len(step.halves))
 
-    def _halves(self, elements: Indices) -> tuple[Indices, Indices]:
-        """Both halves: of several blocks in a row, else cut across the direction with most elements."""
+    def _lower_half(self, elements: Indices, dofs: Indices, size: int) -> Flags:
+        """Which elements (n,) are in the lower half: of several blocks in a row, else by the cut of least unknowns.
+
+        Such a cut parts as few unknowns as it can from both halves, over the product of their sizes.
+        """
         places = self.places[elements]
-        across = int(np.ptp(places[:, 1:], axis=0).argmax()) + 1 if np.ptp(places[:, 0]) == 0 else 0
-        along = places[:, across]
-        levels = np.unique(along)
-        below = np.searchsorted(np.sort(along), levels[1:]) if across else np.arange(1, len(levels))
-        cut = levels[int(np.abs(below - 0.5 * (len(along) if across else len(levels))).argmin()) + 1]
-        return elements[along < cut], elements[along >= cut]
+        if np.ptp(places[:, 0]):
+            levels = np.unique(places[:, 0])
+            below = np.arange(1, len(levels))
+            return np.asarray(places[:, 0] < levels[np.abs(below - 0.5 * len(levels)).argmin() + 1])
+        least, lower = np.inf, np.empty(0, dtype=bool)
+        for along in places.T[1:]:
+            order = along.argsort(kind="stable")
+            level = np.cumsum(np.append(0, np.diff(along[order]) > 0))
+            cuts = int(level[-1])
+            if not cuts:
+                continue
+            first, last = np.empty((2, size + 1), dtype=int)
+            last[dofs[order]] = level[:, None]
+            first[dofs[order[::-1]]] = level[::-1, None]
+            parted = np.bincount(first[:size], minlength=cuts + 1) - np.bincount(last[:size], minlength=cuts + 1)
+            below = np.cumsum(np.bincount(level))[:-1]
+            cost = np.cumsum(parted)[:-1] / (below * (len(elements) - below))
+            if cost.min() < least:
+                least = cost.min()
+                lower = along < along[order][below[cost.argmin()]]
+        return lower
 
 
 def _assembled(dofs: Indices, matrices: Array, order: Indices) -> Array:
@@ -306,19 +397,33 @@ def _assembled(dofs: Indices, matrices: Array, order: Indices) -> Array:
     return total[:-1, :-1]
 
 
-def _sum(borders: Sequence[Indices], matrices: Sequence[Array], order: Indices, size: int) -> Array:
-    """Dense sum of what is left of two halves for their ``borders``, in the order of unknowns ``order`` of ``size``.
+def _add(columns: Array, rest: Array, place: Indices, matrix: Array) -> None:
+    """Add what is left of a half to the matrix of the whole, in pieces that lie together in both.
 
-    The last row and column of each matrix are zeros.
+    Parameters
+    ----------
+    columns : (n + m, n) array
+    rest : (m, m) array
+    place : (k,) int array
+        Where the unknowns of the half are among the n + m.
+    matrix : (k, k) array
+        Of it, as of the others, the lower triangle counts.
     """
-    parts = []
-    for border, matrix in zip(borders, matrices, strict=True):
-        where = np.full(size, len(border))
-        where[border] = np.arange(len(border))
-        parts.append(matrix.take(where[order], axis=1).take(where[order], axis=0))  # fewer rows in the slow copy
-    total, other = parts
-    total += other
-    return total
+    count = columns.shape[1]
+    starts = np.flatnonzero(np.append(True, (np.diff(place) != 1) | (place[1:] == count)))
+    pieces = list(zip(starts.tolist(), [*starts[1:].tolist(), len(place)], place[starts].tolist(), strict=True))
+    for n, (first, last, row) in enumerate(pieces):
+        end = row + last - first
+        for left, right, column in pieces[: n + 1]:
+            piece, stop = matrix[first:last, left:right], column + right - left
+            if row >= column:
+                down, up, across, beyond = row, end, column, stop
+            else:
+                piece, down, up, across, beyond = piece.T, column, stop, row, end
+            if across < count:
+                columns[down:up, across:beyond] += piece
+            else:
+                rest[down - count : up - count, across - count : beyond - count] += piece
 
 
 def _drop(left: dict[int, Any], uses: list[int], step: _Step) -> None:
@@ -329,18 +434,23 @@ def _drop(left: dict[int, Any], uses: list[int], step: _Step) -> None:
             del left[half]
 
 
-def _eliminated(matrix: Array, count: int) -> tuple[Array, Array, Array]:
-    """Factor of the first ``count`` unknowns, their coupling with the others, and what is left for these."""
-    if not count:
-        nothing = np.empty((len(matrix), 0), matrix.dtype)
-        return nothing[:0], nothing, np.pad(matrix, (0, 1))
-    try:
-        factor = cholesky(matrix[:count, :count], lower=True, check_finite=False)
-    except np.linalg.LinAlgError:
-        factor = None
-    if factor is None or factor.diagonal().min() ** 2 <= LEAST_PIVOT * matrix.diagonal()[:count].max():
-        raise GeometryError("the gear body is not held, or its mesh is damaged: no positive stiffness")
-    coupling = solve_triangular(factor, matrix[:count, count:], lower=True, check_finite=False).T
-    rest = np.zeros((len(matrix) - count + 1,) * 2, matrix.dtype)
-    np.subtract(matrix[count:, count:], coupling @ coupling.T, out=rest[:-1, :-1])
-    return factor, coupling, rest
+def _eliminate(columns: Array, rest: Array) -> None:
+    """Factorise the columns (n + m, n) of n unknowns, and subtract from the rest (m, m) what they take, in place."""
+    count = columns.shape[1]
+    least = LEAST_PIVOT * columns.diagonal().max(initial=0.0)
+    inverse = cast(Callable[..., Any], get_lapack_funcs("trtri", (columns,)))
+    for block in _blocks(count):
+        below = columns[block.start :, block]
+        below -= columns[block.start :, : block.start] @ columns[block, : block.start].T
+        try:
+            factor = np.linalg.cholesky(columns[block, block])
+        except np.linalg.LinAlgError:
+            factor = None
+        if factor is None or factor.diagonal().min() ** 2 <= least:
+            raise GeometryError("the gear body is not held, or its mesh is damaged: no positive stiffness")
+        columns[block, block] = inverse(factor.T)[0].T
+        columns[block.stop :, block] = columns[block.stop :, block] @ columns[block, block].T
+    coupling = columns[count:]
+    for first in range(0, len(rest), ROWS):
+        rows = slice(first, first + ROWS)
+        rest[rows, : rows.stop] -= coupling[rows] @ coupling[: rows.stop].T
