@@ -25,7 +25,7 @@ from scipy.sparse import csr_array
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.checks import machine_memory
 from loaded_tca.errors import GeometryError, require
-from loaded_tca.threads import one_blas_thread
+from loaded_tca.threads import leave_if_not_wanted, one_blas_thread
 
 Flags = NDArray[np.bool_]
 LEAF = 8
@@ -113,10 +113,12 @@ def _substitute(down: Sequence[_Front], up: Sequence[_Front], displacements: Arr
     """Forward and backward substitution through fronts in the order of elimination, in place."""
     with one_blas_thread():  # the fronts are small: threads waiting for each other cost far more
         for front in down:
+            leave_if_not_wanted()
             part = solve_triangular(front.factor, displacements[front.inside], lower=True, check_finite=False)
             displacements[front.inside] = part
             displacements[front.beside] -= front.coupling @ part
         for front in reversed(up):
+            leave_if_not_wanted()
             part = displacements[front.inside] - front.coupling.T @ displacements[front.beside]
             displacements[front.inside] = solve_triangular(front.factor, part, lower=True, trans=1, check_finite=False)
 
@@ -264,6 +266,7 @@ class _Plan:
         pairs, uses = [], self._uses()
         left: dict[int, Array] = {}
         for number, step in enumerate(self.steps):
+            leave_if_not_wanted()
             factor, coupling, left[number] = _eliminated(self._matrix(step, matrices, left), step.count)
             pairs.append((factor, coupling))
             _drop(left, uses, step)
