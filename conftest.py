@@ -14,5 +14,6 @@ if "PYTEST_XDIST_WORKER" not in os.environ:  # workers inherit the folder of the
     os.environ["LOADED_TCA_CACHE"] = tempfile.mkdtemp(prefix="loaded_tca-models-")
     atexit.register(shutil.rmtree, os.environ["LOADED_TCA_CACHE"], ignore_errors=True)
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+os.environ["LOADED_TCA_JOBS"] = "1"
 if int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")) > 1:  # read when BLAS is loaded, by numpy
     os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +21,7 @@ from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.moved_gears import at_rest, pitches_apart
 from loaded_tca.loaded.standing import GearsUnderTorques, StandingCycle, all_torques
 from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import Place, mesh_cycle
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -26,8 +29,8 @@ from loaded_tca.results.supports import warn_of_supports
 from loaded_tca.results.warnings import warn_of_accuracy, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.supports import support_compliance
-from loaded_tca.threads import one_blas_thread
-from loaded_tca.unloaded import trace_contact, trace_teeth
+from loaded_tca.threads import one_blas_thread, side_by_side, with_jobs
+from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
 
 THICKEST_LAYER = 1.2
 """Of elements across a face, over the module: from there on root stress under a short contact is 2 % too low and more
@@ -67,21 +70,11 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)
         require((not effort.is_refused, f"analysis.cells: {wanted.cells}: {effort}"))
         warn_of_gears(scene, pair)
-        count, torques = wanted.positions, np.asarray(scene.torques)
-        angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
-        grid, roots = grid_of(scene), roots_of(scene, pair)
-
-        supports = support_compliance(scene, pair)
-        unloaded = (trace_teeth if wanted.load_sharing else trace_contact)(at_rest(pair, supports), angles)
-        apart = pitches_apart(pair, supports, scene.torques) if wanted.load_sharing else 1
-
-        def solved(apart: int) -> list[StandingCycle]:
-            gears = GearsUnderTorques(
-                pair, model_of(scene, pair, apart), angles, grid, load_sharing=wanted.load_sharing, at_rest=unloaded
+        grid = grid_of(scene)
+        with with_jobs(effort.jobs):
+            *roots, (unloaded, cycles) = side_by_side(
+                *_root_models(scene, pair), partial(_solved_cycles, scene, pair, grid, progress)
             )
-            return gears.mesh_cycles(torques, progress)
-
-        cycles = with_enough_teeth(apart, solved)
         carried = all_torques(unloaded, cycles)
         at_edges = _at_rounded_edges(scene, carried.pairs.tolist(), cycles)
         warn_of_accuracy(
@@ -95,7 +88,26 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         )
         warn_of_supports(pair, cycles)
         date = datetime.now(UTC).isoformat(timespec="seconds")
-        return mesh_cycle(scene, pair, carried, at_edges, roots, cycles, warnings=warned, date=date)
+        return mesh_cycle(scene, pair, carried, at_edges, tuple(roots), cycles, warnings=warned, date=date)
+
+
+def _solved_cycles(
+    scene: Scene, pair: GearPair, grid: GridChoice, progress: Progress | None
+) -> tuple[ContactPath | MeshPath, list[StandingCycle]]:
+    """Unloaded contact over a pitch, and the mesh cycles under all torques."""
+    wanted, torques = scene.analysis, np.asarray(scene.torques)
+    count = wanted.positions
+    angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
+    supports = support_compliance(scene, pair)
+    unloaded = (trace_teeth if wanted.load_sharing else trace_contact)(at_rest(pair, supports), angles)
+    apart = pitches_apart(pair, supports, scene.torques) if wanted.load_sharing else 1
+
+    def solved(apart: int) -> list[StandingCycle]:
+        bending = model_of(scene, pair, apart)
+        gears = GearsUnderTorques(pair, bending, angles, grid, load_sharing=wanted.load_sharing, at_rest=unloaded)
+        return gears.mesh_cycles(torques, progress)
+
+    return unloaded, with_enough_teeth(apart, solved)
 
 
 def _at_rounded_edges(scene: Scene, pairs: list[int], cycles: Sequence[StandingCycle]) -> dict[Place, PeakAtEdge]:
@@ -124,13 +136,21 @@ def grid_of(scene: Scene) -> GridChoice:
 
 def roots_of(scene: Scene, pair: GearPair) -> tuple[RootStress, ...]:
     """Root stress of unit forces on pinion and wheel; nothing if the scene does not ask for it."""
+    return tuple(side_by_side(*_root_models(scene, pair)))
+
+
+def _root_models(scene: Scene, pair: GearPair) -> list[Callable[[], Any]]:
+    """Works that make the models of root stress of pinion and wheel; none if the scene does not ask for it."""
     if not scene.analysis.root_stress:
-        return ()
+        return []
     require_teeth(pair, scene.analysis.without_bodies)
-    roots = []
-    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        with way_out_told("analysis.root_stress = false"), named(name):
-            roots.append(root_stress_model(gear))
-        if (layer := roots[-1].layer / pair.module) > THICKEST_LAYER:
-            give_accuracy_warning(kinds.FACE_ELEMENTS.sentence(gear=name, width=layer))
-    return tuple(roots)
+    return [partial(_root_model, pair, *one) for one in (("pinion", pair.pinion), ("wheel", pair.wheel))]
+
+
+def _root_model(pair: GearPair, name: str, gear: Gear) -> RootStress:
+    """Root stress of unit forces on one gear, called by its name."""
+    with way_out_told("analysis.root_stress = false"), named(name):
+        roots = root_stress_model(gear)
+    if (layer := roots.layer / pair.module) > THICKEST_LAYER:
+        give_accuracy_warning(kinds.FACE_ELEMENTS.sentence(gear=name, width=layer))
+    return roots

@@ -11,6 +11,7 @@ from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.plain import plain
 from loaded_tca.scene import Scene
+from loaded_tca.threads import jobs
 
 START_SECONDS, STATE_SECONDS, SHARED_SECONDS, SHARED_EXPONENT = 0.4, 0.015, 2.2e-3, 3.2
 """Of the first analysis of a process; of each position under each torque where teeth bend, and how that grows with the
@@ -27,6 +28,8 @@ TEETH_SECONDS, TEETH_EXPONENT, TEETH_BYTES = 7.5e-3, 1.5, 400e6
 ROOT_SECONDS, ROOT_BYTES = 0.12, 39e6
 """Of a model of root stress for each layer of elements across the face, of which wide faces have more; measured with 6
 to 24 layers: the memory is within a quarter of what the model itself tells, the time within a factor of two."""
+MOST_OF_MEMORY = 0.5
+"""Part of the machine's memory that models made at once may take; beyond it they are made one by one."""
 PROGRAMME_BYTES, KEPT_BYTES_PER_CELL = 150e6, 150.0
 """Of the libraries, and of each cell until the result is written; measured with 1 to 15 contacts of 512 x 512 cells."""
 CELLS_TIMES_ACCURACY, FEWEST_CELLS = 1.7, 1024
@@ -47,6 +50,8 @@ class Effort:
     memory : float [bytes]
     certain : bool
         Whether the cells are given: for an accuracy they may be fewer.
+    jobs : int
+        Works done at once: as many as asked for, or one where models of all would take too much of the memory.
     """
 
     contacts: int
@@ -54,6 +59,7 @@ class Effort:
     seconds: float
     memory: float
     certain: bool
+    jobs: int = 1
 
     @property
     def gibibytes(self) -> float:
@@ -106,13 +112,17 @@ def expected_effort(scene: Scene) -> Effort:
         seconds *= 0.7 + cells / USUAL_CELLS
     seconds += START_SECONDS
     memory = PROGRAMME_BYTES + cells * (BYTES_PER_CELL + contacts * KEPT_BYTES_PER_CELL)
+    at_once = jobs()
     if wanted.root_stress or wanted.teeth_bend:
         layers = _layers(scene)
         if wanted.teeth_bend:
             seconds, memory = seconds + TEETH_SECONDS * sum(layers) ** TEETH_EXPONENT, memory + TEETH_BYTES
         if wanted.root_stress:
-            seconds, memory = seconds + ROOT_SECONDS * sum(layers), memory + ROOT_BYTES * max(layers)  # one by one
-    return Effort(contacts, cells, seconds, memory, certain=wanted.cells is not None)
+            seconds += ROOT_SECONDS * sum(layers)
+            one_by_one, together = (memory + ROOT_BYTES * some for some in (max(layers), sum(layers)))
+            at_once = at_once if together <= MOST_OF_MEMORY * machine_memory() else 1
+            memory = one_by_one if at_once == 1 else together
+    return Effort(contacts, cells, seconds, memory, certain=wanted.cells is not None, jobs=at_once)
 
 
 def _layers(scene: Scene) -> list[int]:

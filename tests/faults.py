@@ -1891,6 +1891,27 @@ FAULTS = (
         "result[used[middle:, None] - split, used[:middle]] = products",
         "compliance/test_dissection.py::test_flexibility_is_read_from_the_solution",
     ),
+    Fault(
+        "works done at once: helpers go on after an interrupt",
+        "threads.py",
+        "            state.last_wanted = -1\n            raise",
+        "            raise",
+        "test_threads.py::test_interrupt_ends_works_at_their_next_step",
+    ),
+    Fault(
+        "works done at once: warnings are told as they come",
+        "threads.py",
+        "noted_accuracy_warnings(given=False, alone=True) as self",
+        "noted_accuracy_warnings(given=False, alone=False) as self",
+        "test_threads.py::test_warnings_of_works_are_given_in_their_order",
+    ),
+    Fault(
+        "works done at once: a helper takes as many threads as the caller",
+        "threads.py",
+        "            with one_thread():\n                self.drain()",
+        "            self.drain()",
+        "test_threads.py::test_works_are_done_at_once_the_last_by_the_caller",
+    ),
 )
 
 

@@ -18,6 +18,7 @@ import loaded_tca.plots
 from loaded_tca import cli, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError
 from loaded_tca.flank_maps.ease_off_map import ease_off_map
+from loaded_tca.threads import jobs
 
 SCENES = Path(__file__).parents[1] / "examples" / "scenes"
 HELICAL = str(SCENES / "helical.toml")
@@ -65,6 +66,25 @@ def test_demo_needs_no_file_and_tells_what_to_try_next(run):
     assert "peak pressure [MPa]" in out
     assert out.rstrip().endswith("loaded-tca run loaded-tca-demo/scene.toml --out my-pair")
     assert run("demo")[0] == 0
+
+
+@pytest.mark.parametrize("count", ["0", "-2", "many"])
+def test_jobs_are_whole_numbers_from_one(refused, monkeypatch, count):
+    assert refused("run", HELICAL, "--out", "out", "--jobs", count).startswith(f"argument --jobs: '{count}': allowed")
+    monkeypatch.setenv("LOADED_TCA_JOBS", count)
+    message = refused("run", HELICAL, "--out", "out")
+    assert message == f"LOADED_TCA_JOBS: '{count}': allowed a whole number from 1"
+    assert not os.listdir()
+
+
+def test_command_does_as_many_jobs_as_its_option_says(monkeypatch):
+    """Whatever the environment says, and no more once it has ended."""
+    asked = []
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2}, raising=False)
+    monkeypatch.setattr(cli.commands, "run", lambda _: asked.append(jobs()))
+    for options in ((), ("--jobs", "2")):
+        assert cli.main(["run", HELICAL, "--out", "out", *options]) == 0
+    assert (asked, jobs()) == ([1, 2], 1)
 
 
 @pytest.mark.thorough

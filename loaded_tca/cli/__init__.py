@@ -5,11 +5,12 @@ Exit codes: 0; 1 a fault of the program; 2 bad input; 3 no convergence; 130 inte
 
 from __future__ import annotations
 
+import argparse
 import io
 import sys
 import traceback
 from collections.abc import Sequence
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 
 from loaded_tca.cli.arguments import command_line
 from loaded_tca.cli.commands import DEMO_SCENE
@@ -43,7 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             options = command_line().parse_args(arguments)
             # xarray that is there already has looked for dask, and imports it where it saw it.
             needed = getattr(options, "scheduler", None) or "xarray" in sys.modules
-            with nullcontext() if needed else hidden("dask"):
+            with nullcontext() if needed else hidden("dask"), _jobs_of(options):
                 options.command(options)
             flush()
     except (Exception, KeyboardInterrupt) as error:  # whatever happens ends in one line
@@ -56,6 +57,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
             say(f"loaded-tca: {line}")
         return code
     return OK
+
+
+def _jobs_of(options: argparse.Namespace) -> AbstractContextManager[None]:
+    """Inside it a command does as many works at once as its options ask for."""
+    if (count := getattr(options, "jobs", None)) is None:
+        return nullcontext()
+    from loaded_tca.threads import with_jobs
+
+    return with_jobs(count)
 
 
 def _told(error: BaseException) -> tuple[int, list[str]]:

@@ -197,6 +197,11 @@ def _add_analyses(command: Command) -> None:
     stage.add_argument("scene", metavar="STAGE.toml", help="stage file")
     _add_changes(stage)
     stage.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
+    text = (
+        "works done at once, at most one a core; default: LOADED_TCA_JOBS, or one a core; results do not depend on it"
+    )
+    for analysis in (demo, run, revolution, stage):
+        analysis.add_argument("--jobs", metavar="N", type=_jobs, help=text)
 
 
 def _add_readers(command: Command) -> None:
@@ -416,6 +421,12 @@ def _int(text: str) -> int:
         return whole_in(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed a whole number") from None
+
+
+def _jobs(text: str) -> int:
+    if (count := _int(text)) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed a whole number from 1")
+    return count
 
 
 def _torque(text: str) -> float:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -24,6 +24,7 @@ from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+from loaded_tca.threads import side_by_side
 from loaded_tca.tooth.families import ToothGeometry
 from loaded_tca.tooth.surface import Resolution, build_tooth
 
@@ -301,12 +302,14 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
     >>> float(compliance.within(0, separation).mean().round(8))  # of an even force
     4.25e-06
     """
-    gears = []
-    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+
+    def model(name: str, gear: Gear) -> GearCompliance:
         with named(name):
             require_bending(gear.material)
-            gears.append(gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours)))
-    return ToothCompliance(pair, *gears)
+            return gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours))
+
+    pinion, wheel = side_by_side(partial(model, "pinion", pair.pinion), partial(model, "wheel", pair.wheel))
+    return ToothCompliance(pair, pinion, wheel)
 
 
 def rim_compliance(pair: GearPair) -> tuple[float, float]:

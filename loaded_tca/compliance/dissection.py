@@ -29,7 +29,7 @@ from scipy.sparse import csr_array, vstack
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.checks import machine_memory
 from loaded_tca.errors import GeometryError, require
-from loaded_tca.threads import one_blas_thread
+from loaded_tca.threads import leave_if_not_wanted, one_blas_thread
 
 Flags = NDArray[np.bool_]
 LEAF = 27
@@ -127,6 +127,7 @@ class Factorisation:
         waiting: list[_Columns] = []
         with one_blas_thread():  # the fronts are small: threads waiting for each other cost far more
             for front in self.fronts:
+                leave_if_not_wanted()
                 parts = [waiting.pop() for _ in range(front.halves)]
                 if touched[front.inside].any():
                     own = columns[front.inside].tocoo()
@@ -326,6 +327,7 @@ class _Plan:
         factors, uses = list[Array](), self._uses()
         left: dict[int, Array] = {}
         for number, step in enumerate(self.steps):
+            leave_if_not_wanted()
             columns, left[number] = self._matrix(step, matrices, left)
             _eliminate(columns, left[number])
             factors.append(columns)

@@ -25,6 +25,7 @@ from loaded_tca.separation import Separation
 from loaded_tca.separation.box import Box
 from loaded_tca.separation.polynomials import GapPolynomials
 from loaded_tca.separation.sample import sample_separations
+from loaded_tca.threads import leave_if_not_wanted
 from loaded_tca.unloaded import ContactPoint
 from loaded_tca.unloaded.path import trace_near
 
@@ -127,6 +128,7 @@ def run_stacked(
 
     waiting = iter(enumerate(all_steps))
     while len(results) < len(all_steps):
+        leave_if_not_wanted()
         for index, steps in islice(waiting, UNDER_WAY - len(asked)):
             advance(index, partial(next, steps))
         for index, answer in _answers(pair, asked).items() if asked else ():
