@@ -188,18 +188,16 @@ def _growth(
     turns = points.turns - pair.driving * ways * rates
     lever_torques = result.normal_force[places] * points.levers[0]
     turns[count:] = lever_torques[count:] = 0.0  # along its path a contact keeps what it has of the first one
+    by_ways = ways * rates - 0.5 * pair.driving * (_first_rotations(tangents, turns * levers[1], lever_torques) - turns)
+    along = np.where(np.abs(ways) > NO_WAY, by_ways * levers[1] / levers[0], 0.0)[:count]
     active = np.concatenate([grid.active[grid.pressed] for grid in grids])
     gaps = growth.gaps[:, active]
     for row, closed in zip(gaps, turns * levers[1] - turned * points.levers[1], strict=True):
         row += closed[tangents.grid]
     lever_torques += _add_displaced(result, tangents, bending, followed, growth, gaps)
-    if len(followed) > count:
-        by_ways = ways * rates[:count] - 0.5 * pair.driving * (
-            _rotation_growth(tangents, gaps[:count], lever_torques[:count]) - turns[:count]
-        )
-        along = np.where(np.abs(ways) > NO_WAY, by_ways * levers[1] / levers[0], 0.0)
-        gaps[:count] += along[:, tangents.grid] * gaps[count]
-        lever_torques[:count] += along * lever_torques[count]
+    for path, torque in zip(gaps[count:], lever_torques[count:], strict=True):
+        gaps[:count] += along[:, tangents.grid] * path
+        lever_torques[:count] += along * torque
     motions, turned_back, tilts, shifts = (
         values[:count] for values in (growth.motions, points.turns, points.tilts, points.shifts)
     )
@@ -225,11 +223,14 @@ def _along_paths(pair: GearPair) -> PairChange:
     return PairChange("mounting.path", below, above, PATH_STEP)
 
 
-def _rotation_growth(tangents: Tangents, gaps: Array, lever_torques: Array) -> Array:
-    """Growth of the rotation under load (keys, grids) [rad per unit]."""
+def _first_rotations(tangents: Tangents, opened: Array, lever_torques: Array) -> Array:
+    """Growth (keys, grids) [rad per unit] of the rotations of first balances, whose contact laws no key changes.
+
+    ``opened`` (keys, grids): growth of the distances between the flanks of pairs [mm per unit].
+    """
     first = np.flatnonzero(np.diff(tangents.state, prepend=-1))
     torques = -np.add.reduceat(lever_torques, first, axis=1)
-    return tangents.rotation_change(gaps, torques)[:, tangents.state]
+    return tangents.rotation_change(opened[:, tangents.grid], torques)[:, tangents.state]
 
 
 def _add_displaced(

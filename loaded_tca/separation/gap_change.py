@@ -109,8 +109,8 @@ class ContactChanges:
         for key in edges.tolist():
             gaps[key] += (points.tilts[key, self.contact] * self.tilt_slopes).sum(axis=-1)
         plane, lines = motions[..., :MOTIONS], border.of_keys(edges).with_others(self.arcs.of_keys(edges))
-        plane[edges, :, :2] = self._with_gaps(gaps[edges], points.shifts[edges], scales[:, :2])
-        plane[edges] = following(lines, self.contact[lines.cell], parts[lines.cell], plane[edges], scales)
+        plane[edges, :, :2], open_to = self._with_gaps(gaps[edges], points.shifts[edges], scales[:, :2])
+        plane[edges] = following(lines, self.contact[lines.cell], parts[lines.cell], plane[edges], open_to, scales)
         moved = plane.any(axis=(1, 2))
         for key in np.flatnonzero(moved).tolist():
             gaps[key] += (plane[key, self.contact] * self.slopes).sum(axis=-1)
@@ -119,14 +119,16 @@ class ContactChanges:
         covers[np.ix_(of_edges, border.cell)] = (self.moves_edges[:, None] * border.rates + by_motion)[of_edges]
         return MovedContacts(gaps, covers, motions)
 
-    def _with_gaps(self, gaps: Array, shifts: Array, scales: Array) -> Array:
+    def _with_gaps(self, gaps: Array, shifts: Array, scales: Array) -> tuple[Array, Array]:
         """Motions (keys, contacts, 2) of grids along x and y by which gaps change least, but for a part in common.
 
         ``gaps`` (keys, n) grow by the keys on grids that stay; ``shifts`` (keys, contacts, 2) of the contact points are
-        the motions along which gaps do not change; ``scales`` (contacts, 2) are the widths of cells.
+        the motions along which gaps do not change; ``scales`` (contacts, 2) are the widths of cells. Also the quadratic
+        forms (contacts, 3, 3) by which gaps change more with other motions of their grids, in those and turns.
         """
+        open_to = np.tile(np.eye(MOTIONS), (len(scales), 1, 1))
         if not self.contact.size:
-            return shifts
+            return shifts, open_to
         first = np.searchsorted(self.contact, np.arange(len(scales)))
 
         def means(values: Array) -> Array:
@@ -139,12 +141,13 @@ class ContactChanges:
         matrix = means(slopes[:, :, None] * slopes[:, None])
         size = np.trace(matrix, axis1=1, axis2=2)[:, None]
         little = np.where(size > 0.0, LITTLE_BY_MOTION * size, 1.0)  # a single cell has no gap to go with
-        solved = np.linalg.inv(matrix + little[..., None] * np.eye(2))
-        motions = np.zeros(shifts.shape)
+        matrix = matrix + little[..., None] * np.eye(2)
+        open_to[:, :2, :2] = matrix / np.where(size > 0.0, size, 1.0)[..., None]
+        solved, motions = np.linalg.inv(matrix), np.zeros(shifts.shape)
         for key, growth in enumerate(gaps):
             wanted = little * shifts[key] / scales - means(slopes * growth[:, None])
             motions[key] = (solved @ wanted[..., None])[..., 0] * scales
-        return motions
+        return motions, open_to
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,8 @@ along the plane where it meets a flank.
 
 Any grid that covers a contact is as good as another, but an edge that runs through the cells of a held grid takes the
 derivative of the discretisation with it. So grids go with their contacts: V is that for which the edges in the contact,
-sharp or rounded, stay where they are in the grid, weighted with the pressure beside them; where these leave it open,
-that for which the gap on the grid changes least.
+sharp or rounded, stay where they are in the grid, weighted with the pressure beside them; of those that these leave
+open, that for which the gap on the grid changes least.
 """
 
 from __future__ import annotations
@@ -451,7 +451,9 @@ def grid_motions(x: Array, y: Array) -> Array:
     return by_motion
 
 
-def following(border: BorderCells, contact: Indices, weights: Array, free: Array, scales: Array) -> Array:
+def following(
+    border: BorderCells, contact: Indices, weights: Array, free: Array, open_to: Array, scales: Array
+) -> Array:
     """Motions (keys, contacts, 3) of grids for which the parts of their border cells stay the same.
 
     Parameters
@@ -463,6 +465,8 @@ def following(border: BorderCells, contact: Indices, weights: Array, free: Array
         Force on each cell over that on the whole contact.
     free : (keys, contacts, 3) array [mm, mm, rad per unit]
         Where no edge says another.
+    open_to : (contacts, 3, 3) array
+        Quadratic forms of what others cost, in motions that are alike: of those that edges leave open, the least.
     scales : (contacts, 3) array [mm, mm, rad]
         Motions that are alike: by one cell.
     """
@@ -471,7 +475,7 @@ def following(border: BorderCells, contact: Indices, weights: Array, free: Array
     for own in np.unique(contact).tolist():
         rows = np.flatnonzero(contact == own)
         weighted = weights[rows, None] * slopes[rows]
-        matrix = weighted.T @ slopes[rows] + OPEN * np.eye(MOTIONS)
-        wanted = OPEN * free[:, own] / scales[own] - border.rates[:, rows] @ weighted
+        matrix = weighted.T @ slopes[rows] + OPEN * open_to[own]
+        wanted = OPEN * (free[:, own] / scales[own]) @ open_to[own] - border.rates[:, rows] @ weighted
         motions[:, own] = np.linalg.solve(matrix, wanted.T).T * scales[own]
     return motions

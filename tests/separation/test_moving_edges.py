@@ -93,3 +93,14 @@ def test_grid_of_a_contact_on_the_tip_edge_of_the_wheel_moves_with_it():
     held, left = (np.linalg.norm(part) for part in (found.border.rates[0], follows.covers[0, found.border.cell]))
     assert contact.on_edge
     assert left < 0.5 * held, "the edge stays where it is in the grid, but for its ends, where others cut it off"
+
+
+def test_grid_of_a_contact_on_a_tip_edge_goes_along_it_with_the_crown():
+    """The gap along the edge is a parabola: its least place is the contact point, to 0.3 with an end that is cut."""
+    contact, separation, active, *_ = case("tip edge of the pinion")
+    scene = read_scene(SCENES / "helical.toml")
+    changes = pair_changes(scene, ["mounting.misalignment_um"])
+    found = contact_changes(scene.pair(), [contact], [separation], [active], changes)
+    follows = found.followed(np.ones(np.count_nonzero(active)), [separation]).motions[0, 0, :2]
+    point = found.at_points.shifts[0, 0]
+    assert_allclose(follows, point, rtol=0, atol=0.3 * np.linalg.norm(point))

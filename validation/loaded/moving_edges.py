@@ -78,13 +78,15 @@ KEYS = (
         },
     ),
     Slopes("spiral_bevel", "mounting.offset_mm", 5e-4, ((PEAK_TO_PEAK, 5e-3), (FACTOR, 0.05))),
-    Slopes("straight_bevel", "mounting.pinion_axial_mm", 2e-3, ((PEAK_TO_PEAK, 0.1), (FIRST, 0.02))),
+    Slopes("straight_bevel", "mounting.pinion_axial_mm", 2e-3, ((PEAK_TO_PEAK, 0.1), (FIRST, 0.02)), 192),
 )
 """Allowed: 0.4 to 2 %, more than analyses with two steps differ by; 0.01 um/mm of the straight bevel pair and
 of the design, whose four tooth pairs leave little of a mean slope of some 300 um/mm (on 64 cells analyses with three
 steps differ by that themselves); of the axial offset 0.002 per mm of K_Hbeta, and 3 % where both ends of every contact
 move apart, which no motion of a grid follows; of K_Hbeta of the spiral pair 5 %, twice what analyses with two steps
-differ by."""
+differ by. The straight bevel pair has slopes of up to 15 um/mm at its positions, of which little is left in both
+figures: what cells do to these slopes is up to 0.06 um/mm on 64 and 0.02 on 192, and moves the order by 1.8 to 3.6 % on
+32 to 128."""
 
 
 def rows() -> list[Row]:
