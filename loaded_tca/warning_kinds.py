@@ -75,6 +75,13 @@ PEAK_SLOPES = Kind(
     "a corner of a contact, or one that has only just come under load, has few cells: the peak follows them",
     "read the derivatives of other contacts, or compare two grids; more crowning, end or tip relief on the gears",
 )
+PEAK_BESIDE_JUMP = Kind(
+    "the curvature of the gap jumps beside the peak pressure, as at the start of a parabolic relief: its derivatives "
+    "by keys that move contacts or starts are off by 10 to 30%, some by half",
+    "the peak stands a part of the contact's width beside the start and goes with it, while the derivative holds its "
+    "place; finer grids are no better",
+    "analyses on both sides; a relief that starts elsewhere; amounts of reliefs are within 12 %",
+)
 EDGES_AT_ONE_PLACE = Kind(
     "edges of both gears lie at one place: derivatives of the transmission error have a kink, and by growing values "
     "are up to {size:.2g} um per {unit} off those by falling ones ({key}; {count} of {keys} keys)",
@@ -89,6 +96,13 @@ FACE_ENDS_AT_ONE_PLACE = Kind(
     "the common face, over which K_Hbeta counts, gets shorter to either side of the key, or one end of it does: the "
     "derivative is the mean of both sides; beside ends of the load it depends on the cells, its sign, too",
     "faces of two widths or an offset; else analyses to the side that is meant, over more than a cell",
+)
+FACE_END_IN_LOAD = Kind(
+    "K_Hbeta is that of the strip at an end of the face which goes with a key: its derivative depends on the cells, at "
+    "times its sign ({key}; {count} of {keys} keys)",
+    "the load is the highest where a face ends, in a cell that the end cuts: analyses over steps below a cell scatter "
+    "by as much as the derivative",
+    "analyses over more than a cell along the contact; end relief or crowning that takes the load from the end",
 )
 SLOPES_BY_GRIDS = Kind(
     "derivatives of the transmission error depend on the grid by up to {size:.2g} um per {unit}, more than 5% of what "

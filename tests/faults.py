@@ -1838,8 +1838,8 @@ FAULTS = (
     Fault(
         "boxes of gears on supports are those of another load than of rigid gears",
         "loaded/load_sharing.py",
-        "GUESSED_BOX if count == 2 and not self.grid.forces_on_grid_axis else SAME_BOX",
-        "GUESSED_BOX if count == 2 and not self.on_moved_gears else SAME_BOX",
+        "count == 2 and self.teeth_bend and not self.grid.forces_on_grid_axis",
+        "count == 2 and self.teeth_bend and not self.on_moved_gears",
         "supports/test_analysis.py::test_supports_next_to_rigid_keep_boxes_and_grids",
     ),
     Fault(
@@ -1918,6 +1918,13 @@ FAULTS = (
         "open_to[:, :2, :2] = matrix / np.where(size > 0.0, size, 1.0)[..., None]",
         "open_to += 0.0",
         "separation/test_moving_edges.py::test_grid_of_a_contact_on_a_tip_edge_goes_along_it_with_the_crown",
+    ),
+    Fault(
+        "a curvature that grows along a contact is taken for one that jumps",
+        "results/figure_slopes.py",
+        "changes[3:-3] - np.maximum(changes[:-6], changes[6:])",
+        "changes[3:-3]",
+        "results/test_figure_slopes.py::test_curvature_that_jumps_beside_the_peak_is_seen",
     ),
 )
 

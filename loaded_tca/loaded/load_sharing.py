@@ -37,7 +37,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.model import BendingModel
+from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.errors import ConvergenceError, InputError, named
 from loaded_tca.loaded.balance import balance
 from loaded_tca.loaded.first_guess import ExpectedLine, first_law
@@ -69,7 +69,7 @@ LINE_ERROR = 1e-3
 force: 2 um on module 2, less than 1 nm of transmission error. Forces that swing keep their places."""
 SAME_BOX, GUESSED_BOX = (0.75, 1.25), (0.9, 1.1)
 """Loads over the one a box was made for, between which it is kept, if the contact does not reach its border; the second
-for forces of contacts that give way as guessed: kept, slopes of analyses on 64 cells scattered by 1 %."""
+for forces by which teeth bend as guessed: kept, slopes of analyses on 64 cells scattered by 1 %."""
 FAR = 2.0
 """Initial separation, over the rotation, of pairs that others do not bend into contact: by less than they close."""
 
@@ -171,6 +171,7 @@ class _Balance:
         self.displacement = displacement
         self.mean_displacement = np.zeros(len(tooth_pairs))  # [mm], over the force of each pair
         self.bending, self.forces_on_grid_axis = bending, grid.forces_on_grid_axis
+        self.teeth_bend = (bending.on_rigid_supports if isinstance(bending, SumOfParts) else bending) is not None
         self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
         self.first_gaps = np.zeros(len(tooth_pairs))  # [mm], where the grid of a pair touches first: it grows, is cut
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
@@ -200,7 +201,7 @@ class _Balance:
                     forces = 0.5 * (before + forces)
                 if count == 1:
                     yield from self._move_to_middles(forces)
-                box = GUESSED_BOX if count == 2 and not self.grid.forces_on_grid_axis else SAME_BOX
+                box = GUESSED_BOX if count == 2 and self.teeth_bend and not self.grid.forces_on_grid_axis else SAME_BOX
                 for index in np.flatnonzero(forces).tolist():
                     yield from self._solve(index, forces, box)
             self.compliance = yield from self._corrected()

@@ -151,6 +151,7 @@ class JoinedSensitivities(Sensitivities):
     on_cut_slices = _by_torque("on_cut_slices")
     at_corners = _by_torque("at_corners")
     across_relief_starts = _by_torque("across_relief_starts")
+    beside_curvature_jumps = _by_torque("beside_curvature_jumps")
     nearly_plastic = _by_torque("nearly_plastic")
     line_load = _by_torque("line_load")
     peak_pressure = _by_torque("peak_pressure")

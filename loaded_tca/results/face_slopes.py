@@ -307,3 +307,24 @@ def warn_of_face_ends(keys: Sequence[str], slopes: Array, kinks: Array, stacklev
         unit = keys[own].rpartition("_")[2]
         sentence = kinds.FACE_ENDS_AT_ONE_PLACE.sentence(falling=falling, growing=growing, unit=unit, **counted)
         give_accuracy_warning(sentence, stacklevel=stacklevel + 1)
+
+
+def warn_of_end_strips(
+    result: CycleNumbers, keys: Sequence[str], changes: Sequence[PairChange | None], stacklevel: int
+) -> None:
+    """Tell where K_Hbeta is that of a strip at an end of the common face which goes with a key.
+
+    Where the faces of both gears end at one place :func:`warn_of_face_ends` tells it.
+    """
+    motions, kinks = common_face_motions(result, changes)
+    moved = np.where(kinks == 0.0, motions, 0.0) != 0.0
+    strips = [
+        int(face_forces(result.gear_pair, result.path, rows)[1].argmax())
+        for rows, known in zip(result.maps, np.isfinite(result.face_load_factor).tolist(), strict=True)
+        if known
+    ]
+    at_end = moved @ np.array([0 in strips, STRIPS - 1 in strips])
+    if at_end.any():
+        first = keys[int(at_end.argmax())]
+        counted = {"key": first, "count": np.count_nonzero(at_end), "keys": len(keys)}
+        give_accuracy_warning(kinds.FACE_END_IN_LOAD.sentence(**counted), stacklevel=stacklevel + 1)

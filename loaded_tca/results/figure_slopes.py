@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance import FlankLine, flank_lines, root_stress_model
 from loaded_tca.contact.patch import peak_weights, reaches_border, top_weights
 from loaded_tca.errors import require
@@ -24,10 +24,14 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.gap_growth import moved
 from loaded_tca.results.root_stress import stress_at_extreme
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, UnderPressure
+from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.pair_change import PairChange
 
 EXPONENT = 12.0
 """Of the pressure norm: the norm of an even pressure over 1 mm^2 is that pressure."""
+MOST_BENT, FEWEST_FOR_JUMPS = 0.02, 8
+"""Of :func:`curvature_jumps_beside`: smooth flanks of helical and hypoid pairs have less than 2e-3; fewer
+cells tell of no jump."""
 
 
 def line_load_slopes(pressure: Array, spacing: tuple[float, float]) -> Array:
@@ -89,6 +93,36 @@ def peak_pressure_slopes(
             slopes = smooth_peak_slopes(pressure if peak is None else peak.cells, pair.max_pressure)
             of_contacts.append(slopes / (separation.spacing[0] * separation.spacing[1]))
     return of_contacts
+
+
+def curvature_jumps_beside(pair: GearPair, grid: LoadedGrid) -> bool:
+    """Whether the curvature of the gap across a contact jumps within half its width from its peak, as at relief starts.
+
+    The gap before loading, which a grid from a file does not have, is sampled through the peak.
+
+    The size of a jump is that of the second difference over two cells, less what it changes by beside them, times half
+    the square of the contact's half width, over the range of the gap there: 0.05 and more where a relief of 30 um
+    starts (helical pair, 32 cells).
+    """
+    pressure = grid.pressure
+    row, column = np.unravel_index(int(pressure.argmax()), pressure.shape)
+    x, y, pressed = grid.separation.x, grid.separation.y[column], pressure[:, column] > 0.0
+    heights, room = NormalGap(pair, grid.contact, grid.separation.axes).at(x[None, :, None], np.full((1, 1, 1), y))
+    gap = np.where(room >= 0.0, heights, math.nan)[0, :, 0]
+    return _curvature_jumps(gap, pressed, int(row))
+
+
+def _curvature_jumps(gap: Array, pressed: Mask, row: int) -> bool:
+    """Whether the curvature of a gap (nx,), NaN beyond the flanks, jumps within half the pressed cells from one."""
+    half, known = 0.5 * np.count_nonzero(pressed), pressed & np.isfinite(gap)
+    if gap.size < FEWEST_FOR_JUMPS or not known.any():
+        return False
+    bends = np.diff(gap, 2)
+    changes = np.pad(np.nan_to_num(np.abs(bends[2:] - bends[:-2])), 3, mode="edge")
+    jumps = changes[3:-3] - np.maximum(changes[:-6], changes[6:])
+    near = np.abs(np.arange(2, gap.size - 2) - row) <= half
+    largest = 0.5 * half**2 * float(jumps[near].max(initial=0.0))
+    return bool(largest > MOST_BENT * float(np.ptp(gap[known])))
 
 
 def smooth_peak_slopes(pressure: Array, max_pressure: float | None = None) -> Array:

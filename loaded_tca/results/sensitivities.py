@@ -22,12 +22,14 @@ from loaded_tca.results.face_slopes import (
     peak_cut,
     rival_strip,
     warn_of_edges,
+    warn_of_end_strips,
     warn_of_face_ends,
     warn_of_grids,
     warn_of_strips,
 )
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
+    curvature_jumps_beside,
     line_load_slopes,
     peak_pressure_slopes,
     pressure_norm,
@@ -220,6 +222,19 @@ class Sensitivities:
         return self._where(across & [not grid.contact.on_relief_start for grid in self.tangents.grids])
 
     @cached_property
+    def beside_curvature_jumps(self) -> Mask:
+        """Whether the curvature of the gap jumps across a smooth contact beside its peak, (torque, position, pair).
+
+        As where a parabolic relief starts. Derivatives of its peak pressure are less exact there: an AccuracyWarning
+        says so where they are read.
+        """
+        rough = (self.result.on_edge > 0) | (self.result.on_relief_start > 0)
+        pair = self.result.gear_pair
+        smooth = (~rough)[*self._grids].tolist()
+        grids = zip(smooth, self.tangents.grids, strict=True)
+        return self._where(is_smooth and curvature_jumps_beside(pair, grid) for is_smooth, grid in grids)
+
+    @cached_property
     def nearly_plastic(self) -> Mask:
         """Whether few cells of a contact at the cap on the pressure are below it, (torque, position, pair).
 
@@ -251,7 +266,9 @@ class Sensitivities:
 
         Of a contact at an edge or a relief start that of its largest slice pressure, or of its inner cells.
         """
+        jumps = kinds.PEAK_BESIDE_JUMP.sentence()
         warn_of_contacts(self.result, kinds.PEAK_SLOPES.sentence(), self._of_changes(self.at_corners), stacklevel=3)
+        warn_of_contacts(self.result, jumps, self._of_changes(self.beside_curvature_jumps), stacklevel=3)
         pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._rough_peaks
         slopes = peak_pressure_slopes(pair, [(one.contact, one.separation, one.pressure) for one in grids], peaks)
         by_pair = self._of_each_pair(self.tangents.gathered(slopes))
@@ -314,6 +331,7 @@ class Sensitivities:
             lacking = [rival[1] for rival in rivals if rival is not None]
             warn_of_strips(self.keys, by_torque, others - by_torque, lacking, stacklevel=3)
         warn_of_face_ends(self.keys, by_torque, kinks, stacklevel=3)
+        warn_of_end_strips(result, self.keys, self.changes, stacklevel=3)
         return by_torque
 
     @property

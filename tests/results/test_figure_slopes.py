@@ -1,5 +1,6 @@
 """Derivatives of figures by the forces of cells: against differences of the figures, scaling, known places."""
 
+import math
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -15,6 +16,7 @@ from loaded_tca.loaded import line_load
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.results.face_slopes import face_load_factor_slopes
 from loaded_tca.results.figure_slopes import (
+    _curvature_jumps,
     line_load_slopes,
     peak_pressure_slopes,
     pressure_norm,
@@ -394,3 +396,11 @@ def test_face_load_factor_that_is_none_has_no_slopes():
     assert face_load_factor_slopes(cycle.gear_pair, cycle.path, unloaded) == unloaded
     silent = [replace(one, pressure=0.0 * one.pressure) for one in first if one is not None]
     assert face_load_factor_slopes(cycle.gear_pair, cycle.path, [silent] * 2) == [[None] * len(silent)] * 2
+
+
+@pytest.mark.parametrize(("start", "beside"), [(-0.05, True), (0.03, True), (0.25, False), (math.inf, False)])
+def test_curvature_that_jumps_beside_the_peak_is_seen(start, beside):
+    """Half a width is 0.1 mm; a curvature that grows along the contact does not jump."""
+    x = np.linspace(-0.31, 0.31, 32)
+    gap = x**2 / 20.0 * (1.0 + 0.8 * x) + 0.02 * np.maximum(x - start, 0.0) ** 2
+    assert _curvature_jumps(np.where(x < 0.3, gap, np.nan), np.abs(x) < 0.1, 15) is beside

@@ -8,11 +8,13 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import analyse, read_scene
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.errors import AccuracyWarning, noted_accuracy_warnings
 from loaded_tca.results.face_slopes import rival_strip, warn_of_edges
 from loaded_tca.results.load_factors import STRIPS, face_forces
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.separation.pair_change import value_at
+from loaded_tca.warning_kinds import kind_of
 from tests.samples.results import FLANKS_ALONE, SCENES
 from validation.random_scenes import random_scene
 
@@ -97,6 +99,27 @@ def test_starts_of_linear_reliefs_beside_the_point_are_warned_of_with_keys_that_
     assert moved.across_relief_starts.any()
     assert_array_equal(moved.across_relief_starts, held.across_relief_starts)
     assert not moved.across_relief_starts[~(result.on_relief_start > 0)].any()
+
+
+def test_peaks_beside_jumps_of_the_curvature_are_warned_of_where_they_are_read():
+    result, _ = solved("mesh_cycle_helical", 16, 3, **FLANKS_ALONE, **{"analysis.accuracy": None})
+    slopes = result.sensitivities([DISTANCE])
+    vars(slopes)["beside_curvature_jumps"] = result.load_share > 0.0
+    with noted_accuracy_warnings(given=False) as sentences:
+        assert np.isfinite(slopes.peak_pressure).any()
+    assert any("curvature of the gap jumps beside the peak pressure" in sentence for sentence in sentences)
+
+
+def test_derivatives_of_the_strip_at_an_end_that_moves_are_warned_of():
+    askew = {"mounting.misalignment_um": 10.0, "analysis.accuracy": None}
+    for offset, count in ((-2.6, 1), (2.6, 0)):
+        result, _ = solved("mesh_cycle_helical", 12, 3, **FLANKS_ALONE, **askew | {"mounting.axial_offset_mm": offset})
+        with noted_accuracy_warnings(given=False) as sentences:
+            slopes = result.sensitivities(["mounting.axial_offset_mm", CROWNING]).face_load_factor
+        assert np.isfinite(slopes).all()
+        told = [sentence for sentence in sentences if kind_of(sentence) is kinds.FACE_END_IN_LOAD]
+        assert len(told) == count
+        assert all("(mounting.axial_offset_mm; 1 of 2 keys)" in sentence for sentence in told)
 
 
 @pytest.mark.parametrize(("key", "step"), [("wheel.modifications.tip_relief_start_mm", 0.01), (DISTANCE, 0.02)])
