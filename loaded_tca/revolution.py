@@ -21,9 +21,8 @@ from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.moved_gears import loads_at
-from loaded_tca.loaded.moved_gears import pitches_apart as pitches_of_cycle
-from loaded_tca.loaded.revolution import STATES_AT_A_TIME, RevolutionPart, pitches_apart, solve_revolution
+from loaded_tca.loaded.moved_gears import loads_at, pitches_apart
+from loaded_tca.loaded.revolution import STATES_AT_A_TIME, RevolutionPart, solve_revolution
 from loaded_tca.loaded.standing import POSITIONS, GearsUnderTorques, Standing, pair_span
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
@@ -51,12 +50,12 @@ def expected_revolution_effort(scene: Scene) -> Effort:
     asked, torques = _asked(scene), len(scene.torques)
     states = asked.count((scene.pinion.teeth, abs(scene.wheel.teeth))) * asked.positions_per_pitch
     some = max(1, min(states, STATES_AT_A_TIME // torques))
-    one, part = (
+    first, part = (
         expected_effort(scene.with_changes({"analysis.positions": count, "analysis.load_sharing": True}))
         for count in (1, max(2, some))
     )
-    each = (part.seconds - one.seconds) / (max(2, some) - 1)
-    seconds = one.seconds + each * (states - 1)
+    of_state = (part.seconds - first.seconds) / (max(2, some) - 1)
+    seconds = first.seconds + of_state * (states - 1)
     return Effort(2 * states * torques, part.cells, seconds, part.memory, certain=part.certain)
 
 
@@ -129,7 +128,9 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
             "date": datetime.now(UTC).isoformat(timespec="seconds"),
             "warnings": "\n".join(dict.fromkeys(warned)),
         }
-        kept = {(t + first, n): row for first, one in _in_order(numbers) for (t, n), row in one.maps.items()}
+        kept = {
+            (t + first, n): row for first, of_standing in _in_order(numbers) for (t, n), row in of_standing.maps.items()
+        }
         return Revolution(scene=scene, dataset=Revolution.dataset_of(arrays, **about), maps=kept)
 
 
@@ -160,21 +161,20 @@ def _over_revolution(
     """Numbers of the gears as they stand: on supports moved by the mean load of a pitch of teeth that are alike."""
     torques, supports, roots = scene.torques, support_compliance(scene, pair), roots_of(scene, pair)
     angles, pitches = pair.pitch * np.linspace(-0.5, 0.5, POSITIONS + 1), _asked(scene).count(pair.teeth)
-    apart = max(pitches_of_cycle(pair, supports, torques), pitches_apart(unloaded))
 
     def under(apart: int) -> list[_Numbers]:
         gears, numbers, done = GearsUnderTorques(pair, model_of(scene, pair, apart), angles, grid), [], 0
         for standing in gears.standing(torques):
             path = unloaded if standing.loads is None else _trace(scene, standing.pair, pitches, standing)
             report = None if progress is None else partial(_report, progress, done, len(path) * len(torques))
-            one = _Numbers(standing, path, grid, roots, maps)
+            of_standing = _Numbers(standing, path, grid, roots, maps)
             for part in solve_revolution(path, standing, grid, report):
-                one.add(part)
-            numbers.append(one)
+                of_standing.add(part)
+            numbers.append(of_standing)
             done += len(path) * standing.torques.size
         return numbers
 
-    numbers = with_enough_teeth(apart, under)
+    numbers = with_enough_teeth(pitches_apart(pair, supports, torques), under)
     warn_of_supports(pair, numbers)
     return numbers
 
@@ -196,15 +196,16 @@ OF_NO_PAIR: dict[str, float | bool] = {
 
 def _joined(scene: Scene, path: RevolutionPath, numbers: Sequence[_Numbers]) -> dict[str, Array]:
     """Arrays of all torques, whose gears stand elsewhere: of all tooth pairs that one of them, or none, brings near."""
-    parts, paths = [one.whole() for one in numbers], [path, *(one.path for one in numbers)]
-    pairs, torques = np.unique(np.concatenate([one.pairs for one in paths])), len(scene.torques)
+    parts = [of_standing.whole() for of_standing in numbers]
+    paths = [path, *(of_standing.path for of_standing in numbers)]
+    pairs, torques = np.unique(np.concatenate([traced.pairs for traced in paths])), len(scene.torques)
     arrays = dict(parts[0])
     for name, values in parts[0].items():
         if name in OF_NO_PAIR:
             arrays[name] = np.full((torques, len(path), len(pairs)), OF_NO_PAIR[name], dtype=values.dtype)
-            for (first, one), part in zip(_in_order(numbers), parts, strict=True):
-                rows = slice(first, first + one.torques.size)
-                arrays[name][rows][..., np.searchsorted(pairs, one.path.pairs)] = part[name]
+            for (first, of_standing), part in zip(_in_order(numbers), parts, strict=True):
+                rows = slice(first, first + of_standing.torques.size)
+                arrays[name][rows][..., np.searchsorted(pairs, of_standing.path.pairs)] = part[name]
         elif name not in AS_AT_REST:
             arrays[name] = np.concatenate([part[name] for part in parts])
     for name in ("pinion_tooth", "wheel_tooth"):
@@ -218,24 +219,26 @@ def _joined(scene: Scene, path: RevolutionPath, numbers: Sequence[_Numbers]) -> 
 def _in_order(numbers: Sequence[_Numbers]) -> Iterator[tuple[int, _Numbers]]:
     """Each with the index of its first torque among all."""
     first = 0
-    for one in numbers:
-        yield first, one
-        first += one.torques.size
+    for of_standing in numbers:
+        yield first, of_standing
+        first += of_standing.torques.size
 
 
 def _sentences(pair: GearPair, numbers: Sequence[_Numbers], bodies: HeldBodies) -> Iterator[str]:
     """Accuracy warnings of all contacts under all torques, each reason once."""
     places: dict[str, list[str]] = {}
-    for one in numbers:
-        for torque, forces in zip(one.torques.tolist(), one.arrays["normal_force"], strict=True):
+    for of_standing in numbers:
+        for torque, forces in zip(of_standing.torques.tolist(), of_standing.arrays["normal_force"], strict=True):
             if torque > 0.0 and not forces.any():
                 yield kinds.NO_TORQUE.sentence(torque=1e-3 * torque)
-        for reason, at in one.places.items():
+        for reason, at in of_standing.places.items():
             places.setdefault(reason, []).extend(at)
-    solved = sum(one.solved for one in numbers)
+    solved = sum(of_standing.solved for of_standing in numbers)
     yield from (at_places(reason, at, solved) for reason, at in places.items())
-    torques = np.concatenate([one.torques for one in numbers])
-    rotation, rate = (np.concatenate([one.arrays[name] for one in numbers]) for name in ("rotation", "stiffness"))
+    torques = np.concatenate([of_standing.torques for of_standing in numbers])
+    rotation, rate = (
+        np.concatenate([of_standing.arrays[name] for of_standing in numbers]) for name in ("rotation", "stiffness")
+    )
     yield from rotation_reasons(pair, torques, rotation, rate, bodies)
 
 
@@ -260,7 +263,7 @@ class _Numbers:
         self.pair, self.torques, loads = self.path.pair, self.standing.torques, self.standing.loads or ()
         shape = len(self.torques), len(self.path), len(self.path.pairs)
         self.drive_rate = np.full(shape[:2], math.nan)
-        self.loads = tuple(np.full((shape[1], one.size), math.nan) for one in loads)
+        self.loads = tuple(np.full((shape[1], of_gear.size), math.nan) for of_gear in loads)
         cycle, gears = shape[:2], (*shape[:2], 2)
         self.arrays: dict[str, Array] = {
             "rotation": np.full(cycle, math.nan),

@@ -152,11 +152,11 @@ def _newton_step(pairs: Sequence[_Pair], torque: float, forces: Sequence[float])
     tangent = [[pairs[n].compliance[m] for m in loaded] for n in loaded]
     sides = []
     for row, n in enumerate(loaded):
-        one, force = pairs[n], forces[n]
-        pressed = one.law.deformation_under(force)
+        pair, force = pairs[n], forces[n]
+        pressed = pair.law.deformation_under(force)
         others = sum(part * forces[m] for part, m in zip(tangent[row], loaded, strict=True))
-        sides.append((one.wheel_lever, -pressed - others - one.separation))
-        tangent[row][row] += one.law.exponent * pressed / force
+        sides.append((pair.wheel_lever, -pressed - others - pair.separation))
+        tangent[row][row] += pair.law.exponent * pressed / force
     solved = np.linalg.solve(tangent, sides).tolist()
     given = sum(pairs[n].lever * (forces[n] + rest) for n, (_, rest) in zip(loaded, solved, strict=True))
     rotation = (torque - given) / sum(pairs[n].lever * turned for n, (turned, _) in zip(loaded, solved, strict=True))
@@ -166,17 +166,17 @@ def _newton_step(pairs: Sequence[_Pair], torque: float, forces: Sequence[float])
         target[n] = min(max(wanted, LARGEST_FALL * forces[n]), torque / pairs[n].lever)
     most = max(target)
     by_others = [
-        sum(part * force for m, (part, force) in enumerate(zip(one.compliance, target, strict=True)) if m != n)
-        for n, one in enumerate(pairs)
+        sum(part * force for m, (part, force) in enumerate(zip(pair.compliance, target, strict=True)) if m != n)
+        for n, pair in enumerate(pairs)
     ]
     heaviest = target.index(most)
-    one = pairs[heaviest]
-    asked = one.separation + one.law.deformation_under(most) + one.compliance[heaviest] * most + by_others[heaviest]
-    asked /= one.wheel_lever
-    for n, one in enumerate(pairs):
-        if target[n] < LITTLE * most and one.wheel_lever * asked - one.separation <= by_others[n]:
+    pair = pairs[heaviest]
+    asked = pair.separation + pair.law.deformation_under(most) + pair.compliance[heaviest] * most + by_others[heaviest]
+    asked /= pair.wheel_lever
+    for n, pair in enumerate(pairs):
+        if target[n] < LITTLE * most and pair.wheel_lever * asked - pair.separation <= by_others[n]:
             target[n] = 0.0
-    for n, one in enumerate(pairs):
-        if forces[n] == 0.0 and (closed := one.wheel_lever * rotation - one.separation - by_others[n]) > 0.0:
-            target[n] = min(one.law.force_at(closed), max(target))
+    for n, pair in enumerate(pairs):
+        if forces[n] == 0.0 and (closed := pair.wheel_lever * rotation - pair.separation - by_others[n]) > 0.0:
+            target[n] = min(pair.law.force_at(closed), max(target))
     return target

@@ -91,7 +91,7 @@ class MeshStates(Protocol):
 def solve_cycles(cycles: Sequence[MeshStates], progress: Progress | None = None) -> list[CycleSolution]:
     """What the tooth pairs carry in several pairs of gears, whose states are worked on together."""
     alone = len(cycles) == 1
-    steps = [one.steps() for one in cycles]
+    steps = [cycle.steps() for cycle in cycles]
     every = [
         own if alone else with_gears(cycle.pair, own)
         for cycle, of_cycle in zip(cycles, steps, strict=True)
@@ -190,7 +190,7 @@ class AllPairsCycle:
     def carried(self, results: Sequence[SharedLoad]) -> CycleSolution:
         """What the tooth pairs carry by the results of the steps."""
         mesh, torques, shape = self.mesh, self.torques, (len(self.torques), len(self.mesh))
-        carrying = {0} | {share.tooth_pair.pair for one in results for share in one.shares}
+        carrying = {0} | {share.tooth_pair.pair for shared in results for share in shared.shares}
         columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
         pairs = mesh.pairs[columns].tolist()
         contacts: Contacts = [[[None] * len(pairs) for _ in range(shape[1])] for _ in torques]
@@ -207,7 +207,7 @@ class AllPairsCycle:
             pairs=mesh.pairs[columns],
             paths=tuple(paths[number] for number in pairs),
             contacts=contacts,
-            rotation=np.array([one.rotation for one in results]).reshape(shape),
+            rotation=np.array([shared.rotation for shared in results]).reshape(shape),
             states=_loaded_states(mesh.pairs[columns], contacts, self.bending),
             share=share,
             tooth_deflection=deflection,
@@ -253,8 +253,8 @@ def steps_of_shared(
     displacement: Coupling | None = None,
 ) -> list[Steps[SharedLoad]]:
     """Steps of every torque at every position, torque by torque; arguments as of :func:`share_loads`."""
-    alike = [one.contact for _, all_at in positions for one in all_at if one.gears is None]
-    relative_curvatures(pair, alike)  # kept for all torques
+    contacts = [tooth_pair.contact for _, all_at in positions for tooth_pair in all_at if tooth_pair.gears is None]
+    relative_curvatures(pair, contacts)  # kept for all torques
 
     def steps(t: int, n: int) -> Steps[SharedLoad]:
         angle, tooth_pairs = positions[n]
@@ -277,7 +277,7 @@ def _loaded_states(pairs: NDArray[np.int_], contacts: Contacts, bending: Bending
     """Tooth pairs under load of all torques and positions, in the order that results have them in."""
     order = np.argsort(pairs).tolist()
     states = [
-        [LoadedGrid.of(int(pairs[k]), one) for k in order if (one := at[k]) is not None]
+        [LoadedGrid.of(int(pairs[k]), loaded) for k in order if (loaded := at[k]) is not None]
         for positions in contacts
         for at in positions
     ]

@@ -176,7 +176,10 @@ class _Balance:
         self.first_gaps = np.zeros(len(tooth_pairs))  # [mm], where the grid of a pair touches first: it grows, is cut
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
         self.levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts]).T
-        firsts = [first_law(one.gears or pair, one.contact, torque / one.contact.pinion_lever) for one in tooth_pairs]
+        firsts = [
+            first_law(tooth_pair.gears or pair, tooth_pair.contact, torque / tooth_pair.contact.pinion_lever)
+            for tooth_pair in tooth_pairs
+        ]
         self.laws, self.half_lengths = [law for law, _ in firsts], [length for _, length in firsts]
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
@@ -235,8 +238,8 @@ class _Balance:
             contacts = [moved[index].contact for index in indices]
             halves = 0.5 * self.pair.driving * (rotation - self.separations[indices])
             angles = [
-                one.pinion_angle - half * one.wheel_lever / one.pinion_lever
-                for one, half in zip(contacts, halves.tolist(), strict=True)
+                contact.pinion_angle - half * contact.wheel_lever / contact.pinion_lever
+                for contact, half in zip(contacts, halves.tolist(), strict=True)
             ]
             middles = yield Trace(contacts, angles, moved[indices[0]].gears)
             for index, contact, middle in zip(indices, contacts, middles, strict=True):
@@ -262,11 +265,11 @@ class _Balance:
             shares.append(force / force.sum())
         if self.on_moved_gears:
             displaced = [self._displaced(line) for _, line in lines]
-            self.mean_displacement = np.array([own @ one for own, one in zip(shares, displaced, strict=True)])
-        compliance = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
-        for (i, one), (j, other) in combinations(enumerate(lines), 2):
+            self.mean_displacement = np.array([share @ moved for share, moved in zip(shares, displaced, strict=True)])
+        compliance = np.diag([share @ bending.within(*line) @ share for line, share in zip(lines, shares, strict=True)])
+        for (i, slices), (j, other_slices) in combinations(enumerate(lines), 2):
             if self._coupled(i, j):
-                compliance[i, j] = compliance[j, i] = shares[i] @ bending.deflection(one, other, shares[j])
+                compliance[i, j] = compliance[j, i] = shares[i] @ bending.deflection(slices, other_slices, shares[j])
         return compliance
 
     def _grid_apart(self, index: int) -> Steps[Separation]:
@@ -405,11 +408,13 @@ class _Balance:
         for index, loaded in self._loaded():
             compliance[index, index] = loaded.own_tooth_deflection / loaded.solution.load
             self.mean_displacement[index] = loaded.slice_shares @ self._displaced(loaded.separation)
-        for (index, one), (other, two) in combinations(self._loaded(), 2):
-            displaced = self._deflection(index, one.separation, other, two)
-            compliance[index, other] = compliance[other, index] = one.slice_shares @ displaced
+        for (index, loaded), (other, other_loaded) in combinations(self._loaded(), 2):
+            displaced = self._deflection(index, loaded.separation, other, other_loaded)
+            compliance[index, other] = compliance[other, index] = loaded.slice_shares @ displaced
         loaded_pairs = dict(self._loaded())
-        turned = [self.separations[n] + one.solution.approach / self.levers[1, n] for n, one in loaded_pairs.items()]
+        turned = [
+            self.separations[n] + loaded.solution.approach / self.levers[1, n] for n, loaded in loaded_pairs.items()
+        ]
         near = self.on_moved_gears | self.grid.forces_on_grid_axis | (self.separations <= FAR * max(turned))
         places: dict[int, int] = {}
         for index in np.flatnonzero(near).tolist():
@@ -481,7 +486,9 @@ class _Balance:
         """Rotation [rad] to compare differences with; of the contacts alone where gears have moved by it before."""
         if not self.on_moved_gears:
             return rotation
-        pressed = [(n, one.contact_deformation / self.levers[1, n]) for n, one in self._loaded() if forces[n] > 0.0]
+        pressed = [
+            (n, loaded.contact_deformation / self.levers[1, n]) for n, loaded in self._loaded() if forces[n] > 0.0
+        ]
         return max(rotation, float(sum(forces[n] * turn for n, turn in pressed) / forces.sum()))
 
     def _shared(self, forces: Array, count: int) -> SharedLoad:

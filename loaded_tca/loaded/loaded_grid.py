@@ -77,7 +77,7 @@ def block_diagonal(matrices: Sequence[Array]) -> csr_array:
     return csr_array((values, np.concatenate(columns), rows), shape=(ends[-1], ends[-1]))
 
 
-def alike(grids: Sequence[LoadedGrid], ends: Indices) -> list[list[tuple[LoadedGrid, Indices]]]:
+def grouped_by_shape(grids: Sequence[LoadedGrid], ends: Indices) -> list[list[tuple[LoadedGrid, Indices]]]:
     """Grids of one shape, and with slices and cover or without, and the places of their cells in the row."""
 
     def kind(place: int) -> tuple[object, ...]:
@@ -107,7 +107,7 @@ class Block:
 
     @classmethod
     def of(cls, group: Sequence[tuple[LoadedGrid, Indices]]) -> Block:
-        """That of a group of :func:`alike`."""
+        """That of a group of :func:`grouped_by_shape`."""
         grids, cells = zip(*group, strict=True)
         return cls(grids, np.concatenate(cells))
 

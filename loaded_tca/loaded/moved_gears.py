@@ -42,7 +42,7 @@ def moved_bending(bending: SumOfParts, near: SupportCompliance, loads: Loads) ->
     gaps of a pair on rigid supports.
     """
     there = standing_under(near, loads)
-    displacement = None if near.is_rigid else partial(there.opened, motions=given_motions(near, loads))
+    displacement = None if near.is_rigid else partial(there.gap_by_motion, motions=given_motions(near, loads))
     return bending.on_supports(there).mounted(there.pair), displacement
 
 
@@ -86,7 +86,7 @@ def pitches_apart(pair: GearPair, supports: SupportCompliance | None, torques: S
     for torque in sorted(set(torques) - {0.0}, reverse=True):  # what the largest one asks for is told first
         try:
             loads = loads_at_first_contact(supports, resting, torque)
-            apart = max(apart, pitches_within_reach(moved_by(supports.under(loads), loads)))
+            apart = max(apart, pitches_within_reach(moved_by(supports.linear_near(loads), loads)))
         except GeometryError as error:
             raise moved_too_far(error, torque) from None
     return apart

@@ -66,13 +66,14 @@ def solve_revolution(
         report = None if progress is None else partial(_report, progress, first * len(torques), whole)
         at = [(float(path.pinion_angle[n]), tooth_pairs_of(path, n)) for n in positions]
         shared = share_loads(path.pair, at, torques, grid, bending, report, standing.displacement)
-        loaded = [[(one.tooth_pair.pair, one.loaded) for one in each.shares] for each in shared.values()]
-        held = states = [[LoadedGrid.of(*one) for one in at] for at in loaded]
+        loaded = [[(share.tooth_pair.pair, share.loaded) for share in of_state.shares] for of_state in shared.values()]
+        on_rigid = states = [[LoadedGrid.of(number, contact) for number, contact in at] for at in loaded]
         if standing.supports is not None:
-            held = [[on_rigid_supports(*one, standing.teeth) for one in at] for at in loaded]
+            teeth = standing.teeth
+            on_rigid = [[on_rigid_supports(number, contact, teeth) for number, contact in at] for at in loaded]
         shape = len(torques), len(positions)
         drive = loaded_states(states, bending).stiffness.reshape(shape)
-        stiffness = drive if held is states else loaded_states(held, standing.teeth).stiffness.reshape(shape)
+        stiffness = drive if on_rigid is states else loaded_states(on_rigid, standing.teeth).stiffness.reshape(shape)
         yield RevolutionPart(positions, shared, stiffness, drive)
 
 
@@ -82,11 +83,4 @@ def _report(progress: Progress, before: int, whole: int, done: int, _: int) -> N
 
 def tooth_pairs_of(path: RevolutionPath, position: int) -> tuple[ToothPair, ...]:
     """Tooth pairs that can be in contact at a position of a revolution."""
-    return tuple(ToothPair(*one) for one in path.pairs_at(position))
-
-
-def pitches_apart(path: RevolutionPath) -> int:
-    """How many pitches two tooth pairs that can be in contact at the same position are apart."""
-    return max(
-        max(numbers) - min(numbers) for n in range(len(path)) if (numbers := [one[0] for one in path.pairs_at(n)])
-    )
+    return tuple(ToothPair(*parts) for parts in path.pairs_at(position))

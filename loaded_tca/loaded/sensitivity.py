@@ -40,7 +40,7 @@ from scipy.sparse import csr_array
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError
-from loaded_tca.loaded.loaded_grid import Block, LoadedGrid, alike, block_diagonal
+from loaded_tca.loaded.loaded_grid import Block, LoadedGrid, block_diagonal, grouped_by_shape
 
 TOLERANCE = 1e-10
 """Of the linear systems, relative: the derivatives are exact to 1e-8."""
@@ -109,7 +109,7 @@ class Tangents:
         slices = [grid.active.shape[1] for grid in self.grids]
         columns = np.concatenate([grid.active.nonzero()[1] for grid in self.grids])
         self._slice, self._slices = columns + (np.cumsum(slices) - slices)[self.grid], sum(slices)
-        self._blocks = [Block.of(alike) for alike in alike(self.grids, self.ends)]
+        self._blocks = [Block.of(group) for group in grouped_by_shape(self.grids, self.ends)]
         self._coupling = None if bending is None else _coupling(states, bending)
         levers = [(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in self.grids]
         self.pinion_levers, self.wheel_levers = np.array(levers).reshape(-1, 2).T[:, self.grid]

@@ -240,19 +240,20 @@ class GearsUnderTorques:
         if self.supports is None:
             return [Standing(np.asarray(torques, dtype=float), self.pair, self.bending)]
         torques = [float(torque) for torque in torques]
-        return [self._moved(*one) for one in zip(torques, self._mean_loads(self.supports, torques), strict=True)]
+        mean_loads = self._mean_loads(self.supports, torques)
+        return [self._moved(torque, loads) for torque, loads in zip(torques, mean_loads, strict=True)]
 
     def mesh_cycles(self, torques: Sequence[float] | Array, progress: Progress | None = None) -> list[StandingCycle]:
         """Mesh cycles under pinion torques [N mm], worked on together; errors are those of :meth:`standing`."""
-        cycles = [self._cycle(one, self.angles, self.grid) for one in self.standing(torques)]
+        cycles = [self._cycle(standing, self.angles, self.grid) for standing in self.standing(torques)]
         carried = solve_cycles(cycles, progress)
         for _ in range(MOST_AGAIN if len(self.angles) > ENOUGH else 0):
-            pairs = zip(cycles, carried, strict=True)
-            further = {t: moved for t, one in enumerate(pairs) if (moved := self._moved_further(*one)) is not None}
+            moved = [self._moved_further(cycle, solution) for cycle, solution in zip(cycles, carried, strict=True)]
+            further = {t: standing for t, standing in enumerate(moved) if standing is not None}
             again = [self._cycle(standing, self.angles, self.grid) for standing in further.values()]
-            for t, cycle, own in zip(further, again, solve_cycles(again) if again else (), strict=True):
-                cycles[t], carried[t] = cycle, own
-        return [_standing_cycle(one.standing, own) for one, own in zip(cycles, carried, strict=True)]
+            for t, cycle, solution in zip(further, again, solve_cycles(again) if again else (), strict=True):
+                cycles[t], carried[t] = cycle, solution
+        return [_standing_cycle(cycle.standing, solution) for cycle, solution in zip(cycles, carried, strict=True)]
 
     def _moved_further(self, cycle: _Cycle, carried: CycleSolution) -> Standing | None:
         """Where the mean load of a whole pitch moves the gears; None if that is no further than where they stand."""
@@ -280,8 +281,8 @@ class GearsUnderTorques:
         def between(torque: float) -> Loads:
             part = (torque - low) / (high - low) if high > low else 1.0
             pinion, wheel = (
-                torque * ((1.0 - part) / low * one + part / high * other)
-                for one, other in zip(first, last, strict=True)
+                torque * ((1.0 - part) / low * at_low + part / high * at_high)
+                for at_low, at_high in zip(first, last, strict=True)
             )
             return pinion, wheel
 
@@ -332,12 +333,12 @@ class GearsUnderTorques:
         further = self._distance(supports, loads, standing.loads)
         return further <= CLOSE * self.pair.module and (supports.is_linear or self._are_near(standing, loads))
 
-    def _distance(self, supports: SupportCompliance, one: Loads, other: Loads) -> float:
+    def _distance(self, supports: SupportCompliance, loads: Loads, other_loads: Loads) -> float:
         """Largest way of the two gears between two loads, at a lever of half the face width [mm]."""
         lever = np.repeat([1.0, 0.5 * self.pair.face_width], 3)
         ways = [
             support.at_middle(support.compliance @ (a - b)) * lever
-            for support, a, b in zip(supports.supports, one, other, strict=True)
+            for support, a, b in zip(supports.supports, loads, other_loads, strict=True)
         ]
         return float(np.abs(ways).max())
 
@@ -345,7 +346,7 @@ class GearsUnderTorques:
         """The pair moved by loads under a torque, with supports that are linear there."""
         assert self.bending is not None
         assert self.supports is not None
-        near = self.supports.under(loads)
+        near = self.supports.linear_near(loads)
         bending, displacement = moved_bending(self.bending, near, loads)
         assert bending.supports is not None
         return Standing(np.array([torque]), bending.supports.pair, bending, loads, displacement, near)
@@ -369,8 +370,8 @@ def pair_span(pairs: Indices, shares: Array) -> int:
     return max((int(np.ptp(pairs[row > 0.0])) for row in rows if (row > 0.0).any()), default=0)
 
 
-def _halfway(one: Loads, other: Loads) -> Loads:
-    pinion, wheel = (0.5 * (a + b) for a, b in zip(one, other, strict=True))
+def _halfway(loads: Loads, other_loads: Loads) -> Loads:
+    pinion, wheel = (0.5 * (a + b) for a, b in zip(loads, other_loads, strict=True))
     return pinion, wheel
 
 
@@ -406,7 +407,11 @@ def _standing_cycle(standing: Standing, carried: CycleSolution) -> StandingCycle
         return StandingCycle(standing, carried, (), carried.torque_rate)
     numbers, teeth = carried.pairs.tolist(), standing.teeth
     states = [
-        [on_rigid_supports(number, one, teeth) for number, one in zip(numbers, at, strict=True) if one is not None]
+        [
+            on_rigid_supports(number, loaded, teeth)
+            for number, loaded in zip(numbers, at, strict=True)
+            if loaded is not None
+        ]
         for at in carried.contacts[0]
     ]
     rate = np.where(np.isnan(carried.rotation), math.nan, loaded_states(states, teeth).stiffness)
@@ -415,10 +420,10 @@ def _standing_cycle(standing: Standing, carried: CycleSolution) -> StandingCycle
 
 def on_rigid_supports(number: int, loaded: LoadedContact, teeth: BendingModel | None) -> LoadedGrid:
     """What the tangent needs of a loaded contact whose supports do not give way."""
-    one = LoadedGrid.of(number, loaded)
+    grid = LoadedGrid.of(number, loaded)
     bent = None if teeth is None else teeth.within(number, loaded.separation)
     slices = loaded.ends if bent is None else bent if loaded.ends is None else bent + loaded.ends
-    return replace(one, problem=replace(one.problem, slice_compliance=slices), bending=bent)
+    return replace(grid, problem=replace(grid.problem, slice_compliance=slices), bending=bent)
 
 
 def all_torques(unloaded: MeshPath | ContactPath, cycles: Sequence[StandingCycle]) -> CycleSolution:
@@ -437,30 +442,30 @@ def all_torques(unloaded: MeshPath | ContactPath, cycles: Sequence[StandingCycle
         Its paths are those of the unloaded pair, and of the moved one where a tooth pair comes into reach by load only;
         its rotation is that from the unloaded pair on, motions of the gears included.
     """
-    paths = {int(k): path for one in cycles for k, path in zip(one.carried.pairs, one.carried.paths, strict=True)}
+    paths = {int(k): path for cycle in cycles for k, path in zip(cycle.carried.pairs, cycle.carried.paths, strict=True)}
     numbers = np.array(sorted(paths))
     if isinstance(unloaded, MeshPath):
         path, at_rest = in_gear_angles(unloaded)
         paths |= at_rest
     else:
         path = paths[0] = unloaded
-    torque = np.concatenate([one.carried.torque for one in cycles])
+    torque = np.concatenate([cycle.carried.torque for cycle in cycles])
     shape = len(torque), len(path), len(numbers)
     contacts: Contacts = [[[None] * shape[2] for _ in range(shape[1])] for _ in torque]
     share, deflection = np.zeros((2, *shape))
     rotation, first = np.empty(shape[:2]), 0
-    for one in cycles:
-        carried = one.carried
+    for cycle in cycles:
+        carried = cycle.carried
         columns, rows = np.searchsorted(numbers, carried.pairs), slice(first, first + len(carried.torque))
         share[rows][..., columns], deflection[rows][..., columns] = carried.share, carried.tooth_deflection
         moved = path.transmission_error - carried.path.transmission_error
-        rotation[rows] = carried.rotation + one.standing.pair.driving * moved
+        rotation[rows] = carried.rotation + cycle.standing.pair.driving * moved
         for t, positions in enumerate(carried.contacts):
             for n, at in enumerate(positions):
                 for column, loaded in zip(columns.tolist(), at, strict=True):
                     contacts[first + t][n][column] = loaded
         first = rows.stop
-    states = [one.carried.states for one in cycles]
+    states = [cycle.carried.states for cycle in cycles]
     return CycleSolution(
         path=path,
         torque=torque,
@@ -469,10 +474,10 @@ def all_torques(unloaded: MeshPath | ContactPath, cycles: Sequence[StandingCycle
         contacts=contacts,
         rotation=rotation,
         states=LoadedStates(
-            tuple(grids for one in states for grids in one.grids),
+            tuple(grids for of_cycle in states for grids in of_cycle.grids),
             None,
-            tuple(by_rotation for one in states for by_rotation in one.by_rotation),
-            np.concatenate([one.stiffness for one in states]),
+            tuple(by_rotation for of_cycle in states for by_rotation in of_cycle.by_rotation),
+            np.concatenate([of_cycle.stiffness for of_cycle in states]),
         ),
         share=share,
         tooth_deflection=deflection,

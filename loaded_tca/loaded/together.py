@@ -148,7 +148,9 @@ def _answers(
     pair: GearPair, asked: dict[int, Request]
 ) -> dict[int, list[ContactPoint] | Separation | ExpectedLine | Array | ContactSolution | LoadedTCAError | None]:
     """Answer what most ask for, contacts, gaps, lines, free edges or problems on one grid; errors are answers."""
-    kinds = {index: one.problem.cells if isinstance(one, Task) else type(one) for index, one in asked.items()}
+    kinds = {
+        index: request.problem.cells if isinstance(request, Task) else type(request) for index, request in asked.items()
+    }
     (most, _), *_ = Counter(kinds.values()).most_common(1)
     chosen: Any = {index: asked[index] for index, kind in kinds.items() if kind == most}
     if most in (Trace, Gap, Line, Ends):
@@ -170,12 +172,12 @@ def _of_flanks(
     requests = list(asked.values())
     gears = requests[0].gears or pair
     if isinstance(requests[0], Trace):
-        near = [contact for one in requests for contact in one.contacts]
-        path = trace_near(gears, near, [angle for one in requests for angle in one.pinion_angles])
+        near = [contact for request in requests for contact in request.contacts]
+        path = trace_near(gears, near, [angle for request in requests for angle in request.pinion_angles])
         places = iter(range(len(path)))
-        return {index: [path[n] for n in islice(places, len(one.contacts))] for index, one in asked.items()}
+        return {index: [path[n] for n in islice(places, len(request.contacts))] for index, request in asked.items()}
     if isinstance(requests[0], Ends):
-        return dict(zip(asked, edge_compliances(gears, [one.separation for one in requests]), strict=True))
+        return dict(zip(asked, edge_compliances(gears, [request.separation for request in requests]), strict=True))
     if isinstance(requests[0], Line):
         contacts, half_lengths, _ = zip(*requests, strict=True)
         return dict(zip(asked, expected_lines(gears, contacts, half_lengths), strict=True))

@@ -75,7 +75,7 @@ class UnderOneTorque(CycleNumbers):
 
     def displacement(self, grid: ContactGrid) -> Array:
         """Of the slices of a grid (ny,) [mm] by other loads on the shafts, less what has moved the pair."""
-        return self.supports.opened(grid, given_motions(self.supports, self.held))
+        return self.supports.gap_by_motion(grid, given_motions(self.supports, self.held))
 
     @property
     def bodies(self) -> tuple[Array, Array]:
@@ -118,7 +118,7 @@ def _under_one_torque(result: CycleNumbers, torque: int) -> UnderOneTorque:
     supports = support_compliance(result.scene, result.gear_pair)
     assert supports is not None
     pinion, wheel = (result.dataset[f"{gear}_support_load"].values[torque] for gear in GEARS)
-    at_rest = supports.under((pinion, wheel))
+    at_rest = supports.linear_near((pinion, wheel))
     supports = standing_under(at_rest, (pinion, wheel))
     pair = supports.pair
     if result.scene.analysis.load_sharing:
@@ -237,7 +237,8 @@ def _of_support(result: UnderOneTorque, key: str) -> SupportChange:
 
 def _supports_with(scene: Scene, key: str, value: float, held: Loads) -> tuple[Support, Support]:
     pinion, wheel = (
-        support.under(load) for support, load in zip(supports_of(scene.with_changes({key: value})), held, strict=True)
+        support.linear_near(load)
+        for support, load in zip(supports_of(scene.with_changes({key: value})), held, strict=True)
     )
     return pinion, wheel
 
@@ -305,7 +306,7 @@ def growth_on_supports(
         answers = np.zeros((len(directions), 12))
         for n, (change, way) in enumerate(zip(moving, directions, strict=True)):
             displaced, in_states = on_slices.growth(change, by_motion.motions[n])
-            by_motion.gaps[n] += displaced - on_slices.opened(way)
+            by_motion.gaps[n] += displaced - on_slices.gap_by_motion(way)
             on_slices.add_kinks(change, by_motion.kinks, n)
             answers[n] = on_slices.answer(tangents, by_motion.gaps[n], -lever_torques[n], in_states, places[1])
         growth, further = growth.with_parts(parts, by_motion), parts @ answers
@@ -346,10 +347,10 @@ class OnSlices:
         held = SupportChange(PairChange("mounting.grids", pair, pair, step), self.supports, self.supports)
         return self.growth(held, motions)[0]
 
-    def opened(self, way: Array) -> Array:
+    def gap_by_motion(self, way: Array) -> Array:
         """How far the gaps at the active cells (n,) grow as both gears move by (12,) as rigid bodies."""
         motions = way[:6], way[6:]
-        return self._at_cells([self.supports.opened_rigidly(one.separation, motions) for one in self.grids])
+        return self._at_cells([self.supports.gap_by_rigid_motion(one.separation, motions) for one in self.grids])
 
     def answer(self, tangents: Tangents, gaps: Array, torques: Array, in_states: Array, positions: Array) -> Array:
         """Mean motions of both gears (12,) by the forces that gaps and torques change, beside those in states."""
@@ -366,7 +367,7 @@ class OnSlices:
         """Displacement of the active cells (n,) under the forces as they are, motions of both gears (states, 12)."""
         places = [moved(grid.separation, motion) for grid, motion in zip(self.grids, motions, strict=True)]
         units = [side.loads(place) for place in places]
-        opened: list[Array] = []
+        displaced: list[Array] = []
         of_bodies = np.zeros((self.states, 12))
         for state, first in enumerate(self.first_grids.tolist()):
             own = [n for n in range(first, len(self.grids)) if self.state[n] == state]
@@ -379,8 +380,8 @@ class OnSlices:
             )
             for n in own:
                 by_stations = sum(unit @ motion for unit, motion in zip(units[n], stations, strict=True))
-                opened.append(np.asarray(by_stations - side.opened_rigidly(places[n], self.bodies)))
-        return self._at_cells(opened), of_bodies
+                displaced.append(np.asarray(by_stations - side.gap_by_rigid_motion(places[n], self.bodies)))
+        return self._at_cells(displaced), of_bodies
 
     def _at_cells(self, by_slice: Sequence[Array]) -> Array:
         return np.concatenate(

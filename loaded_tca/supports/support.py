@@ -101,7 +101,7 @@ class Support:
         """Axial coordinates of the stations (m,) [mm]."""
         return np.array([self.middle]) if self.stations is None else self.stations
 
-    def under(self, loads: Array) -> Support:
+    def linear_near(self, loads: Array) -> Support:
         """The support that is linear near loads (6 m,) of the stations; itself if it is linear."""
         return self if self.law is None else self.law(loads)
 
@@ -109,7 +109,7 @@ class Support:
     def at_rest(self) -> Array:
         """Motions of the stations (6 m,) [mm, rad] under other loads alone."""
         unloaded = np.zeros(len(self.compliance))
-        return self.under(unloaded).moved(unloaded)
+        return self.linear_near(unloaded).moved(unloaded)
 
     def moved(self, loads: Array) -> Array:
         """Motions of the stations (6 m,) [mm, rad] under loads (6 m,) [N, N mm] beside the other ones."""
@@ -261,11 +261,11 @@ class SupportCompliance:
         """Whether the motions grow with the loads, whatever these are."""
         return all(support.law is None for support in self.supports)
 
-    def under(self, loads: Sequence[Array]) -> SupportCompliance:
+    def linear_near(self, loads: Sequence[Array]) -> SupportCompliance:
         """The supports that are linear near loads (6 m,) of pinion and wheel; these if they are linear."""
         if self.is_linear:
             return self
-        pinion, wheel = (support.under(load) for support, load in zip(self.supports, loads, strict=True))
+        pinion, wheel = (support.linear_near(load) for support, load in zip(self.supports, loads, strict=True))
         return replace(self, supports=(pinion, wheel))
 
     def loads(self, grid: ContactGrid) -> tuple[Array, Array]:
@@ -301,14 +301,14 @@ class SupportCompliance:
         )
         return np.asarray(pinion + wheel)
 
-    def opened(self, grid: ContactGrid, motions: Sequence[Array]) -> Array:
+    def gap_by_motion(self, grid: ContactGrid, motions: Sequence[Array]) -> Array:
         """How far the gap of every slice (ny,) [mm] grows by motions (6 m,) of the stations of both gears."""
         pinion, wheel = (loads @ motion for loads, motion in zip(self.loads(grid), motions, strict=True))
         return np.asarray(pinion + wheel)
 
-    def opened_rigidly(self, grid: ContactGrid, motions: Sequence[Array]) -> Array:
+    def gap_by_rigid_motion(self, grid: ContactGrid, motions: Sequence[Array]) -> Array:
         """The same by motions (6,) of both gears as rigid bodies, with the middles of their faces."""
-        return self.opened(
+        return self.gap_by_motion(
             grid, [support.with_middle(motion) for support, motion in zip(self.supports, motions, strict=True)]
         )
 

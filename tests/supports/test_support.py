@@ -107,12 +107,12 @@ def test_gap_grows_by_the_way_of_the_points_along_the_normal(pair: GearPair) -> 
     grid = slices_at(np.array([40.0, 3.0, 1.0]), normal)
     shift = np.array([0.01, -0.02, 0.03])
     same = [np.concatenate([shift, np.zeros(3)]), np.concatenate([pair.wheel_axes @ shift, np.zeros(3)])]
-    assert_allclose(part.opened(grid, same), 0.0, atol=ROUNDING)
-    wheel_alone = part.opened(grid, [np.zeros(6), same[1]])
+    assert_allclose(part.gap_by_motion(grid, same), 0.0, atol=ROUNDING)
+    wheel_alone = part.gap_by_motion(grid, [np.zeros(6), same[1]])
     assert_allclose(wheel_alone, normal @ shift)
     turned = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1e-3])  # about the axis: the lever of the normal force
     lever = np.cross(grid.origin - pair.wheel_origin, normal)[2]
-    assert_allclose(part.opened(grid, [np.zeros(6), turned]), 1e-3 * lever * pair.wheel_axes[2, 2], rtol=1e-9)
+    assert_allclose(part.gap_by_motion(grid, [np.zeros(6), turned]), 1e-3 * lever * pair.wheel_axes[2, 2], rtol=1e-9)
 
 
 def test_moved_pair_keeps_distances_where_both_gears_move_as_one_body(pair: GearPair) -> None:

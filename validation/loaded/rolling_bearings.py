@@ -122,7 +122,7 @@ def _analysed(one: Scene) -> MeshCycle:
 
 def _moved(support: Support, load: Array) -> Array:
     """Exact motion (6,) of the middle of the face under a load there."""
-    return support.at_middle(support.under(load).moved(load))
+    return support.at_middle(support.linear_near(load).moved(load))
 
 
 def _of_moved_gears() -> list[Row]:
