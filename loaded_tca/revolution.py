@@ -55,9 +55,8 @@ def expected_revolution_effort(scene: Scene) -> Effort:
         expected_effort(scene.with_changes({"analysis.positions": count, "analysis.load_sharing": True}))
         for count in (1, max(2, some))
     )
-    each = (part.seconds - one.seconds) / (max(2, some) - 1)
-    seconds = one.seconds + each * (states - 1)
-    return Effort(2 * states * torques, part.cells, seconds, part.memory, certain=part.certain)
+    each = (part.states - one.states) / (max(2, some) - 1)
+    return replace(part, contacts=2 * states * torques, states=one.states + each * (states - 1))
 
 
 @checked
