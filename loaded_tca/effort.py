@@ -1,14 +1,19 @@
-"""What an analysis takes, time and memory, estimated before it starts."""
+"""What an analysis takes, time and memory, estimated before it starts.
+
+The time is that of its parts on one machine, by the constants below, times what :mod:`loaded_tca.machine_speed` finds
+of this one, and of as many jobs as are done at once.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from loaded_tca.compliance import default_density
 from loaded_tca.contact.adaptive import MOST_CELLS
 from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
 from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.machine_speed import machine_speed
 from loaded_tca.plain import plain
 from loaded_tca.scene import Scene
 from loaded_tca.threads import jobs
@@ -25,6 +30,8 @@ SUPPORT_STATES = 6
 """States of a torque that take as long as the way to where supports let the gears stand; of linear bearings."""
 TEETH_SECONDS, TEETH_EXPONENT, TEETH_BYTES = 7.5e-3, 1.5, 400e6
 """Of the finite element models of both gears: the time for the layers of elements across both faces."""
+IMPORT_SECONDS, FILES_SECONDS, PICTURE_SECONDS = 1.6, 0.15, 0.18
+"""Of the command: what it imports, result and tables, and each picture."""
 ROOT_SECONDS, ROOT_BYTES = 0.12, 39e6
 """Of a model of root stress for each layer of elements across the face, of which wide faces have more; measured with 6
 to 24 layers: the memory is within a quarter of what the model itself tells, the time within a factor of two."""
@@ -34,6 +41,10 @@ PROGRAMME_BYTES, KEPT_BYTES_PER_CELL = 150e6, 150.0
 """Of the libraries, and of each cell until the result is written; measured with 1 to 15 contacts of 512 x 512 cells."""
 CELLS_TIMES_ACCURACY, FEWEST_CELLS = 1.7, 1024
 """Cells that an accuracy takes, and those of the coarsest grid that can be the last; measured from 1e-2 to 1e-5."""
+
+
+OF_ALL, OF_SHARED = 5, 9
+"""Pictures of every result, about, and those more where tooth pairs share the load."""
 
 
 @dataclass(frozen=True)
@@ -46,20 +57,39 @@ class Effort:
         Contact problems: positions times torques, twice as many where tooth pairs share the load.
     cells : int
         Of the grid of each.
-    seconds : float [s]
+    states : float [s]
+        On one thread of the machine of the constants: of all but finite element models.
+    teeth, roots : tuple of float [s]
+        Of the models of teeth, and of root stress, of pinion and wheel; empty: without.
     memory : float [bytes]
     certain : bool
         Whether the cells are given: for an accuracy they may be fewer.
     jobs : int
         Works done at once: as many as asked for, or one where models of all would take too much of the memory.
+    around : float [s]
+        What the command does besides: imports, files and pictures.
     """
 
     contacts: int
     cells: int
-    seconds: float
+    states: float
+    teeth: tuple[float, ...]
+    roots: tuple[float, ...]
     memory: float
     certain: bool
     jobs: int = 1
+    around: float = 0.0
+
+    @property
+    def seconds(self) -> float:
+        """Time [s] on this machine: of what is done at once that which ends last, as ``side_by_side`` shares it."""
+        speed, helpers = machine_speed(), max(0, min(self.jobs, 1 + len(self.roots)) - 1)
+        teeth = max(self.teeth, default=0.0) if self.jobs > 1 and not helpers else sum(self.teeth)
+        ends = [float(speed.states) * self.states + float(speed.models) * teeth, *([0.0] * helpers)]
+        for model in self.roots:
+            first = ends.index(min(ends))
+            ends[first] += float(speed.models) * model
+        return max(ends) + float(speed.states) * self.around
 
     @property
     def gibibytes(self) -> float:
@@ -85,8 +115,8 @@ class Effort:
 def expected_effort(scene: Scene) -> Effort:
     """Estimate what an analysis takes from the number of its contacts and their cells.
 
-    Nothing is computed but the gears. The time is that of one processor without kept models of teeth, within a factor
-    of one and a half of that of the scenes of ``docs/studies/how_long.md``; contacts that end at reliefs or lie askew
+    Nothing is computed but the gears. The time is that of an analysis by as many jobs as are allowed, without kept
+    models of teeth; contacts that end at reliefs or lie askew
     may need many more cells for an accuracy beyond 1e-2 than assumed. The memory is right within one and a half where
     ``analysis.cells`` is given.
 
@@ -112,17 +142,27 @@ def expected_effort(scene: Scene) -> Effort:
         seconds *= 0.7 + cells / USUAL_CELLS
     seconds += START_SECONDS
     memory = PROGRAMME_BYTES + cells * (BYTES_PER_CELL + contacts * KEPT_BYTES_PER_CELL)
-    at_once = jobs()
+    teeth, roots, at_once = tuple[float, ...](), tuple[float, ...](), jobs()
     if wanted.root_stress or wanted.teeth_bend:
         layers = _layers(scene)
         if wanted.teeth_bend:
-            seconds, memory = seconds + TEETH_SECONDS * sum(layers) ** TEETH_EXPONENT, memory + TEETH_BYTES
+            whole = TEETH_SECONDS * sum(layers) ** TEETH_EXPONENT
+            teeth, memory = tuple(whole * some / sum(layers) for some in layers), memory + TEETH_BYTES
         if wanted.root_stress:
-            seconds += ROOT_SECONDS * sum(layers)
+            roots = tuple(ROOT_SECONDS * some for some in layers)
             one_by_one, together = (memory + ROOT_BYTES * some for some in (max(layers), sum(layers)))
             at_once = at_once if together <= MOST_OF_MEMORY * machine_memory() else 1
             memory = one_by_one if at_once == 1 else together
-    return Effort(contacts, cells, seconds, memory, certain=wanted.cells is not None, jobs=at_once)
+    return Effort(contacts, cells, seconds, teeth, roots, memory, certain=wanted.cells is not None, jobs=at_once)
+
+
+def expected_run_effort(scene: Scene) -> Effort:
+    """Estimate what the command ``run`` takes: as :func:`expected_effort`, with imports, files and pictures."""
+    wanted, torques = scene.analysis, len(scene.torques)
+    shared = OF_SHARED if wanted.load_sharing and wanted.positions > 1 else 0
+    pictures = OF_ALL + shared + (2 + (torques > 1) if wanted.root_stress else 0)
+    around = IMPORT_SECONDS + FILES_SECONDS + PICTURE_SECONDS * pictures
+    return replace(expected_effort(scene), around=around)
 
 
 def _layers(scene: Scene) -> list[int]:

@@ -54,9 +54,8 @@ def expected_revolution_effort(scene: Scene) -> Effort:
         expected_effort(scene.with_changes({"analysis.positions": count, "analysis.load_sharing": True}))
         for count in (1, max(2, some))
     )
-    of_state = (part.seconds - first.seconds) / (max(2, some) - 1)
-    seconds = first.seconds + of_state * (states - 1)
-    return Effort(2 * states * torques, part.cells, seconds, part.memory, certain=part.certain)
+    of_state = (part.states - first.states) / (max(2, some) - 1)
+    return replace(part, contacts=2 * states * torques, states=first.states + of_state * (states - 1))
 
 
 @checked

@@ -26,7 +26,6 @@ from queue import SimpleQueue
 from typing import Any, TypeVar
 
 from loaded_tca.errors import InputError, LoadedTCAError, give_accuracy_warning, noted_accuracy_warnings
-from loaded_tca.input_files import whole_in
 
 Part = TypeVar("Part")
 Result = TypeVar("Result")
@@ -101,12 +100,15 @@ def jobs() -> int:
 
 def _jobs_of_environment() -> int | None:
     """What ``LOADED_TCA_JOBS`` asks for; None: nothing."""
-    text = os.environ.get(JOBS, "").strip()
+    if not (text := os.environ.get(JOBS, "").strip()):
+        return None
+    from loaded_tca.input_files import whole_in  # the contact solver by itself reads no files
+
     try:
-        count = whole_in(text) if text else None
+        count = whole_in(text)
     except ValueError:
         count = 0
-    if count is not None and count < 1:
+    if count < 1:
         raise InputError(f"{JOBS}: {text!r:.60}: {ALLOWED_JOBS}")
     return count
 

@@ -35,6 +35,7 @@ from loaded_tca.errors import (
 from loaded_tca.scene import read_scene
 from loaded_tca.threads import (
     JOBS,
+    NotWantedError,
     allowed_threads,
     jobs,
     leave_if_not_wanted,
@@ -309,19 +310,22 @@ def test_error_of_works_is_the_first_in_their_order(two_jobs, count):  # noqa: A
     assert done == ["first"]
 
 
+def to_its_end():
+    """A work of some seconds, which nobody may wait for."""
+    for _ in range(3000):
+        leave_if_not_wanted()
+        time.sleep(0.001)
+    pytest.fail("has gone on though it was not wanted")
+
+
 def test_error_of_a_work_ends_those_behind_it(two_jobs):  # noqa: ARG001
     """The caller does not go on with states where a model of a gear has failed."""
-
-    def endless():
-        while True:
-            leave_if_not_wanted()
-            time.sleep(0.001)
 
     def fails():
         raise InputError("the bore reaches the teeth")
 
     with pytest.raises(InputError, match="bore"):
-        side_by_side(fails, endless)
+        side_by_side(fails, to_its_end)
 
 
 @pytest.mark.parametrize("stop", [KeyboardInterrupt, TimeoutError])
@@ -329,21 +333,20 @@ def test_interrupt_ends_works_at_their_next_step(two_jobs, stop):  # noqa: ARG00
     """An exception out of a signal, which meets the caller; the helper is amidst a long work, and another one waits."""
     begun, ended, done = Event(), Event(), []
 
-    def endless():
+    def long():
         begun.set()
         try:
-            while True:
-                leave_if_not_wanted()
-                time.sleep(0.001)
-        finally:
+            to_its_end()
+        except NotWantedError:
             ended.set()
+            raise
 
     def interrupted():
         assert begun.wait(60.0)
         raise stop
 
     with pytest.raises(stop):
-        side_by_side(endless, lambda: done.append("waiting"), interrupted)
+        side_by_side(long, lambda: done.append("waiting"), interrupted)
     assert ended.is_set()
     assert not done
     assert allowed_threads(2) == 2
@@ -377,13 +380,8 @@ def test_fault_of_a_helper_is_raised_by_the_caller_at_once(two_jobs):  # noqa: A
     def fails():
         raise MemoryError
 
-    def endless():
-        while True:
-            leave_if_not_wanted()
-            time.sleep(0.001)
-
     with pytest.raises(MemoryError):
-        side_by_side(fails, endless)
+        side_by_side(fails, to_its_end)
 
 
 LATE = """

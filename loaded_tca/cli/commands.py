@@ -85,13 +85,13 @@ def run(options: argparse.Namespace) -> None:
 def _run_scene(scene: Scene, directory: Path) -> None:
     """Analyse a scene, write everything into a directory, and show the summary; what is of an old result goes."""
     from loaded_tca.analysis import analyse
-    from loaded_tca.effort import expected_effort
+    from loaded_tca.effort import expected_run_effort
     from loaded_tca.output.result_files import write_report
     from loaded_tca.plots import plot_all
 
     torques, positions = len(scene.torques), scene.analysis.positions
     count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
-    with progress_bar(expected_effort(scene), count, torques * positions) as progress:
+    with progress_bar(expected_run_effort(scene), count, torques * positions) as progress:
         result = analyse(scene, progress=progress)
     report = write_report(result, directory, outdated=outdated_files(directory))
     remove_empty_parts(directory)

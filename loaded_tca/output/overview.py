@@ -12,7 +12,7 @@ from itertools import chain
 import numpy as np
 
 from loaded_tca.arrays import GEARS
-from loaded_tca.effort import expected_effort
+from loaded_tca.effort import expected_run_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
@@ -52,7 +52,7 @@ def describe_scene(scene: Scene) -> str:
         sections = scene_sections(scene)
         for sentence in questions(scene):
             give_accuracy_warning(sentence)
-    effort = expected_effort(scene)
+    effort = expected_run_effort(scene)
     spent = ("analysis, roughly: time [s], memory [GiB]", plain(effort.seconds, 2), plain(effort.gibibytes, 2))
     rows = [*chain.from_iterable(sections.values()), spent]
     lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -159,7 +160,9 @@ def expected_stage_effort(stage: Stage) -> Effort:
     return replace(
         first,
         contacts=first.contacts + second.contacts,
-        seconds=first.seconds + second.seconds,
+        states=first.states + second.states,
+        teeth=tuple(map(sum, zip_longest(first.teeth, second.teeth, fillvalue=0.0))),
+        roots=tuple(map(sum, zip_longest(first.roots, second.roots, fillvalue=0.0))),
         memory=max(first.memory, second.memory),
     )
 
