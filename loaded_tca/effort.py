@@ -24,7 +24,7 @@ SUPPORT_STATES = 6
 """States of a torque that take as long as the way to where supports let the gears stand; of linear bearings."""
 TEETH_SECONDS, TEETH_EXPONENT, TEETH_BYTES = 7.5e-3, 1.5, 400e6
 """Of the finite element models of both gears: the time for the layers of elements across both faces."""
-ROOT_SECONDS, ROOT_BYTES = 0.12, 39e6
+ROOT_SECONDS, ROOT_BYTES = 0.23, 39e6
 """Of a model of root stress for each layer of elements across the face, of which wide faces have more; measured with 6
 to 24 layers: the memory is within a quarter of what the model itself tells, the time within a factor of two."""
 PROGRAMME_BYTES, KEPT_BYTES_PER_CELL = 150e6, 150.0
