@@ -343,8 +343,7 @@ class _Plan:
         if not step.halves:
             whole = _assembled(step.dofs, matrices[self.kinds[step.elements]], step.order)
             return whole[:, :count].copy(), whole[count:, count:].copy()
-        columns, rest = np.zeros((size, count), matrices.dtype), np.empty((size - count,) * 2, matrices.dtype)
-        rest.fill(0.0)
+        columns, rest = np.zeros((size, count), matrices.dtype), np.zeros((size - count,) * 2, matrices.dtype)
         place = np.empty(step.size, dtype=int)
         place[step.order] = np.arange(size)
         for number, here in step.halves:
