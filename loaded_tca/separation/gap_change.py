@@ -124,8 +124,8 @@ class ContactChanges:
 
         ``gaps`` (keys, n) grow by the keys on grids that stay; ``shifts`` (keys, contacts, 2) of the contact points are
         the motions along which gaps do not change; ``scales`` (contacts, 2) are the widths of cells. Also the quadratic
-        forms (contacts, 3, 3), in those and turns, of what other motions cost: where edges hold contact points, by which
-        gaps change more, so that grids go along the edges with the gap.
+        forms (contacts, 3, 3), in those and turns, of what other motions cost: where edges hold contact points, that by
+        which gaps change more, so that grids go along the edges with the gap.
         """
         open_to = np.tile(np.eye(MOTIONS), (len(scales), 1, 1))
         if not self.contact.size:
