@@ -124,7 +124,8 @@ class ContactChanges:
 
         ``gaps`` (keys, n) grow by the keys on grids that stay; ``shifts`` (keys, contacts, 2) of the contact points are
         the motions along which gaps do not change; ``scales`` (contacts, 2) are the widths of cells. Also the quadratic
-        forms (contacts, 3, 3) by which gaps change more with other motions of their grids, in those and turns.
+        forms (contacts, 3, 3), in those and turns, of what other motions cost: where edges hold contact points, that by
+        which gaps change more, so that grids go along the edges with the gap.
         """
         open_to = np.tile(np.eye(MOTIONS), (len(scales), 1, 1))
         if not self.contact.size:
@@ -142,7 +143,8 @@ class ContactChanges:
         size = np.trace(matrix, axis1=1, axis2=2)[:, None]
         little = np.where(size > 0.0, LITTLE_BY_MOTION * size, 1.0)  # a single cell has no gap to go with
         matrix = matrix + little[..., None] * np.eye(2)
-        open_to[:, :2, :2] = matrix / np.where(size > 0.0, size, 1.0)[..., None]
+        forms, on_edges = matrix / np.where(size > 0.0, size, 1.0)[..., None], self.at_points.held
+        open_to[on_edges, :2, :2] = forms[on_edges]  # others give way to edges by as few cells as possible
         solved, motions = np.linalg.inv(matrix), np.zeros(shifts.shape)
         for key, growth in enumerate(gaps):
             wanted = little * shifts[key] / scales - means(slopes * growth[:, None])
