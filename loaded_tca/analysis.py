@@ -21,9 +21,10 @@ from loaded_tca.loaded.standing import GearsUnderTorques, StandingCycle, all_tor
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import Place, mesh_cycle
+from loaded_tca.results.gear_warnings import warn_of_gears
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.supports import warn_of_supports
-from loaded_tca.results.warnings import warn_of_accuracy, warn_of_gears
+from loaded_tca.results.warnings import warn_of_accuracy
 from loaded_tca.scene import Scene
 from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread

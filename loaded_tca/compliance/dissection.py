@@ -18,9 +18,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import cholesky, solve_triangular
-from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.checks import machine_memory
@@ -78,7 +77,7 @@ class Factorisation:
         _substitute(self.fronts, self.fronts, displacements)
         return displacements
 
-    def flexibility(self, loads: csr_array, readings: csr_array) -> Array:
+    def flexibility(self, loads: scipy.sparse.csr_array, readings: scipy.sparse.csr_array) -> Array:
         """Values (p, m) of readings (p, size) of the displacements under loads (m, size), neither on a held unknown.
 
         Only fronts between a load or a reading and the end of the elimination are passed.
@@ -99,7 +98,7 @@ class Factorisation:
             result[:, first : first + step] = readings[:, active] @ values
         return result
 
-    def _reached(self, rows: csr_array) -> Flags:
+    def _reached(self, rows: scipy.sparse.csr_array) -> Flags:
         """Unknowns (size,) that an elimination reaches from those in the rows of a sparse matrix."""
         reached = np.zeros(self.size, dtype=bool)
         reached[rows.indices] = True
@@ -113,12 +112,16 @@ def _substitute(down: Sequence[_Front], up: Sequence[_Front], displacements: Arr
     """Forward and backward substitution through fronts in the order of elimination, in place."""
     with one_blas_thread():  # the fronts are small: threads waiting for each other cost far more
         for front in down:
-            part = solve_triangular(front.factor, displacements[front.inside], lower=True, check_finite=False)
+            part = scipy.linalg.solve_triangular(
+                front.factor, displacements[front.inside], lower=True, check_finite=False
+            )
             displacements[front.inside] = part
             displacements[front.beside] -= front.coupling @ part
         for front in reversed(up):
             part = displacements[front.inside] - front.coupling.T @ displacements[front.beside]
-            displacements[front.inside] = solve_triangular(front.factor, part, lower=True, trans=1, check_finite=False)
+            displacements[front.inside] = scipy.linalg.solve_triangular(
+                front.factor, part, lower=True, trans=1, check_finite=False
+            )
 
 
 def factorise(
@@ -335,12 +338,12 @@ def _eliminated(matrix: Array, count: int) -> tuple[Array, Array, Array]:
         nothing = np.empty((len(matrix), 0), matrix.dtype)
         return nothing[:0], nothing, np.pad(matrix, (0, 1))
     try:
-        factor = cholesky(matrix[:count, :count], lower=True, check_finite=False)
+        factor = scipy.linalg.cholesky(matrix[:count, :count], lower=True, check_finite=False)
     except np.linalg.LinAlgError:
         factor = None
     if factor is None or factor.diagonal().min() ** 2 <= LEAST_PIVOT * matrix.diagonal()[:count].max():
         raise GeometryError("the gear body is not held, or its mesh is damaged: no positive stiffness")
-    coupling = solve_triangular(factor, matrix[:count, count:], lower=True, check_finite=False).T
+    coupling = scipy.linalg.solve_triangular(factor, matrix[:count, count:], lower=True, check_finite=False).T
     rest = np.zeros((len(matrix) - count + 1,) * 2, matrix.dtype)
     np.subtract(matrix[count:, count:], coupling @ coupling.T, out=rest[:-1, :-1])
     return factor, coupling, rest

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from scipy.ndimage import binary_dilation
+import scipy
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.flanks.base import EDGE_NAMES
@@ -72,4 +72,4 @@ def arcs_at(pair: GearPair, points: Array) -> Mask:
 def dilated(cells: Array | np.bool, steps: int = 1) -> Mask:
     """Some cells (nx, ny, ...) of a grid, and those so many steps away from one of them."""
     beside = np.ones((3, 3) + (1,) * (np.ndim(cells) - 2), dtype=bool)
-    return np.asarray(binary_dilation(np.asarray(cells), beside, steps))
+    return np.asarray(scipy.ndimage.binary_dilation(np.asarray(cells), beside, steps))

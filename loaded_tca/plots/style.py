@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
+import scipy
 from matplotlib import colormaps, rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -19,7 +20,6 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.image import imsave
-from scipy.ndimage import label
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, index_checks
@@ -141,7 +141,7 @@ def from_zero(axes: Axes, part: float = 1.0) -> None:
 def over_a_stretch(values: Array) -> Array:
     """Values (n,) that stand in a row of three or more, of fewer positions all of them; others NaN."""
     known = np.isfinite(values)
-    rows, _ = label(known)
+    rows, _ = scipy.ndimage.label(known)
     long = np.bincount(rows) >= min(SHORTEST_STRETCH, len(values))
     return np.where(known & long[rows], values, np.nan)
 

@@ -26,7 +26,7 @@ from loaded_tca.plots import (
 from loaded_tca.plots.flanks import CELLS_OF_SPIKES
 from loaded_tca.plots.style import over_a_stretch
 from loaded_tca.results.key_figures import ARCSEC
-from loaded_tca.results.stress_below import stress_below
+from loaded_tca.results.subsurface import stress_below
 from tests.refusals import refused_calls
 from tests.samples.pictures import told
 from tests.samples.results import PER_PAIR, PER_POSITION, changed, changed_scene, result, with_a_gap
