@@ -1842,6 +1842,20 @@ FAULTS = (
         "import scipy.optimize\n",
         "test_public_names.py::test_check_and_the_imports_of_run_load_no_heavy_library",
     ),
+    Fault(
+        "Pictures of antialiased lines in many colours are files of 700 kB",
+        "plots/style.py",
+        "return content if len(content) <= LARGEST_PICTURE else _png_content(_with_palette(pixels))",
+        "return content",
+        "plots/test_plots.py::test_picture_of_too_many_colours_has_a_palette_and_stays_white_and_small",
+    ),
+    Fault(
+        "The white of pictures with a palette is grey",
+        "plots/style.py",
+        "picture.putpalette((palette | (palette >> 6)).tolist())",
+        "picture.putpalette(palette.tolist())",
+        "plots/test_plots.py::test_picture_of_too_many_colours_has_a_palette_and_stays_white_and_small",
+    ),
 )
 
 
