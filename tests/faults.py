@@ -1856,6 +1856,13 @@ FAULTS = (
         "picture.putpalette(palette.tolist())",
         "plots/test_plots.py::test_picture_of_too_many_colours_has_a_palette_and_stays_white_and_small",
     ),
+    Fault(
+        "The dataset of a study makes an array as long as the study for each row and figure",
+        "studies/rows.py",
+        "            if name not in arrays:",
+        "            if np.full((count, torques), np.nan) is not None and name not in arrays:",
+        "studies/test_rows.py::test_dataset_has_one_array_for_each_figure_however_many_rows",
+    ),
 )
 
 
