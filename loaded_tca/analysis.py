@@ -24,9 +24,10 @@ from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import Place, mesh_cycle
+from loaded_tca.results.gear_warnings import warn_of_gears
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.supports import warn_of_supports
-from loaded_tca.results.warnings import warn_of_accuracy, warn_of_gears
+from loaded_tca.results.warnings import warn_of_accuracy
 from loaded_tca.scene import Scene
 from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread, side_by_side, with_jobs

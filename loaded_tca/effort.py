@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from loaded_tca.compliance import default_density
-from loaded_tca.contact.adaptive import MOST_CELLS
-from loaded_tca.contact.checks import BYTES_PER_CELL, machine_memory
+from loaded_tca.contact.checks import BYTES_PER_CELL, MOST_CELLS, machine_memory
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.machine_speed import machine_speed
 from loaded_tca.plain import plain
-from loaded_tca.scene import Scene
 from loaded_tca.threads import jobs
+
+if TYPE_CHECKING:
+    from loaded_tca.scene import Scene
 
 START_SECONDS, STATE_SECONDS, SHARED_SECONDS, SHARED_EXPONENT = 0.4, 0.015, 2.2e-3, 3.2
 """Of the first analysis of a process; of each position under each torque where teeth bend, and how that grows with the

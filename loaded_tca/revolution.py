@@ -27,11 +27,12 @@ from loaded_tca.loaded.standing import POSITIONS, GearsUnderTorques, Standing, p
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import Place, numbers_and_maps
+from loaded_tca.results.gear_warnings import warn_of_gears
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.revolution import OF_TEETH, Revolution, open_turns
 from loaded_tca.results.root_stress import root_stress_of_gear
 from loaded_tca.results.supports import support_arrays, warn_of_supports
-from loaded_tca.results.warnings import at_places, place_of, reasons_of, rotation_reasons, warn_of_gears
+from loaded_tca.results.warnings import at_places, place_of, reasons_of, rotation_reasons
 from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 from loaded_tca.supports import support_compliance

@@ -1112,7 +1112,7 @@ FAULTS = (
     ),
     Fault(
         "stresses below: their largest lies on the other side of the contact point",
-        "results/stress_below.py",
+        "results/subsurface.py",
         "+ one.y[along] * one.axes[1]\n",
         "- one.y[along] * one.axes[1]\n",
         "results/test_stress_below.py::test_stress_beside_a_spike_is_that_across_the_contact_point",
@@ -1189,7 +1189,7 @@ FAULTS = (
     ),
     Fault(
         "a tip clearance of zero gives no warning",
-        "results/warnings.py",
+        "results/gear_warnings.py",
         "if clearance < LEAST_CLEARANCE",
         "if 0.0 < clearance < LEAST_CLEARANCE",
         "results/test_gear_warnings.py::test_tip_that_comes_near_to_a_root_is_warned_of",
@@ -1851,7 +1851,7 @@ FAULTS = (
     ),
     Fault(
         "stresses below a line are those below an ellipse",
-        "results/stress_below.py",
+        "results/subsurface.py",
         "if over_mean < 1.25:",
         "if result.paths[self.column].on_line[self.position]:",
         "results/test_stress_below.py::test_unloaded_contact_decides_nothing",
@@ -1939,6 +1939,34 @@ FAULTS = (
         "{versions} {machine}",
         "{versions}",
         "test_effort.py::test_speed_is_measured_once_on_a_machine",
+    ),
+    Fault(
+        "Checking a scene loads all of SciPy's optimisation",
+        "gears/ring.py",
+        "import scipy\n",
+        "import scipy.optimize\n",
+        "test_public_names.py::test_check_and_the_imports_of_run_load_no_heavy_library",
+    ),
+    Fault(
+        "Pictures of antialiased lines in many colours are files of 700 kB",
+        "plots/style.py",
+        "return content if len(content) <= LARGEST_PICTURE else _png_content(_with_palette(pixels))",
+        "return content",
+        "plots/test_plots.py::test_picture_of_too_many_colours_has_a_palette_and_stays_white_and_small",
+    ),
+    Fault(
+        "The white of pictures with a palette is grey",
+        "plots/style.py",
+        "picture.putpalette((palette | (palette >> 6)).tolist())",
+        "picture.putpalette(palette.tolist())",
+        "plots/test_plots.py::test_picture_of_too_many_colours_has_a_palette_and_stays_white_and_small",
+    ),
+    Fault(
+        "The dataset of a study makes an array as long as the study for each row and figure",
+        "studies/rows.py",
+        "            if name not in arrays:",
+        "            if np.full((count, torques), np.nan) is not None and name not in arrays:",
+        "studies/test_rows.py::test_dataset_has_one_array_for_each_figure_however_many_rows",
     ),
 )
 

@@ -67,6 +67,25 @@ def test_reading_a_scene_loads_no_analysis():
     assert not {"matplotlib", "pyfftw", "xarray", "skfem"} & loaded
 
 
+def test_check_and_the_imports_of_run_load_no_heavy_library():
+    """SciPy's parts, xarray with pandas, and finite elements come where they are used; pictures with run."""
+    script = """
+import io, sys
+from contextlib import redirect_stdout
+from loaded_tca.cli import main
+with redirect_stdout(io.StringIO()):
+    assert main(["check", "examples/scenes/mesh_cycle_helical.toml"]) == 0
+checked = set(sys.modules)
+import loaded_tca.analysis, loaded_tca.output.result_files, loaded_tca.plots
+sys.modules.update({f"after check: {name}": sys for name in checked})
+"""
+    loaded = modules_after(script)
+    parts = ("fft", "fftpack", "interpolate", "linalg", "ndimage", "optimize", "sparse", "spatial", "special", "stats")
+    heavy = {"dask", "matplotlib.pyplot", "pandas", "skfem", "xarray", *(f"scipy.{part}" for part in parts)}
+    assert not heavy & loaded
+    assert "after check: matplotlib" not in loaded
+
+
 @pytest.mark.thorough
 def test_folders_are_attributes_of_the_package():
     modules_after("import loaded_tca; loaded_tca.unloaded.trace_teeth; loaded_tca.reference.hertz.point_contact")

@@ -38,8 +38,8 @@ from collections.abc import Callable
 from dataclasses import astuple, dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
@@ -383,7 +383,9 @@ class BidirectionalStart:
                 f"{GEAR_NAMES[member]}: no start on its generating line at the centre of roll: {missed.format(least)}"
             )
         first = changes[np.argmin(np.abs(changes + 0.5 - 0.5 * (SAMPLES - 1)))]
-        root = brentq(lambda x: float(excess(np.array([x]))[0]), azimuths[first], azimuths[first + 1], xtol=ROUNDING)
+        root = scipy.optimize.brentq(
+            lambda x: float(excess(np.array([x]))[0]), azimuths[first], azimuths[first + 1], xtol=ROUNDING
+        )
         return float(root)
 
 

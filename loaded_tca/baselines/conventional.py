@@ -26,8 +26,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import root
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices, Mask, numbers
@@ -177,7 +177,9 @@ def solve_with_scipy_root(
                 values, jacobian = contact_equations(pair, here, (guess * scale)[None], normal_components)
                 return values[0], jacobian[0] * scale
 
-            answer = root(equations, unknowns[row] / scale, jac=True, method="hybr", options={"xtol": 1e-14})
+            answer = scipy.optimize.root(
+                equations, unknowns[row] / scale, jac=True, method="hybr", options={"xtol": 1e-14}
+            )
             evaluations[row] = answer.nfev
             if _near(pair, (answer.x * scale)[None])[0]:
                 unknowns[row] = answer.x * scale

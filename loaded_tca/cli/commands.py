@@ -212,7 +212,7 @@ def subsurface(options: argparse.Namespace) -> None:
     """Write the stresses below a pressure map, and pictures of them."""
     from loaded_tca.output.tables import write_subsurface
     from loaded_tca.plots import plot_stress_below, png_of
-    from loaded_tca.results.stress_below import NAMES, stress_below
+    from loaded_tca.results.subsurface import NAMES, stress_below
 
     result, directory, torque, position = result_of(options)
     below = stress_below(result, torque, position, options.pair, gear=options.gear)
@@ -426,10 +426,16 @@ def report(options: argparse.Namespace) -> None:
 
 def check(options: argparse.Namespace) -> None:
     """Show the geometry of a scene or of a stage."""
-    from loaded_tca.output.overview import describe_scene, describe_stage
     from loaded_tca.stages.files import is_stage_file
 
-    print(describe_stage(stage_of(options)) if is_stage_file(options.scene) else describe_scene(scene_of(options)))
+    if is_stage_file(options.scene):
+        from loaded_tca.output.stage_overview import describe_stage
+
+        print(describe_stage(stage_of(options)))
+    else:
+        from loaded_tca.output.overview import describe_scene
+
+        print(describe_scene(scene_of(options)))
 
 
 def import_model(options: argparse.Namespace) -> None:

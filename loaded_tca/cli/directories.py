@@ -60,7 +60,7 @@ def names_of_result() -> set[str]:
     from loaded_tca.plots import MORE_PICTURES, PICTURES
     from loaded_tca.plots.sensitivities import SENSITIVITY_PICTURES
     from loaded_tca.plots.tribology import TRIBOLOGY_PICTURES
-    from loaded_tca.results.stress_below import NAMES
+    from loaded_tca.results.subsurface import NAMES
 
     tables = *(path.name for path in tables_at(Path(DYNAMICS))), SENSITIVITY_DATA, SENSITIVITIES
     pictures = *PICTURES, *MORE_PICTURES, *SENSITIVITY_PICTURES, *TRIBOLOGY_PICTURES

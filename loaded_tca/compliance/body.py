@@ -14,12 +14,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize.elementwise import bracket_root, find_root
-from scipy.sparse import csr_array
+import scipy
 
-from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.dissection import Factorisation, factorise
 from loaded_tca.compliance.finite_elements import Discretisation, discretise, node_offsets
 from loaded_tca.compliance.geometry import BodyNodes, body_nodes, cuts_at_bore, rim_growth
@@ -27,10 +26,13 @@ from loaded_tca.compliance.layout import MeshDensity, RingLayout
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.material import Material
-from loaded_tca.pairs.gear import Gear
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.tooth.surface import Resolution, build_tooth
+
+if TYPE_CHECKING:
+    from loaded_tca.arrays import Array, Indices
+    from loaded_tca.pairs.gear import Gear
+    from loaded_tca.pairs.gear_pair import GearPair
 
 FIRST_CHORD = 0.25
 """First guess of the distance from a flank to the middle of the tooth, over the height of the flank."""
@@ -75,12 +77,12 @@ class SurfacePlaces:
     nodes: Indices
     shares: Array
 
-    def along(self, directions: Array, nodes: int) -> csr_array:
+    def along(self, directions: Array, nodes: int) -> scipy.sparse.csr_array:
         """Displacements along directions (m, 3) as a matrix (m, 3 nodes); its rows are unit forces along them."""
         values = self.shares[..., None] * directions[:, None]
         columns = 3 * self.nodes[..., None] + np.arange(3)
         starts = np.arange(len(directions) + 1) * values[0].size
-        return csr_array((values.ravel(), columns.ravel(), starts), shape=(len(directions), 3 * nodes))
+        return scipy.sparse.csr_array((values.ravel(), columns.ravel(), starts), shape=(len(directions), 3 * nodes))
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,6 +188,8 @@ class ToothFrame:
 
     def _depth(self, point: Array, normal: Array, scale: float) -> Array:
         """Distances (m,) along the normals to the middle of the tooth [mm]."""
+        from scipy.optimize.elementwise import bracket_root, find_root
+
         rows = self._flank_rows()
         middle = self.nodes.angle[self._column(0.5), (rows.start + rows.stop) // 2]  # half way up the flank
 

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
+from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import body_torsion
 from loaded_tca.compliance.flexibility import MOST_IN_MEMORY
 from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
@@ -22,11 +21,16 @@ from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, 
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
-from loaded_tca.pairs.gear import Gear
-from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.threads import side_by_side
-from loaded_tca.tooth.families import ToothGeometry
 from loaded_tca.tooth.surface import Resolution, build_tooth
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from loaded_tca.arrays import Array
+    from loaded_tca.pairs.gear import Gear
+    from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+    from loaded_tca.tooth.families import ToothGeometry
 
 LAYERS_PER_HEIGHT = 2.5
 """Layers of elements across a face as wide as the teeth are high; between the two numbers below."""

@@ -22,9 +22,8 @@ from dataclasses import dataclass, field
 from typing import Any, cast
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs
-from scipy.sparse import csr_array, vstack
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.checks import machine_memory
@@ -114,13 +113,13 @@ class Factorisation:
                 displacements[front.inside] = front.backward(below)
         return displacements
 
-    def flexibility(self, loads: csr_array, readings: csr_array) -> Array:
+    def flexibility(self, loads: scipy.sparse.csr_array, readings: scipy.sparse.csr_array) -> Array:
         """Values (p, m) of readings (p, size) of the displacements under loads (m, size).
 
         Loads and readings alike are divided by the Cholesky factor, and what is left of them inside each front
         multiplied: a front has to do with those alone that are inside it and below. Held unknowns do not move.
         """
-        columns = vstack([loads, readings]).T.tocsr()
+        columns = scipy.sparse.vstack([loads, readings]).T.tocsr()
         columns.sum_duplicates()
         result, split = np.zeros((readings.shape[0], loads.shape[0])), loads.shape[0]
         touched = np.diff(columns.indptr) > 0
@@ -439,7 +438,7 @@ def _eliminate(columns: Array, rest: Array) -> None:
     """Factorise the columns (n + m, n) of n unknowns, and subtract from the rest (m, m) what they take, in place."""
     count = columns.shape[1]
     least = LEAST_PIVOT * columns.diagonal().max(initial=0.0)
-    inverse = cast(Callable[..., Any], get_lapack_funcs("trtri", (columns,)))
+    inverse = cast(Callable[..., Any], scipy.linalg.get_lapack_funcs("trtri", (columns,)))
     for block in _blocks(count):
         below = columns[block.start :, block]
         below -= columns[block.start :, : block.start] @ columns[block, : block.start].T

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.sparse import csr_array
+import scipy
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import GeometryError
@@ -171,7 +171,7 @@ class Discretisation:
 
     def free_surface_stress(
         self, elements: Indices, places: Array, along: Indices, material: Material
-    ) -> tuple[Array, csr_array]:
+    ) -> tuple[Array, scipy.sparse.csr_array]:
         r"""Points on a free surface, and the stress there across the lengthwise lines, as rows of a matrix.
 
         .. math:: \sigma_t = \frac{E}{1 - \nu^2} (\varepsilon_t + \nu \varepsilon_l)
@@ -216,7 +216,9 @@ class Discretisation:
         own, which = np.unique(kinds, return_inverse=True)
         values = np.einsum("mi,mij->mj", stress.reshape(len(each), -1), self._to_own_nodes(own)[which])
         starts = np.arange(len(each) + 1) * k * d
-        rows = csr_array((values.ravel(), self.dofs[elements].ravel(), starts), shape=(len(each), self.points.size))
+        rows = scipy.sparse.csr_array(
+            (values.ravel(), self.dofs[elements].ravel(), starts), shape=(len(each), self.points.size)
+        )
         return np.einsum("mk,mkx->mx", shape, nodes), rows
 
 

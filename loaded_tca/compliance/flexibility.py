@@ -42,8 +42,8 @@ from threading import RLock
 from typing import TypeVar, cast
 
 import numpy as np
+import scipy
 from numpy.polynomial.chebyshev import chebpts2
-from scipy.sparse import vstack
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.body import FlankPlaces, ToothFrame, factorised, gear_body, gear_nodes
@@ -304,7 +304,7 @@ def tooth_flexibility(frame: ToothFrame) -> ToothFlexibility:
     number, size, near = mesh.number, len(mesh.points), frame.nodes.layout.neighbours
     forces = frame.on_flank(places, number).along(-places.normal, size)
     teeth = [frame.on_middle(places, tooth, number) for tooth in range(-near, near + 1)]
-    readings = vstack([middle.along(-places.normal, size) for middle in teeth], format="csr")
+    readings = scipy.sparse.vstack([middle.along(-places.normal, size) for middle in teeth], format="csr")
     displacement = factor.flexibility(forces, readings).reshape(len(teeth), len(places.height), -1)
     depth = places.depth.reshape(len(heights), len(lengths))
     return ToothFlexibility(heights, lengths, displacement, depth, *local_flexibility(frame.gear))

@@ -11,8 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.optimize.elementwise import find_root
+import scipy
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.layout import MeshDensity, RingLayout, SectorLayout
@@ -139,6 +138,8 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
     InputError
         If the sections are not those of the layout.
     """
+    from scipy.optimize.elementwise import find_root
+
     outline = tooth.outline
     wanted = 2 * layout.density.lengthwise + 1
     if outline.shape[1] != wanted:
@@ -256,7 +257,7 @@ def rim_growth(root: Array, bore: Array, density: MeshDensity, teeth: int) -> fl
     powers = np.arange(density.rim)
     if part * density.rim >= 1.0:
         return 1.0
-    growth = brentq(lambda growth: part * (growth**powers).sum() - 1.0, 1.0, MOST_GROWTH)
+    growth = scipy.optimize.brentq(lambda growth: part * (growth**powers).sum() - 1.0, 1.0, MOST_GROWTH)
     return round(growth, 6)  # equal gears have equal layouts
 
 

@@ -24,10 +24,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
+import scipy
 from numpy.polynomial.chebyshev import chebpts2, chebvander
-from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
-from scipy.sparse import csr_array, vstack
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices
@@ -247,7 +245,7 @@ class RootStress:
                 steps = np.linalg.norm(np.diff(self.table.point[side, :, k], axis=0), axis=1)
                 arc = np.append(0.0, np.cumsum(steps))
                 start = first_told(arc, self.table.tangent_angle[side, :, k], fillet)
-                shares[side, k] = CubicSpline(arc, np.eye(n))(np.linspace(start, arc[-1], STATIONS))
+                shares[side, k] = scipy.interpolate.CubicSpline(arc, np.eye(n))(np.linspace(start, arc[-1], STATIONS))
         return shares
 
     @cached_property
@@ -255,7 +253,7 @@ class RootStress:
         """Shares (p, m) of the places of the table along the face in all places along it."""
         known = self.table.along_face
         wanted = np.linspace(0.0, 1.0, PER_LAYER * self.frame.nodes.layout.density.lengthwise + 1)
-        return np.asarray(CubicSpline(known, np.eye(len(known)))(wanted))
+        return np.asarray(scipy.interpolate.CubicSpline(known, np.eye(len(known)))(wanted))
 
 
 def root_stress_model(gear: Gear, density: MeshDensity | None = None) -> RootStress:
@@ -306,7 +304,7 @@ def stress_density(gear: Gear) -> MeshDensity:
         return density
     powers = np.arange(DENSITY.through // 2)
     thinner = (DENSITY.grading**powers).sum() * DENSITY.skin / skin  # half the tooth over its outermost layer
-    grading = brentq(lambda grading: (grading**powers).sum() - thinner, 1.0, LARGEST_GRADING)
+    grading = scipy.optimize.brentq(lambda grading: (grading**powers).sum() - thinner, 1.0, LARGEST_GRADING)
     return replace(density, skin=skin, grading=round(grading, 6))
 
 
@@ -379,8 +377,8 @@ def root_influence(frame: ToothFrame, *, single: bool = True) -> RootInfluence:
     along_face = frame.face_parts[read_planes(frame.nodes.layout.density.lengthwise)]
     sides = [surface_places(mesh, frame.nodes, side, frame.gear.material) for side in (frame.side, -frame.side)]
     point, angle = np.stack([side[0] for side in sides]), np.stack([side[2] for side in sides])
-    readings = vstack([rows for _, rows, _ in sides], format="csr")
-    stress = factor.flexibility(vstack(loads, format="csr"), readings)
+    readings = scipy.sparse.vstack([rows for _, rows, _ in sides], format="csr")
+    stress = factor.flexibility(scipy.sparse.vstack(loads, format="csr"), readings)
     stress = stress.reshape(2, len(along_face), -1, stress.shape[1]).swapaxes(1, 2)
     split = len(own.height)
     beside = stress[..., split:].reshape(*stress.shape[:-1], 2 * near, -1)
@@ -405,7 +403,7 @@ def read_planes(layers: int) -> Indices:
 
 def surface_places(
     mesh: Discretisation, nodes: BodyNodes, side: int, material: Material
-) -> tuple[Array, csr_array, Array]:
+) -> tuple[Array, scipy.sparse.csr_array, Array]:
     """Places where the stress of one side of tooth 0 is read: from the end of its flank to the middle of the space.
 
     Returns

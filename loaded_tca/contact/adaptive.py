@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, count_problems, numbers, real
+from loaded_tca.contact.checks import MOST_CELLS
 from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution
@@ -24,7 +25,6 @@ Request = TypeVar("Request")
 
 # The residual of the iteration is kept this far below the accuracy, so that the grid alone limits it.
 TOLERANCE_SHARE = 1e-2
-MOST_CELLS = 1024
 # Where a border bounds the contact, or a slope jumps in it, its pressure grows with the grid without end; where the
 # curvature of the gap jumps each further bit of its peak costs four times the cells of the one before.
 MOST_CELLS_FOR_FIRST_ORDER = 64

@@ -137,6 +137,8 @@ def raise_if(problems: list[str]) -> None:
 
 # Bytes at the peak of a solve for every cell of the grid: transforms of the doubled box in double precision, its
 # kernel, and the fields. Measured: 200 to 260 on 512 x 512 and 1024 x 1024 cells; the rest is reserve.
+MOST_CELLS = 1024
+"""Along a side of a grid, beyond which an accuracy refines no further."""
 BYTES_PER_CELL = 400
 
 

@@ -14,15 +14,15 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.fft import dctn
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.lazy import hidden
 from loaded_tca.threads import allowed_threads, shared
 
-with hidden("dask.array.fft"):  # for interfaces that nobody here uses, it would take longer to import than all else
+with hidden("dask.array.fft"), hidden("scipy.fftpack"):  # of interfaces that nobody here uses; they take far longer
     import pyfftw
 
 Window = tuple[slice, slice]
@@ -391,7 +391,7 @@ def _kernels(kind: str, box: tuple[int, int], aspects: ArrayLike, dtype: str) ->
 def _love_kernels(box: tuple[int, int], aspects: Sequence[float]) -> Array:
     """Transform of Love's coefficients wrapped into the box, over its points, as :func:`_kernels` has it."""
     quadrant = (box[0] // 2 + 1, box[1] // 2 + 1)
-    symbol = dctn(influence_coefficients(quadrant, np.array(aspects)), type=1, axes=(1, 2), overwrite_x=True)
+    symbol = scipy.fft.dctn(influence_coefficients(quadrant, np.array(aspects)), type=1, axes=(1, 2), overwrite_x=True)
     symbol /= box[0] * box[1]
     half = np.empty((len(symbol), quadrant[1], box[0]))  # rows of it contiguous, other than those of the transform
     half[:, :, : quadrant[0]] = symbol.transpose(0, 2, 1)

@@ -25,8 +25,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.fft import dct, irfft, rfft
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices, numbers
@@ -203,7 +203,7 @@ class Kernel:
             mirrored, nearest = self._mirrored(edge)
             image = column_coefficients(reach + 1, self.spacing, self.borders, mirrored, far=self.far)
             coefficients += edge.factor * image[:, nearest[:, None], nearest]
-        return np.asarray(dct(coefficients, type=1, axis=0, overwrite_x=True))
+        return np.asarray(scipy.fft.dct(coefficients, type=1, axis=0, overwrite_x=True))
 
     @cached_property
     def levels(self) -> list[Array]:
@@ -216,7 +216,7 @@ class Kernel:
             mirrored, nearest = self._mirrored(edge)
             k = int(nearest[np.abs(middles - reference).argmin()])
             own = column_coefficients(reach + 1, self.spacing, self.borders[k : k + 2], mirrored[k : k + 1])
-            levels.append(edge.factor * dct(own, type=1, axis=0))
+            levels.append(edge.factor * scipy.fft.dct(own, type=1, axis=0))
         return levels
 
     def _mirrored(self, edge: FreeEdge) -> tuple[Array, Indices]:
@@ -401,9 +401,9 @@ def _filtered(values: Array, symbol: Array, length: int | None = None) -> Array:
         forward, backward = _waves(rows, length, symbol.dtype.str)
         spectrum = (forward @ values).reshape(len(symbol), 2, -1)
         return np.asarray(backward @ np.matmul(spectrum, symbol.swapaxes(1, 2)).reshape(2 * len(symbol), -1))
-    spectrum = np.ascontiguousarray(rfft(values, length, axis=0))
+    spectrum = np.ascontiguousarray(scipy.fft.rfft(values, length, axis=0))
     product = np.matmul(symbol, spectrum.view(symbol.dtype).reshape(*spectrum.shape, 2))
-    moved = irfft(product.view(spectrum.dtype)[..., 0], length, axis=0, overwrite_x=True)
+    moved = scipy.fft.irfft(product.view(spectrum.dtype)[..., 0], length, axis=0, overwrite_x=True)
     return np.asarray(moved[:rows])
 
 

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.fft import irfft2, next_fast_len, rfft2
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
@@ -162,16 +162,19 @@ def subsurface_stress(
     pressure, depths = np.asarray(pressure, dtype=np.float64), np.asarray(depths, dtype=np.float64)
     checks.raise_if(_problems(pressure, spacing, depths, poisson_ratio))
     dx, dy = float(spacing[0]), float(spacing[1])
-    box = (next_fast_len(2 * pressure.shape[0], real=True), next_fast_len(2 * pressure.shape[1], real=True))
-    spectrum = rfft2(pressure, s=box)
+    box = (
+        scipy.fft.next_fast_len(2 * pressure.shape[0], real=True),
+        scipy.fft.next_fast_len(2 * pressure.shape[1], real=True),
+    )
+    spectrum = scipy.fft.rfft2(pressure, s=box)
     stresses = np.empty((len(_KERNELS), len(depths), *pressure.shape))
     for level, depth in enumerate(depths):
         x, y = ((np.arange(n + 1) - 0.5) * width for n, width in zip(pressure.shape, (dx, dy), strict=True))
         for component, (kernel, parity) in enumerate(_KERNELS):
             corners = kernel(x[:, None], y[None, :], float(depth), poisson_ratio)
             cells = np.diff(np.diff(corners, axis=0), axis=1) / (2.0 * math.pi)
-            product = rfft2(_wrapped(cells, parity, box)) * spectrum
-            stresses[component, level] = irfft2(product, s=box)[: pressure.shape[0], : pressure.shape[1]]
+            product = scipy.fft.rfft2(_wrapped(cells, parity, box)) * spectrum
+            stresses[component, level] = scipy.fft.irfft2(product, s=box)[: pressure.shape[0], : pressure.shape[1]]
     return SubsurfaceStress(depths, (dx, dy), poisson_ratio, *stresses)
 
 

@@ -24,7 +24,7 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+import scipy
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
@@ -407,7 +407,11 @@ class _ContactAlongEdge:
         self.along = float(self.turn[self.slice_axis, 1])
         """Way along the slices' axis per way along the contact."""
         coupling = loaded.coupling_deflection
-        self.coupling = None if coupling is None else make_interp_spline(grid.y, coupling, k=min(3, grid.y.size - 1))
+        self.coupling = (
+            None
+            if coupling is None
+            else scipy.interpolate.make_interp_spline(grid.y, coupling, k=min(3, grid.y.size - 1))
+        )
 
     @property
     def _lies_along(self) -> bool:

@@ -1,8 +1,15 @@
 """REXS, the open exchange format of gearbox data: files read into models, stages of models as scenes."""
 
-from loaded_tca.exchange.files import parse_rexs, read_rexs, with_attributes
-from loaded_tca.exchange.model import Attribute, Component, Model
-from loaded_tca.exchange.stage import ImportedStage, describe_stages, import_stage
+from typing import TYPE_CHECKING
+
+from loaded_tca.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from loaded_tca.exchange.files import parse_rexs, read_rexs, with_attributes
+    from loaded_tca.exchange.model import Attribute, Component, Model
+    from loaded_tca.exchange.stage import ImportedStage, describe_stages, import_stage
+else:
+    __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
     "Attribute",

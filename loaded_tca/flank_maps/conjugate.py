@@ -23,15 +23,15 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import map_coordinates
+import scipy
 
 from loaded_tca.arrays import GEARS, Array, Indices, Mask
 from loaded_tca.arrays import GearName as GearName
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.roots import find_roots
 from loaded_tca.unloaded.ease_off import EaseOff
-from loaded_tca.unloaded.search import find_roots
 
 SAMPLES = 16
 """Angles per pitch at which the lead of a point is sampled."""
@@ -267,7 +267,7 @@ def _rooms(pair: GearPair, u: Array, v: Array) -> tuple[Array, Array]:
 def _places(flank: Flank, u: Array, v: Array) -> tuple[Array, Array]:
     """(rho, z) at shares of the flank along the profile and lengthwise."""
     at = [part * (count - 1.0) for part, count in zip(np.broadcast_arrays(u, v), FINENESS, strict=True)]
-    rho, z = (map_coordinates(part, at, order=1, mode="nearest") for part in flank.grid(*FINENESS))
+    rho, z = (scipy.ndimage.map_coordinates(part, at, order=1, mode="nearest") for part in flank.grid(*FINENESS))
     return rho, z
 
 

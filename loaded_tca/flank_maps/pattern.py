@@ -27,10 +27,10 @@ from loaded_tca.arrays import Array, GearName, Indices, Mask
 from loaded_tca.errors import InputError
 from loaded_tca.flank_maps.conjugate import exchanged, problems_of_map
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.roots import find_roots
 from loaded_tca.unloaded.curvature import relative_curvature
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.path import ContactPoint, require_contact
-from loaded_tca.unloaded.search import find_roots
 from loaded_tca.unloaded.teeth import MeshPath, trace_teeth
 
 COMPOUND = 6.35e-3

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.ndimage import zoom
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, GearName, finite_row
@@ -149,7 +149,9 @@ def vh_check(
 def pattern_centre(pattern: ContactPattern, frame: FlankFrame) -> Array:
     """Centre of area (2,) [mm] of a contact pattern as a frame shows the flank; NaN if no point of its grid touches."""
     gap = np.minimum(pattern.gap, BEYOND * pattern.compound)
-    x, y, gap = (zoom(part, FINER, order=1) for part in (*frame.to_picture(pattern.radius, pattern.axial), gap))
+    x, y, gap = (
+        scipy.ndimage.zoom(part, FINER, order=1) for part in (*frame.to_picture(pattern.radius, pattern.axial), gap)
+    )
     (x_up, x_along), (y_up, y_along) = np.gradient(x), np.gradient(y)
     weight = (gap <= pattern.compound) * np.abs(x_along * y_up - x_up * y_along)
     weight[[0, -1]] *= 0.5

@@ -29,8 +29,7 @@ from dataclasses import dataclass, replace
 from math import atan, atan2, cos, hypot, pi, sin
 
 import numpy as np
-from scipy.linalg import null_space
-from scipy.optimize import root
+import scipy
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError, require
@@ -211,7 +210,7 @@ def _wheel(blank: HypoidBlank, generation: Generation, edge_radius: float) -> Fa
             ]
         )
 
-    solution = root(residuals, [coast, drive, gear.mean_slot_width, spiral], tol=1e-13)
+    solution = scipy.optimize.root(residuals, [coast, drive, gear.mean_slot_width, spiral], tol=1e-13)
     if np.abs(residuals(solution.x)).max() > MET:
         raise GeometryError(
             f"wheel: no blades give its angles and thickness at the calculation point: {solution.message}"
@@ -362,7 +361,7 @@ class _Pinion:
         for _ in range(MOST_STEPS):
             values, slopes = self.conditions(unknowns), self._slopes(unknowns) * moving
             step = -np.linalg.lstsq(slopes[:HARD], values[:HARD], rcond=None)[0]
-            free = null_space(slopes[:HARD])
+            free = scipy.linalg.null_space(slopes[:HARD])
             soft = np.vstack([weights[:, None] * slopes[HARD:], np.eye(EASY.size)])
             left = np.concatenate([weights * values[HARD:], (unknowns - self.start) / EASY]) + soft @ step
             step = (step - free @ np.linalg.lstsq(soft @ free, left, rcond=None)[0]) * moving

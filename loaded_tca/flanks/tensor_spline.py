@@ -21,10 +21,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import BSpline
-from scipy.linalg import solve_triangular
-from scipy.sparse import csr_array
-from scipy.sparse.linalg import LinearOperator, lsmr
+import scipy
 
 from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Bends, Jet
@@ -146,7 +143,7 @@ def _pieces(knots: Array, coefficients: Array, degree: int) -> tuple[Array, Arra
 
     The first and the last piece are the continuations, of degree two, about the first and the last break.
     """
-    breaks, spline = knots[degree : len(knots) - degree], BSpline(knots, coefficients, degree)
+    breaks, spline = knots[degree : len(knots) - degree], scipy.interpolate.BSpline(knots, coefficients, degree)
     local = np.stack([spline(breaks, nu=order) / math.factorial(order) for order in range(degree + 1)])
     before, after = local[:, :1].copy(), local[:, -1:].copy()
     before[3:] = after[3:] = 0.0
@@ -213,13 +210,15 @@ class _Direction:
         skipped = (degree + 1) // 2
         inner = places[skipped : count - skipped]
         knots = np.concatenate([np.full(degree + 1, places[0]), inner, np.full(degree + 1, places[-1])])
-        triangle = np.linalg.qr(BSpline.design_matrix(positions, knots, degree).toarray(), mode="r")
-        inverse = np.asarray(solve_triangular(triangle, np.eye(len(triangle))))
-        return cls(knots, BSpline.design_matrix(at.ravel(), knots, degree), inverse)
+        triangle = np.linalg.qr(scipy.interpolate.BSpline.design_matrix(positions, knots, degree).toarray(), mode="r")
+        inverse = np.asarray(scipy.linalg.solve_triangular(triangle, np.eye(len(triangle))))
+        return cls(knots, scipy.interpolate.BSpline.design_matrix(at.ravel(), knots, degree), inverse)
 
 
 def _least_squares(first: _Direction, second: _Direction, values: Array) -> Array:
     """Coefficients (k, l) whose rows are basis_u x basis_v, preconditioned by R_u x R_v."""
+    from scipy.sparse.linalg import LinearOperator, lsmr
+
     shape = (len(first.inverse), len(second.inverse))
     matrix = _row_products(first.basis, second.basis, len(values))
     transposed = matrix.T.tocsr()
@@ -249,4 +248,6 @@ def _row_products(first: Any, second: Any, rows: int) -> Any:
     columns = entries[0][0][:, :, None] * second.shape[1] + entries[1][0][:, None, :]
     data = entries[0][1][:, :, None] * entries[1][1][:, None, :]
     starts = np.arange(rows + 1) * (data.size // rows)
-    return csr_array((data.ravel(), columns.ravel(), starts), shape=(rows, first.shape[1] * second.shape[1]))
+    return scipy.sparse.csr_array(
+        (data.ravel(), columns.ravel(), starts), shape=(rows, first.shape[1] * second.shape[1])
+    )

@@ -13,8 +13,8 @@ from math import atan, cos, inf, pi, radians, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import tooth_measures
@@ -331,10 +331,10 @@ class CylindricalGear(InvoluteGear):
         flank_end = self.pressure_angle
         if not self.is_undercut or self._above_base(flank_end) <= 0.0 or self._cut_into_flank(flank_end) >= 0.0:
             return flank_end
-        at_base: float = brentq(self._above_base, flank_end, 0.5 * pi)
+        at_base: float = scipy.optimize.brentq(self._above_base, flank_end, 0.5 * pi)
         if self._cut_into_flank(at_base) <= 0.0:
             return at_base
-        crossing: float = brentq(self._cut_into_flank, flank_end, at_base)
+        crossing: float = scipy.optimize.brentq(self._cut_into_flank, flank_end, at_base)
         return crossing
 
     def _above_base(self, slope: float) -> float:

@@ -11,7 +11,7 @@ from functools import cached_property
 from math import asin, atan, atan2, cos, inf, pi, sin, sqrt, tan
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, InputError, require
@@ -196,7 +196,7 @@ def _nearest_root(function: Callable[[float], float], start: float) -> float | N
     places = start * np.geomspace(0.1, 3.0, ETA_STEPS)
     values = np.array([function(place) for place in places])
     rows = np.flatnonzero(values[1:] * values[:-1] <= 0.0)
-    roots = [brentq(function, places[row], places[row + 1], xtol=1e-16, rtol=1e-14) for row in rows]
+    roots = [scipy.optimize.brentq(function, places[row], places[row + 1], xtol=1e-16, rtol=1e-14) for row in rows]
     return min(roots, key=lambda root: abs(root - start), default=None)
 
 

@@ -13,8 +13,8 @@ from math import atan, atan2, cos, inf, pi, radians, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, require
@@ -286,7 +286,7 @@ class RingGear(InvoluteGear):
                 f"{self.name}: no fillet fits into the spaces at the root circle, diameter "
                 f"{2.0 * self.root_radius:.4f} mm; reduce root_diameter or profile_shift"
             )
-        return float(brentq(room, least, wanted))
+        return float(scipy.optimize.brentq(room, least, wanted))
 
     def _arc_centre(self, radius: float) -> tuple[float, float, float]:
         """Centre of an arc that touches flank and root: radius, angle from the middle of the space, flank's roll.

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from scipy.sparse import csr_array
+import scipy
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import BendingModel
@@ -45,7 +45,7 @@ class LoadedSlices:
 
 def bending_by_shift(
     grids: Sequence[LoadedGrid], state: Indices, bending: BendingModel, displacement: Displacement | None = None
-) -> csr_array:
+) -> scipy.sparse.csr_array:
     """Deflection of the slices of all grids, in one row, by the shift of each across its contact, the forces held.
 
     Parameters

@@ -34,7 +34,7 @@ from functools import partial
 from itertools import combinations
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel, SumOfParts
@@ -340,7 +340,7 @@ class _Balance:
             low -= max(high - low, self.agreement * high)
         while torque_missing(high) > 0.0:
             high += max(high - low, self.agreement * high)
-        rotation = float(brentq(torque_missing, low, high, xtol=ROTATION * high, rtol=ROTATION))
+        rotation = float(scipy.optimize.brentq(torque_missing, low, high, xtol=ROTATION * high, rtol=ROTATION))
         forces = np.zeros(len(self.solved))
         for index, loaded in solved_at(rotation).items():
             self.solved[index], forces[index] = loaded, loaded.solution.load

@@ -9,7 +9,7 @@ from functools import cached_property
 from itertools import groupby
 
 import numpy as np
-from scipy.sparse import csr_array
+import scipy
 
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact import ContactProblem
@@ -67,14 +67,14 @@ class LoadedGrid:
         return np.asarray(self.pressure > 0.0)
 
 
-def block_diagonal(matrices: Sequence[Array]) -> csr_array:
+def block_diagonal(matrices: Sequence[Array]) -> scipy.sparse.csr_array:
     """Square matrices of single states as one of all their places."""
     sizes = np.array([len(matrix) for matrix in matrices])
     ends = np.cumsum(sizes)
     columns = [np.tile(np.arange(end - size, end), size) for end, size in zip(ends, sizes, strict=True)]
     rows = np.concatenate([[0], np.cumsum(np.repeat(sizes, sizes))])
     values = np.concatenate([matrix.ravel() for matrix in matrices])
-    return csr_array((values, np.concatenate(columns), rows), shape=(ends[-1], ends[-1]))
+    return scipy.sparse.csr_array((values, np.concatenate(columns), rows), shape=(ends[-1], ends[-1]))
 
 
 def grouped_by_shape(grids: Sequence[LoadedGrid], ends: Indices) -> list[list[tuple[LoadedGrid, Indices]]]:

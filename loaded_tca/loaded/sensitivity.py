@@ -35,7 +35,7 @@ from functools import cached_property
 from itertools import combinations, groupby
 
 import numpy as np
-from scipy.sparse import csr_array
+import scipy
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import BendingModel
@@ -113,13 +113,13 @@ class Tangents:
         self._coupling = None if bending is None else _coupling(states, bending)
         levers = [(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in self.grids]
         self.pinion_levers, self.wheel_levers = np.array(levers).reshape(-1, 2).T[:, self.grid]
-        self.by_shift: csr_array | None = None
+        self.by_shift: scipy.sparse.csr_array | None = None
         self._arms = np.zeros(0)
         self.by_rotation, left = self._solved(self.wheel_levers, by_rotation)
         # what is left of l2 adds v . left, v being nearly l1/l2 u; of second order is what that misses
         self.stiffness = self.summed(self.pinion_levers * self.by_rotation * (1.0 + left / self.wheel_levers))
 
-    def with_lines(self, by_shift: csr_array) -> Tangents:
+    def with_lines(self, by_shift: scipy.sparse.csr_array) -> Tangents:
         """The same, the force lines following the forces: ``by_shift`` as of the class."""
         tangents = copy(self)
         tangents.__dict__.pop("weights", None)
@@ -359,7 +359,7 @@ def loaded_states(
     return LoadedStates(grids, bending, tuple(by_rotation), stiffness)
 
 
-def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> csr_array:
+def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> scipy.sparse.csr_array:
     """Deflection of all slices, in one row, per force on each slice of another pair of the same state [mm/N]."""
     matrices = []
     for state in states:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named
 from loaded_tca.loaded.moved_gears import loads_at_first_contact, moved_by
-from loaded_tca.scene import Scene
 from loaded_tca.supports import Shaft, shafts_of, support_compliance
+
+if TYPE_CHECKING:
+    from loaded_tca.arrays import Array
+    from loaded_tca.scene import Scene
 
 PLACES = 61
 """Along a shaft, beside its nodes."""

@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
-from loaded_tca.flank_maps.ease_off_map import EaseOffMap
-from loaded_tca.loaded.shaft_lines import ShaftLine
 from loaded_tca.output.result_files import csv_table, json_text, known
 from loaded_tca.plain import plain
 from loaded_tca.results.files import Buffer, FilePath, replace_together
-from loaded_tca.results.result import Result
-from loaded_tca.results.revolution import Revolution
-from loaded_tca.stages import StageResult
 from loaded_tca.supports import RollingBearing
-from loaded_tca.tribology import Tribology
 from loaded_tca.tribology.quantities import COLUMNS
 from loaded_tca.units import MICROMETRES, as_ending
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from loaded_tca.flank_maps.ease_off_map import EaseOffMap
+    from loaded_tca.loaded.shaft_lines import ShaftLine
+    from loaded_tca.results.result import Result
+    from loaded_tca.results.revolution import Revolution
+    from loaded_tca.stages import StageResult
+    from loaded_tca.tribology import Tribology
 
 REVOLUTION_FILES = "revolution.nc", "revolution.json", "revolution.csv", "teeth.csv", "orders.csv"
 """Names of the files."""

@@ -1,13 +1,10 @@
-"""What a scene or a stage amounts to before any contact is computed: its geometry, its load, what departs from nominal.
-
-Of a stage: planets, torques, phases, the gears of both meshes.
-"""
+"""What a scene amounts to before any contact is computed: its geometry, its load, what departs from nominal."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from itertools import chain
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,24 +12,22 @@ from loaded_tca.arrays import GEARS
 from loaded_tca.effort import expected_run_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
-from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
-from loaded_tca.output.other_results import rolling_figures
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plain import plain
 from loaded_tca.results.figures import RIM_LABEL
+from loaded_tca.results.gear_warnings import questions, warn_of_gears
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
 from loaded_tca.results.root_stress import rim_factor
 from loaded_tca.results.summary import shown
-from loaded_tca.results.warnings import questions, warn_of_gears
-from loaded_tca.scene import Scene
-from loaded_tca.scene.model import Row
 from loaded_tca.scene.section import Section, contents
-from loaded_tca.stages import Stage
-from loaded_tca.stages.analyse import expected_stage_effort
-from loaded_tca.stages.kinematics import mesh_phases, neighbours_apart, neutralised
-from loaded_tca.stages.result import MOST_ORDERS
-from loaded_tca.stages.sections import RING_MESH, SUN_MESH, in_words_of
 from loaded_tca.unloaded.path import contact_span, roll_lengths_of_flanks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from loaded_tca.loaded.shaft_lines import ShaftLine
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.scene import Scene
+    from loaded_tca.scene.model import Row
 
 MOST_TORQUES = 4
 """Torques that have a column each; of more, the least and the largest are shown."""
@@ -119,6 +114,9 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
     """Forces on the bearings of shafts, and what rolling bearings make of them, without contact."""
     if not any(scene.have_shafts):
         return
+    from loaded_tca.loaded.shaft_lines import shaft_lines  # loaded contacts: scenes without shafts do not need them
+    from loaded_tca.output.other_results import rolling_figures
+
     torques = torques_with_columns(scene.torques)
     by_gear: dict[str, list[ShaftLine]] = {gear: [] for gear in GEARS}
     for line in shaft_lines(scene):
@@ -192,118 +190,3 @@ def _changed(section: Section, place: str) -> list[Row]:
     """Values of a section that are not its defaults."""
     usual = contents(type(section)())
     return [(place + key, f"{value}") for key, value in contents(section).items() if value != usual[key]]
-
-
-HELD = "Bores of sun and planets and the outside of the ring are held rigid; planet rims, carrier and pins do not bend."
-"""What a stage does not model, for reports and the check of a file."""
-
-
-def describe_stage(stage: Stage) -> str:
-    """Return planets, torques, phases and geometry of a stage, a line each, with the warnings that concern its gears.
-
-    Raises
-    ------
-    InputError, GeometryError
-        If gears of the stage cannot exist, mesh or turn, or planets cannot be put in.
-    """
-    stage.require_assembly()
-    lines = [stage.title or "Planetary stage"]
-    sections = stage_sections(stage)
-    lines += [_line(*row) for row in chain.from_iterable(sections.values())]
-    warned: list[str] = []
-    for name, rows, sentences in geometry_of_meshes(stage):
-        lines += ["", name, *(_line(*row) for row in rows)]
-        warned += [f"warning: {name}: {sentence}" for sentence in sentences]
-    lines += ["", _line("analysis, roughly: time [s]", plain(expected_stage_effort(stage).seconds, 2)), HELD, *warned]
-    return "\n".join(lines)
-
-
-def stage_sections(stage: Stage) -> dict[str, list[Row]]:
-    """Return the lines of an overview by their subjects, each a label and its cells.
-
-    The first one of the phases names the columns below it.
-    """
-    return {"stage": _stage_rows(stage), "torques": _torque_rows(stage), "phases": phase_rows(stage)}
-
-
-def geometry_of_meshes(stage: Stage) -> list[tuple[str, list[Row], list[str]]]:
-    """Name of each mesh, the rows of its geometry, and its warnings that concern whole gears."""
-    geometry = []
-    for scene, gears in ((stage.sun_scene, SUN_MESH), (stage.ring_scene, RING_MESH)):
-        with in_words_of(gears), noted_accuracy_warnings(given=False) as sentences:
-            warn_of_gears(scene, scene.pair())
-            rows = scene_sections(scene)["geometry"]
-        name = " and ".join(f"{member} ({gear})" for gear, member in gears.items())
-        geometry.append((name, rows, list(dict.fromkeys(sentences))))
-    return geometry
-
-
-def _stage_rows(stage: Stage) -> list[Row]:
-    """What the stage is made of, and how its members are held."""
-    asked, (z_s, z_p, z_r) = stage.stage, stage.teeth
-    planet = stage.meshes[0].wheel
-    pins = ("tangentially", asked.pin_tangential_um), ("outwards", asked.pin_radial_um)
-    rows: list[Row] = [
-        ("teeth of sun, planet and ring", f"{z_s}", f"{z_p}", f"{z_r}"),
-        ("ratio of sun to carrier, the ring held", f"{1.0 + z_r / z_s:z.4f}"),
-        ("driving", asked.driving),
-        ("planets at [deg]", *(f"{math.degrees(angle):z.4f}" for angle in asked.angles)),
-        ("they can be put in every [deg]", f"{360.0 / (z_s + z_r):z.4f}"),
-        ("centre distance of both meshes [mm]", f"{stage.centre_distance:z.4f}"),
-    ]
-    if len(asked.angles) > 1:
-        room = neighbours_apart(asked.angles, stage.centre_distance) - 2.0 * planet.tip_radius
-        rows.append(("neighbouring planets apart [mm]", f"{room:z.4f}"))
-    rows.append(("support of the sun", _support(stage)))
-    rows += [(f"pins displaced {how} [um]", *(f"{pin:g}" for pin in given)) for how, given in pins if given]
-    return rows
-
-
-def _support(stage: Stage) -> str:
-    """How the sun is held, in words."""
-    stiffness = stage.stage.support_stiffness
-    if math.isinf(stiffness):
-        return "rigid"
-    return "floating" if stiffness == 0.0 else f"{1e-3 * stiffness:g} N/um"
-
-
-def _torque_rows(stage: Stage) -> list[Row]:
-    """Torques of all members, and the force of a planet with an even share; of many torques the least and the largest.
-
-    With the signs of the loads that the stage puts on its surroundings left out.
-    """
-    shown, (z_s, _, z_r) = torques_with_columns(stage.sun_torques), stage.teeth
-    base = stage.meshes[0].pinion.base_radius
-    return [
-        ("sun torque [N m]", *(f"{1e-3 * torque:g}" for torque in shown)),
-        ("carrier torque [N m]", *(f"{1e-3 * torque * (1.0 + z_r / z_s):g}" for torque in shown)),
-        ("ring torque [N m]", *(f"{1e-3 * torque * z_r / z_s:g}" for torque in shown)),
-        (
-            "force of an even share at the base circles [N]",
-            *(f"{_even(stage, torque) / base:z.1f}" for torque in shown),
-        ),
-    ]
-
-
-def _even(stage: Stage, torque: float) -> float:
-    return torque / len(stage.stage.angles)
-
-
-def phase_rows(stage: Stage) -> list[Row]:
-    """Phases of the meshes of each planet, and the orders that equal planets cancel."""
-    angles = stage.stage.angles
-    phases = mesh_phases(*stage.meshes, angles, stage.stage.driving == "sun")
-    cancelled = [neutralised(order, angles, stage.sun.teeth) for order in range(1, MOST_ORDERS + 1)]
-    orders = [", ".join(str(k + 1) for k, one in enumerate(cancelled) if one[which]) or "none" for which in range(2)]
-    return [
-        ("phases of the meshes, in mesh cycles", "sun's", "ring's"),
-        *(
-            (f"  planet {planet}", f"{sun:z.4f}", f"{ring:z.4f}")
-            for planet, (sun, ring) in enumerate(zip(*(one.tolist() for one in phases), strict=True))
-        ),
-        ("orders of the mesh that equal planets cancel", f"rotation: {orders[0]}", f"forces on the sun: {orders[1]}"),
-    ]
-
-
-def _line(label: str, *cells: str) -> str:
-    return f"{label:<{LABEL}}" + "".join(f"{cell:>14}" if len(cell) < 14 else f"  {cell}" for cell in cells)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
 from loaded_tca.results.declared import PAIRS, Number
-from loaded_tca.results.files import Part
 from loaded_tca.results.quantities import (
     CYCLE_NUMBERS,
     MAP_PARTS,
@@ -17,6 +16,11 @@ from loaded_tca.results.quantities import (
 from loaded_tca.results.revolution import REVOLUTION_QUANTITIES
 from loaded_tca.stages import StageResult
 from loaded_tca.tribology.quantities import NUMBERS, TORQUE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from loaded_tca.results.files import Part
 
 
 def describe_results() -> str:

@@ -6,9 +6,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,9 +14,14 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
 from loaded_tca.results.declared import PAIRS
 from loaded_tca.results.files import Buffer, FilePath, replace_together
-from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import without_rounding
 from loaded_tca.results.warnings import EDGES, reached_edges
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
+
+    from loaded_tca.results.mesh_cycle import MeshCycle
 
 RESULT, SUMMARY, POSITIONS, CONTACTS = "result.nc", "summary.json", "positions.csv", "contacts.csv"
 """Names of the files; the last one is there only where tooth pairs share the load."""

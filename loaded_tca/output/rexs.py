@@ -9,10 +9,8 @@ is none of these.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,9 +25,14 @@ from loaded_tca.input_files import read_bytes
 from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
 from loaded_tca.results.files import replace_file
 from loaded_tca.results.load_factors import STRIPS, face_forces
-from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.units import MICROMETRES
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from os import PathLike
+
+    from loaded_tca.results.mesh_cycle import MeshCycle
 
 SAME_PLACE_mm = 1e-3
 """Between places of a bearing in the scene and in the model."""

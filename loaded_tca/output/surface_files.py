@@ -11,18 +11,22 @@ StereoLithography Interface Specification.
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator, Mapping
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.pairs import MatingTeeth
 from loaded_tca.results.files import Buffer, FilePath, replace_file, replace_together
-from loaded_tca.results.teeth import TeethInSpace
-from loaded_tca.tooth import TriangleMesh
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from loaded_tca.arrays import Array
+    from loaded_tca.pairs import MatingTeeth
+    from loaded_tca.results.teeth import TeethInSpace
+    from loaded_tca.tooth import TriangleMesh
 
 TEETH_FILES = "pinion.vtk", "wheel.vtk", "pressure.vtk", "pinion.stl", "wheel.stl"
 """Of :func:`write_teeth`: teeth in contact and the pressure between them in space, solids of both gears."""

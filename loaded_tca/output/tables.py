@@ -10,30 +10,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.flank_maps.vh_check import VHCheck
 from loaded_tca.output.result_files import cell, csv_table, json_text, known
-from loaded_tca.results import MeshCycle
-from loaded_tca.results.comparison import Comparison
 from loaded_tca.results.dynamics import OVER_ORDERS, OVER_PITCH, PARTS
 from loaded_tca.results.figures import FIGURES, key_figures
 from loaded_tca.results.files import Buffer, FilePath, Part, netcdf_of, replace_together, variables_of
 from loaded_tca.results.quantities import MAP_PARTS, QUANTITIES
-from loaded_tca.results.sensitivities import Sensitivities
-from loaded_tca.results.stress_below import StressBelow
 from loaded_tca.results.summary import shown
 from loaded_tca.results.tolerances import key_figure_slopes
 from loaded_tca.studies.ranking import main_figures, ranking, varied_keys
 from loaded_tca.units import unit_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
     import xarray
+
+    from loaded_tca.flank_maps.vh_check import VHCheck
+    from loaded_tca.results import MeshCycle
+    from loaded_tca.results.comparison import Comparison
+    from loaded_tca.results.sensitivities import Sensitivities
+    from loaded_tca.results.subsurface import StressBelow
 
 COMPARISON, COMPARISON_DATA = "comparison.csv", "comparison.json"
 """Names of the two files."""

@@ -29,7 +29,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
@@ -87,7 +87,7 @@ class BevelMounting:
         E runs along the common normal of the axes, about which the shaft angle grows, P and G along the axes.
         """
         wheel_point = frame.crossing_points[1]
-        turn = Rotation.from_rotvec(self.shaft_angle_error * frame.common_normal)
+        turn = scipy.spatial.transform.Rotation.from_rotvec(self.shaft_angle_error * frame.common_normal)
         axes = turn.apply(frame.axes)
         origin = wheel_point + turn.apply(frame.origin - wheel_point) + self.offset * frame.common_normal
         return origin - np.array([0.0, 0.0, self.pinion_axial]) + self.wheel_axial * axes[2], axes

@@ -45,7 +45,7 @@ from loaded_tca.plots.style import (
 )
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.stress_below import NAMES, Quantity, StressBelow, depth_of_largest
+from loaded_tca.results.subsurface import NAMES, Quantity, StressBelow, depth_of_largest
 from loaded_tca.results.support_growth import gears_under_torque
 from loaded_tca.separation import slice_middles
 
@@ -265,7 +265,7 @@ def plot_stress_below(below: StressBelow, quantity: Quantity = "max_shear") -> F
     Parameters
     ----------
     below : StressBelow
-        Of :func:`loaded_tca.results.stress_below.stress_below`.
+        Of :func:`loaded_tca.results.subsurface.stress_below`.
     quantity : {"max_shear", "von_mises"}
 
     Returns

@@ -86,10 +86,15 @@ def _shown(one: RootStressMap) -> tuple[Array, Array, Array]:
 
 
 def _draw_fillets(axes: Axes, one: RootStressMap, stress: Array, scale: Normalize) -> None:
-    """Both sides of a tooth, the back mirrored to the left."""
+    """Both sides of a tooth, the back mirrored to the left; a field between nodes has the mean of its four.
+
+    Fields are two to four pixels large; colours that run between the nodes take longer and make files of 690 kB.
+    """
     for side, sign in ((0, 1.0), (1, -1.0)):
         angle, axial = sign * np.degrees(one.tangent_angle[side]), one.point[side, ..., 2]
-        axes.pcolormesh(angle, axial, stress[side], cmap=DIVERGING, norm=scale, shading="gouraud", rasterized=True)
+        nodes = stress[side]
+        fields = 0.25 * (nodes[:-1, :-1] + nodes[1:, :-1] + nodes[:-1, 1:] + nodes[1:, 1:])
+        axes.pcolormesh(angle, axial, fields, cmap=DIVERGING, norm=scale, rasterized=True)
     axes.axvspan(-10.0, 10.0, color=style.NO_MATERIAL)
     axes.text(0.0, 0.5, "tooth", transform=axes.get_xaxis_transform(), ha="center", va="center", rotation=90.0)
 

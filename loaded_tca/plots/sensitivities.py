@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import cycle
 
 import numpy as np
+import scipy
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -17,7 +18,6 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from scipy.ndimage import gaussian_filter
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
@@ -127,7 +127,7 @@ def removal_weights(
             part = np.abs(1.0 - np.array(corner) - beyond).prod(axis=1)
             inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
             np.add.at(total, (row[inside], column[inside]), (weights * part)[inside])
-    return np.linspace(low, high, FIELDS + 1).T, gaussian_filter(total, BLUR, truncate=2.0)
+    return np.linspace(low, high, FIELDS + 1).T, scipy.ndimage.gaussian_filter(total, BLUR, truncate=2.0)
 
 
 def _passing(

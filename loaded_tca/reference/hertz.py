@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq, minimize_scalar
-from scipy.special import elliprd, elliprf
 
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require_positive
@@ -97,12 +96,12 @@ class PointContact:
         Love 1929, Phil. Trans. R. Soc. A 228, 377-420 (potentials of a loaded half-space).
         """
         minor, major, normal = self.semi_minor**2 + depth**2, self.semi_major**2 + depth**2, depth**2
-        integral_z = float(elliprd(minor, major, normal))
+        integral_z = float(scipy.special.elliprd(minor, major, normal))
         scale = 0.5 * self.semi_major * self.semi_minor * self.max_pressure
         shape = math.sqrt(minor / major)
 
         def lateral(own: float, other: float, root: float) -> float:
-            integral = float(elliprd(other, normal, own))
+            integral = float(scipy.special.elliprd(other, normal, own))
             bending = 4.0 / 3.0 * depth * ((1.0 - poisson_ratio) * integral - poisson_ratio * integral_z)
             return scale * (bending - (1.0 - 2.0 * poisson_ratio) * 2.0 / (own * (1.0 + root)))
 
@@ -116,7 +115,9 @@ class PointContact:
             stresses = self.axis_stresses(self.semi_minor * math.exp(log_depth), poisson_ratio)
             return 0.5 * (min(stresses) - max(stresses)) / self.max_pressure
 
-        optimum = minimize_scalar(opposite, bounds=(-3.0, 1.0), method="bounded", options={"xatol": 1e-9})
+        optimum = scipy.optimize.minimize_scalar(
+            opposite, bounds=(-3.0, 1.0), method="bounded", options={"xatol": 1e-9}
+        )
         return -float(optimum.fun) * self.max_pressure, self.semi_minor * math.exp(float(optimum.x))
 
 
@@ -208,8 +209,10 @@ def point_contact(load: float, curvatures: tuple[float, float], contact_modulus:
     small, large = sorted(float(k) for k in curvatures)
     require_positive(load=load, curvature_1=small, curvature_2=large, contact_modulus=contact_modulus)
     q = _axis_ratio(large / small)
-    semi_major = (load * float(elliprd(0.0, q * q, 1.0)) / (math.pi * contact_modulus * small)) ** (1.0 / 3.0)
-    approach = 1.5 * load * float(elliprf(0.0, q * q, 1.0)) / (math.pi * contact_modulus * semi_major)
+    semi_major = (load * float(scipy.special.elliprd(0.0, q * q, 1.0)) / (math.pi * contact_modulus * small)) ** (
+        1.0 / 3.0
+    )
+    approach = 1.5 * load * float(scipy.special.elliprf(0.0, q * q, 1.0)) / (math.pi * contact_modulus * semi_major)
     max_pressure = 1.5 * load / (math.pi * semi_major * semi_major * q)
     return PointContact(load, contact_modulus, semi_major, q * semi_major, max_pressure, approach)
 
@@ -313,8 +316,13 @@ def _axis_ratio(curvature_ratio: float) -> float:
 
     def excess(log_q: float) -> float:
         q2 = math.exp(2.0 * log_q)
-        return math.log(float(elliprd(0.0, 1.0, q2)) / float(elliprd(0.0, q2, 1.0))) - logarithm
+        return (
+            math.log(float(scipy.special.elliprd(0.0, 1.0, q2)) / float(scipy.special.elliprd(0.0, q2, 1.0)))
+            - logarithm
+        )
 
     # The ratio of curvatures is never below a/b, so -log(ratio) bounds log(b/a) from below.
     lower = -logarithm - 1e-6
-    return math.exp(float(brentq(excess, lower, 0.0, xtol=1e-15, rtol=1e-15))) if logarithm > 0.0 else 1.0
+    return (
+        math.exp(float(scipy.optimize.brentq(excess, lower, 0.0, xtol=1e-15, rtol=1e-15))) if logarithm > 0.0 else 1.0
+    )

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.output.overview import HELD, geometry_of_meshes, scene_sections, stage_sections
+from loaded_tca.output.overview import scene_sections
+from loaded_tca.output.stage_overview import HELD, geometry_of_meshes, stage_sections
 from loaded_tca.plain import plain
 from loaded_tca.plots import (
     CAPTIONS,

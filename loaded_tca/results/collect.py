@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array
-from loaded_tca.compliance import RootStress
 from loaded_tca.edges.rounded import NOT_REACHED, PeakAtEdge
-from loaded_tca.loaded.cycle import CycleSolution
 from loaded_tca.loaded.loaded_contact import EQUAL, LoadedContact
-from loaded_tca.loaded.standing import StandingCycle
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -24,8 +19,17 @@ from loaded_tca.results.root_stress import root_stress_arrays
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, rough_peaks
 from loaded_tca.results.supports import secant_on_rigid_supports, support_arrays
 from loaded_tca.results.warnings import warn_of_root_stress
-from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from loaded_tca.arrays import Array
+    from loaded_tca.compliance import RootStress
+    from loaded_tca.loaded.cycle import CycleSolution
+    from loaded_tca.loaded.standing import StandingCycle
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.scene import Scene
 
 Place = tuple[int, int, int]
 """Indices of torque, position and pair of a result."""

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.figures import FIGURES, declared
@@ -21,6 +20,8 @@ from loaded_tca.scene.section import as_table
 
 if TYPE_CHECKING:
     import xarray
+
+    from loaded_tca.arrays import Array
 
 PLACES = "pinion_angle_at", "_axial_"
 """Parts of the names of figures that count from a zero of no meaning: they have no relative difference."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -14,6 +13,8 @@ from loaded_tca.results.files import Part, variables_of
 from loaded_tca.units import MICROMETRES, as_ending, factor_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     import xarray
 
 CYCLE = ("torque", "position")

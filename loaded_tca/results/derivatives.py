@@ -8,12 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import SumOfParts, model_of
 from loaded_tca.edges.free import edge_compliances
 from loaded_tca.errors import InputError, require
@@ -22,13 +21,10 @@ from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.loaded.sensitivity import LoadedStates, Tangents, loaded_states
 from loaded_tca.loaded.tooth_contact import contact_problem
 from loaded_tca.loaded.tooth_pairs import ToothPair, tooth_pairs_at
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
 )
 from loaded_tca.results.gap_growth import GapGrowth, gap_growth, motion_rates
-from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.sensitivities import FEW, LINEAR, NEWTON_MILLIMETRES, TORQUE, Sensitivities
 from loaded_tca.results.support_growth import (
     OnSlices,
@@ -38,12 +34,18 @@ from loaded_tca.results.support_growth import (
     growth_on_supports,
 )
 from loaded_tca.results.warnings import warn_of_contacts
-from loaded_tca.separation.pair_change import PairChange
 from loaded_tca.separation.sample import Separation
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded import ContactPoint, RelativeCurvature, trace_contact, trace_teeth
 from loaded_tca.unloaded.curvature import relative_curvatures
 from loaded_tca.unloaded.path import angles_through, trace_near
+
+if TYPE_CHECKING:
+    from loaded_tca.arrays import Array, Indices
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.numbers import CycleNumbers
+    from loaded_tca.results.pressure_map import PressureMap
+    from loaded_tca.separation.pair_change import PairChange
 
 SAME = 1e-6
 """Distance of two contact points, over the module, that are the same."""

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array
 from loaded_tca.errors import require
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Part, variables_of
-from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.unloaded.teeth import harmonic_coefficients
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import xarray
+
+    from loaded_tca.arrays import Array
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.numbers import CycleNumbers
 
 TORQUE, PHASE, ORDER = "pinion_torque_Nm", "mesh_phase", "order"
 OVER_PITCH, OVER_ORDERS = (TORQUE, PHASE), (TORQUE, ORDER)

@@ -7,7 +7,6 @@ derivatives s, another one is as high as the highest after a change of the key b
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,8 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
     from loaded_tca.results.sensitivities import Sensitivities
 
 TOLD = 0.05

@@ -8,15 +8,12 @@ Each has a size: of marks how many of the derivatives of random scenes are off t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import give_accuracy_warning
-from loaded_tca.loaded.loaded_grid import LoadedGrid
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figure_slopes import line_load_slopes
 from loaded_tca.results.load_factors import (
     STRIPS,
@@ -25,11 +22,18 @@ from loaded_tca.results.load_factors import (
     strip_motions,
     strip_shares,
 )
-from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak
 from loaded_tca.separation.pair_change import AT_ONE_PLACE, PairChange
-from loaded_tca.unloaded import ContactPath
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from loaded_tca.arrays import Array, Indices, Mask
+    from loaded_tca.loaded.loaded_grid import LoadedGrid
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.numbers import CycleNumbers
+    from loaded_tca.results.pressure_map import PressureMap
+    from loaded_tca.unloaded import ContactPath
 
 AS_LARGE, BESIDE = 1e-2, 5e-4
 """Relative difference of the forces of two strips of the face up to which a kink of K_Hbeta is near; and of a strip

@@ -8,15 +8,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from loaded_tca.arrays import Array
 from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.units import unit_of
+
+if TYPE_CHECKING:
+    from loaded_tca.arrays import Array
+    from loaded_tca.results.sensitivities import Sensitivities
 
 Figures = Mapping[str, float]
 """Name with its unit -> number, for one torque."""

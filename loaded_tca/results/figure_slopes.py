@@ -9,23 +9,27 @@ Derivatives of the largest root stresses by the forces of the cells, and by the 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance import FlankLine, flank_lines, root_stress_model
 from loaded_tca.contact.patch import peak_weights, reaches_border, top_weights
 from loaded_tca.errors import require
-from loaded_tca.loaded.loaded_grid import LoadedGrid
-from loaded_tca.loaded.sensitivity import Tangents
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.gap_growth import moved
 from loaded_tca.results.root_stress import stress_at_extreme
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, UnderPressure
 from loaded_tca.separation.normal_gap import NormalGap
-from loaded_tca.separation.pair_change import PairChange
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from loaded_tca.arrays import Array, Mask
+    from loaded_tca.loaded.loaded_grid import LoadedGrid
+    from loaded_tca.loaded.sensitivity import Tangents
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.separation.pair_change import PairChange
 
 EXPONENT = 12.0
 """Of the pressure norm: the norm of an even pressure over 1 mm^2 is that pressure."""

@@ -7,8 +7,7 @@ and the order of ``SUMMARY``. A name ends in its unit.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -47,8 +46,12 @@ from loaded_tca.results.key_figures import (
     reduced,
     span_of,
 )
-from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.root_stress import FACTORS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from loaded_tca.results.numbers import CycleNumbers
 
 
 def key_figures(result: CycleNumbers, torque: int) -> dict[str, float]:

@@ -5,20 +5,22 @@ from __future__ import annotations
 import hashlib
 import io
 import os
-from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array
 from loaded_tca.contact.checks import machine_memory
 from loaded_tca.errors import InputError, reason_of, require
 from loaded_tca.input_files import read_bytes, require_regular
 
 if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes or reads a result needs it
+    from collections.abc import Iterable, Iterator, Mapping
+
     import xarray
+
+    from loaded_tca.arrays import Array
 
 FORMAT = "loaded_tca"
 REVOLUTION, STAGE, TRIBOLOGY, STUDY, DESIGN = "revolution", "stage", "tribology", "study", "design"

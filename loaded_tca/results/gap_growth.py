@@ -10,28 +10,32 @@ Growth of the largest slice pressures with keys of the scene, by the relative cu
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import combinations, pairwise
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.contact.cuts import crowding_growth
 from loaded_tca.edges.free import MovedSlices, edge_deflection_growth
 from loaded_tca.loaded.force_lines import LoadedSlices
-from loaded_tca.loaded.loaded_grid import LoadedGrid
-from loaded_tca.loaded.sensitivity import Tangents
-from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
-from loaded_tca.results.numbers import CycleNumbers
+from loaded_tca.pairs.gear_pair import cylindrical_basis
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.slice_pressure import SlicePeak
 from loaded_tca.separation import Separation
 from loaded_tca.separation.gap_change import OF_GRIDS, MovedContacts, contact_changes
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.pair_change import PairChange
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from loaded_tca.arrays import Array, Mask
+    from loaded_tca.loaded.loaded_grid import LoadedGrid
+    from loaded_tca.loaded.sensitivity import Tangents
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.numbers import CycleNumbers
+    from loaded_tca.results.slice_pressure import SlicePeak
 
 Grid = TypeVar("Grid", Separation, PressureMap)
 

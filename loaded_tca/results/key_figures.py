@@ -6,20 +6,23 @@ Key figures of ISO 6336-1 and -2 beside computed ones, and why these differ.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array
 from loaded_tca.results.declared import Row
 from loaded_tca.results.load_factors import face_load_factor_by_positions, face_load_factor_error
-from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.root_stress import root_figures
-from loaded_tca.scene import Scene
 from loaded_tca.units import UNITS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from loaded_tca.arrays import Array
+    from loaded_tca.results.numbers import CycleNumbers
+    from loaded_tca.scene import Scene
 
 STRESS = "nominal_contact_stress_iso_6336_MPa"
 SINGLE_CONTACT = "pinion_single_contact_factor_iso_6336", "wheel_single_contact_factor_iso_6336"

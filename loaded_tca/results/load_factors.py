@@ -21,14 +21,17 @@ ISO 6336-1:2019, Calculation of load capacity of spur and helical gears - Part 1
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array
-from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.pressure_map import Maps, PressureMap
-from loaded_tca.unloaded import ContactPath
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from loaded_tca.arrays import Array
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.pressure_map import Maps, PressureMap
+    from loaded_tca.unloaded import ContactPath
 
 STRIPS = 30
 MISSING_AT_END = 0.15

@@ -6,16 +6,13 @@ Which edges of the two flanks a loaded contact reaches: the tips, the roots, the
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.plain import plain, signed
 from loaded_tca.results.declared import PAIRS
@@ -29,15 +26,19 @@ from loaded_tca.results.pressure_map import arrays_of_maps, maps_from
 from loaded_tca.results.quantities import IN_FILES, MOTIONS, PATH_PARTS, SIZES
 from loaded_tca.results.result import AnalysisResult
 from loaded_tca.results.root_stress import RootStressMap, root_stress_maps
-from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import summary_text
 from loaded_tca.results.warnings import findings_of
-from loaded_tca.scene import Scene
 from loaded_tca.unloaded import ContactPath
 
 if TYPE_CHECKING:
-    import xarray
+    from collections.abc import Mapping, Sequence
 
+    import xarray
+    from numpy.typing import ArrayLike
+
+    from loaded_tca.arrays import Array
+    from loaded_tca.results.sensitivities import Sensitivities
+    from loaded_tca.scene import Scene
     from loaded_tca.tribology import Lubricant, Tribology
 
 
@@ -307,3 +308,6 @@ class MeshCycle(CycleNumbers, AnalysisResult):
             for k in range(expected["path"])
         )
         return {"path": leading, "paths": tuple(paths), "maps": maps_from(arrays)}
+
+
+load_result = MeshCycle.load

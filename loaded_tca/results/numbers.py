@@ -8,15 +8,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import body_torsion
 from loaded_tca.errors import InputError, NotAskedError
-from loaded_tca.loaded.sensitivity import LoadedStates
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.declared import PAIRS, Numbers
-from loaded_tca.results.pressure_map import Maps
 from loaded_tca.results.quantities import (
     COORDINATES,
     CYCLE_NUMBERS,
@@ -25,12 +20,18 @@ from loaded_tca.results.quantities import (
     ROLLING_QUANTITIES,
     ROOT_STRESS,
 )
-from loaded_tca.scene import Scene
-from loaded_tca.unloaded import ContactPath
 from loaded_tca.unloaded.teeth import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
+    from numpy.typing import NDArray
+
+    from loaded_tca.arrays import Array
+    from loaded_tca.loaded.sensitivity import LoadedStates
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.pressure_map import Maps
+    from loaded_tca.scene import Scene
+    from loaded_tca.unloaded import ContactPath
 
 
 def index_or_largest(torques: Array, torque: int | None = None) -> int:

@@ -6,19 +6,22 @@ Edges in a pressure map: cells beside the end of a flank or on the arc of a roun
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt
+import scipy
 
-from loaded_tca.arrays import Array, Mask
 from loaded_tca.edges.places import arcs_at, dilated, edge_distances
 from loaded_tca.errors import InputError
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.quantities import LAID_END_TO_END, MAP_CELLS, MAP_PARTS, SIZES
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from loaded_tca.arrays import Array, Mask
+    from loaded_tca.pairs.gear_pair import GearPair
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +96,7 @@ class PressureMap:
         there = np.isfinite(self.gap)
         if there.all():
             return self.beside_end
-        away = np.asarray(distance_transform_edt(there, sampling=self.spacing))
+        away = np.asarray(scipy.ndimage.distance_transform_edt(there, sampling=self.spacing))
         return np.asarray(self.beside_end | (away < distance))
 
     @cached_property

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from loaded_tca.arrays import GEARS as GEARS
 from loaded_tca.results.declared import CYCLE, OVER_CYCLE, PAIRS, Asked, Number, numbers
-from loaded_tca.results.files import Part
+
+if TYPE_CHECKING:
+    from loaded_tca.results.files import Part
 
 QUANTITIES: dict[str, Part] = {
     "torque": Number(("torque",), "N mm", "pinion torque", column="pinion_torque_Nm"),

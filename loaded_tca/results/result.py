@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -11,7 +10,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.results.declared import ABOUT, CYCLE, Number, Numbers, Row
 from loaded_tca.results.figure import Figure, Figures, labelled
@@ -21,7 +19,11 @@ from loaded_tca.scene import parse_scene
 from loaded_tca.units import without_unit
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
     import xarray
+
+    from loaded_tca.arrays import Array
 
 
 def figures_of(numbers: Mapping[str, Number]) -> dict[str, Figure]:

@@ -8,7 +8,6 @@ at the base circle of the wheel.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -23,15 +22,18 @@ from loaded_tca.results.dynamics import PARTS, TORQUE, teeth_and_radii
 from loaded_tca.results.figure import ROOT, Figure
 from loaded_tca.results.files import REVOLUTION
 from loaded_tca.results.numbers import index_or_largest
-from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.quantities import COORDINATES, CYCLE_NUMBERS, OF_SUPPORTS
 from loaded_tca.results.result import AnalysisResult, figures_of
-from loaded_tca.scene import Scene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 from loaded_tca.units import without_unit
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import xarray
+
+    from loaded_tca.results.pressure_map import PressureMap
+    from loaded_tca.scene import Scene
 
 ALIKE = 1e-6
 """Relative difference of numbers of two tooth pairs that are alike: states a pitch apart, on the same grids, are solved

@@ -9,23 +9,28 @@ Key figures of root stress, beside those of ISO 6336-3.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.compliance import FlankLine, RootStress, flank_lines
 from loaded_tca.contact.patch import top_weights
-from loaded_tca.loaded.loaded_grid import LoadedGrid
-from loaded_tca.pairs.gear import Gear
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.iso6336_3 import THINNEST_RIM, face_load_factor, rim_thickness_factor
-from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.pressure_map import Maps, PressureMap
 from loaded_tca.results.quantities import ON_FILLETS, PLACE, ROOT_QUANTITIES
 from loaded_tca.threads import one_blas_thread
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from loaded_tca.loaded.loaded_grid import LoadedGrid
+    from loaded_tca.pairs.gear import Gear
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.numbers import CycleNumbers
+    from loaded_tca.results.pressure_map import Maps, PressureMap
 
 STATES_AT_A_TIME = 32
 """Positions whose stress is held in memory at once, 10 to 20 MB of each tooth."""

@@ -13,7 +13,6 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array, Indices, Mask, real
 from loaded_tca.errors import require
-from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.results.face_slopes import (
     LITTLE,
     common_face_motions,
@@ -36,16 +35,18 @@ from loaded_tca.results.figure_slopes import (
     root_slopes,
 )
 from loaded_tca.results.gap_growth import GapGrowth, curvature_growth
-from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, rough_peaks
 from loaded_tca.results.warnings import warn_of_contacts
-from loaded_tca.separation.pair_change import PairChange
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.units import UNITS
 from loaded_tca.unloaded.teeth import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
+
+    from loaded_tca.loaded.sensitivity import Tangents
+    from loaded_tca.results.numbers import CycleNumbers
+    from loaded_tca.separation.pair_change import PairChange
 
 TORQUE = "load.pinion_torque_Nm"
 NEWTON_MILLIMETRES = UNITS["Nm"].factor

@@ -20,8 +20,8 @@ Johnson 1985, Contact Mechanics, eqs. 4.43 to 4.45.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,10 +29,14 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.patch import peak_pressure, reaches_border, top_weights
 from loaded_tca.edges.places import arcs_at, dilated, relief_start_distances
 from loaded_tca.loaded.line_load import SliceLoads, stretch_parts
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from loaded_tca.pairs.gear_pair import GearPair
 
 ROUNDS, BETWEEN = 2, 17
 """How often places between those beside the largest pressure are tried, and how many."""

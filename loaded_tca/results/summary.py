@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from loaded_tca.plain import plain
-from loaded_tca.results.figure import Figures
 from loaded_tca.results.figures import FIGURES, SUMMARY
 from loaded_tca.results.key_figures import WHERE_REASONS_ARE, reasons_beside
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from loaded_tca.results.figure import Figures
 
 ROUNDING = 1e-6
 """Figures below this, in the engineer's units, are rounding; residuals and errors of the grid are not."""

@@ -17,27 +17,31 @@ grids stay: on soft supports the gears go where the forces push them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from loaded_tca.arrays import GEARS, Array, Indices
-from loaded_tca.compliance.model import SumOfParts
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import in_gear_angles
 from loaded_tca.loaded.force_lines import LoadedSlices
 from loaded_tca.loaded.moved_gears import Loads, given_motions, standing_under
-from loaded_tca.loaded.sensitivity import Tangents
-from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.results.gap_growth import GapGrowth, gap_growth, moved
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.scene import Scene
 from loaded_tca.separation.gap_change import OF_GRIDS
 from loaded_tca.separation.pair_change import MOTIONS, PairChange, number_at, pair_changes
 from loaded_tca.supports import Support, SupportCompliance, support_compliance, supports_of
 from loaded_tca.unloaded import trace_contact, trace_teeth
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from loaded_tca.compliance.model import SumOfParts
+    from loaded_tca.loaded.sensitivity import Tangents
+    from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+    from loaded_tca.scene import Scene
 
 STEP, SMALLEST = 1e-4, 1e-3
 """Step of a key of a support over its value, and the least one: of stiffnesses in N/um, lengths in mm."""

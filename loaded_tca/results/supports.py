@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
-from loaded_tca.loaded.cycle import CycleSolution
-from loaded_tca.loaded.standing import LoadedStanding, StandingCycle
-from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.supports import RollingBearing, SupportCompliance, shafts_of
 from loaded_tca.units import MICROMETRES
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from loaded_tca.loaded.cycle import CycleSolution
+    from loaded_tca.loaded.standing import LoadedStanding, StandingCycle
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.numbers import CycleNumbers
 
 LARGEST_WAY, LARGEST_TILT = 0.1, 5e-3
 """Motions over the module, and tilts [rad], above which supports are softer than those of gears that mesh."""

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import GeometryError, require
-from loaded_tca.pairs import MatingTeeth
-from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import index_or_largest
-from loaded_tca.tooth import TriangleMesh
+
+if TYPE_CHECKING:
+    from loaded_tca.pairs import MatingTeeth
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.tooth import TriangleMesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from numbers import Real
 from typing import TYPE_CHECKING
 
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.sensitivities import TORQUE
-from loaded_tca.scene import Scene
 from loaded_tca.scene.section import contents
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from loaded_tca.results.sensitivities import Sensitivities
+    from loaded_tca.scene import Scene
 
 USUAL = {"um": 1.0, "mm": 0.01, "deg": 0.01}
 """Standard deviation of a key by the unit at the end of its name."""

@@ -1,59 +1,48 @@
 """Where an analysis is at a limit of its model or its grid: accuracy warnings, and findings on its largest pressures.
 
-Warnings are of gears that jam or are no gears, too. Findings name the edges that contacts reach.
+Findings name the edges that contacts reach.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.ndimage import binary_dilation
+import scipy
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array, Mask
-from loaded_tca.compliance import require_teeth, warn_of_teeth
-from loaded_tca.compliance.model import HeldBodies
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
 from loaded_tca.edges.places import edge_distances
-from loaded_tca.edges.rounded import PeakAtEdge
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES
-from loaded_tca.loaded.cycle import CycleSolution
-from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.tooth_contact import GridChoice
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plain import plain, signed
-from loaded_tca.reference.iso6336_3 import THIN_RIM
-from loaded_tca.results.numbers import CycleNumbers
+from loaded_tca.results.gear_warnings import HARDEST_ROOT_MPa, hardest_pressure
 from loaded_tca.results.pressure_map import arc_cells, mean_pressure_of
 from loaded_tca.results.support_growth import gears_under_torque
-from loaded_tca.scene import Scene
-from loaded_tca.scene.section import values_of
 from loaded_tca.unloaded.tooth_cycle import REACH
 
-THICKEST_CONTACT = 0.25
-"""Half width of a contact, over the module, above which a tooth is no half-space: it is 1.6 modules thick."""
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from loaded_tca.compliance.model import HeldBodies
+    from loaded_tca.edges.rounded import PeakAtEdge
+    from loaded_tca.loaded.cycle import CycleSolution
+    from loaded_tca.loaded.loaded_contact import LoadedContact
+    from loaded_tca.loaded.tooth_contact import GridChoice
+    from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.numbers import CycleNumbers
 
 ROUNDING = 1e-9
 """Relative, of an estimated error: four cells beside a crossing leave 3 % exactly."""
-SMALLEST_um = 0.1
-"""Amount of a modification or an error below which a question is asked; grinding holds a micrometre."""
-SOFTEST, STIFFEST, LARGEST_TORQUE_Nm = 500.0, 1e6, 1e6
-"""Moduli [MPa] of gear materials, from polyethylene to hard metal, and a torque [N m] beyond which a question is asked.
-A modulus of metals in GPa is below the first."""
-LEAST_CLEARANCE = 0.1
-"""Tip clearance over the module below which a warning says so: basic racks have 0.17 to 0.4 (ISO 53)."""
-HARDEST_MPa, OVER_MEAN = 4000.0, 4.0 / math.pi
-"""Contact pressure that no gear steel carries (endurance limits of ISO 6336-5 end at 1650 MPa), and the largest one
-of a line contact over the mean, which sharp edges do not move."""
-STEEL_MPa, SOFTEST_METAL_MPa, HARDEST_PLASTIC = 206000.0, 1e4, 0.06
-"""Moduli of steel and of the softest metal; the pressure that no plastic carries over its modulus: yield begins at 1.67
-yield stresses (Johnson 1985, section 6.2), which are 3.5 % of the modulus at the most."""
-HARDEST_ROOT_MPa = 1500.0
-"""Root stress that no gear steel carries: nominal strengths sigma_FE of ISO 6336-5 end at 1050 MPa."""
+OVER_MEAN = 4.0 / math.pi
+"""Largest pressure of a line contact over the mean, which sharp edges do not move."""
+THICKEST_CONTACT = 0.25
+"""Half width of a contact, over the module, above which a tooth is no half-space: it is 1.6 modules thick."""
+
 MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
 MOST_STIFFENED = 0.05
@@ -206,105 +195,6 @@ def at_places(reason: str, places: Sequence[str], count: int) -> str:
     return f"{reason} (at {len(places)} of {count} pressure maps; the first: {places[0]})"
 
 
-def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = False) -> None:
-    """Give one AccuracyWarning for each reason why whole gears are not what the contact of two flanks says of them.
-
-    Parameters
-    ----------
-    scene : Scene
-    pair : GearPair
-        Of the scene.
-    whole_revolution : bool
-        Whether the teeth stand at their own places in the analysis.
-
-    Raises
-    ------
-    InputError, GeometryError
-        If nothing can turn, or gear bodies that the scene asks for cannot be built.
-    """
-    for sentence in [
-        *scene.interferences(),
-        *_short_path(scene),
-        *_odd_inputs(scene),
-        *_small_clearances(scene, pair),
-    ]:
-        give_accuracy_warning(sentence, stacklevel=3)
-    if scene.has_pitch_deviations and not whole_revolution:
-        give_accuracy_warning(kinds.PITCH_DEVIATIONS.sentence(), stacklevel=3)
-    if scene.analysis.without_bodies:
-        require_teeth(pair, scene.analysis.without_bodies)
-    else:
-        warn_of_teeth(pair)
-    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        if scene.analysis.root_stress and (rim := gear.rim_over_height) < THIN_RIM:
-            give_accuracy_warning(kinds.THIN_RIM.sentence(gear=name, rim=rim, least=THIN_RIM), stacklevel=3)
-
-
-def _short_path(scene: Scene) -> list[str]:
-    """A sentence on cylindrical gears of which one pair leaves contact before the next one comes."""
-    if scene.path_points and scene.pairs_in_contact < 1.0:
-        return [kinds.CONTACT_RATIO.sentence(ratio=scene.pairs_in_contact)]
-    return []
-
-
-def hardest_pressure(*moduli: float) -> float:
-    """Contact pressure [MPa] that no material with the least of some Young's moduli carries without yielding.
-
-    That of metals is in proportion to their moduli, 4000 MPa of steel.
-    """
-    softest = min(moduli)
-    return softest * (HARDEST_PLASTIC if softest < SOFTEST_METAL_MPa else HARDEST_MPa / STEEL_MPa)
-
-
-def _odd_inputs(scene: Scene) -> list[str]:
-    """Questions about numbers that look like those of another unit."""
-    sentences = []
-    for modulus in dict.fromkeys(material.youngs_modulus_MPa for material in scene.materials):
-        what = f"{'less' if modulus < SOFTEST else 'more'} than that of any material of gears"
-        if not SOFTEST <= modulus <= STIFFEST:
-            key = "material.youngs_modulus_MPa"
-            sentences.append(kinds.ODD_INPUT.sentence(key=key, value=modulus, unit="MPa", what=what))
-    largest = 1e-3 * max(scene.torques)
-    if largest > LARGEST_TORQUE_Nm:
-        what = "more than that of any pinion on land"
-        sentences.append(kinds.ODD_INPUT.sentence(key="load.pinion_torque_Nm", value=largest, unit="N m", what=what))
-    return sentences
-
-
-def questions(scene: Scene) -> list[str]:
-    """Questions about numbers of a scene that look like those of another unit, or like a slip, before any contact.
-
-    Amounts below a tenth of a micrometre are mm, mostly, and stresses of the standard beyond yield torques in N mm.
-    """
-    sentences = []
-    for place, section in (("pinion", scene.pinion), ("wheel", scene.wheel), ("mounting", scene.mounting)):
-        for key, value in values_of(section).items():
-            if key.endswith("_um") and isinstance(value, float) and 0.0 < abs(value) < SMALLEST_um:
-                what = f"less than {SMALLEST_um:g} um, which nobody makes"
-                name = f"{place}.{key}"
-                sentences.append(kinds.ODD_INPUT.sentence(key=name, value=value, unit="um", what=what))
-    torque = max(scene.torques)
-    contact = scene.contact_standard.stress_per_root_torque * math.sqrt(torque)
-    root = torque * max(scene.nominal_root_stress)
-    hardest = hardest_pressure(*(material.youngs_modulus_MPa for material in scene.materials))
-    for stress, most, name in ((contact, hardest, "sigma_H0"), (root, HARDEST_ROOT_MPa, "sigma_F0")):
-        if stress > most:
-            what = f"a {name} of {plain(stress)} MPa, above {plain(most)}, which no material of gears carries"
-            sentences.append(
-                kinds.ODD_INPUT.sentence(key="load.pinion_torque_Nm", value=1e-3 * torque, unit="N m", what=what)
-            )
-    return sentences
-
-
-def _small_clearances(scene: Scene, pair: GearPair) -> list[str]:
-    """Sentences on tips that come near to roots, or touch them; where they reach into them, nothing can turn."""
-    return [
-        kinds.CLEARANCE.sentence(clearance=max(0.0, round(clearance, 4)), gear=gear, least=LEAST_CLEARANCE)
-        for gear, clearance in zip(GEARS, scene.tip_clearances, strict=False)
-        if clearance < LEAST_CLEARANCE * pair.module * (1.0 - ROUNDING)
-    ]
-
-
 def warn_of_root_stress(torques: Array, tension: Array, compression: Array) -> None:
     """Give an AccuracyWarning for each gear with root stress (torque, position, gear) [MPa] beyond yield."""
 
@@ -385,7 +275,7 @@ def edges_of_contact(result: CycleNumbers, torque: int, position: int, column: i
     one = result.maps[torque][position][column]
     if one is None or not result.on_edge[torque, position, column]:
         return np.asarray(reached)
-    row, across = np.nonzero(binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
+    row, across = np.nonzero(scipy.ndimage.binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
     points = one.origin + one.x[row, None] * one.axes[0] + one.y[across, None] * one.axes[1]
     reached = reached | (edge_distances(pair, points) < 0.0).any(axis=0)
     if pair.sharp is not pair:

@@ -13,12 +13,12 @@ from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import GeometryError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact, point_contact
+from loaded_tca.roots import find_roots
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.polynomials import OUTSIDE, GapPolynomials
 from loaded_tca.separation.strips import strip_extents
 from loaded_tca.unloaded import ContactPoint, RelativeCurvature
 from loaded_tca.unloaded.curvature import relative_curvatures
-from loaded_tca.unloaded.search import find_roots
 
 MARGIN = 1.25
 """Box over estimated contact."""

@@ -11,7 +11,7 @@ from itertools import zip_longest
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array
@@ -229,7 +229,7 @@ def _shared(stage: Stage, torques: Array, forces: Array, cycles: tuple[MeshCycle
             state: Shares = balance(tables[0].force, total[:, n].T, directions, errors, whole, asked.support_stiffness)
             shares[t, n], motion[t, n] = state.force / state.force.sum(), state.motion
             rotation[t, n] = state.rotation
-            alone[t, n] = PchipInterpolator(tables[0].force, total[:, n, 0])(whole / planets)
+            alone[t, n] = scipy.interpolate.PchipInterpolator(tables[0].force, total[:, n, 0])(whole / planets)
     factor = planets * shares.max(axis=(1, 2))
     largest = factor * torques / base_radius / planets
     return {
@@ -271,4 +271,4 @@ def _largest(cycle: MeshCycle, name: str, forces: Array, wanted: Array, gear: in
     values = cycle.dataset[name].values
     values = values if gear is None else values[..., gear]
     largest = np.nanmax(values.reshape(len(forces), -1), axis=1, initial=0.0)
-    return np.asarray(PchipInterpolator(np.append(0.0, forces), np.append(0.0, largest))(wanted))
+    return np.asarray(scipy.interpolate.PchipInterpolator(np.append(0.0, forces), np.append(0.0, largest))(wanted))

@@ -22,7 +22,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator
+import scipy
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, InputError
@@ -59,7 +59,7 @@ class Deflections:
         """Deflections (k, ...) at phases (...) in mesh cycles, by a periodic spline through the positions."""
         count = self.deflection.shape[1]
         closed = np.concatenate([self.deflection, self.deflection[:, :1]], axis=1)
-        spline = CubicSpline(np.arange(count + 1) / count, closed, axis=1, bc_type="periodic")
+        spline = scipy.interpolate.CubicSpline(np.arange(count + 1) / count, closed, axis=1, bc_type="periodic")
         return np.asarray(spline(np.mod(phase - self.start, 1.0)))
 
 
@@ -91,7 +91,7 @@ class _Path:
         if keep.sum() < 2:
             raise InputError("deflection: it does not grow with the force")
         self.first, self.last = float(rising[0]), float(rising[keep][-1])
-        self._force = PchipInterpolator(rising[keep], force[keep])
+        self._force = scipy.interpolate.PchipInterpolator(rising[keep], force[keep])
         self._slope, self._work = self._force.derivative(), self._force.antiderivative()
         self._start = float(self._work(self.first))
         self.stiffest = float(self._slope(self.last))

@@ -4,14 +4,21 @@ The engine is any ``concurrent.futures.Executor``. An executor belongs to its ca
 variant, writes down each one that is done, and goes on where it stopped when it is run again.
 """
 
-from loaded_tca.studies.design import DesignModel, DesignResult, load_design, optimise, robustness
-from loaded_tca.studies.other_figures import revolution_figures, tribology_figures
-from loaded_tca.studies.ranking import figures, rank_combinations, rank_variants, study_summary
-from loaded_tca.studies.read import parse_study, read_study, vh_study
-from loaded_tca.studies.rows import load_study
-from loaded_tca.studies.run import process_pool, run_study
-from loaded_tca.studies.stage import stage_figures
-from loaded_tca.studies.study import Study
+from typing import TYPE_CHECKING
+
+from loaded_tca.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from loaded_tca.studies.design import DesignModel, DesignResult, load_design, optimise, robustness
+    from loaded_tca.studies.other_figures import revolution_figures, tribology_figures
+    from loaded_tca.studies.ranking import figures, rank_combinations, rank_variants, study_summary
+    from loaded_tca.studies.read import parse_study, read_study, vh_study
+    from loaded_tca.studies.rows import load_study
+    from loaded_tca.studies.run import process_pool, run_study
+    from loaded_tca.studies.stage import stage_figures
+    from loaded_tca.studies.study import Study
+else:
+    __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
     "DesignModel",

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.ndimage import convolve1d
+import scipy
 
 from loaded_tca.arrays import GEARS, Array, real
 from loaded_tca.compliance import RootStress
@@ -160,7 +160,7 @@ def averaged(values: Array, spacing: tuple[float, float], width: float) -> Array
             reach = math.ceil(0.5 * width / step - 0.5)
             away = step * np.abs(np.arange(-reach, reach + 1))
             parts = np.minimum(0.5 * width - away + 0.5 * step, step) / width
-            values = convolve1d(values, parts, axis=axis, mode="constant")
+            values = scipy.ndimage.convolve1d(values, parts, axis=axis, mode="constant")
     return values
 
 

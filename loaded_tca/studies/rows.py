@@ -274,8 +274,9 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
             if len(values) > torques:
                 torques = len(values)
                 arrays = {known: _widened(array, torques) for known, array in arrays.items()}
-            array = arrays.setdefault(name, np.full((count, torques), np.nan))
-            array[sample, : len(values)] = values
+            if name not in arrays:  # once a figure: an array a row would make large studies grow by the square
+                arrays[name] = np.full((count, torques), np.nan)
+            arrays[name][sample, : len(values)] = values
     variables = {name: (("sample", "torque"), array) for name, array in arrays.items()}
     own = {name: ("sample", np.array(column, dtype=object)) for name, column in texts.items()}
     spent = ("sample", seconds, {"units": "s", "long_name": "time of the analysis"})

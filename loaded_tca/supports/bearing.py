@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from scipy.linalg import solve
+import scipy
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, keep_copies
@@ -129,7 +129,7 @@ def solved(stiffness: Array, loads: Array, free: Array) -> Array:
     motions = np.zeros(loads.shape)
     rows = loads[free].reshape(len(free), -1) / roots[:, None]
     scaled = stiffness[np.ix_(free, free)] / np.outer(roots, roots)
-    motions[free] = (solve(scaled, rows, assume_a="pos") / roots[:, None]).reshape(motions[free].shape)
+    motions[free] = (scipy.linalg.solve(scaled, rows, assume_a="pos") / roots[:, None]).reshape(motions[free].shape)
     return motions
 
 

@@ -25,13 +25,13 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize.elementwise import find_root
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank
+from loaded_tca.roots import find_roots
 
 
 @checked
@@ -233,6 +233,8 @@ def turned(vector: Array, angle: Array) -> Array:
     return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1)
 
 
+ROUNDING = 1e-15
+"""Over the largest radius: how closely an arc touches."""
 EDGE_MARGIN = 0.01
 """Part of the profile above its root edge where a straight continuation starts at the latest: at the base circle
 itself a modification of the profile, which counts by roll length, has no finite slope."""
@@ -348,16 +350,19 @@ class ArcFillet(Fillet):
 def _touching_radius(profile: Profile, root: Array, size: Array) -> Array:
     """Radii (m,) of the image at which arcs of the radii ``size`` touch flank and root circle, on the flank."""
 
-    def height_over_root(radius: Array, coordinate: Array, root: Array, size: Array) -> Array:
-        point, tangent = replace(profile, coordinate=coordinate).point_and_tangent(radius)
-        return np.linalg.norm(point + size[:, None] * _into_space(tangent), axis=-1) - root - size
+    def height_over_root(radius: Array, rows: Indices) -> Array:
+        point, tangent = replace(profile, coordinate=profile.coordinate[rows]).point_and_tangent(radius)
+        touching = point + size[rows, None] * _into_space(tangent)
+        return np.asarray(np.linalg.norm(touching, axis=-1) - root[rows] - size[rows])
 
     low, high = profile.radius[0], profile.radius[-1]
-    low = low + EDGE_MARGIN * (high - low)
-    solution = find_root(height_over_root, (low, high), args=(profile.coordinate, root, size))
-    if (~solution.success & (solution.f_bracket[1] < 0.0)).any():
+    ends = np.stack([low + EDGE_MARGIN * (high - low), high])
+    every = np.arange(len(low))
+    values = np.stack([height_over_root(end, every) for end in ends])
+    if (values < 0.0).all(axis=0).any():
         raise GeometryError("fillet_radius: the fillet reaches the tip of the tooth; reduce it")
-    return np.where(solution.success, solution.x, low)  # no change of sign: the arc stays above the root all along
+    touching = find_roots(height_over_root, ends, values, ROUNDING * float(high.max()))
+    return np.where(values[0] * values[1] < 0.0, touching, ends[0])  # no change of sign: above the root all along
 
 
 def _into_space(tangent: Array) -> Array:

@@ -22,9 +22,10 @@ from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.roots import find_roots
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.path import ContactPoint, trace_contact
-from loaded_tca.unloaded.search import find_roots, first_touch
+from loaded_tca.unloaded.search import first_touch
 
 REACH = 0.05
 """Initial separation, as a length at r_b2 over the module, beyond which a tooth pair counts as apart: no load that

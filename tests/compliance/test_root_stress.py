@@ -182,16 +182,6 @@ def test_largest_stress_lies_between_no_two_places():
 
 
 @pytest.mark.thorough
-def test_influence_does_not_depend_on_how_many_forces_are_solved_at_a_time(monkeypatch):
-    frame = ToothFrame(pinion(), gear_nodes(pinion(), TINY))
-    whole = root_influence(frame, single=False)
-    monkeypatch.setattr("loaded_tca.compliance.dissection.BYTES_OF_LOADS", 1.0)
-    for name in ("stress", "stress_beside"):
-        found = getattr(root_influence(frame, single=False), name)
-        assert_allclose(found, getattr(whole, name), atol=ROUNDING * np.abs(found).max())
-
-
-@pytest.mark.thorough
 def test_helical_gear_has_its_stress_along_the_face_where_its_load_is():
     mesh = CylindricalMesh(*(CylindricalGear(z, 3.0, 20.0, helix_angle=beta) for z, beta in ((25, 0.25), (37, -0.25))))
     helical = root_stress_model(cylindrical_pair(mesh).pinion, SMALL)

@@ -20,7 +20,7 @@ from loaded_tca.output.tables import sensitivities_csv, subsurface_csv
 from loaded_tca.results import compare_results
 from loaded_tca.results.load_factors import face_load_factor_by_positions
 from loaded_tca.results.quantities import QUANTITIES, ROOT_QUANTITIES
-from loaded_tca.results.stress_below import stress_below
+from loaded_tca.results.subsurface import stress_below
 from loaded_tca.studies.ranking import figures_of
 from tests.samples.results import changed, changed_scene, result
 

@@ -1,3 +1,4 @@
+import io
 import os
 import sys
 from dataclasses import replace
@@ -5,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.testing import assert_allclose, assert_array_equal
+from PIL import Image
 
 from loaded_tca.errors import InputError
 from loaded_tca.plots import (
@@ -21,12 +24,13 @@ from loaded_tca.plots import (
     plot_stress_below,
     plot_teeth,
     plot_transmission_error,
+    png_of,
     save_figure,
 )
 from loaded_tca.plots.flanks import CELLS_OF_SPIKES
-from loaded_tca.plots.style import over_a_stretch
+from loaded_tca.plots.style import LARGEST_PICTURE, over_a_stretch
 from loaded_tca.results.key_figures import ARCSEC
-from loaded_tca.results.stress_below import stress_below
+from loaded_tca.results.subsurface import stress_below
 from tests.refusals import refused_calls
 from tests.samples.pictures import told
 from tests.samples.results import PER_PAIR, PER_POSITION, changed, changed_scene, result, with_a_gap
@@ -64,6 +68,27 @@ def texts(figure):
         found += [axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
         found += [child.get_ylabel() for child in axes.child_axes]
     return "\n".join(found)
+
+
+def test_picture_of_too_many_colours_has_a_palette_and_stays_white_and_small(rng):
+    """Thousands of lines, each of its own colour: 600 kB with all of their colours."""
+    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+    axes = figure.add_subplot()
+    lines = LineCollection(rng.uniform(size=(3000, 2, 2)), linewidths=1.0)
+    lines.set_array(rng.uniform(size=3000))
+    axes.add_collection(lines)
+    content = png_of(figure)
+    assert len(content) < LARGEST_PICTURE
+    picture = Image.open(io.BytesIO(content))
+    assert picture.mode == "P"
+    assert picture.convert("RGB").getpixel((0, 0)) == (255, 255, 255)
+
+
+def test_picture_of_few_colours_keeps_each():
+    figure = Figure(figsize=(2.0, 2.0), facecolor="#12ab37", layout="constrained")
+    picture = Image.open(io.BytesIO(png_of(figure)))
+    assert (picture.mode, picture.getcolors()) == ("RGB", [(240 * 240, (0x12, 0xAB, 0x37))])
+    assert picture.info["dpi"] == pytest.approx((120.0, 120.0), abs=0.1)  # stored in dots per metre
 
 
 @pytest.mark.quick_cases("no load")

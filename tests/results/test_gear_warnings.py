@@ -10,7 +10,7 @@ from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.result_files import summary_json
 from loaded_tca.reports.result_page import result_content
-from loaded_tca.results.warnings import hardest_pressure, warn_of_gears
+from loaded_tca.results.gear_warnings import hardest_pressure, warn_of_gears
 from loaded_tca.studies import Study, run_study, study_summary
 from loaded_tca.warning_kinds import kind_of
 from tests.samples.results import SCENES

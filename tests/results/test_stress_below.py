@@ -11,7 +11,7 @@ from loaded_tca.output.tables import STRESSES, subsurface_csv, write_subsurface
 from loaded_tca.plots import plot_stress_below
 from loaded_tca.results.files import read_dataset
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.stress_below import NAMES, depth_of_largest, stress_below
+from loaded_tca.results.subsurface import NAMES, depth_of_largest, stress_below
 from tests.refusals import refusals, refused_calls
 from tests.samples.pictures import told
 from tests.samples.results import changed, changed_scene, result, with_a_gap

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, parse_scene
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.results.warnings import warn_of_gears
+from loaded_tca.results.gear_warnings import warn_of_gears
 from loaded_tca.scene import CylindricalScene, InternalScene, describe_keys
 from tests.refusals import refused_calls
 from tests.samples.internal_pairs import SCENE

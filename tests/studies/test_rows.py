@@ -3,12 +3,14 @@
 import json
 import math
 import warnings
+from collections import Counter
 
+import numpy as np
 import pytest
 
 from loaded_tca.errors import DamageWarning
 from loaded_tca.studies import Study, run_study
-from loaded_tca.studies.rows import PARTS, line_of, row_of
+from loaded_tca.studies.rows import PARTS, dataset_of, line_of, row_of
 from tests.refusals import refused_calls
 from tests.samples.studies import helical
 
@@ -227,3 +229,15 @@ test_rows_refuse = refused_calls(
     ),
     (lambda: row_of(b"{"), "^no JSON: ", ValueError),
 )
+
+
+def test_dataset_has_one_array_for_each_figure_however_many_rows(monkeypatch):
+    """An array as long as the study for each row made a million variants take hours."""
+    made, full = Counter(), np.full
+    monkeypatch.setattr(np, "full", lambda shape, *rest: made.update([shape]) or full(shape, *rest))
+    study = Study(helical(), {"pinion.modifications.lead_crowning_um": [*map(float, range(1, 41))]})
+    row = {"digest": "", "status": "ok", "reason": "", "warnings": [], "seconds": 0.5}
+    rows = [{**row, "figures": {"span_um": [number, 1.0], "force_N": [2.0]}} for number in np.arange(40.0).tolist()]
+    dataset = dataset_of(study, rows, {})
+    assert made[40, 2] == 2
+    assert dataset["span_um"].values.tolist() == [[float(number), 1.0] for number in range(40)]

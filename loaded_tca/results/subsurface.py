@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -15,11 +15,13 @@ from loaded_tca.edges.places import arcs_at, relief_start_distances
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 from loaded_tca.reference.hertz import LineContact, PointContact
-from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import index_or_largest
-from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.results.support_growth import gears_under_torque
+
+if TYPE_CHECKING:
+    from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.results.pressure_map import PressureMap
 
 Quantity = Literal["max_shear", "von_mises"]
 NAMES: dict[Quantity, str] = {

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.unloaded.search import find_roots
+from loaded_tca.roots import find_roots
 
 
 def test_roots_are_found_each_in_its_bracket_with_few_calls():
