@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import require, require_positive
 from loaded_tca.reference.iso6336 import largest_transverse_load_factor
 from loaded_tca.reference.iso6336_5 import material_kind
@@ -177,7 +177,7 @@ def running_in_allowance(kind: str, deviation: float, limit_stress: float, veloc
     require_positive(limit_stress=limit_stress)
     require((0.0 <= deviation < inf, f"deviation: {deviation} um is negative or not finite"))
     speed = np.asarray(velocity, dtype=float)
-    require((bool((speed >= 0.0).all()), f"velocity: {speed} m/s is not zero or more everywhere"))
+    require(interval_check("velocity", speed, "[0, inf)", "m/s"))
     family = material_kind(kind).family
     share = _RUN_IN.get(family, 160.0 / limit_stress)
     largest = np.where(speed <= 5.0, inf, np.where(speed <= 10.0, 80.0, 40.0)) * share
@@ -238,7 +238,7 @@ def dynamic_factor(
     resonance_ratio: ArrayLike,
     specific_load: ArrayLike,
     *,
-    single_stiffness: float,
+    single_stiffness: ArrayLike,
     total_contact_ratio: float,
     pitch_deviation: ArrayLike,
     profile_deviation: ArrayLike,
@@ -266,8 +266,8 @@ def dynamic_factor(
         N, speed of the pinion over the resonance speed.
     specific_load : array [N/mm]
         w.
-    single_stiffness : float [N/(mm um)]
-        c'.
+    single_stiffness : array [N/(mm um)]
+        c'; ``iso6336.single_stiffness`` has its fall below 100 N/mm.
     total_contact_ratio : float
         eps_gamma, above 1.
     pitch_deviation, profile_deviation : array [um]
@@ -299,20 +299,22 @@ def dynamic_factor(
     >>> round(float(factor.K_v), 3), RANGES[factor.range]
     (1.091, 'subcritical')
     """
-    ratio, load, pitch, profile, speed = (
+    ratio, load, stiffness, pitch, profile, speed = (
         np.asarray(each, dtype=float)
-        for each in (resonance_ratio, specific_load, pitch_deviation, profile_deviation, speed_parameter)
-    )
+        for each in (
+            resonance_ratio, specific_load, single_stiffness, pitch_deviation, profile_deviation, speed_parameter,
+        )
+    )  # fmt: skip
     require(
-        (bool((ratio >= 0.0).all()), f"resonance_ratio: {ratio} is not zero or more everywhere"),
-        (bool(((load > 0.0) & (load < inf)).all()), f"specific_load: {load} N/mm is not positive and finite"),
-        (0.0 < single_stiffness < inf, f"single_stiffness: {single_stiffness} is not positive and finite"),
+        interval_check("resonance_ratio", ratio, "[0, inf)"),
+        interval_check("specific_load", load, "(0, inf)", "N/mm"),
+        interval_check("single_stiffness", stiffness, "(0, inf)", "N/(mm um)"),
         (1.0 < total_contact_ratio < inf, f"total_contact_ratio: {total_contact_ratio} is not above 1"),
-        (bool((pitch >= 0.0).all()), f"pitch_deviation: {pitch} um is not zero or more everywhere"),
-        (bool((profile >= 0.0).all()), f"profile_deviation: {profile} um is not zero or more everywhere"),
+        interval_check("pitch_deviation", pitch, "[0, inf)", "um"),
+        interval_check("profile_deviation", profile, "[0, inf)", "um"),
         (0.0 <= tip_relief < inf, f"tip_relief: {tip_relief} um is negative or not finite"),
     )
-    softness = single_stiffness / load
+    softness = stiffness / load
     b_p, b_f, b_k = softness * pitch, softness * profile, np.abs(1.0 - softness * tip_relief)
     constants = _coefficients(total_contact_ratio)
     first, second, third, fourth, fifth, sixth, seventh = constants
@@ -394,8 +396,8 @@ def transverse_load_factors(
     largest = largest_transverse_load_factor(transverse_contact_ratio, overlap_ratio)
     require_positive(mesh_stiffness=mesh_stiffness, virtual_contact_ratio=virtual_contact_ratio)
     require(
-        (bool(((load > 0.0) & (load < inf)).all()), f"specific_load: {load} N/mm is not positive and finite"),
-        (bool((error >= 0.0).all()), f"deviation: {error} um is not zero or more everywhere"),
+        interval_check("specific_load", load, "(0, inf)", "N/mm"),
+        interval_check("deviation", error, "[0, inf)", "um"),
     )
     total = transverse_contact_ratio + overlap_ratio
     part = 0.4 * mesh_stiffness * error / load

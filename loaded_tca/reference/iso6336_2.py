@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import InputError, require, require_positive
 from loaded_tca.reference.iso6336_5 import material_kind
 from loaded_tca.reference.iso6336_6 import LONG_LIFE, SNCurve, flank_curve
@@ -123,7 +123,7 @@ def velocity_factor(velocity: ArrayLike, limit_stress: float) -> Array:
     """
     require_positive(limit_stress=limit_stress)
     speed = np.asarray(velocity, dtype=float)
-    require((bool(((speed > 0.0) & (speed < inf)).all()), f"velocity: {speed} m/s is not positive and finite"))
+    require(interval_check("velocity", speed, "(0, inf)", "m/s"))
     constant = _between(limit_stress, 0.85, 0.93)
     return np.asarray(constant + 2.0 * (1.0 - constant) / np.sqrt(0.8 + 32.0 / speed))
 
@@ -204,7 +204,7 @@ def work_hardening_factor(
         viscosity_40=viscosity_40,
     )  # fmt: skip
     speed = np.asarray(velocity, dtype=float)
-    require((bool(((speed > 0.0) & (speed < inf)).all()), f"velocity: {speed} m/s is not positive and finite"))
+    require(interval_check("velocity", speed, "(0, inf)", "m/s"))
     equal = hard * (10.0 / relative_radius) ** 0.33 * (hard / soft) ** 0.66 / (speed * viscosity_40 / 1500.0) ** 0.33
     smooth = (3.0 / np.clip(equal, _SMOOTHEST, _ROUGHEST)) ** 0.15
     return np.maximum(1.0, (1.2 - (float(np.clip(hardness, *_WORK_HARDENING)) - 130.0) / 1700.0) * smooth)
@@ -263,6 +263,45 @@ def static_work_factor(hardness: float) -> float:
     """
     require_positive(hardness=hardness)
     return 1.05 - (float(np.clip(hardness, *_WORK_HARDENING)) - 130.0) / 6800.0
+
+
+@checked
+def contact_stress(
+    nominal_stress: ArrayLike, single_contact_factor: ArrayLike = 1.0, load_factors: ArrayLike = 1.0
+) -> Array:
+    r"""Contact stress sigma_H [MPa].
+
+    .. math:: \sigma_H = Z_{B,D}\,\sigma_{H0} \sqrt{K_A K_\gamma K_v K_{H\beta} K_{H\alpha}}
+
+    Parameters
+    ----------
+    nominal_stress : array [MPa]
+        sigma_H0.
+    single_contact_factor : array
+        Z_B of the pinion, Z_D of the wheel.
+    load_factors : array
+        Product of the K factors.
+
+    References
+    ----------
+    ISO 6336-2:2019, clause 6.
+
+    Examples
+    --------
+    Printed 739.61:
+
+    >>> round(float(contact_stress(570.79, 1.0, 1.25 * 1.092 * 1.15 * 1.069)), 1)
+    739.4
+    """
+    stress, factor, load = (
+        np.asarray(each, dtype=float) for each in (nominal_stress, single_contact_factor, load_factors)
+    )
+    require(
+        interval_check("nominal_stress", stress, "[0, inf)", "MPa"),
+        interval_check("single_contact_factor", factor, "[1, inf)"),
+        interval_check("load_factors", load, "[0, inf)"),
+    )
+    return np.asarray(factor * stress * np.sqrt(load))
 
 
 @checked

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import InputError, require, require_positive
 from loaded_tca.reference.iso6336_5 import TEST_GEAR_CORRECTION, material_kind
 from loaded_tca.reference.iso6336_6 import LONG_LIFE, SNCurve, root_curve
@@ -46,7 +46,6 @@ _SENSITIVITIES = {
     **dict.fromkeys(("NT", "NV", "NV nitrocarburized"), (0.3, 0.3)),
 }
 _SHOT_PEENED, _CASE_STATIC = (0.4, 0.6), 0.7
-_LARGEST_REVERSAL = -1.2
 
 
 @checked
@@ -286,10 +285,7 @@ def mean_stress_factor(stress_ratio: ArrayLike, sensitivity: float) -> Array:
     """
     ratio = np.asarray(stress_ratio, dtype=float)
     require(
-        (
-            bool(((ratio >= _LARGEST_REVERSAL) & (ratio < 1.0)).all()),
-            f"stress_ratio: {ratio}; allowed {_LARGEST_REVERSAL} to below 1",
-        ),
+        interval_check("stress_ratio", ratio, "[-1.2, 1)"),
         (0.0 <= sensitivity <= 1.0, f"sensitivity: {sensitivity}; allowed 0 to 1"),
     )
     return np.asarray(1.0 / (1.0 - np.minimum(ratio, 0.0) * (1.0 - sensitivity) / (1.0 + sensitivity)))
@@ -480,9 +476,7 @@ def _mean_stress_factors(
     """Y_M of the endurance and of the static strength."""
     if factor is not None:
         value = np.asarray(factor, dtype=float)
-        require(
-            (bool(((value > 0.0) & (value <= 1.0)).all()), f"mean_stress_factor: {value}; allowed above 0, up to 1")
-        )
+        require(interval_check("mean_stress_factor", value, "(0, 1]"))
         return value, value
     ratio = np.asarray(stress_ratio, dtype=float)
     if bool((ratio >= 0.0).all()):

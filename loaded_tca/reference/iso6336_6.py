@@ -8,6 +8,7 @@ bins of a spectrum last; curves may differ from bin to bin, since their levels m
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf, log
 from typing import NamedTuple
 
@@ -16,7 +17,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import InputError, require
 from loaded_tca.reference.iso6336_5 import material_kind
 
@@ -24,6 +25,7 @@ LONG_LIFE, LONG_LIFE_CYCLES = 0.85, 1e10
 """Life factor at the end of a curve, up to 1 by experience with material, making and oil; load cycles there."""
 
 
+_BROKEN = 100.0  # logarithm of a damage that no spectrum bears
 _LEVEL = 1.0 + 1e-6  # static over reference strength of a line that is all but level
 
 
@@ -97,45 +99,50 @@ class SNCurve:
         require(
             (knees, f"stresses: shape {stresses.shape} for knees of shape {cycles.shape}, two or more are asked for")
         )
-        positive = [bool((each > 0.0).all() and (each < inf).all()) for each in (cycles, stresses)]
+        require(*(interval_check(name, getattr(self, name), "(0, inf)") for name in ("cycles", "stresses")))
         require(
-            (positive[0] and bool((np.diff(cycles) > 0.0).all()), f"cycles: {cycles} are not positive and ascending"),
-            (
-                positive[1] and bool((np.diff(stresses, axis=0) < 0.0).all()),
-                f"stresses: {stresses} are not positive and descending",
-            ),
+            (bool((np.diff(cycles) > 0.0).all()), f"cycles: {cycles} do not ascend"),
+            (bool((np.diff(stresses, axis=0) < 0.0).all()), "stresses: they do not descend from knee to knee"),
         )
 
-    @property
+    @cached_property
+    def logarithms(self) -> tuple[Array, Array]:
+        """Logarithms of the cycles and of the stresses of the knees."""
+        return np.log(self.cycles), np.log(self.stresses)
+
+    @cached_property
     def exponents(self) -> Array:
         """p of each line between two knees (knee - 1, ...)."""
-        lengths = np.diff(np.log(self.cycles))
-        return np.asarray(
-            lengths.reshape(-1, *[1] * (self.stresses.ndim - 1)) / -np.diff(np.log(self.stresses), axis=0)
-        )
+        cycles, stresses = self.logarithms
+        lengths = np.diff(cycles).reshape(-1, *[1] * (stresses.ndim - 1))
+        return np.asarray(lengths / -np.diff(stresses, axis=0))
 
     def strength(self, cycles: ArrayLike) -> Array:
         """Stress that is borne for a number of load cycles."""
         number = np.asarray(cycles, dtype=float)
-        require((bool((number >= 0.0).all()), f"cycles: {number} are not all zero or more"))
-        clipped = np.log(np.clip(number, self.cycles[0], self.cycles[-1]))
-        stress = np.log(self.stresses[0])
-        for start, end, exponent in zip(self.cycles[:-1], self.cycles[1:], self.exponents, strict=True):
-            stress = stress - (np.clip(clipped, log(start), log(end)) - log(start)) / exponent
-        return np.asarray(np.exp(stress))
+        require(interval_check("cycles", number, "[0, inf]"))
+        knees, levels = self.logarithms
+        clipped, height = np.log(np.clip(number, self.cycles[0], self.cycles[-1])), levels[0]
+        for start, end, exponent in zip(knees[:-1], knees[1:], self.exponents, strict=True):
+            height = height - (np.clip(clipped, start, end) - start) / exponent
+        return np.asarray(np.exp(height))
 
     def life(self, stress: ArrayLike) -> Array:
         """Load cycles that a stress is borne for: inf below the last knee, 0 above the static strength."""
         level = np.asarray(stress, dtype=float)
-        require((bool((level >= 0.0).all()), f"stress: {level} is not zero or more everywhere"))
-        last, first = self.stresses[-1], self.stresses[0]
-        height = np.log(np.clip(level, last, first if self.static_limit else None))
-        logs, number = np.log(self.stresses), np.full(np.broadcast(level, last).shape, log(self.cycles[-1]))
-        for knee, exponent in enumerate(self.exponents):
-            above = None if knee == 0 else logs[knee]
-            number = number - exponent * (np.clip(height, logs[knee + 1], above) - logs[knee + 1])
-        life = np.where(level < last, inf, np.exp(number))
-        return np.where((level > first) & self.static_limit, 0.0, life)
+        require(interval_check("stress", level, "[0, inf]"))
+        with np.errstate(divide="ignore"):
+            return np.exp(self.logarithm_of_life(np.log(level)))
+
+    def logarithm_of_life(self, log_stress: Array) -> Array:
+        """Logarithm of the life under the logarithm of a stress: inf below the last knee, -inf above the first."""
+        knees, levels = self.logarithms
+        number = knees[-1]
+        for place, exponent in enumerate(self.exponents):
+            low, high = levels[place + 1], None if place == 0 and not self.static_limit else levels[place]
+            number = number - exponent * (np.clip(log_stress, low, high) - low)
+        life = np.where(log_stress < levels[-1], inf, number)
+        return np.where((log_stress > levels[0]) & self.static_limit, -inf, life)
 
     def scaled(self, reference: ArrayLike, static: ArrayLike | None = None) -> SNCurve:
         r"""Curve of a gear from that of life factors, whose reference strength is 1.
@@ -259,7 +266,7 @@ def damages(curve: SNCurve, stresses: ArrayLike, cycles: ArrayLike) -> Array:
     ISO 6336-6:2019, Palmgren-Miner.
     """
     number = np.asarray(cycles, dtype=float)
-    require((bool(((number >= 0.0) & (number < inf)).all()), f"cycles: {number} are negative or not finite"))
+    require(interval_check("cycles", number, "[0, inf)"))
     life = curve.life(stresses)
     number, life = np.broadcast_arrays(number, life)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -342,20 +349,22 @@ def spectrum_safety(curve: SNCurve, stresses: ArrayLike, cycles: ArrayLike) -> f
     """
     _require_cycles(cycles)
     level, number = np.broadcast_arrays(np.asarray(stresses, dtype=float), np.asarray(cycles, dtype=float))
+    require(interval_check("stresses", level, "[0, inf)", "MPa"))
     loaded = (level > 0.0) & (number > 0.0)
     if not loaded.any():
         return inf
+    if curve.stresses.ndim > 1:
+        curve = replace(curve, stresses=np.broadcast_to(curve.stresses, (len(curve.cycles), *level.shape))[:, loaded])
+    heights, counts = np.log(level[loaded]), np.log(number[loaded])
+    limits = curve.logarithms[1]
 
     def excess(log_safety: float) -> float:
-        damage = float(miner_sum(curve, level * np.exp(log_safety), number))
+        life = curve.logarithm_of_life(heights + log_safety)
+        damage = float(np.exp(np.minimum(counts - life, _BROKEN)).sum())
         return 0.5 - 1.0 / (1.0 + damage)  # from -0.5 without damage to 0.5 when the tooth is broken
 
-    end, first = (
-        float(np.min(np.where(loaded, edge / np.where(loaded, level, 1.0), inf)))
-        for edge in (curve.stresses[-1], curve.stresses[0])
-    )
-    low, high = log(end) - 1e-9, log(first) + 1e-9  # just below any damage, just above the static strength
-    while excess(high) < 0.0:
+    low, high = float((limits[-1] - heights).min()) - 1e-9, float((limits[0] - heights).min()) + 1e-9
+    while excess(high) < 0.0:  # above the static strength, where the first line goes on
         high += 1.0
     return float(np.exp(brentq(excess, low, high, xtol=1e-12, rtol=1e-14)))
 
@@ -419,7 +428,7 @@ def equivalent_torque(torques: ArrayLike, cycles: ArrayLike, exponent: float) ->
     _require_cycles(cycles)
     level = np.asarray(torques, dtype=float)
     require(
-        (bool(((level >= 0.0) & (level < inf)).all()), f"torques: {level} are negative or not finite"),
+        interval_check("torques", level, "[0, inf)", "N m"),
         (0.0 < exponent < inf, f"exponent: {exponent} is not positive and finite"),
     )
     largest = float(level.max())
@@ -431,9 +440,5 @@ def equivalent_torque(torques: ArrayLike, cycles: ArrayLike, exponent: float) ->
 
 
 def _require_cycles(cycles: ArrayLike) -> None:
-    number = np.asarray(cycles, dtype=float)
-    valid = bool(((number >= 0.0) & (number < inf)).all())
-    require(
-        (valid, f"cycles: {number} are negative or not finite"),
-        (not valid or float(number.sum()) > 0.0, f"cycles: {number} sum to nothing"),
-    )
+    require(interval_check("cycles", cycles, "[0, inf)"))
+    require((float(np.sum(cycles)) > 0.0, "cycles: they sum to nothing"))

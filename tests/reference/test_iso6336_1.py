@@ -125,17 +125,17 @@ def test_transverse_load_factors_lie_between_even_sharing_and_one_pair():
 test_iso6336_1_refuses = refused_calls(
     (
         lambda: dynamic_factor(-1.0, 0.0, **{**STAGE, "total_contact_ratio": 1.0, "tip_relief": -1.0}),
-        ("^resonance_ratio: -1.0", "^specific_load: 0.0 N/mm", "^total_contact_ratio: 1.0", "^tip_relief: -1.0 um"),
+        ("^resonance_ratio: -1 is", "^specific_load: 0 N/mm is", "^total_contact_ratio: 1.0", "^tip_relief: -1.0 um"),
     ),
     (lambda: disc_inertia(100.0, 100.0), "bore_diameter: 100.0 mm; allowed 0 to below the mean diameter, 100.0 mm"),
     (lambda: reduced_mass((float("inf"),) * 2, (1.0, 1.0)), "inertias: one of the gears has to swing"),
     (lambda: reduced_mass((0.0, 1.0), (1.0, -1.0)), ("^inertias: 0.0 kg mm", "^base_radii: -1.0 mm")),
     (lambda: resonance_speed(20, 0.0, 1.0), "mesh_stiffness: 0.0 is not positive"),
     (lambda: running_in_allowance("Eh", -1.0, 1500.0), "deviation: -1.0 um is negative"),
-    (lambda: running_in_allowance("Eh", 1.0, 1500.0, -1.0), "velocity: -1.0 m/s is not zero or more"),
+    (lambda: running_in_allowance("Eh", 1.0, 1500.0, -1.0), "velocity: -1 m/s is not in"),
     (lambda: running_in_relief(0.0), "limit_stress: 0.0 is not positive"),
     (
         lambda: transverse_load_factors(0.0, mesh_stiffness=18.0, deviation=-1.0, **TEETH),
-        ("^specific_load: 0.0 N/mm is not positive", "^deviation: -1.0 um is not zero or more"),
+        ("^specific_load: 0 N/mm is not in", "^deviation: -1 um is not in"),
     ),
 )

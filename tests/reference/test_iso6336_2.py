@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.reference.iso6336_2 import (
     FlankStrength,
+    contact_stress,
     flank_factors,
     lubricant_factor,
     relative_radius,
@@ -61,6 +62,13 @@ def test_kisssoft_report_of_a_planet_in_a_through_hardened_ring_has_its_factors(
     assert_allclose([factors.Z_L, factors.Z_v, factors.Z_R], [1.038, 0.961, 1.026], atol=PRINTED)
     assert_allclose([*factors.Z_W, *factors.Z_NT], [1.0, 1.135, 0.905, 0.901], atol=PRINTED)
     assert_allclose(factors.strength, [1388.39, 732.21], rtol=PRINTED)
+
+
+def test_contact_stress_is_that_of_the_reports():
+    """570.79 MPa with 1.25, 1.092, 1.150 and 1.069; of the sun 573.40 MPa with Z_B 1.08 and sqrt of K 994.13/573.40."""
+    stress = contact_stress(570.79, 1.0, 1.25 * 1.092 * 1.150 * 1.069)
+    assert_allclose(stress, 739.61, rtol=1e-3)  # half the error of four factors with four digits
+    assert_allclose(contact_stress(573.40, [1.08, 1.0], (994.13 / 573.40) ** 2), [1071.17, 994.13], rtol=5e-3)  # of Z_B
 
 
 def test_strength_goes_to_the_static_one_without_oil_and_roughness():
@@ -131,7 +139,11 @@ test_iso6336_2_refuses = refused_calls(
     ),
     (lambda: FlankStrength(0.0, "Eh", -1.0), ("^limit_stress: 0.0 is not", "^roughness: -1.0 is not")),
     (lambda: FlankStrength(1500.0, "steel", 1.0), "kind: 'steel' is no kind of material"),
-    (lambda: velocity_factor([1.0, 0.0], 1500.0), r"velocity: \[1. 0.\] m/s is not positive and finite"),
+    (lambda: velocity_factor([1.0, 0.0], 1500.0), r"velocity: 0 m/s is not in \(0, inf\)"),
+    (
+        lambda: contact_stress(-1.0, 0.9, -1.0),
+        ("^nominal_stress: -1 MPa is not in", "^single_contact_factor: 0.9 is not", "^load_factors: -1 is not"),
+    ),
     (lambda: lubricant_factor(0.0, 1500.0), "viscosity_40: 0.0 is not positive"),
     (lambda: relative_radius((100.0, -90.0), 0.4), "base_diameters: a ring of -90.0 mm is too small"),
     (
