@@ -315,7 +315,7 @@ def theoretical_single_stiffness(virtual_teeth: tuple[float, float], profile_shi
     Parameters
     ----------
     virtual_teeth, profile_shifts : (float, float)
-        z_n and x of pinion and wheel.
+        z_n and x of pinion and wheel; z_n is inf of a ring.
 
     References
     ----------
@@ -327,7 +327,8 @@ def theoretical_single_stiffness(virtual_teeth: tuple[float, float], profile_shi
     17.8558
     """
     (z1, z2), (x1, x2) = virtual_teeth, profile_shifts
-    require_positive(pinion_virtual_teeth=z1, wheel_virtual_teeth=z2)
+    require_positive(pinion_virtual_teeth=z1)
+    require((z2 > 0.0, f"wheel_virtual_teeth: {z2} is not positive"))
     teeth = 0.15551 / z1 + 0.25791 / z2 - 0.11654 * x1 / z1 - 0.24188 * x2 / z2
     return 1.0 / (0.04723 + teeth - 0.00635 * x1 - 0.00193 * x2 + 0.00529 * x1**2 + 0.00182 * x2**2)
 

@@ -56,16 +56,20 @@ def disc_inertia(mean_diameter: float, bore_diameter: float = 0.0, density: floa
 
 
 @checked
-def reduced_mass(inertias: tuple[float, float], base_radii: tuple[float, float]) -> float:
+def reduced_mass(
+    inertias: tuple[float, float], base_radii: tuple[float, float], *, meshes: tuple[int, int] = (1, 1)
+) -> float:
     r"""Reduced mass m_red of a pair on its line of action, for each mm of face width [kg/mm].
 
-    .. math:: m_{red} = \frac{m_1 m_2}{m_1 + m_2},\qquad m = \frac{J^*}{r_b^2}
+    .. math:: \frac{1}{m_{red}} = \frac{p_1}{m_1} + \frac{p_2}{m_2},\qquad m = \frac{J^*}{r_b^2}
 
     Parameters
     ----------
     inertias : (float, float) [kg mm]
         Moments of inertia for each mm of face width; inf: a gear that does not swing.
     base_radii : (float, float) [mm]
+    meshes : (int, int)
+        p, of each gear at once: planets for the sun and a ring that swings, 1 for a planet against the sun.
 
     References
     ----------
@@ -76,14 +80,21 @@ def reduced_mass(inertias: tuple[float, float], base_radii: tuple[float, float])
     >>> inertia = disc_inertia(100.0)
     >>> round(reduced_mass((inertia, inertia), (46.98, 46.98)), 6)
     0.017459
+
+    Sun and one of three planets, printed 0.1534:
+
+    >>> inertias = disc_inertia(387.338, 194.32, 7830.0), disc_inertia(770.163, 576.96, 7830.0)
+    >>> round(reduced_mass(inertias, (177.602, 355.204), meshes=(3, 1)), 4)
+    0.1534
     """
     require(
         *((each > 0.0, f"inertias: {each} kg mm is not positive") for each in inertias),
         *((0.0 < each < inf, f"base_radii: {each} mm is not positive and finite") for each in base_radii),
+        *((each >= 1, f"meshes: {each} is below 1") for each in meshes),
         (min(inertias) < inf, "inertias: one of the gears has to swing"),
     )
     masses = [inertia / radius**2 for inertia, radius in zip(inertias, base_radii, strict=True)]
-    return 1.0 / sum(1.0 / mass for mass in masses)
+    return 1.0 / sum(count / mass for count, mass in zip(meshes, masses, strict=True))
 
 
 @checked

@@ -101,6 +101,13 @@ def test_ring_has_the_contact_stress_that_kisssoft_prints():
     assert_allclose(stress, 312.44, rtol=1e-3)  # Z_eps has three digits
 
 
+def test_ring_has_the_stiffness_that_kisssoft_prints():
+    """The same pair, C_R 0.862 and C_B 0.975: 14.053 N/(mm um), with z_n inf for the ring of x 0.1171."""
+    theoretical = iso6336.theoretical_single_stiffness((36.0, float("inf")), (0.5039, 0.1171))
+    stiffness = iso6336.single_stiffness(theoretical, 0.0, basic_rack_factor=0.975, gear_blank_factor=0.862)
+    assert_allclose(stiffness, 14.053, rtol=6e-4)  # C_R has three digits
+
+
 def test_mesh_stiffness_of_one_pair_is_the_single_stiffness():
     assert iso6336.mesh_stiffness(14.0, 1.0) == 14.0
 

@@ -59,6 +59,23 @@ def test_reduced_mass_of_like_discs_is_half_the_mass_on_the_base_circle():
     assert_allclose(disc_inertia(100.0, 50.0), 15.0 / 16.0 * inertia)
 
 
+def test_planetary_stage_has_the_dynamic_factors_of_the_kisssoft_report():
+    """NREL, second stage: m_red 0.1534 and 1.4684 kg/mm, N 0.046 and 0.124, K_v 1.02 and 1.06."""
+    sun, planet = disc_inertia(387.338, 194.32, 7830.0), disc_inertia(770.163, 576.96, 7830.0)
+    masses = reduced_mass((sun, planet), (177.602, 355.204), meshes=(3, 1)), planet / 355.204**2
+    assert_allclose(masses, [0.1534, 1.4684], rtol=4e-4)  # printed with four digits
+    load, relief = 1.25 * 519.82, (running_in_relief(1500.0), running_in_relief(700.0))
+    for ratio, stiffness, total, pitch, profile, tip, printed in (
+        (0.046, 12.240, 1.370, 17.9 - 1.342, 23.0 - 1.725, relief[0], 1.02),
+        (0.124, 14.053, 1.618, 20.7 - 3.142, 27.0 - 4.098, 0.5 * sum(relief), 1.06),
+    ):
+        factor = dynamic_factor(
+            ratio, load, single_stiffness=stiffness, total_contact_ratio=total, pitch_deviation=pitch,
+            profile_deviation=profile, tip_relief=tip,
+        )  # fmt: skip
+        assert_allclose(factor.K_v, printed, atol=5e-3)
+
+
 @pytest.mark.parametrize("total", [1.4, 1.9, 2.4, 3.0])
 def test_dynamic_factor_has_no_step_between_resonance_and_supercritical_range(total):
     ratios = np.array([1.15 - 1e-9, 1.15 + 1e-9, 1.5 - 1e-9, 1.5])
@@ -130,6 +147,7 @@ test_iso6336_1_refuses = refused_calls(
     (lambda: disc_inertia(100.0, 100.0), "bore_diameter: 100.0 mm; allowed 0 to below the mean diameter, 100.0 mm"),
     (lambda: reduced_mass((float("inf"),) * 2, (1.0, 1.0)), "inertias: one of the gears has to swing"),
     (lambda: reduced_mass((0.0, 1.0), (1.0, -1.0)), ("^inertias: 0.0 kg mm", "^base_radii: -1.0 mm")),
+    (lambda: reduced_mass((1.0, 1.0), (1.0, 1.0), meshes=(0, 1)), "meshes: 0 is below 1"),
     (lambda: resonance_speed(20, 0.0, 1.0), "mesh_stiffness: 0.0 is not positive"),
     (lambda: running_in_allowance("Eh", -1.0, 1500.0), "deviation: -1.0 um is negative"),
     (lambda: running_in_allowance("Eh", 1.0, 1500.0, -1.0), "velocity: -1 m/s is not in"),

@@ -153,6 +153,7 @@ def _stage_2() -> list[Row]:
         viscosity_40=220.0, cycles=cycles, gear_ratio=93 / 36,
     )  # fmt: skip
     found = [
+        *_stage_2_stiffness(),
         _row(SECOND, "ring: work hardening factor Z_W", 1.135, float(flanks.Z_W[1]), 1e-3),
         _row(SECOND, "planet: sigma_HG [MPa]", 1388.39, float(flanks.strength[0]), 0.5),
         _row(SECOND, "ring: sigma_HG [MPa]", 732.21, float(flanks.strength[1]), 0.3),
@@ -166,6 +167,32 @@ def _stage_2() -> list[Row]:
             stress_correction_factor=correction, normal_module=21.0, mean_stress_factor=mean,
         )  # fmt: skip
         found.append(_row(SECOND, f"{name}: sigma_FG [MPa]", printed, float(root.strength), 0.2))
+    return found
+
+
+def _stage_2_stiffness() -> list[Row]:
+    """Stiffness and reduced masses of sun (18 teeth), planet and ring, as discs of tips, roots and bores."""
+    sun, planet = (iso6336_1.disc_inertia(*each, 7830.0) for each in ((387.338, 194.32), (770.163, 576.96)))
+    radii = 177.602, 355.204
+    found = [
+        _row(
+            SECOND,
+            "sun and planet: m_red [kg/mm]",
+            0.1534,
+            iso6336_1.reduced_mass((sun, planet), radii, meshes=(3, 1)),
+            1e-4,
+        ),
+        _row(SECOND, "planet and ring: m_red [kg/mm]", 1.4684, planet / radii[1] ** 2, 1e-4),
+    ]
+    for name, teeth, shifts, printed in (
+        ("sun and planet", (18.0, 36.0), (0.3890, 0.5039), 12.240),
+        ("planet and ring", (36.0, np.inf), (0.5039, 0.1171), 14.053),
+    ):
+        theoretical = iso6336.theoretical_single_stiffness(teeth, shifts)
+        stiffness = iso6336.single_stiffness(theoretical, 0.0, basic_rack_factor=0.975, gear_blank_factor=0.862)
+        found.append(
+            _row(SECOND, f"{name}: c' [N/(mm um)]", printed, stiffness, 0.015, "C_R, printed with three digits")
+        )
     return found
 
 
