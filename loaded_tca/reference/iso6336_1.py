@@ -9,7 +9,7 @@ in N/(mm um), loads for each mm of face width in N/mm, reduced masses in kg/mm.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, pi, sin
+from math import degrees, inf, pi, sin
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,8 +25,59 @@ RANGES = ("subcritical", "main resonance", "intermediate", "supercritical")
 MAIN_RESONANCE_END, SUPERCRITICAL = 1.15, 1.5
 LOW_LOAD = 100.0
 """Load for each mm of face width below which the main resonance is wider [N/mm]."""
+PRESSURE_ANGLES, LARGEST_HELIX = (15.0, 25.0), 30.0
+"""Normal pressure angles and helix angle for which the standard was checked [deg]."""
+_ROUNDING = 1e-9  # deg
 USEFUL_SPEED = 3.0
 """Speed (v z_1/100) sqrt(u^2/(1 + u^2)) below which the standard does not need method B [m/s]."""
+
+
+@checked
+def scope_notes(
+    *,
+    pressure_angle: float,
+    helix_angle: float,
+    transverse_contact_ratio: float,
+    profile_shifts: tuple[float, float] = (0.0, 0.0),
+) -> tuple[str, ...]:
+    """What of a pair lies outside the scope of the standard, a sentence for each.
+
+    Parameters
+    ----------
+    pressure_angle, helix_angle : float [rad]
+        alpha_n, within 15 to 25 degrees; beta, up to 30 degrees of either hand.
+    transverse_contact_ratio : float
+        eps_alpha, within 1 to 2.5; of the mesh stiffness at least 1.2.
+    profile_shifts : (float, float)
+        x_1 and x_2 of an external pair: the series of the stiffness holds for x_1 from x_2 on, sums of -0.5 to 2.
+
+    References
+    ----------
+    ISO 6336-1 and -2, scope and tooth stiffness; limits of the angles in IACS UR M56, too.
+
+    Examples
+    --------
+    >>> scope_notes(pressure_angle=0.35, helix_angle=0.6, transverse_contact_ratio=1.5)
+    ('scope: a helix angle of 34.4 deg is above 30 deg',)
+    """
+    pressure, helix, ratio = degrees(pressure_angle), abs(degrees(helix_angle)), transverse_contact_ratio
+    (first, second), (low, high) = profile_shifts, PRESSURE_ANGLES
+    total = first + second
+    cases = (
+        (
+            not low - _ROUNDING <= pressure <= high + _ROUNDING,
+            f"a pressure angle of {pressure:.3g} deg is not within {low:g} to {high:g} deg",
+        ),
+        (helix > LARGEST_HELIX + _ROUNDING, f"a helix angle of {helix:.3g} deg is above {LARGEST_HELIX:g} deg"),
+        (not 1.0 <= ratio <= 2.5, f"a transverse contact ratio of {ratio:.4g} is not within 1 to 2.5"),
+        (
+            1.0 <= ratio < 1.2,
+            f"c_gamma_alpha is up to 10 % high at a transverse contact ratio of {ratio:.4g}, below 1.2",
+        ),
+        (first < second, f"c' was not fitted for x_1 = {first:g} below x_2 = {second:g}"),
+        (not -0.5 <= total <= 2.0, f"c' was not fitted for x_1 + x_2 = {total:.3g}, not within -0.5 to 2"),
+    )
+    return tuple(f"scope: {words}" for holds, words in cases if holds)
 
 
 @checked
@@ -197,7 +248,97 @@ def running_in_allowance(kind: str, deviation: float, limit_stress: float, veloc
     return np.minimum(share * deviation, largest)
 
 
-@dataclass(frozen=True)
+_RUN_IN_HELIX = {
+    "GG": 0.55,
+    "GGG ferritic": 0.55,
+    **dict.fromkeys(("Eh", "IF", "NT", "NV", "NV nitrocarburized"), 0.15),
+}
+_LARGEST_HELIX_HARD = 6.0  # um, of hardened flanks at any speed
+
+
+@checked
+def running_in_misalignment(
+    kind: str, misalignment: ArrayLike, limit_stress: float, velocity: ArrayLike = 0.0
+) -> Array:
+    r"""Running-in allowance y_beta of a gear for the equivalent misalignment [um].
+
+    .. math:: y_\beta = \frac{320}{\sigma_{H\,lim}} F_{\beta x},\qquad 0.55 F_{\beta x},\qquad 0.15 F_{\beta x} \le 6
+
+    of St, V, GGG and GTS, no larger than F_betax; of GG and ferritic GGG; of hardened flanks. Above 5 m/s the first two
+    are bounded by those of 80 um, above 10 m/s by those of 40 um.
+
+    Parameters
+    ----------
+    kind : str
+        One of ``iso6336_5.KINDS``; of unlike gears the mean of both allowances counts.
+    misalignment : array [um]
+        F_betax, before running in.
+    limit_stress : float [MPa]
+        sigma_H_lim.
+    velocity : array [m/s]
+        v, at the reference circle.
+
+    References
+    ----------
+    ISO 6336-1:2019, 7.5.
+
+    Examples
+    --------
+    >>> float(running_in_misalignment("Eh", 20.0, 1500.0)), float(running_in_misalignment("V alloy", 20.0, 640.0))
+    (3.0, 10.0)
+    """
+    require_positive(limit_stress=limit_stress)
+    amount, speed = np.asarray(misalignment, dtype=float), np.asarray(velocity, dtype=float)
+    require(
+        interval_check("misalignment", amount, "[0, inf)", "um"), interval_check("velocity", speed, "[0, inf)", "m/s")
+    )
+    family = material_kind(kind).family
+    share = _RUN_IN_HELIX.get(family, min(1.0, 320.0 / limit_stress))
+    largest = np.where(speed <= 5.0, inf, np.where(speed <= 10.0, 80.0, 40.0)) * share
+    if family in _RUN_IN_HELIX and share == _RUN_IN_HELIX["Eh"]:
+        largest = np.full(speed.shape, _LARGEST_HELIX_HARD)
+    return np.minimum(share * amount, largest)
+
+
+@checked
+def contact_face_load_factor(misalignment: ArrayLike, mesh_stiffness: float, specific_load: ArrayLike) -> Array:
+    r"""Face load factor K_Hbeta by method C.
+
+    .. math::
+        K_{H\beta} = 1 + \frac{F_{\beta y} c_{\gamma\beta}}{2 F_m/b}\quad (K_{H\beta} \le 2),\qquad
+        K_{H\beta} = \sqrt{\frac{2 F_{\beta y} c_{\gamma\beta}}{F_m/b}}
+
+    the load of stiff bodies on even springs, over the whole face and over a part of it.
+
+    Parameters
+    ----------
+    misalignment : array [um]
+        F_betay, after running in: F_betax less y_beta.
+    mesh_stiffness : float [N/(mm um)]
+        c_gamma_beta, 0.85 c_gamma_alpha.
+    specific_load : array [N/mm]
+        F_m/b = F_t K_A K_gamma K_v/b.
+
+    References
+    ----------
+    ISO 6336-1:2019, formulas (41), (42).
+
+    Examples
+    --------
+    >>> [round(float(each), 4) for each in contact_face_load_factor([0.0, 20.0, 80.0], 15.0, 300.0)]
+    [1.0, 1.5, 2.8284]
+    """
+    amount, load = np.asarray(misalignment, dtype=float), np.asarray(specific_load, dtype=float)
+    require_positive(mesh_stiffness=mesh_stiffness)
+    require(
+        interval_check("misalignment", amount, "[0, inf)", "um"),
+        interval_check("specific_load", load, "(0, inf)", "N/mm"),
+    )
+    slope = amount * mesh_stiffness / load
+    return np.where(slope <= 2.0, 1.0 + 0.5 * slope, np.sqrt(2.0 * slope))
+
+
+@dataclass(frozen=True, eq=False)
 class DynamicFactor:
     """Dynamic factor of a pair, and what it follows from.
 

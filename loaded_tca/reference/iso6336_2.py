@@ -349,7 +349,7 @@ class FlankStrength:
 
 
 @checked
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FlankFactors:
     """What the flanks of a pair withstand, gear by gear: arrays (gear, ...) where both differ.
 

@@ -354,7 +354,7 @@ class RootStrength:
 
 
 @checked
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RootFactors:
     """What the roots of one gear withstand.
 

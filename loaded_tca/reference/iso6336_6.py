@@ -56,7 +56,7 @@ ROOT_KNEES: dict[str, Knees] = {
 
 
 @checked
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SNCurve:
     r"""Strength over load cycles, straight between its knees in logarithms.
 

@@ -1,17 +1,23 @@
 """Load factors: printed reports, a disc, seams between the ranges, refusals."""
 
+from math import radians
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.optimize import brentq
 
 from loaded_tca.reference.iso6336_1 import (
     RANGES,
+    contact_face_load_factor,
     disc_inertia,
     dynamic_factor,
     reduced_mass,
     resonance_speed,
     running_in_allowance,
+    running_in_misalignment,
     running_in_relief,
+    scope_notes,
     transverse_load_factors,
 )
 from tests.refusals import refused_calls
@@ -114,12 +120,39 @@ def test_what_method_b_does_not_cover_is_told():
     ]
 
 
+def test_what_the_standard_was_not_checked_for_is_told():
+    inside = {"pressure_angle": radians(25.0), "helix_angle": radians(-30.0), "transverse_contact_ratio": 1.2}
+    assert scope_notes(**inside, profile_shifts=(0.3, 0.3)) == ()
+    outside = {"pressure_angle": radians(14.0), "helix_angle": radians(31.0), "transverse_contact_ratio": 2.6}
+    assert len(scope_notes(**outside, profile_shifts=(-0.5, 0.1))) == 4
+    assert len(scope_notes(**{**inside, "transverse_contact_ratio": 1.1}, profile_shifts=(1.2, 1.0))) == 2
+
+
 def test_running_in_allowances_keep_their_limits():
     """12800/sigma_H_lim above 5 m/s and half of it above 10 m/s of St and V; 22 and 11 um of GG; 3 um if hard."""
     speeds = [5.0, 7.0, 20.0]
     assert_allclose(running_in_allowance("V alloy", 200.0, 640.0, speeds), [50.0, 20.0, 10.0])
     assert_allclose(running_in_allowance("GG", 200.0, 300.0, speeds), [55.0, 22.0, 11.0])
     assert_allclose(running_in_allowance("NT", 200.0, 1250.0, speeds), 3.0)
+
+
+@pytest.mark.parametrize("misalignment", [10.0, 30.0, 100.0])
+def test_face_load_factor_is_that_of_stiff_bodies_on_springs(misalignment):
+    """300 N/mm on 15 N/(mm um): the approach of the bodies solved for, places without contact bear nothing."""
+    gaps = misalignment * (np.arange(4000) + 0.5) / 4000
+    approach = brentq(lambda depth: np.maximum(0.0, 15.0 * (depth - gaps)).mean() - 300.0, 0.0, 1e3)
+    assert_allclose(
+        contact_face_load_factor(misalignment, 15.0, 300.0), 15.0 * approach / 300.0, rtol=1e-3
+    )  # of 4000 springs
+
+
+def test_running_in_of_helices_keeps_its_limits():
+    """25600/sigma_H_lim above 5 m/s and half of it above 10 m/s of St and V; 45 and 22 um of GG; 6 um if hard."""
+    speeds = [5.0, 7.0, 20.0]
+    assert_allclose(running_in_misalignment("V alloy", 200.0, 640.0, speeds), [100.0, 40.0, 20.0])
+    assert_allclose(running_in_misalignment("GG", 200.0, 300.0, speeds), [110.0, 44.0, 22.0])
+    assert_allclose(running_in_misalignment("Eh", 200.0, 1500.0, speeds), 6.0)
+    assert running_in_misalignment("St", 30.0, 300.0) == 30.0
 
 
 def test_transverse_load_factors_lie_between_even_sharing_and_one_pair():
@@ -151,6 +184,11 @@ test_iso6336_1_refuses = refused_calls(
     (lambda: resonance_speed(20, 0.0, 1.0), "mesh_stiffness: 0.0 is not positive"),
     (lambda: running_in_allowance("Eh", -1.0, 1500.0), "deviation: -1.0 um is negative"),
     (lambda: running_in_allowance("Eh", 1.0, 1500.0, -1.0), "velocity: -1 m/s is not in"),
+    (
+        lambda: contact_face_load_factor(-1.0, 15.0, 0.0),
+        ("^misalignment: -1 um is not in", "^specific_load: 0 N/mm is not in"),
+    ),
+    (lambda: running_in_misalignment("Eh", -1.0, 1500.0), "misalignment: -1 um is not in"),
     (lambda: running_in_relief(0.0), "limit_stress: 0.0 is not positive"),
     (
         lambda: transverse_load_factors(0.0, mesh_stiffness=18.0, deviation=-1.0, **TEETH),

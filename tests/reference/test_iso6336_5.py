@@ -26,8 +26,8 @@ def test_named_steels_have_the_stresses_that_kisssoft_prints():
     """18CrNiMo7-6 at 61 HRC and 34CrNiMo6 at 240 HBW, MQ: 1500 and 430 MPa, 700 and 290 MPa."""
     case = named_material("18CrNiMo7-6", "MQ", hardness=61.0, scale="HRC")
     quenched = named_material("34CrNiMo6", "MQ", hardness=240.0, scale="HBW")
-    found = [case.contact, case.nominal_root, quenched.contact, quenched.nominal_root]
-    assert_allclose(found, [1500.0, 430.0, 700.0, 290.0], atol=PRINTED, rtol=0.0)
+    stresses = [case.contact, case.nominal_root, quenched.contact, quenched.nominal_root]
+    assert_allclose(stresses, [1500.0, 430.0, 700.0, 290.0], atol=PRINTED, rtol=0.0)
 
 
 @pytest.mark.parametrize("kind", KINDS)

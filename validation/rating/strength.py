@@ -33,7 +33,7 @@ KISSSOFT, STAGE, SECOND = "KISSsoft 03/2017A", "NREL 5 MW, stage 3", "NREL 5 MW,
 SPECTRUM_SOURCE, ANNEX_C = "ISO 6336-6:2019, table C.2", "ISO 6336-6 annex C"
 TORQUE, SPEED, HOURS, APPLICATION, FACE_LOAD = 40953.0e3, 1165.9, 175200.0, 1.25, 1.150
 MEAN_CONTACT_RATIO = 1.460
-GIVEN = "K_Hbeta, C_R, m_red, deviations"
+ASSUMED = "K_Hbeta, C_R, m_red, deviations"
 SPECTRUM = (
     (2203, 2349), (1285, 2344), (825.9, 2344), (1285, 2340), (2570, 2335), (1285, 2330), (825.9, 2326), (1744, 2321),
     (2570, 2316), (3028, 2312), (2203, 2307), (2203, 2297), (1744, 2293), (2386, 2283), (4772, 2274), (4313, 2264),
@@ -76,13 +76,13 @@ def _loads(mesh: CylindricalMesh, ratio: float) -> tuple[list[Row], float, tuple
         transverse_contact_ratio=mesh.transverse_contact_ratio, overlap_ratio=ratio,
         virtual_contact_ratio=mesh.transverse_contact_ratio / base**2,
     )  # fmt: skip
-    found = [
-        _row(STAGE, "single stiffness c' [N/(mm um)]", 13.832, stiffness, 1e-3, GIVEN),
-        _row(STAGE, "resonance ratio N", 0.410, SPEED / speed, 1e-3, GIVEN),
-        _row(STAGE, "dynamic factor K_v", 1.092, factor, 2e-3, GIVEN),
-        _row(STAGE, "transverse load factor K_Halpha", 1.069, float(flank), 2e-3, GIVEN),
+    compared = [
+        _row(STAGE, "single stiffness c' [N/(mm um)]", 13.832, stiffness, 1e-3, ASSUMED),
+        _row(STAGE, "resonance ratio N", 0.410, SPEED / speed, 1e-3, ASSUMED),
+        _row(STAGE, "dynamic factor K_v", 1.092, factor, 2e-3, ASSUMED),
+        _row(STAGE, "transverse load factor K_Halpha", 1.069, float(flank), 2e-3, ASSUMED),
     ]
-    return found, factor, (float(flank), float(root))
+    return compared, factor, (float(flank), float(root))
 
 
 def _stage_3() -> list[Row]:
@@ -91,7 +91,7 @@ def _stage_3() -> list[Row]:
         CylindricalMesh(*gears, centre_distance=CENTRE_DISTANCE),
         360.0 * np.sin(radians(10.0)) / (14.0 * np.pi),
     )
-    found, dynamic, transverse = _loads(mesh, ratio)
+    compared, dynamic, transverse = _loads(mesh, ratio)
     alpha, cycles = mesh.transverse_contact_ratio, SPEED * 60.0 * HOURS * np.array([1.0, 24 / 95])
     steel = Material()
     factors = iso6336.zone_factor(
@@ -110,17 +110,17 @@ def _stage_3() -> list[Row]:
         gear_ratio=95 / 24,
     )  # fmt: skip
     safeties = strength.safety(iso6336_2.contact_stress(nominal, 1.0, load))
-    found.append(_row(STAGE, "nominal contact stress sigma_H0 [MPa]", 570.79, nominal, 1e-2))
+    compared.append(_row(STAGE, "nominal contact stress sigma_H0 [MPa]", 570.79, nominal, 1e-2))
     for place, (printed, safety) in enumerate(((1338.30, 1.81), (1387.31, 1.88))):
         name = ("pinion", "wheel")[place]
-        found.append(_row(STAGE, f"{name}: sigma_HG [MPa]", printed, float(strength.strength[place]), 2e-2))
-        found.append(_row(STAGE, f"{name}: pitting safety S_H", safety, float(safeties[place]), 1e-2, GIVEN))
-    return [*found, *_roots(mesh, ratio, dynamic, transverse[1], cycles)]
+        compared.append(_row(STAGE, f"{name}: sigma_HG [MPa]", printed, float(strength.strength[place]), 2e-2))
+        compared.append(_row(STAGE, f"{name}: pitting safety S_H", safety, float(safeties[place]), 1e-2, ASSUMED))
+    return [*compared, *_roots(mesh, ratio, dynamic, transverse[1], cycles)]
 
 
 def _roots(mesh: CylindricalMesh, ratio: float, dynamic: float, transverse: float, cycles: np.ndarray) -> list[Row]:
     """Root strengths and safeties of stage 3."""
-    found, printed = [], ((117.92, 637.15, 3.26), (127.69, 654.72, 3.09))
+    compared, printed = [], ((117.92, 637.15, 3.26), (127.69, 654.72, 3.09))
     for place, gear in enumerate((mesh.pinion, mesh.wheel)):
         section = iso6336_3.root_section(
             gear.teeth, gear.profile_shift, (2.0 * gear.tip_radius - 0.05) / 14.0, MEAN_CONTACT_RATIO,
@@ -136,12 +136,12 @@ def _roots(mesh: CylindricalMesh, ratio: float, dynamic: float, transverse: floa
         face = iso6336_3.face_load_factor(FACE_LOAD, 30.562 / 360.0)
         safety = strength.safety(nominal * APPLICATION * dynamic * face * transverse)
         name, (stress, limit, safe) = ("pinion", "wheel")[place], printed[place]
-        found += [
+        compared += [
             _row(STAGE, f"{name}: nominal root stress sigma_F0 [MPa]", stress, nominal, 0.2, "tips and contact ratio"),
             _row(STAGE, f"{name}: sigma_FG [MPa]", limit, float(strength.strength), 1e-2),
-            _row(STAGE, f"{name}: root safety S_F", safe, float(safety), 1e-2, GIVEN),
+            _row(STAGE, f"{name}: root safety S_F", safe, float(safety), 1e-2, ASSUMED),
         ]
-    return found
+    return compared
 
 
 def _stage_2() -> list[Row]:
@@ -152,7 +152,7 @@ def _stage_2() -> list[Row]:
         planet, ring, relative_radius=iso6336_2.relative_radius((710.408, -1835.220), radians(15.630)), velocity=4.88,
         viscosity_40=220.0, cycles=cycles, gear_ratio=93 / 36,
     )  # fmt: skip
-    found = [
+    compared = [
         *_stage_2_stiffness(),
         _row(SECOND, "ring: work hardening factor Z_W", 1.135, float(flanks.Z_W[1]), 1e-3),
         _row(SECOND, "planet: sigma_HG [MPa]", 1388.39, float(flanks.strength[0]), 0.5),
@@ -166,15 +166,15 @@ def _stage_2() -> list[Row]:
             iso6336_3.RootStrength(limit, kind, 20.0, 1000.0), notch_parameter=notch, cycles=cycles[place],
             stress_correction_factor=correction, normal_module=21.0, mean_stress_factor=mean,
         )  # fmt: skip
-        found.append(_row(SECOND, f"{name}: sigma_FG [MPa]", printed, float(root.strength), 0.2))
-    return found
+        compared.append(_row(SECOND, f"{name}: sigma_FG [MPa]", printed, float(root.strength), 0.2))
+    return compared
 
 
 def _stage_2_stiffness() -> list[Row]:
     """Stiffness and reduced masses of sun (18 teeth), planet and ring, as discs of tips, roots and bores."""
     sun, planet = (iso6336_1.disc_inertia(*each, 7830.0) for each in ((387.338, 194.32), (770.163, 576.96)))
     radii = 177.602, 355.204
-    found = [
+    compared = [
         _row(
             SECOND,
             "sun and planet: m_red [kg/mm]",
@@ -190,10 +190,10 @@ def _stage_2_stiffness() -> list[Row]:
     ):
         theoretical = iso6336.theoretical_single_stiffness(teeth, shifts)
         stiffness = iso6336.single_stiffness(theoretical, 0.0, basic_rack_factor=0.975, gear_blank_factor=0.862)
-        found.append(
+        compared.append(
             _row(SECOND, f"{name}: c' [N/(mm um)]", printed, stiffness, 0.015, "C_R, printed with three digits")
         )
-    return found
+    return compared
 
 
 def _example_1() -> list[Row]:
