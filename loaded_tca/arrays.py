@@ -164,6 +164,23 @@ def place_checks(**indices: tuple[object, int]) -> list[tuple[bool, str]]:
     ]
 
 
+def interval_check(name: str, values: Any, interval: str, unit: str = "") -> tuple[bool, str]:
+    """Check for ``require`` that all numbers lie in an interval as [0, inf); its problem names the first that does not.
+
+    Examples
+    --------
+    >>> interval_check("speed", [1.0, -2.0], "[0, inf)", "m/s")
+    (False, 'speed: -2 m/s is not in [0, inf)')
+    """
+    low, high = map(float, interval[1:-1].split(","))
+    array = np.asarray(values, dtype=float)
+    inside = array > low if interval[0] == "(" else array >= low
+    inside &= array < high if interval[-1] == ")" else array <= high
+    if bool(inside.all()):
+        return True, ""
+    return False, f"{name}: {array[~inside][0]:g}{' ' * bool(unit)}{unit} is not in {interval}"
+
+
 def finite_row(name: str, values: ArrayLike) -> Array:
     """An argument as a new row (n,) of finite numbers, at least one; InputError if it is none."""
     row = numbers(name, values)

@@ -1968,6 +1968,41 @@ FAULTS = (
         "            if np.full((count, torques), np.nan) is not None and name not in arrays:",
         "studies/test_rows.py::test_dataset_has_one_array_for_each_figure_however_many_rows",
     ),
+    Fault(
+        "S-N curves: a life factor below 1 is interpolated towards the static strength, too",
+        "reference/iso6336_6.py",
+        "np.log(np.maximum(factors, 1.0)) / log(factors[0])",
+        "np.log(factors) / log(factors[0])",
+        "reference/test_iso6336_6.py::test_example_of_the_standard_has_its_lives_its_damage_and_its_safety",
+    ),
+    Fault(
+        "S-N curves: nothing is broken by a stress above the static strength",
+        "reference/iso6336_6.py",
+        "return np.where((log_stress > levels[0]) & self.static_limit, -inf, life)",
+        "return life",
+        "reference/test_iso6336_6.py::test_beyond_the_ends_of_a_curve_a_tooth_breaks_or_lives_for_ever",
+    ),
+    Fault(
+        "flank strength: constants of Z_L, Z_v and Z_R are those of the harder gear",
+        "reference/iso6336_2.py",
+        "softer = min(gear.limit_stress for gear in gears)",
+        "softer = max(gear.limit_stress for gear in gears)",
+        "reference/test_iso6336_2.py::test_kisssoft_report_of_a_planet_in_a_through_hardened_ring_has_its_factors",
+    ),
+    Fault(
+        "root strength: through-hardened steel has the size factor of hardened teeth",
+        "reference/iso6336_3_strength.py",
+        'dict.fromkeys(("St", "V", "GTS", "GGG"), (1.03, 0.006, 30.0))',
+        'dict.fromkeys(("St", "V", "GTS", "GGG"), (1.05, 0.010, 25.0))',
+        "reference/test_iso6336_3_strength.py::test_kisssoft_reports_have_their_factors",
+    ),
+    Fault(
+        "dynamic factor: relief counts as if it always took load away",
+        "reference/iso6336_1.py",
+        "np.abs(1.0 - softness * tip_relief)",
+        "1.0 - softness * tip_relief",
+        "reference/test_iso6336_1.py::test_relief_beyond_the_deflection_excites_as_that_below_it",
+    ),
 )
 
 

@@ -9,6 +9,7 @@
 | `face_milled` | face-milled pairs: machine settings, contact, the bidirectional start |
 | `loaded` | the loaded mesh cycle: limits and speed |
 | `tribology` | closed forms of friction, film, temperatures and scuffing; losses of loaded contacts |
+| `rating` | ratings after standards: factors, strengths, safeties, damage of a spectrum |
 | `stages` | planetary stages: closed forms, displaced axes, orders that cancel |
 | `studies` | studies: what their engine costs, and how far it carries |
 | `calculix` | runs of CalculiX, the numbers kept of them, and the loaded mesh cycle beside them |

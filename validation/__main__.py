@@ -39,6 +39,7 @@ CASES = (
     "cylindrical.fzg_c14_geometry",
     "cylindrical.fzg_c14_root_stress",
     "tribology.published",
+    "rating.strength",
     "bevel.iso_23509_sample",
     "face_milled.settings",
     "face_milled.swept_cutter",

@@ -13,6 +13,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require, require_positive
 
 _STEEL = 206000.0
+_FULL_LOAD = 100.0  # N/mm, from which on the stiffness of teeth is constant
 _THEORETICAL_TO_REAL = 0.8  # C_M: measured single stiffness over the theoretical one, for solid discs
 
 
@@ -245,7 +246,7 @@ def nominal_contact_stress(
     pinion_reference_diameter, face_width : float [mm]
         d_1, b.
     gear_ratio : float
-        Teeth of the wheel over teeth of the pinion, u.
+        Teeth of the wheel over teeth of the pinion, u; below -1 of a ring.
     factors : float [MPa^0.5]
         Product of Z_H, Z_E, Z_eps and Z_beta.
 
@@ -263,9 +264,10 @@ def nominal_contact_stress(
         tangential_force=tangential_force,
         pinion_reference_diameter=pinion_reference_diameter,
         face_width=face_width,
-        gear_ratio=gear_ratio,
         factors=factors,
     )
+    outside = 0.0 < gear_ratio < inf or -inf < gear_ratio < -1.0
+    require((outside, f"gear_ratio: {gear_ratio} is neither positive nor below -1, or not finite"))
     load = tangential_force / (pinion_reference_diameter * face_width)
     return factors * sqrt(load * (gear_ratio + 1.0) / gear_ratio)
 
@@ -313,7 +315,7 @@ def theoretical_single_stiffness(virtual_teeth: tuple[float, float], profile_shi
     Parameters
     ----------
     virtual_teeth, profile_shifts : (float, float)
-        z_n and x of pinion and wheel.
+        z_n and x of pinion and wheel; z_n is inf of a ring.
 
     References
     ----------
@@ -325,7 +327,8 @@ def theoretical_single_stiffness(virtual_teeth: tuple[float, float], profile_shi
     17.8558
     """
     (z1, z2), (x1, x2) = virtual_teeth, profile_shifts
-    require_positive(pinion_virtual_teeth=z1, wheel_virtual_teeth=z2)
+    require_positive(pinion_virtual_teeth=z1)
+    require((z2 > 0.0, f"wheel_virtual_teeth: {z2} is not positive"))
     teeth = 0.15551 / z1 + 0.25791 / z2 - 0.11654 * x1 / z1 - 0.24188 * x2 / z2
     return 1.0 / (0.04723 + teeth - 0.00635 * x1 - 0.00193 * x2 + 0.00529 * x1**2 + 0.00182 * x2**2)
 
@@ -364,10 +367,13 @@ def single_stiffness(
     basic_rack_factor: float = 1.0,
     gear_blank_factor: float = 1.0,
     youngs_modulus: float = _STEEL,
+    specific_load: float = _FULL_LOAD,
 ) -> float:
-    r"""Single stiffness c' of a tooth pair under more than 100 N/mm of load [N/(mm um)].
+    r"""Single stiffness c' of a tooth pair [N/(mm um)].
 
-    .. math:: c' = 0.8\,c'_{th} C_R C_B \cos\beta\,E/E_{St}
+    .. math:: c' = 0.8\,c'_{th} C_R C_B \cos\beta\,\frac{E}{E_{St}} \sqrt[4]{\frac{F_t K_A/b}{100}}
+
+    with 100 N/mm in the place of a larger load.
 
     Parameters
     ----------
@@ -379,6 +385,8 @@ def single_stiffness(
         C_B; C_R, 1 for solid discs.
     youngs_modulus : float [MPa]
         E of both gears; of different materials, 2 E1 E2/(E1 + E2).
+    specific_load : float [N/mm]
+        F_t K_A/b.
 
     References
     ----------
@@ -389,10 +397,14 @@ def single_stiffness(
     >>> round(single_stiffness(17.85584, radians(15.8), basic_rack_factor=0.9), 5)
     12.37047
     """
-    require_positive(theoretical_single_stiffness=theoretical_single_stiffness, youngs_modulus=youngs_modulus)
+    require_positive(
+        theoretical_single_stiffness=theoretical_single_stiffness,
+        youngs_modulus=youngs_modulus,
+        specific_load=specific_load,
+    )
     _require_slopes(helix_angle=helix_angle)
     solid = _THEORETICAL_TO_REAL * theoretical_single_stiffness * cos(helix_angle) * youngs_modulus / _STEEL
-    return solid * gear_blank_factor * basic_rack_factor
+    return solid * gear_blank_factor * basic_rack_factor * (min(specific_load, _FULL_LOAD) / _FULL_LOAD) ** 0.25
 
 
 @checked

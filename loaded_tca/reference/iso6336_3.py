@@ -1,9 +1,9 @@
-"""Closed forms of ISO 6336-3, method B, for external cylindrical gears: nominal tooth root stress.
+"""ISO 6336-3, method B, for cylindrical gears: nominal tooth root stress; by name what roots withstand, too.
 
 Load at the outer point of single contact, bending of the section where tangents of 30 degrees touch both fillets, and a
-factor for the notch; a factor of its own for thin rims. Left out, since a scene has no such data: K_A, K_V, K_Falpha,
-life, notch sensitivity, surface and size factors, deep teeth (Y_DT), and with these permissible stress and safety.
-Formulas of the edition of 2006; the examples are FZG C14 gears of GEARpie.
+factor for the notch; a factor of its own for thin rims. Formulas of the edition of 2006; the examples are FZG C14 gears
+of GEARpie. What the edition of 2019, whose text was not seen, changed: ``load_distribution_factor`` belongs to Y_F, and
+``helix_angle_factor`` has an edition. The strength and its factors are in ``iso6336_3_strength``.
 """
 
 from __future__ import annotations
@@ -14,6 +14,26 @@ from math import acos, cos, degrees, hypot, inf, log, pi, radians, sin, sqrt, ta
 from loaded_tca.arguments import checked
 from loaded_tca.errors import GeometryError, require, require_positive
 from loaded_tca.reference.iso6336 import virtual_teeth
+from loaded_tca.reference.iso6336_3_strength import RootFactors, RootStrength, root_factors
+
+__all__ = [
+    "THINNEST_RIM",
+    "THINNEST_RING",
+    "THIN_RIM",
+    "THIN_RING",
+    "RootFactors",
+    "RootSection",
+    "RootStrength",
+    "deep_tooth_factor",
+    "face_load_factor",
+    "helix_angle_factor",
+    "load_distribution_factor",
+    "nominal_root_stress",
+    "rim_thickness_factor",
+    "ring_rim_factor",
+    "root_factors",
+    "root_section",
+]
 
 _HELIX_ANGLE_LIMIT = radians(30.0)
 _TANGENT = pi / 3.0  # 60 degrees: the tangents of 30 degrees of external gears
@@ -21,6 +41,8 @@ _LARGEST_HEIGHT_OVER_WIDTH = 1.0 / 3.0
 THIN_RIM, THINNEST_RIM = 1.2, 0.5
 """Thickness of a rim over the height of its teeth, s_R/h_t, below which it raises root stress; down to which the
 standard knows by how much."""
+THIN_RING, THINNEST_RING = 3.5, 1.75
+"""The same of a ring, in normal modules, s_R/m_n."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +68,11 @@ class RootSection:
     pressure_angle: float
 
     @property
+    def notch_parameter(self) -> float:
+        """q_s, thickness over twice the radius of the fillet."""
+        return 0.5 * self.thickness / self.radius
+
+    @property
     def form_factor(self) -> float:
         r"""Form factor Y_F: nominal bending stress.
 
@@ -63,7 +90,7 @@ class RootSection:
 
         fitted for :math:`1 \le q_s < 8`.
         """
-        slenderness, notch = self.thickness / self.lever, 0.5 * self.thickness / self.radius
+        slenderness, notch = self.thickness / self.lever, self.notch_parameter
         return (1.2 + 0.13 * slenderness) * notch ** (1.0 / (1.21 + 2.3 / slenderness))
 
 
@@ -205,10 +232,11 @@ def _single_contact(
 
 
 @checked
-def helix_angle_factor(helix_angle: float, overlap_ratio: float) -> float:
-    r"""Helix angle factor Y_beta of the edition of 2006.
+def helix_angle_factor(helix_angle: float, overlap_ratio: float, *, edition: int = 2006) -> float:
+    r"""Helix angle factor Y_beta.
 
-    .. math:: Y_\beta = 1 - \varepsilon_\beta \frac{\beta}{120°}
+    .. math:: Y_\beta = 1 - \varepsilon_\beta \frac{\beta}{120°}\quad (2006),\qquad
+        Y_\beta = \frac{1}{\cos^3\beta} \left(1 - \varepsilon_\beta \frac{\beta}{120°}\right)\quad (2019)
 
     with 1 in the place of an overlap ratio above 1 and 30 degrees in that of a helix angle above.
 
@@ -218,21 +246,95 @@ def helix_angle_factor(helix_angle: float, overlap_ratio: float) -> float:
         beta, of either hand.
     overlap_ratio : float
         eps_beta.
+    edition : int
+        2006 or 2019; that of 2019 belongs to a form factor with ``load_distribution_factor``.
 
     References
     ----------
-    ISO 6336-3:2006, helix angle factor.
+    ISO 6336-3:2006, helix angle factor; ISO 6336-3:2019, formula (66).
 
     Examples
     --------
-    >>> helix_angle_factor(radians(15.0), 0.8)
-    0.9
+    >>> helix_angle_factor(radians(15.0), 0.8), round(helix_angle_factor(radians(15.0), 0.8, edition=2019), 4)
+    (0.9, 0.9986)
     """
     require(
         (0.0 <= overlap_ratio < inf, f"overlap_ratio: {overlap_ratio} is negative or not finite"),
         (abs(helix_angle) < 0.5 * pi, f"helix_angle: {helix_angle} rad is not within 90 deg"),
+        (edition in (2006, 2019), f"edition: {edition}; allowed 2006 and 2019"),
     )
-    return 1.0 - min(1.0, overlap_ratio) * degrees(min(abs(helix_angle), _HELIX_ANGLE_LIMIT)) / 120.0
+    angle = min(abs(helix_angle), _HELIX_ANGLE_LIMIT)
+    factor = 1.0 - min(1.0, overlap_ratio) * degrees(angle) / 120.0
+    return factor if edition == 2006 else factor / cos(angle) ** 3
+
+
+@checked
+def load_distribution_factor(overlap_ratio: float, virtual_contact_ratio: float) -> float:
+    r"""Load distribution factor f_eps of the edition of 2019, on the form factor Y_F.
+
+    .. math::
+        f_\varepsilon = \sqrt{1 - \varepsilon_\beta + \frac{\varepsilon_\beta}{\varepsilon_{\alpha n}}}
+        \quad (\varepsilon_{\alpha n} < 2),\qquad
+        f_\varepsilon = \sqrt{\frac{1 - \varepsilon_\beta}{2} + \frac{\varepsilon_\beta}{\varepsilon_{\alpha n}}}
+        \quad (\varepsilon_{\alpha n} \ge 2)
+
+    with 1 in the place of an overlap ratio above 1; 0.7 of spur gears with a contact ratio of 2 and more.
+
+    Parameters
+    ----------
+    overlap_ratio, virtual_contact_ratio : float
+        eps_beta, eps_alpha_n.
+
+    References
+    ----------
+    ISO 6336-3:2019, formulas (10) to (14).
+
+    Examples
+    --------
+    >>> load_distribution_factor(0.0, 1.5), round(load_distribution_factor(1.2, 1.5), 4)
+    (1.0, 0.8165)
+    """
+    require(
+        (0.0 <= overlap_ratio < inf, f"overlap_ratio: {overlap_ratio} is negative or not finite"),
+        (
+            1.0 <= virtual_contact_ratio < inf,
+            f"virtual_contact_ratio: {virtual_contact_ratio} is below 1 or not finite",
+        ),
+    )
+    several, overlap = virtual_contact_ratio >= 2.0, min(1.0, overlap_ratio)
+    if overlap == 0.0:
+        return 0.7 if several else 1.0
+    return sqrt((1.0 - overlap) / (2.0 if several else 1.0) + overlap / virtual_contact_ratio)
+
+
+@checked
+def deep_tooth_factor(virtual_contact_ratio: float, accuracy_grade: int) -> float:
+    r"""Deep tooth factor Y_DT.
+
+    .. math:: Y_{DT} = 2.366 - 0.666\,\varepsilon_{\alpha n} \quad (2.05 < \varepsilon_{\alpha n} \le 2.5)
+
+    of gears of accuracy grade 4 and better; 0.7 above, 1 below and for coarser grades.
+
+    Parameters
+    ----------
+    virtual_contact_ratio : float
+        eps_alpha_n.
+    accuracy_grade : int
+        Of ISO 1328-1.
+
+    References
+    ----------
+    ISO 6336-3:2006, deep tooth factor.
+
+    Examples
+    --------
+    >>> deep_tooth_factor(2.3, 6), round(deep_tooth_factor(2.3, 4), 4)
+    (1.0, 0.8342)
+    """
+    require_positive(virtual_contact_ratio=virtual_contact_ratio, accuracy_grade=accuracy_grade)
+    if accuracy_grade > 4 or virtual_contact_ratio <= 2.05:
+        return 1.0
+    return 2.366 - 0.666 * virtual_contact_ratio if virtual_contact_ratio <= 2.5 else 0.7
 
 
 @checked
@@ -263,6 +365,37 @@ def rim_thickness_factor(rim_over_height: float) -> float:
     """
     require((rim_over_height > THINNEST_RIM, f"rim_over_height: {rim_over_height} is not above {THINNEST_RIM}"))
     return 1.0 if rim_over_height >= THIN_RIM else 1.6 * log(2.242 / rim_over_height)
+
+
+@checked
+def ring_rim_factor(rim_over_module: float) -> float:
+    r"""Rim thickness factor Y_B of a ring.
+
+    .. math:: Y_B = 1 \quad (s_R/m_n \ge 3.5),\qquad
+        Y_B = 1.15 \ln\left(8.324\,\frac{m_n}{s_R}\right) \quad (1.75 < s_R/m_n < 3.5)
+
+    Parameters
+    ----------
+    rim_over_module : float
+        s_R/m_n; inf: a ring that does not bend.
+
+    Raises
+    ------
+    InputError
+        If the rim is no thicker than 1.75 normal modules, which the standard says to avoid.
+
+    References
+    ----------
+    ISO 6336-3:2019, 9.3.
+
+    Examples
+    --------
+    >>> ring_rim_factor(4.0), round(ring_rim_factor(2.5), 3)
+    (1.0, 1.383)
+    """
+    low, high = THINNEST_RING, THIN_RING
+    require((rim_over_module > low, f"rim_over_module: {rim_over_module} is not above {low}"))
+    return 1.0 if rim_over_module >= high else 1.15 * log(8.324 / rim_over_module)
 
 
 @checked

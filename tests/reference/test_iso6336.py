@@ -87,6 +87,27 @@ def test_stiffness_grows_with_the_modulus_and_the_blank_factor():
     assert_allclose(iso6336.single_stiffness(17.0, 0.0, gear_blank_factor=0.9), 0.9 * steel, rtol=ROUNDING)
 
 
+def test_stiffness_falls_below_100_newton_per_mm():
+    full = iso6336.single_stiffness(17.0, 0.1)
+    assert iso6336.single_stiffness(17.0, 0.1, specific_load=500.0) == full
+    assert_allclose(iso6336.single_stiffness(17.0, 0.1, specific_load=6.25), 0.5 * full, rtol=ROUNDING)
+
+
+def test_ring_has_the_contact_stress_that_kisssoft_prints():
+    """Second stage of the NREL gearbox, planet 36 in ring 93: Z_H 2.85, Z_eps 0.891, sigma_H0 312.44 MPa."""
+    pressure, working = radians(20.0), radians(15.630)
+    factors = iso6336.zone_factor(pressure, working, 0.0) * iso6336.elasticity_factor(STEEL) * 0.891
+    stress = iso6336.nominal_contact_stress(285900.438, 756.0, 550.0, -1835.220 / 710.408, factors)
+    assert_allclose(stress, 312.44, rtol=1e-3)  # Z_eps has three digits
+
+
+def test_ring_has_the_stiffness_that_kisssoft_prints():
+    """The same pair, C_R 0.862 and C_B 0.975: 14.053 N/(mm um), with z_n inf for the ring of x 0.1171."""
+    theoretical = iso6336.theoretical_single_stiffness((36.0, float("inf")), (0.5039, 0.1171))
+    stiffness = iso6336.single_stiffness(theoretical, 0.0, basic_rack_factor=0.975, gear_blank_factor=0.862)
+    assert_allclose(stiffness, 14.053, rtol=6e-4)  # C_R has three digits
+
+
 def test_mesh_stiffness_of_one_pair_is_the_single_stiffness():
     assert iso6336.mesh_stiffness(14.0, 1.0) == 14.0
 
@@ -145,6 +166,11 @@ test_iso6336_refuses = refused_calls(
         r"wheel_virtual_teeth: 0.0 is not positive",
     ),
     (lambda: iso6336.single_stiffness(17.0, 0.0, youngs_modulus=float("nan")), r"youngs_modulus: nan is not positive"),
+    (
+        lambda ratio: iso6336.nominal_contact_stress(**{**STRESS, "gear_ratio": ratio}),
+        "gear_ratio: .* is neither positive nor below -1, or not finite",
+        [0.0, -1.0, float("inf")],
+    ),
     (lambda: iso6336.mesh_stiffness(0.0, 1.5), r"single_stiffness: 0.0 is not positive"),
     (
         lambda: iso6336.nominal_contact_stress(**{**STRESS, "tangential_force": -1.0, "face_width": 0.0}),
