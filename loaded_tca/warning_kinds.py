@@ -35,7 +35,7 @@ class Kind:
     @cached_property
     def words(self) -> str:
         """The longest part of the sentence that all of its kind have."""
-        return max(re.split(r"\{[^}]*\}", self.template), key=len)
+        return max(re.split(r" ?\(?\{[^}]*\}", self.template), key=len)
 
 
 EDGE_NOT_FREE = Kind(

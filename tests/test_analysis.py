@@ -187,7 +187,7 @@ def test_edge_contact_warns_and_has_no_hertz_value(scene):
     misaligned = scene.with_changes({"mounting.out_of_plane_deg": 0.3, "analysis.positions": 1})
     with pytest.warns(
         AccuracyWarning,
-        match=r"reaches an edge of a flank.*1 of 1 pressure maps; the first: .* N m, pinion angle .*, tooth pair \+0",
+        match=r"reaches an edge of a flank.*1 of 1 pressure maps; the first: .* N m, pinion angle .*, tooth pair 0\)",
     ):
         result = analyse(misaligned)
     assert result.on_edge.item() is True
@@ -304,7 +304,7 @@ def test_what_does_not_converge_is_told_with_its_place(monkeypatch):
     monkeypatch.setattr("loaded_tca.contact.solver.MOST_ITERATIONS", 1)
     scene = read_scene(SCENES / "mesh_cycle_spur.toml")
     changes = {"positions": 1, "cells": (16, 16), "torques_Nm": (40.0,)}
-    with pytest.raises(ConvergenceError, match=r"40 N m at pinion angle 0 deg: tooth pair \+0: contact not converged"):
+    with pytest.raises(ConvergenceError, match=r"40 N m at pinion angle 0 deg: tooth pair 0: contact not converged"):
         analyse(scene.with_changes({f"analysis.{key}": value for key, value in changes.items()}))
 
 

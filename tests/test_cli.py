@@ -389,15 +389,15 @@ def test_failure_while_drawing_leaves_the_numbers_without_old_pictures(run, monk
     assert run("run", scene("earlier", **changes), "--out", "out")[0] == 0
     earlier = Path("out", "result.nc").read_bytes()
 
-    def fail_at_the_third(file, image, **_):
-        drawn.append(image)
-        file.write(b"half a picture")
+    def fail_at_the_third(picture):
+        drawn.append(picture)
         if len(drawn) == 3:
             raise failure
+        return b"a picture"
 
     drawn = []
     with monkeypatch.context() as patch:
-        patch.setattr("loaded_tca.plots.style.imsave", fail_at_the_third)
+        patch.setattr("loaded_tca.plots.style._png_content", fail_at_the_third)
         found, _, err = run("run", scene(), "--out", "out")
     assert found == code
     assert err[-1] == "loaded-tca: out: the numbers are new, all pictures are missing: 'loaded-tca plot out' draws them"
@@ -412,7 +412,7 @@ def test_failure_while_drawing_leaves_the_numbers_without_old_pictures(run, monk
 def test_failure_while_drawing_again_keeps_the_pictures(run, monkeypatch):
     run("run", scene(), "--out", "out")
     before = {name: Path("out", name).read_bytes() for name in os.listdir("out")}
-    monkeypatch.setattr("loaded_tca.plots.style.imsave", lambda *_, **__: os.kill(os.getpid(), signal.SIGINT))
+    monkeypatch.setattr("loaded_tca.plots.style._png_content", lambda *_, **__: os.kill(os.getpid(), signal.SIGINT))
     for command in ("plot", "subsurface", "tooth"):
         assert run(command, "out")[0] == 130
         assert {name: Path("out", name).read_bytes() for name in os.listdir("out")} == before

@@ -172,8 +172,8 @@ def stage_json(result: StageResult) -> str:
             "order": one.order,
             "stage_um": one.stage,
             "one_path_um": one.one_path,
-            "equal_planets_cancel_it_in_torsion": one.torsion_cancels,
-            "equal_planets_cancel_it_in_translation": one.translation_cancels,
+            "cancelled_in_torsion": one.torsion_cancels,
+            "cancelled_in_translation": one.translation_cancels,
         }
         for one in result.orders()
     ]

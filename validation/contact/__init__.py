@@ -6,5 +6,6 @@
 - ``rounded_edge``: graded columns at rounded edges against a closed form and uniform grids; writes a page;
 - ``hard_cases``: contacts on which solvers fail, each with its answer;
 - ``stacks``: time of a problem among others of its kind;
+- ``growth``: time and memory of grids up to 4096 x 4096; writes a page;
 - ``speed_against_error``: time against error beside two other solvers; writes a page.
 """
