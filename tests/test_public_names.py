@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import loaded_tca
+from loaded_tca.machine_speed import machine_speed
 
 ROOT = Path(__file__).parents[1]
 FOLDERS = sorted(info.name for info in pkgutil.iter_modules(loaded_tca.__path__) if info.ispkg)
@@ -69,6 +70,7 @@ def test_reading_a_scene_loads_no_analysis():
 
 def test_check_and_the_imports_of_run_load_no_heavy_library():
     """SciPy's parts, xarray with pandas, and finite elements come where they are used; pictures with run."""
+    machine_speed()  # measured once on a machine, by contacts and eliminations
     script = """
 import io, sys
 from contextlib import redirect_stdout

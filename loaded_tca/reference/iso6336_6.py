@@ -13,8 +13,8 @@ from math import inf, log
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, interval_check
@@ -366,7 +366,7 @@ def spectrum_safety(curve: SNCurve, stresses: ArrayLike, cycles: ArrayLike) -> f
     low, high = float((limits[-1] - heights).min()) - 1e-9, float((limits[0] - heights).min()) + 1e-9
     while excess(high) < 0.0:  # above the static strength, where the first line goes on
         high += 1.0
-    return float(np.exp(brentq(excess, low, high, xtol=1e-12, rtol=1e-14)))
+    return float(np.exp(scipy.optimize.brentq(excess, low, high, xtol=1e-12, rtol=1e-14)))
 
 
 @checked
