@@ -2024,6 +2024,13 @@ FAULTS = (
         "level == ends",
         "reference/test_iso6336_5.py::test_ends_of_a_line_are_on_it_in_any_scale",
     ),
+    Fault(
+        "studies: torques of most variants are the coordinate of one with fewer, too",
+        "studies/rows.py",
+        "torque[np.isfinite(torque).any(axis=1)]",
+        "torque[np.isfinite(torque).all(axis=1)]",
+        "studies/test_rows.py::test_torques_are_a_coordinate_where_all_variants_that_were_analysed_have_the_same",
+    ),
 )
 
 
