@@ -2003,6 +2003,34 @@ FAULTS = (
         "1.0 - softness * tip_relief",
         "reference/test_iso6336_1.py::test_relief_beyond_the_deflection_excites_as_that_below_it",
     ),
+    Fault(
+        "flank strength: strengths of two gears are those of two bins beside stresses of bins",
+        "reference/iso6336_2.py",
+        "each.reshape(*each.shape[:1], *[1] * (most - each.ndim), *each.shape[1:])",
+        "each",
+        "reference/test_iso6336_2.py::test_safeties_of_bins_are_those_of_each_gear_for_any_number_of_bins",
+    ),
+    Fault(
+        "equivalent stress: one number of load cycles for all bins is summed as that of one bin",
+        "reference/iso6336_6.py",
+        "float(number_of_each.sum())",
+        "float(np.sum(cycles))",
+        "reference/test_iso6336_6.py::test_equivalents_have_one_number_of_load_cycles_for_all_bins_or_one_level",
+    ),
+    Fault(
+        "hardness: an end of a line that is converted is off it by rounding",
+        "reference/iso6336_5.py",
+        "abs(level - ends) <= _ROUNDING * level",
+        "level == ends",
+        "reference/test_iso6336_5.py::test_ends_of_a_line_are_on_it_in_any_scale",
+    ),
+    Fault(
+        "studies: torques of most variants are the coordinate of one with fewer, too",
+        "studies/rows.py",
+        "torque[np.isfinite(torque).any(axis=1)]",
+        "torque[np.isfinite(torque).all(axis=1)]",
+        "studies/test_rows.py::test_torques_are_a_coordinate_where_all_variants_that_were_analysed_have_the_same",
+    ),
 )
 
 

@@ -389,9 +389,22 @@ class FlankFactors:
         return self.strength / required_safety
 
     def safety(self, contact_stress: ArrayLike) -> Array:
-        """S_H (gear, ...) of contact stresses sigma_H (gear, ...) [MPa]; inf without stress."""
+        """S_H (gear, ...) of contact stresses sigma_H (gear, ...) [MPa], or of one for both; inf without stress."""
+        stress = np.asarray(contact_stress, dtype=float)
+        require(
+            interval_check("contact_stress", stress, "[0, inf)", "MPa"),
+            (
+                stress.shape[:1] in ((), (1,), (2,)),
+                f"contact_stress: shape {stress.shape}; asked for is (2, ...), one of each gear",
+            ),
+        )
+        most = max(stress.ndim, self.strength.ndim)
+        strength, stress = (  # bins of one beside a single number of the other
+            each.reshape(*each.shape[:1], *[1] * (most - each.ndim), *each.shape[1:])
+            for each in (self.strength, stress)
+        )
         with np.errstate(divide="ignore"):
-            return np.asarray(self.strength / np.asarray(contact_stress, dtype=float))
+            return np.asarray(strength / stress)
 
 
 @checked

@@ -392,8 +392,10 @@ class RootFactors:
 
     def safety(self, root_stress: ArrayLike) -> Array:
         """S_F (...) of root stresses sigma_F (...) [MPa]; inf without stress."""
+        stress = np.asarray(root_stress, dtype=float)
+        require(interval_check("root_stress", stress, "[0, inf)", "MPa"))
         with np.errstate(divide="ignore"):
-            return np.asarray(self.strength / np.asarray(root_stress, dtype=float))
+            return np.asarray(self.strength / stress)
 
 
 @checked

@@ -32,6 +32,7 @@ VICKERS_OF_ROCKWELL = (
 )  # fmt: skip
 """HV and HRC of steel, ISO 18265, table A.1."""
 BRINELL_OVER_VICKERS = 0.95
+_ROUNDING = 1e-12  # of hardness that is converted
 LARGEST_BRINELL = 450.0 * BRINELL_OVER_VICKERS
 """HBW of steel over HV, and up to where: ISO 18265."""
 _VICKERS: dict[str, tuple[Sequence[float], Sequence[float]]] = {
@@ -337,7 +338,9 @@ def allowable_stresses(
     flank, root = material.flank[place], material.root[place]
     low, high = max(flank[0].lowest, root[0].lowest), min(flank[-1].highest, root[-1].highest)
     where = f"allowed for kind {kind!r}, quality {quality}: {low:g} to {high:g} {material.scale}"
-    require((low <= level <= high, f"hardness: {level:g} {material.scale}; {where}"))
+    ends = float(np.clip(level, low, high))
+    require((abs(level - ends) <= _ROUNDING * level, f"hardness: {level:g} {material.scale}; {where}"))
+    level = ends
     contact, bending = (next(line.stress(level) for line in lines if level <= line.highest) for lines in (flank, root))
     return AllowableStresses(
         kind, quality, level, float(contact), float(_CORE_STRESSES[core] if core != CORES[0] else bending)

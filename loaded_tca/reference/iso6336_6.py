@@ -375,6 +375,8 @@ def equivalent_stress(curve: SNCurve, stresses: ArrayLike, cycles: ArrayLike) ->
 
     .. math:: \sigma_{eq} = \sigma_{SN}(N),\qquad N = \sum n_i / U
 
+    Where most load cycles do no damage and N lies beyond the last knee, that of the knee, which does more.
+
     Parameters
     ----------
     curve : SNCurve
@@ -394,9 +396,11 @@ def equivalent_stress(curve: SNCurve, stresses: ArrayLike, cycles: ArrayLike) ->
     _require_cycles(cycles)
     if curve.stresses.ndim != 1:
         raise InputError(f"curve: one for all bins is asked for, not stresses of shape {curve.stresses.shape}")
-    damage = float(miner_sum(curve, stresses, cycles))
+    level, number_of_each = np.broadcast_arrays(np.asarray(stresses, dtype=float), np.asarray(cycles, dtype=float))
+    require((level.ndim < 2, f"stresses: shape {level.shape} with that of the cycles; asked for is (bin,)"))
+    total, damage = float(number_of_each.sum()), float(np.sum(damages(curve, level, number_of_each)))
     require((0.0 < damage < inf, f"stresses: their damage is {damage}; there is no equivalent stress"))
-    number = float(np.sum(cycles)) / damage
+    number = total / damage
     if number < curve.cycles[0]:
         return float(curve.stresses[0] * (curve.cycles[0] / number) ** (1.0 / curve.exponents[0]))
     return float(curve.strength(number))
@@ -426,7 +430,7 @@ def equivalent_torque(torques: ArrayLike, cycles: ArrayLike, exponent: float) ->
     180.37
     """
     _require_cycles(cycles)
-    level = np.asarray(torques, dtype=float)
+    level, number = np.broadcast_arrays(np.asarray(torques, dtype=float), np.asarray(cycles, dtype=float))
     require(
         interval_check("torques", level, "[0, inf)", "N m"),
         (0.0 < exponent < inf, f"exponent: {exponent} is not positive and finite"),
@@ -434,9 +438,7 @@ def equivalent_torque(torques: ArrayLike, cycles: ArrayLike, exponent: float) ->
     largest = float(level.max())
     if largest == 0.0:
         return 0.0
-    return largest * float(np.average((level / largest) ** exponent, weights=np.broadcast_to(cycles, level.shape))) ** (
-        1.0 / exponent
-    )
+    return largest * float(np.average((level / largest) ** exponent, weights=number)) ** (1.0 / exponent)
 
 
 def _require_cycles(cycles: ArrayLike) -> None:

@@ -127,6 +127,17 @@ def test_values_beyond_the_standard_are_told():
     assert_allclose(thick.strength[0], 650.0 * thick.Z_L * thick.Z_v * thick.Z_R, rtol=1e-5)  # all but level: 1e-6
 
 
+def test_safeties_of_bins_are_those_of_each_gear_for_any_number_of_bins():
+    """Two bins of two gears are as many as gears."""
+    apart = flank_factors(HARD, QUENCHED, **OF_TR, cycles=[1e8, 1e8])
+    for bins in (2, 3):
+        stress = np.full((2, bins), 1000.0)
+        assert_allclose(apart.safety(stress), np.stack([apart.strength] * bins, axis=-1) / 1000.0)
+        speeds = flank_factors(HARD, QUENCHED, **{**OF_TR, "velocity": np.full(bins, 2.664)}, cycles=[1e8, 1e8])
+        assert_allclose(speeds.safety([1000.0, 500.0])[1], np.full(bins, apart.strength[1] / 500.0))
+        assert_allclose(speeds.safety(1000.0), apart.safety(stress))
+
+
 test_iso6336_2_refuses = refused_calls(
     (lambda: flank_factors(HARD, HARD, **OF_TR, cycles=1e8), r"cycles: shape \(\); asked for is \(2, ...\)"),
     (
@@ -136,6 +147,10 @@ test_iso6336_2_refuses = refused_calls(
     (
         lambda: flank_factors(HARD, replace(QUENCHED, hardness=None), **OF_TR, cycles=[1, 1]),
         "hardness: not given; Z_W of a gear of kind 'V alloy' beside 'Eh' needs it",
+    ),
+    (
+        lambda: flank_factors(HARD, HARD, **OF_TR, cycles=[1, 1]).safety([1.0, 1.0, float("nan")]),
+        (r"^contact_stress: nan MPa is not in \[0, inf\)$", r"^contact_stress: shape \(3,\); asked for is \(2, ...\)"),
     ),
     (lambda: FlankStrength(0.0, "Eh", -1.0), ("^limit_stress: 0.0 is not", "^roughness: -1.0 is not")),
     (lambda: FlankStrength(1500.0, "steel", 1.0), "kind: 'steel' is no kind of material"),

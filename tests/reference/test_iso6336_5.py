@@ -76,6 +76,13 @@ def test_hardness_returns_from_another_scale(rockwell):
     assert_allclose(converted_hardness(vickers, "HV", "HRC"), rockwell, rtol=1e-12)
 
 
+def test_ends_of_a_line_are_on_it_in_any_scale():
+    for kind, ends, scale in (("St", (110.0, 210.0), "HV"), ("GGG", (175.0, 300.0), "HV"), ("NV", (450.0,), "HRC")):
+        for end in ends:
+            converted = converted_hardness(end, KINDS[kind].scale, scale)
+            assert allowable_stresses(kind, "MQ", converted, scale=scale).hardness == end
+
+
 def test_table_of_hardness_ascends():
     assert all(low[0] < high[0] and low[1] < high[1] for low, high in pairwise(VICKERS_OF_ROCKWELL))
 

@@ -141,6 +141,14 @@ def test_equivalent_stress_does_the_damage_of_the_spectrum():
     assert_allclose(equivalent_stress(beyond, [2500.0], [1e3]), 2500.0, rtol=ROUNDING)
 
 
+def test_equivalents_have_one_number_of_load_cycles_for_all_bins_or_one_level():
+    level, number = np.array([1600.0, 1700.0]), 1e6
+    assert equivalent_stress(HARD, level, number) == equivalent_stress(HARD, level, [number, number])
+    assert equivalent_torque(level, number, 6.6) == equivalent_torque(level, [number, number], 6.6)
+    assert_allclose(equivalent_stress(HARD, 1600.0, [1e6, 2e6]), 1600.0, rtol=ROUNDING)
+    assert_allclose(equivalent_torque(100.0, [1e6, 2e6], 6.6), 100.0, rtol=ROUNDING)
+
+
 def test_equivalent_torque_is_that_of_the_curve_where_one_line_holds():
     torques, cycles = np.array([100.0, 150.0]), np.array([3e5, 1e5])
     stresses = 1800.0 * np.sqrt(torques / 100.0)
@@ -166,6 +174,7 @@ test_iso6336_6_refuses = refused_calls(
     (lambda: repetitions(HARD, [1.0], [1.0], safety=0.0), "safety: 0.0 is not positive and finite"),
     (lambda: spectrum_safety(HARD, [1.0], [0.0]), "cycles: they sum to nothing"),
     (lambda: equivalent_stress(HARD, [1.0], [1.0]), "stresses: their damage is 0.0; there is no equivalent stress"),
+    (lambda: equivalent_stress(HARD, np.ones((2, 3)), 1.0), r"stresses: shape \(2, 3\) with that of the cycles"),
     (lambda: equivalent_stress(flank_curve("Eh").scaled([1.0, 2.0]), [1.0], [1.0]), "curve: one for all bins"),
     (
         lambda: equivalent_torque([-1.0], [1.0], 0.0),

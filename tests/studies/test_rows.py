@@ -241,3 +241,16 @@ def test_dataset_has_one_array_for_each_figure_however_many_rows(monkeypatch):
     dataset = dataset_of(study, rows, {})
     assert made[40, 2] == 2
     assert dataset["span_um"].values.tolist() == [[float(number), 1.0] for number in range(40)]
+
+
+def test_torques_are_a_coordinate_where_all_variants_that_were_analysed_have_the_same():
+    """Figures of a variant of one torque stand in the first column, whatever torque others have there."""
+
+    def with_torques(torques):
+        parts = {"digest": "", "reason": "", "warnings": [], "seconds": 0.0}
+        return parts | {"status": "ok", "figures": {"pinion_torque_Nm": torques} if torques else {}}
+
+    three = [50.0, 100.0, 200.0]
+    same = dataset_of(study(), map(with_torques, (three, [], three)), {})
+    assert same["torque"].values.tolist() == [5e4, 1e5, 2e5]
+    assert "torque" not in dataset_of(study(), map(with_torques, ([300.0], three, three)), {}).coords
