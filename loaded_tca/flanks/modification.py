@@ -245,7 +245,7 @@ class FlankModifications:
                 return float(roll * roll_unit)
             if length != 0.0:
                 low, high = (end * profile_unit for end in ends)
-                _require_between(f"{relief}_start_length (length on the active profile)", length, low, high)
+                _require_between(f"{relief}_start_length (roll length on the active profile)", length, low, high)
                 return float(length / profile_unit)
             _require_between(f"{relief}_start (diameter on the active profile)", diameter, *diameters)
             return coordinate(diameter)

@@ -444,7 +444,7 @@ def test_roll_angle_or_length_off_the_active_profile_is_refused_in_its_own_unit(
     with pytest.raises(InputError, match=told):
         modified(**{relief: AMOUNT, f"{relief}_start_roll": math.radians(5.0)})
     low, high = (f"{length:.6g}" for length in lengths)
-    told = rf"^pinion.modifications.{relief}_start_length \(length on .*\): 99 mm is not between {low} and {high} mm$"
+    told = rf"^pinion.modifications.{relief}_start_length \(roll length .*\): 99 mm is not between {low} and {high} mm$"
     with pytest.raises(InputError, match=told):
         modified(**{relief: AMOUNT, f"{relief}_start_length": 99.0})
 
