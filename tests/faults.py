@@ -1968,6 +1968,27 @@ FAULTS = (
         "            if np.full((count, torques), np.nan) is not None and name not in arrays:",
         "studies/test_rows.py::test_dataset_has_one_array_for_each_figure_however_many_rows",
     ),
+    Fault(
+        "the bytes of a result's file stay in memory beside its arrays",
+        "results/files.py",
+        "            del store.ds.variables[name]\n",
+        "",
+        "results/test_files.py::test_reading_takes_no_more_memory_than_the_result",
+    ),
+    Fault(
+        "the digest of a file is not seen where two portions meet",
+        "results/files.py",
+        "rest = portion[1 - len(DIGEST) :]",
+        'rest = b""',
+        "results/test_files.py::test_digest_is_the_same_wherever_portions_of_the_file_end",
+    ),
+    Fault(
+        "every row of a study has texts of its own in memory",
+        "results/files.py",
+        "same.setdefault(text, text)",
+        "text",
+        "results/test_files.py::test_texts_that_are_alike_are_one_object",
+    ),
 )
 
 
