@@ -1989,6 +1989,13 @@ FAULTS = (
         "text",
         "results/test_files.py::test_texts_that_are_alike_are_one_object",
     ),
+    Fault(
+        "slow variants share tasks of the executor, quick ones do not",
+        "studies/run.py",
+        "TASK_SECONDS * len(seconds) / max(sum(seconds), 1e-9)",
+        "max(sum(seconds), 1e-9) / (TASK_SECONDS * len(seconds) + 1e-9)",
+        "studies/test_run.py::test_quick_variants_share_tasks",
+    ),
 )
 
 
