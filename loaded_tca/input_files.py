@@ -6,7 +6,9 @@ import codecs
 import csv
 import os
 import re
-from typing import NamedTuple
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import BinaryIO, NamedTuple
 
 from loaded_tca.errors import InputError, reason_of, require
 
@@ -30,8 +32,9 @@ def require_regular(path: str | os.PathLike[str], use: str = "read") -> None:
     require((not other, f"{os.fspath(path)}: cannot be {use}: not a regular file; give the name of a file"))
 
 
-def read_bytes(path: str | os.PathLike[str], largest: float, kind: str) -> bytes:
-    """Content of a regular file of no more than so many bytes; of another one nothing is read.
+@contextmanager
+def opened(path: str | os.PathLike[str], largest: float, kind: str) -> Iterator[BinaryIO]:
+    """Open a regular file of no more than so many bytes for the time of a block; another one is not read.
 
     Parameters
     ----------
@@ -44,18 +47,25 @@ def read_bytes(path: str | os.PathLike[str], largest: float, kind: str) -> bytes
     Raises
     ------
     InputError
-        If the file cannot be read, is no regular one, or is longer.
+        If the file cannot be opened or read, is no regular one, or is longer.
     """
     name = os.fspath(path)
     require_regular(path)
     try:
         with open(path, "rb") as file:
             size = os.fstat(file.fileno()).st_size
-            content = file.read(size) if size <= largest else b""
+            require((size <= largest, f"{name}: more than {largest:z.0f} bytes; no {kind} is so long"))
+            yield file
+    except InputError:
+        raise
     except (OSError, ValueError) as error:
         raise InputError(f"{name}: cannot be read: {reason_of(error)}") from None
-    require((size <= largest, f"{name}: more than {largest:z.0f} bytes; no {kind} is so long"))
-    return content
+
+
+def read_bytes(path: str | os.PathLike[str], largest: float, kind: str) -> bytes:
+    """Content of a regular file of no more than so many bytes, as ``opened`` opens it."""
+    with opened(path, largest, kind) as file:
+        return file.read(os.fstat(file.fileno()).st_size)
 
 
 def read_text(path: str | os.PathLike[str], largest: int, kind: str = "scene and no flank") -> str:

@@ -2031,6 +2031,34 @@ FAULTS = (
         "torque[np.isfinite(torque).all(axis=1)]",
         "studies/test_rows.py::test_torques_are_a_coordinate_where_all_variants_that_were_analysed_have_the_same",
     ),
+    Fault(
+        "the bytes of a result's file stay in memory beside its arrays",
+        "results/files.py",
+        "            del store.ds.variables[name]\n",
+        "",
+        "results/test_files.py::test_reading_takes_no_more_memory_than_the_result",
+    ),
+    Fault(
+        "the digest of a file is not seen where two portions meet",
+        "results/files.py",
+        "rest = portion[1 - len(DIGEST) :]",
+        'rest = b""',
+        "results/test_files.py::test_digest_is_the_same_wherever_portions_of_the_file_end",
+    ),
+    Fault(
+        "every row of a study has texts of its own in memory",
+        "results/files.py",
+        "same.setdefault(text, text)",
+        "text",
+        "results/test_files.py::test_texts_that_are_alike_are_one_object",
+    ),
+    Fault(
+        "slow variants share tasks of the executor, quick ones do not",
+        "studies/run.py",
+        "TASK_SECONDS * len(seconds) / max(sum(seconds), 1e-9)",
+        "max(sum(seconds), 1e-9) / (TASK_SECONDS * len(seconds) + 1e-9)",
+        "studies/test_run.py::test_quick_variants_share_tasks",
+    ),
 )
 
 

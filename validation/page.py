@@ -204,9 +204,17 @@ def median_ratio(values: Sequence[float], others: Sequence[float]) -> float:
 
 
 def peak_memory() -> float:
-    """Most memory that this process has held so far [GiB], by the kernel of Linux; `resource` counts its parent's."""
+    """Most memory that this process has held so far, or since ``forget_peak_memory`` [GiB], by the kernel of Linux.
+
+    `resource` counts that of its parent.
+    """
     status = Path("/proc/self/status").read_text(encoding="utf-8")
     return int(re.search(r"VmHWM:\s+([0-9]+) kB", status)[1]) / 2**20  # type: ignore[index]
+
+
+def forget_peak_memory() -> None:
+    """Let ``peak_memory`` begin anew, from what this process holds now."""
+    Path("/proc/self/clear_refs").write_text("5", encoding="utf-8")
 
 
 def in_a_process(call: Callable[..., Result], *arguments: object, tree: Path = ROOT) -> Result:

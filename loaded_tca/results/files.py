@@ -13,10 +13,11 @@ import numpy as np
 
 from loaded_tca.contact.checks import machine_memory
 from loaded_tca.errors import InputError, reason_of, require
-from loaded_tca.input_files import read_bytes, require_regular
+from loaded_tca.input_files import opened, require_regular
 
 if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes or reads a result needs it
     from collections.abc import Iterable, Iterator, Mapping
+    from typing import BinaryIO
 
     import xarray
 
@@ -42,6 +43,8 @@ DIGITS = 64
 DIGEST = b"\0\0\0\x06digest\0\0\0\0\0\x02" + DIGITS.to_bytes(4, "big")
 """Name, type and length of the attribute ``digest`` in NetCDF-3; the digits follow, SHA-256 of all other bytes."""
 
+PORTION = 2**20
+"""Bytes of a file that are in memory at a time while its digest is computed."""
 UNSTORABLE = KeyError, NotImplementedError, OverflowError, TypeError, ValueError
 """What xarray raises over values that NetCDF-3 has no type for."""
 
@@ -105,7 +108,11 @@ def write_dataset(path: FilePath, dataset: xarray.Dataset) -> None:
     InputError
         If the file cannot be written, or NetCDF-3 has no type for a part of the dataset.
     """
-    replace_file(path, netcdf_of(dataset))
+    with replacing(path) as temporary:
+        with _storable(dataset):
+            _netcdf(_marked(dataset), temporary)  # not by way of memory: files of large studies are as large as it
+        with open(temporary, "r+b") as file:
+            _sign(file)
 
 
 def netcdf_of(dataset: xarray.Dataset) -> Buffer:
@@ -121,18 +128,30 @@ def netcdf_of(dataset: xarray.Dataset) -> Buffer:
     InputError
         If NetCDF-3 has no type for a variable or an attribute; each is named.
     """
+    with _storable(dataset):
+        file = io.BytesIO(_netcdf(_marked(dataset)))
+    _sign(file)
+    return file.getvalue()
+
+
+def _netcdf(dataset: xarray.Dataset, path: Path | None = None) -> Any:
+    """Bytes of a dataset, or nothing but the file if there is a path."""
+    return dataset.to_netcdf(path, engine="scipy", format="NETCDF3_64BIT")
+
+
+def _marked(dataset: xarray.Dataset) -> xarray.Dataset:
+    """The dataset with the marks of this package, and room for the digits of the digest."""
     marks = {"format": FORMAT, "format_version": str(FORMAT_VERSION), "digest": DIGITS * "0"}
+    return dataset.assign_attrs(marks)
+
+
+@contextmanager
+def _storable(dataset: xarray.Dataset) -> Iterator[None]:
+    """Name what NetCDF-3 has no type for, if the dataset cannot be stored in the block."""
     try:
-        content = _netcdf(dataset.assign_attrs(marks))
+        yield
     except UNSTORABLE as error:
         raise InputError(list(_unfit_parts(dataset)) or str(error)) from error
-    place = _place_of_digest(content)
-    content[place] = _digest(content, place)
-    return content
-
-
-def _netcdf(dataset: xarray.Dataset) -> bytearray:
-    return bytearray(dataset.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
 
 
 def _unfit_parts(dataset: xarray.Dataset) -> Iterator[str]:
@@ -148,18 +167,36 @@ def _unfit_parts(dataset: xarray.Dataset) -> Iterator[str]:
             yield f"{name}: cannot be stored in a NetCDF-3 file: {error}"
 
 
-def _place_of_digest(content: Buffer) -> slice:
-    """Where the digits of the digest stand in a file; an empty slice if there is none."""
-    start = content.find(DIGEST) + len(DIGEST)
-    return slice(start, start + DIGITS) if start >= len(DIGEST) else slice(0)
+def _sign(file: BinaryIO) -> None:
+    """Write the digits of its digest to their place in a file."""
+    place = _place_of_digest(file)
+    _, digits = _digests(file, place)
+    file.seek(place)
+    file.write(digits)
 
 
-def _digest(content: Buffer, place: slice) -> bytes:
-    """Digits of the digest of a file: of all bytes but those at its place."""
-    whole = memoryview(content)
-    digest = hashlib.sha256(whole[: place.start])
-    digest.update(whole[place.stop :])
-    return digest.hexdigest().encode()
+def _place_of_digest(file: BinaryIO) -> int:
+    """Where the digits of the digest begin in a file; -1 if it has no such attribute."""
+    place, rest = 0, b""
+    file.seek(0)
+    while portion := file.read(PORTION):
+        portion = rest + portion
+        if (start := portion.find(DIGEST)) >= 0:
+            return place + start + len(DIGEST)
+        rest = portion[1 - len(DIGEST) :]  # where an attribute may begin that ends in the next portion
+        place += len(portion) - len(rest)
+    return -1
+
+
+def _digests(file: BinaryIO, place: int) -> tuple[bytes, bytes]:
+    """The digits at a place of a file, and those that it should have there: of all other bytes."""
+    digest = hashlib.sha256()
+    file.seek(0)
+    digest.update(file.read(place))
+    digits = file.read(DIGITS)
+    while portion := file.read(PORTION):
+        digest.update(portion)
+    return digits, digest.hexdigest().encode()
 
 
 def read_dataset(path: FilePath) -> xarray.Dataset:
@@ -171,20 +208,20 @@ def read_dataset(path: FilePath) -> xarray.Dataset:
         If the file cannot be read, is no regular one or larger than the memory, has changed since it was written, is no
         NetCDF-3 file, not of this package, or of another format.
     """
-    import xarray
-
     if os.path.isdir(path):
         raise InputError(f"{path}: a directory; name the result file in it, as {Path(path, 'result.nc')}")
-    content = read_bytes(path, machine_memory(), "result that this machine can hold")
-    place = _place_of_digest(content)
-    if content[place] and content[place] != _digest(content, place):
-        raise InputError(f"{path}: damaged: its bytes are not those that loaded_tca wrote; run the scene again")
-    try:
-        with xarray.open_dataset(io.BytesIO(content), engine="scipy", decode_times=False) as file:
-            dataset = file.load()
-    except Exception as error:  # on a damaged file the reader stumbles in any way
-        kind = "damaged" if content.startswith(b"CDF") else "not a NetCDF-3 file"
-        raise InputError(f"{path}: {kind}; expected a result file written by loaded_tca") from error
+    with opened(path, machine_memory(), "result that this machine can hold") as file:
+        place = _place_of_digest(file)
+        if place >= 0 and len({*_digests(file, place)}) > 1:
+            raise InputError(f"{path}: damaged: its bytes are not those that loaded_tca wrote; run the scene again")
+        file.seek(0)
+        start = file.read(3)
+        file.seek(0)
+        try:
+            dataset = _loaded(file)
+        except Exception as error:  # on a damaged file the reader stumbles in any way
+            kind = "damaged" if start == b"CDF" else "not a NetCDF-3 file"
+            raise InputError(f"{path}: {kind}; expected a result file written by loaded_tca") from error
     dataset.attrs.pop("digest", None)
     version = str(dataset.attrs.pop("format_version", ""))
     if dataset.attrs.pop("format", "") != FORMAT or not (version.isdecimal() and len(version) < 9):
@@ -195,9 +232,30 @@ def read_dataset(path: FilePath) -> xarray.Dataset:
             f"{path}: written in format {version} by {age} loaded_tca; this one reads format {FORMAT_VERSION}: "
             "run the scene again, its text is the attribute scene_toml of the file"
         )
-    if not content[place]:
+    if place < 0:
         raise InputError(f"{path}: damaged: it has no digest of its bytes; run the scene again")
     return dataset
+
+
+def _loaded(file: BinaryIO) -> xarray.Dataset:
+    """A dataset in memory, where nothing of its file stays: each variable is decoded, and then its bytes are let go."""
+    import xarray
+
+    with xarray.backends.ScipyDataStore(file) as store:
+        dataset = xarray.open_dataset(store, decode_times=False)
+        for name in sorted(store.ds.variables, key=lambda name: dataset.variables[name].dtype.kind != "O"):
+            variable = dataset.variables[name].load()
+            if variable.dtype.kind == "O":
+                variable.values = _shared(variable.values)
+            del store.ds.variables[name]
+    return dataset
+
+
+def _shared(texts: Array) -> Array:
+    """The same texts, those that are alike one object in memory."""
+    same: dict[str, str] = {}
+    shared = [same.setdefault(text, text) for text in texts.ravel()]
+    return np.array(shared, dtype=object).reshape(texts.shape)
 
 
 def read_kind(path: FilePath, kind: str, what: str) -> xarray.Dataset:

@@ -51,7 +51,9 @@ if TYPE_CHECKING:
     import xarray
 
 AHEAD = 1000
-"""Variants under way: enough for hundreds of workers, and little memory."""
+"""Tasks under way: enough for hundreds of workers, and little memory."""
+TASK_SECONDS, MOST_TOGETHER = 0.1, 50
+"""Quick variants share a task until it takes so long, or has so many: a task takes a scheduler some milliseconds."""
 
 GONE = "as when a scheduler goes away"
 
@@ -202,12 +204,13 @@ def _in_this_process(tasks: Iterator[Task]) -> Generator[list[Done]]:
 
 def _by(executor: Executor, tasks: Iterator[Task]) -> Generator[list[Done]]:
     """What is done, as it comes; at the end, and if anything goes wrong, nothing is left for the executor to begin."""
-    finished: SimpleQueue[Future[Done]] = SimpleQueue()
-    under_way: set[Future[Done]] = set()
+    finished: SimpleQueue[Future[list[Done]]] = SimpleQueue()
+    under_way: set[Future[list[Done]]] = set()
+    together = 1
     try:
         while True:
-            for task in islice(tasks, AHEAD - len(under_way)):
-                future = _submitted(executor, task)
+            while len(under_way) < AHEAD and (next_tasks := [*islice(tasks, together)]):
+                future = _submitted(executor, next_tasks)
                 under_way.add(future)
                 future.add_done_callback(finished.put)
             if not under_way:
@@ -217,7 +220,8 @@ def _by(executor: Executor, tasks: Iterator[Task]) -> Generator[list[Done]]:
                 batch.append(finished.get())
             under_way.difference_update(batch)
             lost = {future for future in batch if future.cancelled() or future.exception() is not None}
-            yield [future.result() for future in batch if future not in lost]
+            done = [row_and_map for future in batch if future not in lost for row_and_map in future.result()]
+            yield done
             if lost:
                 first = next(future for future in batch if future in lost)
                 error = CancelledError(GONE) if first.cancelled() else first.exception()
@@ -225,23 +229,40 @@ def _by(executor: Executor, tasks: Iterator[Task]) -> Generator[list[Done]]:
                     under_way.clear()
                 reason = f"{type(error).__name__}: {error}".splitlines()[0]
                 raise ExecutorError(f"the executor gave up: {reason}") from error
+            together = _together([row["seconds"] for row, _ in done])
     finally:
         for future in under_way:
             future.cancel()
 
 
-def _submitted(executor: Executor, task: Task) -> Future[Done]:
-    """A task that an executor was given; one that has failed if the executor takes none any more."""
+def _together(seconds: list[float]) -> int:
+    """How many variants share a task, of the seconds that some took.
+
+    Examples
+    --------
+    >>> _together([0.5]), _together([0.01, 0.03]), _together([0.0])
+    (1, 5, 50)
+    """
+    return max(1, int(min(TASK_SECONDS * len(seconds) / max(sum(seconds), 1e-9), MOST_TOGETHER)))
+
+
+def _submitted(executor: Executor, tasks: list[Task]) -> Future[list[Done]]:
+    """Tasks that an executor was given as one; one that has failed if the executor takes none any more."""
     try:
-        return executor.submit(_analysed, *task)
+        return executor.submit(_all_analysed, tasks)
     except Exception as error:  # as many kinds as there are executors
-        future: Future[Done] = Future()
+        future: Future[list[Done]] = Future()
         future.set_exception(error)
         return future
 
 
+def _all_analysed(tasks: list[Task]) -> list[Done]:
+    """Analyse variants one after the other, in whatever process and thread this is called."""
+    return [_analysed(*task) for task in tasks]
+
+
 def _analysed(scene: Scene | Stage, changes: dict[str, Any], digest: str, figures: Figures, keep: bool) -> Done:
-    """Analyse one variant, in whatever process and thread this is called."""
+    """Analyse one variant."""
     begin = time.perf_counter()
     status, reason, values_of, whole = "ok", "", {}, None
     with one_thread(), noted_accuracy_warnings(given=False) as warned:

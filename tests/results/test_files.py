@@ -1,4 +1,5 @@
 import os
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.results.files import (
     FORMAT_VERSION,
     arrays_of,
+    netcdf_of,
     read_dataset,
     remove,
     replace_together,
@@ -84,6 +86,44 @@ def test_file_is_closed_after_reading(path):
     path.unlink()
     assert isinstance(arrays["numbers"], np.ndarray)
     assert arrays["numbers"].flags.writeable
+
+
+def test_bytes_are_those_of_the_file(path):
+    write_dataset(path, dataset(title="whole"))
+    assert path.read_bytes() == netcdf_of(dataset(title="whole"))
+
+
+@pytest.mark.parametrize("portion", [1, 25, 64, 1000])
+def test_digest_is_the_same_wherever_portions_of_the_file_end(path, portion, monkeypatch):
+    content = netcdf_of(dataset(title="whole"))
+    monkeypatch.setattr("loaded_tca.results.files.PORTION", portion)
+    assert netcdf_of(dataset(title="whole")) == content
+    path.write_bytes(content)
+    assert read_dataset(path).equals(dataset())
+
+
+def test_reading_takes_no_more_memory_than_the_result(path):
+    """Four megabytes of numbers and a sixteenth of them for the variable that is being decoded."""
+    count, rows = 32, 2**14
+    numbers = {f"number_{column}": ("row", np.full(rows, float(column))) for column in range(count)}
+    write_dataset(path, xarray.Dataset(numbers))
+    read_dataset(path)  # what is imported and kept by the way
+    tracemalloc.start()
+    try:
+        found = read_dataset(path)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert found["number_31"][-1] == 31.0
+    assert peak < 1.5 * found.nbytes  # the file beside the arrays would be twice as much
+
+
+def test_texts_that_are_alike_are_one_object(path):
+    texts = ["ok", "Zähne", "ok", "", "Zähne", ""] * 3
+    write_dataset(path, xarray.Dataset({"status": ("row", np.array(texts, dtype=object))}))
+    found = read_dataset(path)["status"].values
+    assert found.tolist() == texts
+    assert len({*map(id, found)}) == len({*texts})
 
 
 def test_writing_leaves_one_file_alone(path):

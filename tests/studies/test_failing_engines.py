@@ -187,12 +187,12 @@ def test_full_disk_costs_only_what_does_not_fit(tmp_path):
 
 
 def test_result_that_finds_no_room_costs_no_row(tmp_path, monkeypatch):
-    def no_room(*_):
+    def no_room(*_, **__):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     study, out = in_folder(tmp_path, 1, 2), tmp_path / "study.nc"
     with monkeypatch.context() as patched:
-        patched.setattr(Path, "write_bytes", no_room)
+        patched.setattr("xarray.Dataset.to_netcdf", no_room)
         with pytest.raises(InputError, match="cannot be written: No space left on device") as caught:
             run_study(study, None, out, figures=asked)
     assert "2 variants are kept" in caught.value.__notes__[0]

@@ -2,6 +2,7 @@
 
 import json
 import warnings
+from concurrent.futures import Executor, Future
 from dataclasses import replace
 
 import numpy as np
@@ -249,3 +250,27 @@ def test_scene_of_the_study_stays_what_it_was():
     before = replace(helical())
     run_study(study(1.0), figures=crowning)
     assert helical() == before
+
+
+class AtOnce(Executor):
+    """An executor that does each task when it is given, and counts the variants of each."""
+
+    def __init__(self):
+        self.sizes = []
+
+    def submit(self, call, tasks):
+        self.sizes.append(len(tasks))
+        future = Future()
+        future.set_result(call(tasks))
+        return future
+
+
+@pytest.mark.parametrize(("task_seconds", "sizes"), [(1e9, [1, 4, 4, 1]), (0.0, [1] * 10)])
+def test_quick_variants_share_tasks(monkeypatch, task_seconds, sizes):
+    """The first task has one variant: how long it takes is not known before."""
+    for name, value in {"AHEAD": 1, "MOST_TOGETHER": 4, "TASK_SECONDS": task_seconds}.items():
+        monkeypatch.setattr(f"loaded_tca.studies.run.{name}", value)
+    executor, values = AtOnce(), np.linspace(1.0, 5.0, 10)
+    found = run_study(study(*values), executor, figures=crowning)
+    assert executor.sizes == sizes
+    assert_array_equal(found["crowning_um"][:, 0], values)
