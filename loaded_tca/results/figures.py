@@ -376,7 +376,7 @@ SUMMARY: tuple[Line, ...] = (
     Line("  shortest life [million revolutions]", tuple(f"{gear}_bearing_life_Mrev" for gear in GEARS)),
     Line("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
     Line("  K_Hbeta too low by its cells, at the most [%]", ("face_load_factor_error",)),
-    Line("  its strips of the face differ without every second position by [%]", ("face_load_factor_by_positions",)),
+    Line("  change of its strips if only every second position counts [%]", ("face_load_factor_by_positions",)),
     Line(*LOAD_ROW),
     Line(
         "line load under the largest force; mesh-dependent at sharp ends [N/mm]",
