@@ -1,7 +1,7 @@
 """Studies of many variants of a scene, with the key figures of each, and designs of micro-geometry.
 
 The engine is any ``concurrent.futures.Executor``. An executor belongs to its caller; a study asks it for one task per
-variant, writes down each one that is done, and goes on where it stopped when it is run again.
+variant, or for several quick ones, writes down each that is done, and goes on where it stopped when it is run again.
 """
 
 from typing import TYPE_CHECKING
