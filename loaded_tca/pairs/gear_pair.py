@@ -199,13 +199,25 @@ class GearPair:
 
     def to_wheel(self, point: Array) -> tuple[Array, Array, Array]:
         """Cylindrical coordinates (rho, theta, z) of points (..., 3) in the wheel frame."""
-        x, y, z = np.moveaxis((point - self.wheel_origin) @ self.wheel_axes.T, -1, 0)
+        x, y, z = self._in_wheel_frame(point)
         return np.hypot(x, y), np.arctan2(y, x), z
 
     def on_flanks(self, points: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Places (rho, z) on the flanks of pinion and wheel of points (..., 3) of the fixed frame [mm]."""
-        radius, _, axial = self.to_wheel(points)
-        return (np.hypot(points[..., 0], points[..., 1]), points[..., 2]), (radius, axial)
+        return self.on_pinion(points), self.on_wheel(points)
+
+    def on_pinion(self, points: Array) -> tuple[Array, Array]:
+        """Places (rho, z) on the flank of the pinion of points (..., 3) of the fixed frame [mm]."""
+        return np.hypot(points[..., 0], points[..., 1]), points[..., 2]
+
+    def on_wheel(self, points: Array) -> tuple[Array, Array]:
+        """Places (rho, z) on the flank of the wheel of points (..., 3) of the fixed frame [mm]."""
+        x, y, z = self._in_wheel_frame(points)
+        return np.hypot(x, y), z
+
+    def _in_wheel_frame(self, points: Array) -> Array:
+        """Coordinates x, y, z of points (..., 3) of the fixed frame in that of the wheel (3, ...)."""
+        return np.moveaxis((points - self.wheel_origin) @ self.wheel_axes.T, -1, 0)
 
     def wheel_basis(self, theta: Array) -> Array:
         """e_rho, e_theta, e_z of the wheel at the azimuth theta, in rows, in the fixed frame: (..., 3, 3)."""

@@ -11,7 +11,8 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
@@ -41,7 +42,7 @@ ToPicture = Callable[[Array], Array]
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"
 BEGIN_OF_ARC: dict[str, Any] = {"color": "black", "linestyle": "--", "linewidth": 0.6}
 MOST_AREAS = 7
-PALE = ListedColormap(["#dfe3ee"])
+PALE = "#dfe3ee"
 """Of contacts whose pressure is not drawn."""
 CELLS_OF_SPIKES = 0.05
 """Part of the cells of a map under pressure that may lie beyond its scale of colours."""
@@ -84,8 +85,7 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
         for path in result.paths:
             axes.plot(*to_picture(path.point).T, ".", color=ACCENT, markersize=4.0)
-        pale = [_draw_pale(axes, to_picture, one) for one in others]
-        return [*pale, *_draw_areas(axes, to_picture, maps, scale)]
+        return [*_draw_pale(axes, to_picture, others), *_draw_areas(axes, to_picture, maps, scale)]
 
     figure, panels = both_flanks(result, draw)
     if maps:
@@ -177,20 +177,48 @@ def plot_full_mesh(result: MeshCycle, position: int | None = None, torque: int |
 
 
 def _draw_areas(axes: Axes, to_picture: ToPicture, maps: Sequence[PressureMap], scale: Normalize) -> list[Artist]:
-    """Cells under pressure where they lie on a flank."""
-    areas: list[Artist] = []
+    """Cells under pressure where they lie on a flank, of all maps as one mesh.
+
+    Maps, each as far as it has pressure, stand one after the other; cells that join or fill them up are left out.
+    """
+    if not maps:
+        return []
+    parts = [_under_pressure(one) for one in maps]
+    widest = max(pressure.shape[1] for _, pressure in parts)
+    corners, values = [], []
+    for points, pressure in parts:
+        missing = widest - pressure.shape[1]
+        corners.append(np.pad(points, ((0, 0), (0, missing), (0, 0)), mode="edge"))
+        loaded = np.where(pressure > 0.0, pressure, np.nan)
+        values.append(np.pad(loaded, ((0, 1), (0, missing)), constant_values=np.nan))
+    x, y = np.moveaxis(to_picture(np.concatenate(corners)), -1, 0)
+    return [axes.pcolormesh(x, y, np.concatenate(values)[:-1], cmap=COLOURS, norm=scale, rasterized=True)]
+
+
+def _under_pressure(one: PressureMap) -> tuple[Array, Array]:
+    """Corners (m + 1, n + 1, 3) and pressure (m, n) of the smallest rectangle with all cells under pressure."""
+    rows, columns = (np.flatnonzero((one.pressure > 0.0).any(axis=axis)) for axis in (1, 0))
+    ends = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+    x, y = (border[end.start : end.stop + 1] for border, end in zip(one.borders, ends, strict=True))
+    return one.origin + x[:, None, None] * one.axes[0] + y[:, None] * one.axes[1], one.pressure[ends]
+
+
+def _draw_pale(axes: Axes, to_picture: ToPicture, maps: Sequence[PressureMap]) -> list[Artist]:
+    """Cells under pressure where they lie on a flank, all in one pale colour: a patch for each row of cells across."""
+    if not maps:
+        return []
+    corners = []
     for one in maps:
-        x, y = np.moveaxis(to_picture(one.corners), -1, 0)
-        loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
-        areas.append(axes.pcolormesh(x, y, loaded, cmap=COLOURS, norm=scale, rasterized=True))
-    return areas
-
-
-def _draw_pale(axes: Axes, to_picture: ToPicture, one: PressureMap) -> Artist:
-    """Cells under pressure where they lie on a flank, all in one pale colour."""
-    x, y = np.moveaxis(to_picture(one.corners), -1, 0)
-    loaded = np.where(one.pressure > 0.0, 0.0, np.nan)
-    return axes.pcolormesh(x, y, loaded, cmap=PALE, rasterized=True)
+        ends = np.diff(np.pad(one.pressure > 0.0, ((1, 1), (0, 0))).astype(int), axis=0).T
+        (column, first), (_, last) = np.nonzero(ends == 1), np.nonzero(ends == -1)
+        x, y = one.borders
+        across = np.stack([x[first], x[last], x[last], x[first]], axis=-1)
+        along = np.stack([y[column], y[column], y[column + 1], y[column + 1]], axis=-1)
+        corners.append(one.origin + across[..., None] * one.axes[0] + along[..., None] * one.axes[1])
+    places = to_picture(np.concatenate(corners))
+    patches = PolyCollection(list(places), facecolors=PALE, linewidths=0.0, antialiaseds=False, rasterized=True)
+    axes.add_collection(patches, autolim=False)
+    return [patches]
 
 
 def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None = None) -> list[PressureMap]:
@@ -269,8 +297,9 @@ def _draw_on_flank(
 
 def picture_of(pair: GearPair, gear: GearName) -> ToPicture:
     """What takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a gear's flank."""
-    number, frame = GEARS.index(gear), getattr(pair, gear).flank.frame
-    return lambda points: np.stack(frame.to_picture(*pair.on_flanks(points)[number]), axis=-1)
+    on_flank = (pair.on_pinion, pair.on_wheel)[GEARS.index(gear)]
+    frame = getattr(pair, gear).flank.frame
+    return lambda points: np.stack(frame.to_picture(*on_flank(points)), axis=-1)
 
 
 def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:

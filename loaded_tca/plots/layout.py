@@ -2,6 +2,9 @@
 
 Constrained layout measures everything around each panel, moves the panels, and does both again, since ticks change as
 panels shrink. Measuring takes a third of the time of a picture, and the first pass only has to come near.
+
+Matplotlib places the ticks of an axis and measures their labels up to ten times in a drawing, for the axis, its label,
+the title and each side of the frame: here once where the panel lies.
 """
 
 from __future__ import annotations
@@ -20,6 +23,8 @@ LINE = 13.0
 """Height of a line of text with its pad [pt]."""
 BESIDE = {"left": 31.0, "right": 31.0, "bottom": 19.0, "top": 19.0}
 """Room for ticks and their labels [pt]."""
+MEASURED_AGAIN = "_update_ticks", "_get_ticklabel_bboxes"
+"""Methods by which Matplotlib places the ticks of an axis and measures their labels, for each text and line beside."""
 COLORBAR = "<colorbar>"
 """What Matplotlib labels the panels of colour bars, which it measures twice in a pass."""
 
@@ -37,13 +42,38 @@ def estimated_at_first(figure: Figure) -> Iterator[None]:
         Drawn once inside.
     """
     panels = [axes for axes in figure.axes if axes.name == "rectilinear"]
+    axles = [axis for axes in panels for part in (axes, *axes.child_axes) for axis in (part.xaxis, part.yaxis)]
     for axes in panels:
         _estimate(axes)
+    for axis in axles:
+        for name in MEASURED_AGAIN:
+            _measure_once(axis, name)
     try:
         yield
     finally:
         for axes in panels:
             del axes.get_tightbbox
+        for axis in axles:
+            for name in MEASURED_AGAIN:
+                vars(axis).pop(name, None)
+
+
+def _measure_once(axis: Axis, name: str) -> None:
+    """Have an axis keep what one of its methods returns as long as its panel and its limits stay as they are."""
+    measure = getattr(axis, name, None)
+    if measure is None:  # of another Matplotlib
+        return
+    place: tuple[float, ...] = ()
+    kept: Any = None
+
+    def measure_once(*arguments: Any, **options: Any) -> Any:
+        nonlocal place, kept
+        now = *axis.axes.bbox.extents, *axis.get_view_interval()
+        if now != place:
+            kept, place = measure(*arguments, **options), now
+        return kept
+
+    setattr(axis, name, measure_once)
 
 
 def _estimate(axes: Axes) -> None:

@@ -377,10 +377,13 @@ def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array
             loaded = one.pressure > 0.0
             cells = points_of_cells(one, loaded, to_picture, field)
             pressure = np.repeat(one.pressure[loaded], cells.shape[1]).reshape(cells.shape[:2])
-            if np.isinf(one.gap).any():  # cells that an edge cuts reach beyond the flanks
-                within = edge_distances(pair, cells).min(axis=-1) >= 0.0
-                cells, pressure = cells[within], pressure[within]
-            yield to_picture(cells).reshape(-1, 2), pressure.ravel()
+            places = to_picture(cells)
+            cut = one.cover[loaded] < 1.0
+            if cut.any():  # these reach beyond the flanks
+                within = np.ones(pressure.shape, dtype=bool)
+                within[cut] = edge_distances(pair, cells[cut]).min(axis=-1) >= 0.0
+                places, pressure = places[within], pressure[within]
+            yield places.reshape(-1, 2), pressure.ravel()
             points, height = _ridge(one)
             ridge = to_picture(points), height
             if before is not None:

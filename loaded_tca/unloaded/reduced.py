@@ -255,7 +255,8 @@ def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
         here = _look(part, angle, points[rows], scale)
         outside = here.edges.min(axis=-1) < -FEASIBLE * scale[0]
         lost[rows] &= outside
-        step, multipliers[rows] = _propose(part, here, multipliers[rows], scale, (lost[rows], stuck[rows]))
+        before = multipliers[rows]
+        step, multipliers[rows] = _propose(part, here, before, scale, (lost[rows], stuck[rows]))
         penalty[rows] = np.maximum(np.maximum(1.0, FORGOTTEN * penalty[rows]), 2.0 * multipliers[rows].max(axis=-1))
         gain, longest = np.abs((here.gradient * step).sum(axis=-1)), np.abs(step).max(axis=-1)
         settled = ((gain <= SMALLEST_GAIN * field.pair.base_radii[1]) | (longest <= SHORT_STEP)) & ~outside
@@ -266,7 +267,8 @@ def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
         points[rows] = ahead
         converged[rows] = settled
         creeps = outside & ((share < CREEPING) | (longest <= SHORT_STEP))
-        ended = settled | (stays & stuck[rows]) | (creeps & lost[rows])
+        repeats = (longest == 0.0) & (multipliers[rows] == before).all(axis=-1) & ~stuck[rows]  # no step, ever after
+        ended = settled | repeats | (stays & stuck[rows]) | (creeps & lost[rows])
         lost[rows] |= creeps & ~stays
         stuck[rows] = share < HARDLY
         rows = rows[~ended]

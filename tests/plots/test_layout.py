@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from numpy.testing import assert_array_equal
 
+from loaded_tca.plots import layout
 from loaded_tca.plots.layout import estimated_at_first, estimated_box
 
 PIXEL = 1.0
@@ -65,9 +67,26 @@ def test_estimates_are_near_what_is_measured():
         assert estimated_box(axes).extents == pytest.approx(measured.extents, abs=NEAR * figure.dpi / 72.0)
 
 
+def test_ticks_measured_once_at_a_place_draw_the_same_picture(monkeypatch):
+    """Ticks depend on where a panel lies and on its limits, those of a colour bar and of a second scale, too."""
+    pictures = []
+    for names in (layout.MEASURED_AGAIN, ()):
+        monkeypatch.setattr(layout, "MEASURED_AGAIN", names)
+        figure = Figure(figsize=(3.0, 2.0), layout="constrained")
+        axes = figure.add_subplot(ylabel="stress")
+        figure.colorbar(axes.pcolormesh(np.arange(12.0).reshape(3, 4)))
+        axes.secondary_yaxis("right", functions=(lambda x: 2.0 * x, lambda x: 0.5 * x))
+        canvas = FigureCanvasAgg(figure)
+        with estimated_at_first(figure):
+            canvas.draw()
+        pictures.append(np.array(canvas.buffer_rgba()))
+    assert_array_equal(*pictures)
+
+
 def test_figures_measure_as_before_afterwards():
     """Whoever draws the figure again, in a notebook, gets the layout of Matplotlib."""
     figure = panels()
     with pytest.raises(RuntimeError), estimated_at_first(figure):
         raise RuntimeError
     assert not any("get_tightbbox" in vars(axes) for axes in figure.axes)
+    assert not any(name in vars(axes.xaxis) for name in layout.MEASURED_AGAIN for axes in figure.axes)

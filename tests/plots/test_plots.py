@@ -294,10 +294,24 @@ def test_pressure_map_tells_its_directions():
     assert figure.axes[0].yaxis.get_inverted() == (radius < cycle.path.pinion_radius[2])
 
 
+def ends_of(collection):
+    """Lower left and upper right of what is drawn of patches or of cells."""
+    places = np.concatenate([path.vertices for path in collection.get_paths()])
+    return places.min(axis=0), places.max(axis=0)
+
+
 def test_contacts_of_positions_without_pressure_drawn_are_pale():
     cycle = result(positions=9)
     figure = plot_contact_path(cycle)
-    assert len(figure.axes[0].collections) == 9
+    pale, areas = figure.axes[0].collections
+    loaded = [row[0].pressure > 0.0 for row in cycle.maps[0]]
+    drawn = {round(8 * part / 6) for part in range(7)}
+    assert areas.get_array().count() == sum(loaded[position].sum() for position in drawn)
+    assert len(pale.get_paths()) == sum(loaded[position].any(axis=0).sum() for position in {*range(9)} - drawn)
+    pale_low, pale_high = ends_of(pale)
+    low, high = ends_of(areas)
+    assert (low < pale_low).all()
+    assert (pale_high < high).all()
     assert figure.legends[0].get_title().get_text() == "pressure drawn at 7 of 9 positions, contacts of the others pale"
 
 
@@ -306,12 +320,16 @@ def test_contact_areas_lie_around_the_path_within_the_flank():
     for axes, radius in zip(
         plot_contact_path(cycle).axes, (cycle.path.pinion_radius, cycle.path.wheel_radius), strict=False
     ):
-        assert len(axes.collections) == 5
-        for area, own in zip(axes.collections, radius, strict=True):
-            corners = area.get_coordinates()[:-1, :-1][~np.ma.getmaskarray(area.get_array())]
-            assert corners[:, 0].min() < 0.0 < corners[:, 0].max()
-            assert corners[:, 1].min() < 2.0 * own < corners[:, 1].max()
-            assert abs(corners[:, 0]).max() < 13.5  # half of the face, and a part of a cell
+        (areas,) = axes.collections
+        pressure = np.concatenate([row[0].pressure[row[0].pressure > 0.0] for row in cycle.maps[0]])
+        values = areas.get_array()
+        assert_array_equal(values.compressed(), pressure)  # of each map in turn, nothing between two of them
+        corners = areas.get_coordinates()[:-1, :-1][~np.ma.getmaskarray(values)]
+        ends = np.cumsum([(row[0].pressure > 0.0).sum() for row in cycle.maps[0]])
+        for area, own in zip(np.split(corners, ends[:-1]), radius, strict=True):
+            assert area[:, 0].min() < 0.0 < area[:, 0].max()
+            assert area[:, 1].min() < 2.0 * own < area[:, 1].max()
+            assert abs(area[:, 0]).max() < 13.5  # half of the face, and a part of a cell
 
 
 @pytest.mark.quick_cases("straight_bevel")

@@ -127,6 +127,18 @@ def test_ascent_of_which_hardly_a_step_is_accepted_rises_along_its_slope_instead
     assert found.iterations.max() < 40  # 13 seen
 
 
+def test_ascent_outside_both_flanks_without_any_step_left_ends():
+    """Three pitches before the pitch point nothing is in common: 300 steps of no length, most of the time of a scan."""
+    pinion, wheel = (
+        CylindricalGear(teeth, 1.75, 30.0, helix_angle=hand * math.radians(27.0), profile_shift=shift)
+        for teeth, hand, shift in ((23, -1, 0.25), (71, 1, -0.17))
+    )
+    pair = cylindrical_pair(CylindricalMesh(pinion, wheel, centre_distance=92.5))
+    found = climb(EaseOff(pair), np.array([-3.0 * pair.pitch]), np.array([24.7743]), np.array([-14.0]))
+    assert not found.converged.any()
+    assert found.iterations.max() < 10  # 2 seen
+
+
 # Relief starts
 
 
