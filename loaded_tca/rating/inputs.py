@@ -86,6 +86,8 @@ def inputs_of(result: CycleNumbers) -> RatingInputs:
     scene = result.scene
     if not isinstance(scene, CylindricalScene):
         raise InputError(f'pair.type: "{scene.geometry.type}"; {COVERED}')
+    if scene.wheel.teeth < 0:
+        raise InputError(f"wheel.teeth: {scene.wheel.teeth}, a ring; {COVERED}")
     no_limits = "missing; nothing is rated without allowable stresses: give material, or kind with its stresses"
     given = {
         "pinion.strength": (scene.pinion.strength, no_limits),

@@ -228,6 +228,7 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         --------
         >>> from loaded_tca import analyse, read_scene
         >>> changes = {"analysis.positions": 5, "analysis.compliance": "contact", "analysis.root_stress": False}
+        >>> changes |= {"load.pinion_torque_Nm": 50.0}
         >>> result = analyse(read_scene("examples/scenes/rated_helical.toml").with_changes(changes))
         >>> result.rating().flank_safety.shape
         (1, 2)

@@ -284,7 +284,12 @@ class CylindricalScene(BlankScene):
     def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Form, stress correction and helix angle factor Y_F, Y_S, Y_beta of both gears; NaN as above."""
         mesh = self.mesh()
-        return _root_factors(mesh, mesh.pinion), _root_factors(mesh, mesh.wheel)
+        helix, unknown = iso6336_3.helix_angle_factor(mesh.pinion.helix_angle, mesh.overlap_ratio), 3 * (math.nan,)
+        pinion, wheel = (
+            (section.form_factor, section.stress_correction_factor, helix) if section else unknown
+            for section in self.root_sections
+        )
+        return pinion, wheel
 
     @property
     def root_sections(self) -> tuple[iso6336_3.RootSection | None, iso6336_3.RootSection | None]:
@@ -368,15 +373,6 @@ def _root_section(mesh: CylindricalMesh, gear: CylindricalGear) -> iso6336_3.Roo
         )
     except (InputError, GeometryError):
         return None
-
-
-def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, float, float]:
-    """Y_F, Y_S, Y_beta of a gear after ISO 6336-3; NaN without a critical section."""
-    section = _root_section(mesh, gear)
-    if section is None:
-        return math.nan, math.nan, math.nan
-    helix = iso6336_3.helix_angle_factor(gear.helix_angle, mesh.overlap_ratio)
-    return section.form_factor, section.stress_correction_factor, helix
 
 
 def backlash_rows(mesh: InvoluteMesh) -> tuple[Row, Row]:

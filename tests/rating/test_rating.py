@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import cos, pi, radians
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +11,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
 from loaded_tca.rating.inputs import inputs_of
 from loaded_tca.rating.loads import reduced_mass
+from loaded_tca.scene import read_scene
 from loaded_tca.tribology.slices import slices_of
 from tests.samples.rating import HARD, RATED, solved
+from tests.samples.results import SCENES
 
 METHOD_B = {"rating.dynamic_factor": "method B", "rating.transverse_load_factor": "method B"}
 ROUNDING = 1e-12  # of a few products and roots, with room for any order of them
@@ -190,3 +193,19 @@ def test_everything_missing_is_told_at_once():
     with pytest.raises(InputError) as refused:
         solved(**bare).rating()
     assert len(refused.value.problems) == 5
+
+
+@pytest.mark.parametrize("name", ["mesh_cycle_bevel", "hypoid_13x42", "planet_ring"])
+def test_other_families_are_refused(name):
+    other = SimpleNamespace(scene=read_scene(SCENES / f"{name}.toml"))
+    with pytest.raises(InputError, match=r"(pair.type|wheel.teeth): .*rating covers one operating point of external"):
+        inputs_of(other)
+
+
+def test_unloaded_results_and_few_positions_are_refused():
+    idle = SimpleNamespace(scene=solved().scene, torque=np.array([0.0, 1e5]), path=range(3))
+    with pytest.raises(InputError) as refused:
+        inputs_of(idle)
+    positions, torque = refused.value.problems
+    assert positions.startswith("analysis.positions: 3; a rating takes 5 or more")
+    assert torque.startswith("pinion torque: 0 N m")
