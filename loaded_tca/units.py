@@ -57,6 +57,7 @@ UNITS = {
     "MPa_m_per_s": Unit("MPa m/s", "MPa m/s", 1.0),
     "W": Unit("W", "W", 1.0),
     "K": Unit("K", "K", 1.0),
+    "h": Unit("h", "h", 1.0),
 }
 """Ending of a name -> unit; of several that fit, the first."""
 MICROMETRES = 1.0 / UNITS["um"].factor

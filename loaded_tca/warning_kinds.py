@@ -321,6 +321,11 @@ PITCH_VELOCITY = Kind(
     "coefficients of friction of the standards were fitted within",
     "a number for `friction`, from a test",
 )
+RATED_AT_EDGE = Kind(
+    "rating: the largest pressure that the local safety of flanks follows from lies at an edge of a flank",
+    "it is that of a line contact with the mean load over a quarter module, and rises towards a sharp edge: indicative",
+    "tip or end relief, or an edge with a radius; safeties after ISO 6336 do not depend on it",
+)
 PITCH_DEVIATIONS = Kind(
     "the gears have runout or teeth that differ, which an analysis of one pitch leaves out: all teeth count as alike",
     "pitch deviations, flanks of single teeth and eccentricity repeat with a turn of their gear, not with every pitch",
@@ -335,7 +340,7 @@ OPEN_REVOLUTION = Kind(
 )
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))
-"""Of every accuracy warning of an analysis, of derivatives of its result, and of its tribology."""
+"""Of every accuracy warning of an analysis, of derivatives of its result, of its tribology and its rating."""
 
 
 def kind_of(sentence: str) -> Kind | None:

@@ -2080,6 +2080,41 @@ FAULTS = (
         "ended = settled | ",
         "unloaded/test_search.py::test_ascent_outside_both_flanks_without_any_step_left_ends",
     ),
+    Fault(
+        "rating: roots take the face load factor of flanks",
+        "rating/evaluate.py",
+        'loads["K_Fbeta"] * loads["K_Falpha"]',
+        'loads["K_Hbeta"] * loads["K_Falpha"]',
+        "rating/test_rating.py::test_stresses_are_nominal_ones_times_load_factors",
+    ),
+    Fault(
+        "rating: both gears turn as often as the pinion",
+        "rating/inputs.py",
+        "np.array([1.0, ratio])",
+        "np.array([1.0, 1.0])",
+        "rating/test_rating.py::test_load_cycles_count_turns_of_each_gear",
+    ),
+    Fault(
+        "rating: contact pressure grows as the load",
+        "rating/evaluate.py",
+        'stress = pressure * np.sqrt(loads["K_A"] * loads["K_v"])',
+        'stress = pressure * loads["K_A"] * loads["K_v"]',
+        "rating/test_rating.py::test_stresses_are_nominal_ones_times_load_factors",
+    ),
+    Fault(
+        "rating: the transverse load factor of the analysis has no bound",
+        "rating/loads.py",
+        "np.clip(of_analysis, 1.0, max(1.0, bound))",
+        "np.maximum(of_analysis, 1.0)",
+        "rating/test_rating.py::test_transverse_load_factor_of_the_analysis_stays_within_its_bounds",
+    ),
+    Fault(
+        "rating: hardness of a named material counts in the scale of its kind",
+        "scene/rating.py",
+        "named_material(material, quality, hardness=hardness, scale=scale)",
+        "named_material(material, quality, hardness=hardness)",
+        "scene/test_rating_sections.py::test_hardness_counts_in_the_scale_of_its_key",
+    ),
 )
 
 

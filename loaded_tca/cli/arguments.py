@@ -70,6 +70,14 @@ files in DIR:
   tribology_slices.csv      every slice of every contact, first speed, all torques
 {tribology_pictures}
 Friction of the teeth alone; docs/guide/efficiency_and_scuffing.md says more."""
+RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubricant] of the scene say what the gears
+are made of, what is required and how they run; --set gives or changes them. External cylindrical pairs, one operating
+point under each torque.
+
+files in DIR:
+  rating.json               safeties, lives and every factor under each torque
+  rating.csv                the same, one row per torque
+docs/guide/strong_enough.md says more."""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
   subsurface.csv            the same over the depth, below the highest pressure
@@ -165,6 +173,7 @@ def command_line() -> argparse.ArgumentParser:
     _add_analyses(command)
     _add_readers(command)
     _add_tribology(command)
+    _add_rating(command)
     _add_comparisons(command)
     _add_tables_and_maps(command)
     _add_studies(command)
@@ -238,6 +247,16 @@ def _add_tribology(command: Command) -> None:
     text = "of the pinion; default: operation.pinion_speed_rpm of the scene"
     reader.add_argument("--speed", metavar="RPM", nargs="+", type=_float, help=text)
     text = "another value of a key, for instance lubricant.oil_temperature_C=90; may be given again for other keys"
+    reader.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
+    reader.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: beside the result")
+
+
+def _add_rating(command: Command) -> None:
+    """Add the command that rates a result."""
+    text = "show safeties and lives of flanks and roots of a result, after ISO 6336 and by its local stresses"
+    reader = command("rating", run_by.rating, text, RATING)
+    reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+    text = "another value of a key, for instance rating.life_hours=5000; may be given again for other keys"
     reader.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
     reader.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: beside the result")
 

@@ -147,6 +147,37 @@ def tribology(options: argparse.Namespace) -> None:
     print_summary("\n\n".join(evaluated.summary(speed=speed) for speed in each), written)
 
 
+def rating(options: argparse.Namespace) -> None:
+    """Write safeties and lives of a result with all factors, and show the table."""
+    from dataclasses import replace
+
+    from loaded_tca.output.other_results import write_rating
+    from loaded_tca.results.mesh_cycle import MeshCycle
+
+    path = result_file(options.result)
+    if options.result.is_dir():
+        require_result(options.result, path, "loaded-tca rating")
+    result = MeshCycle.load(path)
+    directory = options.out or path.parent
+    check_place(directory)
+    changes = changes_of(options)
+    require(*((_is_of_rating(key), f"--set {key}: {OF_RATING}") for key in changes))
+    rated = (replace(result, scene=result.scene.with_changes(changes)) if changes else result).rating()
+    print_summary(rated.summary(), write_rating(rated, directory))
+
+
+OF_RATING = (
+    "an analysis depends on it; allowed keys of [pinion.strength], [wheel.strength], [rating], [operation] and "
+    "[lubricant]"
+)
+
+
+def _is_of_rating(key: str) -> bool:
+    """Whether a key of a scene concerns rating alone, so that a result stays valid."""
+    section = key.rpartition(".")[0]
+    return section in ("pinion.strength", "wheel.strength", "rating", "operation", "lubricant")
+
+
 ROUGHNESS, THERMAL = "roughness_Ra_um", ("conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK")
 """Keys of gears and of materials that concern tribology alone."""
 OF_TRIBOLOGY = (

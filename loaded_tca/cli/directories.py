@@ -47,7 +47,7 @@ def require_place_of(directory: Path, main: str) -> None:
 
 def names_of_result() -> set[str]:
     """Names of all files that commands write of one result into its directory, but for the result's own."""
-    from loaded_tca.output.other_results import TRIBOLOGY_FILES
+    from loaded_tca.output.other_results import RATING_FILES, TRIBOLOGY_FILES
     from loaded_tca.output.surface_files import TEETH_FILES
     from loaded_tca.output.tables import (
         DYNAMICS,
@@ -66,7 +66,7 @@ def names_of_result() -> set[str]:
     pictures = *PICTURES, *MORE_PICTURES, *SENSITIVITY_PICTURES, *TRIBOLOGY_PICTURES
     pictures += "teeth", *(f"subsurface_{quantity}" for quantity in NAMES)
     others = "at_a_glance.pdf", REPORT, STRESS_FIELDS, STRESS_TABLE
-    return {*tables, *TRIBOLOGY_FILES, *TEETH_FILES, *others, *(f"{name}.png" for name in pictures)}
+    return {*tables, *TRIBOLOGY_FILES, *RATING_FILES, *TEETH_FILES, *others, *(f"{name}.png" for name in pictures)}
 
 
 REPORT = "report.html"

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.output.other_results import write_revolution, write_stage, write_tribology
+    from loaded_tca.output.other_results import write_rating, write_revolution, write_stage, write_tribology
     from loaded_tca.output.overview import describe_scene
     from loaded_tca.output.result_fields import describe_results
     from loaded_tca.output.result_files import write_report
@@ -29,6 +29,7 @@ __all__ = [
     "teeth_in_space",
     "write_comparison",
     "write_dynamics",
+    "write_rating",
     "write_report",
     "write_revolution",
     "write_rexs",

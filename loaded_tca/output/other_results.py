@@ -1,4 +1,4 @@
-"""Files of what is no mesh cycle: whole revolutions, planetary stages, tribology, shafts under load, ease-off."""
+"""Files of what is no mesh cycle: whole revolutions, stages, tribology, ratings, shafts under load, ease-off."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from loaded_tca.flank_maps.ease_off_map import EaseOffMap
     from loaded_tca.loaded.shaft_lines import ShaftLine
+    from loaded_tca.rating import Rating
     from loaded_tca.results.result import Result
     from loaded_tca.results.revolution import Revolution
     from loaded_tca.stages import StageResult
@@ -137,6 +138,35 @@ def slices_csv(tribology: Tribology) -> str:
             head = f"{name}_{ending}" if ending else name
             columns.setdefault(head, []).extend(table[name].astype(float).tolist())
     return csv_table(columns)
+
+
+RATING_FILES = "rating.json", "rating.csv"
+"""Names of the files."""
+
+
+@checked
+def write_rating(rating: Rating, directory: FilePath) -> tuple[Path, ...]:
+    """Write ``rating.json`` and ``rating.csv``, both or none.
+
+    Parameters
+    ----------
+    rating : Rating
+    directory : str or path
+        Made if it does not exist.
+
+    Returns
+    -------
+    tuple of Path
+        Both files. A life that does not end is null in JSON and inf in CSV.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    text = figures_json(rating, notes=rating.notes(), warnings=rating.warnings or ())
+    contents = text.encode(), csv_table(rating.to_table()).encode()
+    return replace_together(directory, dict(zip(RATING_FILES, contents, strict=True)))
 
 
 @checked

@@ -68,7 +68,7 @@ def scene_sections(scene: Scene) -> dict[str, list[Row]]:
         "path of contact": [*_path_rows(scene, pair)],
         "load and analysis": [*_asked_rows(scene, pair)],
         "bearings": [*_bearing_rows(scene)],
-        "ISO 6336": [*_standard_rows(scene, pair)],
+        "ISO 6336": [*_standard_rows(scene, pair), *_strength_rows(scene)],
         "mounting errors, edges and modifications": [*_departures(scene)],
         "flanks described by points": [*_spline_rows(scene, pair)],
     }
@@ -153,6 +153,18 @@ def _standard_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
             yield f"nominal root stress, ISO, {name} [MPa]", *(plain(nominal * torque) for torque in torques)
     if math.isfinite(scene.tooth_height_over_width):
         yield RIM_LABEL.strip(), *(shown(rim_factor(gear), "") for gear in (pair.pinion, pair.wheel))
+
+
+def _strength_rows(scene: Scene) -> Iterator[Row]:
+    """Allowable stresses of both gears and what a rating is to require, where the scene has them."""
+    for name, gear in zip(GEARS, (scene.pinion, scene.wheel), strict=True):
+        if gear.strength is not None:
+            limits = gear.strength.limits
+            yield f"{name}.strength: sigma_H_lim, sigma_F_lim [MPa]", *(plain(limit) for limit in limits)
+    wanted = scene.rating
+    if wanted is not None:
+        required = wanted.required_flank_safety, wanted.required_root_safety
+        yield "rating: required S_H, S_F, life [h]", *(plain(one) for one in required), plain(wanted.life_hours, 9)
 
 
 def _departures(scene: Scene) -> Iterator[Row]:

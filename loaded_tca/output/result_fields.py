@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from loaded_tca.rating.quantities import NUMBERS as RATING_NUMBERS
 from loaded_tca.results.declared import PAIRS, Number
 from loaded_tca.results.quantities import (
     CYCLE_NUMBERS,
@@ -42,6 +43,7 @@ def describe_results() -> str:
         "Whole revolutions; on supports those of above, too": _numbers(of_turns),
         "Planetary stages": _numbers(StageResult.NUMBERS),
         "Tribology; of several speeds most with an axis `speed`": _numbers(NUMBERS, of_torques=True),
+        "Rating": _numbers(RATING_NUMBERS, of_torques=True),
     }
     return "\n".join("\n".join([f"### {title}", "", *lines, ""]) for title, lines in sections.items())
 

@@ -24,7 +24,8 @@ if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes
     from loaded_tca.arrays import Array
 
 FORMAT = "loaded_tca"
-REVOLUTION, STAGE, TRIBOLOGY, STUDY, DESIGN = "revolution", "stage", "tribology", "study", "design"
+REVOLUTION, STAGE, TRIBOLOGY, RATING = "revolution", "stage", "tribology", "rating"
+STUDY, DESIGN = "study", "design"
 """Attribute ``kind`` of files that hold something else than the result of a mesh cycle."""
 KINDS = {
     REVOLUTION: ("a whole revolution", "read it with Revolution.load"),
@@ -33,6 +34,7 @@ KINDS = {
         "sun_mesh.nc and ring_mesh.nc beside it are such results; StageResult.load reads the stage",
     ),
     TRIBOLOGY: ("tribology", "its numbers are read off a result again by result.tribology()"),
+    RATING: ("a rating", "its numbers are read off a result again by result.rating()"),
     STUDY: ("a study", "read it with loaded_tca.studies.load_study"),
     DESIGN: ("a design", "read it with loaded_tca.studies.load_design"),
 }

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from loaded_tca.arrays import Array
+    from loaded_tca.rating import Rating
     from loaded_tca.results.sensitivities import Sensitivities
     from loaded_tca.scene import Scene
     from loaded_tca.tribology import Lubricant, Tribology
@@ -201,6 +202,40 @@ class MeshCycle(CycleNumbers, AnalysisResult):
             permissible_film_ratio=permissible_film_ratio,
             supply=supply,
         )
+
+    def rating(self) -> Rating:
+        """Return safeties and lives of flanks and roots under each torque, after ISO 6336 and by the local stresses.
+
+        Materials, required safeties, speed and oil are those of the scene: [pinion.strength], [wheel.strength],
+        [rating], [operation], [lubricant].
+
+        Returns
+        -------
+        loaded_tca.rating.Rating
+
+        Raises
+        ------
+        InputError
+            With every section that is missing; for pairs other than external cylindrical ones, and results without
+            load sharing, of fewer than five positions, or under no torque.
+
+        Warns
+        -----
+        AccuracyWarning
+            Where the largest pressure lies at an edge of a flank.
+
+        Examples
+        --------
+        >>> from loaded_tca import analyse, read_scene
+        >>> changes = {"analysis.positions": 5, "analysis.compliance": "contact", "analysis.root_stress": False}
+        >>> changes |= {"load.pinion_torque_Nm": 50.0}
+        >>> result = analyse(read_scene("examples/scenes/rated_helical.toml").with_changes(changes))
+        >>> result.rating().flank_safety.shape
+        (1, 2)
+        """
+        from loaded_tca.rating import rating_of  # which stands above results
+
+        return rating_of(self)
 
     def to_dynamics(self) -> xarray.Dataset:
         """Return curves over the pitch and their Fourier coefficients in SI units, for models of gear dynamics.

@@ -284,7 +284,18 @@ class CylindricalScene(BlankScene):
     def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Form, stress correction and helix angle factor Y_F, Y_S, Y_beta of both gears; NaN as above."""
         mesh = self.mesh()
-        return _root_factors(mesh, mesh.pinion), _root_factors(mesh, mesh.wheel)
+        helix, unknown = iso6336_3.helix_angle_factor(mesh.pinion.helix_angle, mesh.overlap_ratio), 3 * (math.nan,)
+        pinion, wheel = (
+            (section.form_factor, section.stress_correction_factor, helix) if section else unknown
+            for section in self.root_sections
+        )
+        return pinion, wheel
+
+    @property
+    def root_sections(self) -> tuple[iso6336_3.RootSection | None, iso6336_3.RootSection | None]:
+        """Critical sections of the teeth of both gears after ISO 6336-3; None where it has none."""
+        mesh = self.mesh()
+        return _root_section(mesh, mesh.pinion), _root_section(mesh, mesh.wheel)
 
     @property
     def tooth_height_over_width(self) -> float:
@@ -347,10 +358,10 @@ class CylindricalScene(BlankScene):
         return interferences(mounted.room, module, place, nominal=nominal)
 
 
-def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, float, float]:
-    """Y_F, Y_S, Y_beta of a gear after ISO 6336-3; NaN without a critical section."""
+def _root_section(mesh: CylindricalMesh, gear: CylindricalGear) -> iso6336_3.RootSection | None:
+    """Critical section of a gear after ISO 6336-3; None where the standard has none."""
     try:
-        section = iso6336_3.root_section(
+        return iso6336_3.root_section(
             gear.teeth,
             gear.generating_profile_shift,
             2.0 * gear.tip_radius / gear.normal_module,
@@ -360,10 +371,8 @@ def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, 
             dedendum_coefficient=gear.dedendum_coefficient,
             root_radius_coefficient=gear.rack_tip_radius / gear.normal_module,
         )
-        helix = iso6336_3.helix_angle_factor(gear.helix_angle, mesh.overlap_ratio)
     except (InputError, GeometryError):
-        return math.nan, math.nan, math.nan
-    return section.form_factor, section.stress_correction_factor, helix
+        return None
 
 
 def backlash_rows(mesh: InvoluteMesh) -> tuple[Row, Row]:

@@ -207,10 +207,9 @@ class InternalScene(CylindricalScene):
         return math.nan, math.nan
 
     @property
-    def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-        """NaN, as :attr:`nominal_root_stress`."""
-        unknown = math.nan, math.nan, math.nan
-        return unknown, unknown
+    def root_sections(self) -> tuple[None, None]:
+        """None, and factors of root stress NaN, as :attr:`nominal_root_stress`."""
+        return None, None
 
     @property
     def tooth_height_over_width(self) -> float:

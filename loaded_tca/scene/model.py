@@ -27,6 +27,7 @@ from loaded_tca.scene.build import (
 from loaded_tca.scene.keys import Line, key
 from loaded_tca.scene.parse import scene_from_table, toml_lines
 from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
+from loaded_tca.scene.rating import RatingSection
 from loaded_tca.scene.section import (
     Rule,
     Section,
@@ -76,6 +77,7 @@ class Scene(WithStandards, ABC):
     analysis : Analysis
     operation : Operation or None
     lubricant : LubricantSection or None
+    rating : RatingSection or None
     revolution : Revolution or None
         Of whole revolutions; None: a turn of the wheel.
     """
@@ -90,8 +92,13 @@ class Scene(WithStandards, ABC):
     )
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
-    operation: Operation | None = subsection(Operation, "speed and factors, for tribology", optional=True)
-    lubricant: LubricantSection | None = subsection(LubricantSection, "the oil, for tribology", optional=True)
+    operation: Operation | None = subsection(Operation, "speed and factors, for tribology and rating", optional=True)
+    lubricant: LubricantSection | None = subsection(
+        LubricantSection, "the oil, for tribology and rating", optional=True
+    )
+    rating: RatingSection | None = subsection(
+        RatingSection, "what is required of the pair, and factors, for rating", optional=True
+    )
     revolution: Revolution | None = subsection(Revolution, "which pitches a whole revolution has", optional=True)
 
     vh_keys: ClassVar[tuple[str, str]]

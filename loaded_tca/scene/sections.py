@@ -17,6 +17,7 @@ from loaded_tca.material import LARGEST_RATIO_IN_BENDING, SOFTEST
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Either, Line, List, Number, Whole, ZeroOr, above_zero, key
 from loaded_tca.scene.pitch import Pitch
+from loaded_tca.scene.rating import StrengthSection
 from loaded_tca.scene.section import Rule, Section, Tables, subsection
 from loaded_tca.scene.shafts import ShaftSection, SupportSection
 
@@ -237,6 +238,9 @@ class GearSection(Section):
     pitch: Pitch | None = subsection(
         Pitch, "where the teeth stand beside their nominal places, in whole revolutions", optional=True
     )
+    strength: StrengthSection | None = subsection(
+        StrengthSection, "what the gear withstands, for rating", optional=True
+    )
     tooth: tuple[Tooth, ...] | None = key(
         Tables(Tooth, 0, 10000),
         "teeth whose flanks differ from the others, in whole revolutions: `[[pinion.tooth]]`, `[[wheel.tooth]]` with "
@@ -338,7 +342,7 @@ TEMPERATURE_C = Number(-50.0, 200.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Operation(Section):
-    """[operation]: how the pair runs, for tribology; the analysis takes nothing of it."""
+    """[operation]: how the pair runs, for tribology and rating; the analysis takes nothing of it."""
 
     pinion_speed_rpm: float = key(above_zero(1e6), "speed of the pinion")
     application_factor: float = key(FACTOR, "application factor K_A", 1.0)

@@ -1,4 +1,5 @@
 """Ratings after standards.
 
+- ``solved``: the whole way from a scene through its solved mesh to safeties that a report prints.
 - ``strength``: K, Z and Y factors, strengths and safeties that two sources print; a spectrum of ISO 6336-6.
 """

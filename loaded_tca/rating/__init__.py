@@ -1,0 +1,12 @@
+"""Rating of loaded contacts: safeties and lives of flanks and roots after ISO 6336, and by the local stresses."""
+
+from typing import TYPE_CHECKING
+
+from loaded_tca.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from loaded_tca.rating.rating import Rating, rating_of
+else:
+    __getattr__, __dir__ = lazy_names(__name__)
+
+__all__ = ["Rating", "rating_of"]

@@ -1,0 +1,151 @@
+"""Load factors of ISO 6336-1 for a solved mesh: of the analysis, given, or by method B."""
+
+from __future__ import annotations
+
+from math import cos, hypot
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import named
+from loaded_tca.reference import iso6336_1
+from loaded_tca.reference.iso1328 import flank_tolerances
+from loaded_tca.reference.iso6336_3 import face_load_factor
+from loaded_tca.scene.rating import ANALYSIS, METHOD_B
+
+if TYPE_CHECKING:
+    from loaded_tca.rating.inputs import RatingInputs
+
+
+def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """K_A, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (t,) by their names, and notes.
+
+    K_Hbeta of the analysis counts from 1 on; K_Halpha and K_Falpha of the analysis are held within the bounds of the
+    standard.
+    """
+    wanted, result = inputs.rating, inputs.result
+    ones = np.ones(len(inputs.torque))
+    dynamic = ones * inputs.operation.dynamic_factor
+    notes: tuple[str, ...] = ()
+    if wanted.dynamic_factor == METHOD_B:
+        dynamic, notes = _dynamic_factor(inputs)
+    face = ones * (result.face_load_factor if wanted.face_load_factor == ANALYSIS else float(wanted.face_load_factor))
+    face = np.maximum(face, 1.0)
+    flank, root = _transverse_factors(inputs, dynamic * face)
+    height = inputs.scene.tooth_height_over_width
+    factors = {
+        "K_A": ones * inputs.operation.application_factor,
+        "K_v": dynamic,
+        "K_Hbeta": face,
+        "K_Halpha": ones * flank,
+        "K_Fbeta": np.array([face_load_factor(float(one), height) for one in face]),
+        "K_Falpha": ones * root,
+    }
+    return factors, notes
+
+
+def _deviations(inputs: RatingInputs) -> tuple[float, float]:
+    """f_pb and f_f_alpha of the tolerance class, the larger of both gears [um]."""
+    assert inputs.rating.tolerance_class is not None
+    pitches, profiles = [], []
+    for name, gear in (("pinion", inputs.mesh.pinion), ("wheel", inputs.mesh.wheel)):
+        with named(f"rating.tolerance_class: {name}"):
+            tolerances = flank_tolerances(
+                gear.teeth, gear.normal_module, gear.face_width, inputs.rating.tolerance_class, gear.helix_angle
+            )
+        pitches.append(tolerances.single_pitch * cos(gear.transverse_pressure_angle))
+        profiles.append(tolerances.profile_form)
+    return max(pitches), max(profiles)
+
+
+def _run_in(inputs: RatingInputs, deviation: float) -> float:
+    """Running-in allowance for a deviation, the mean of both gears [um]."""
+    allowances = [
+        float(iso6336_1.running_in_allowance(one.kind_of_material, deviation, one.limits[0], inputs.velocity))
+        for one in inputs.strengths
+    ]
+    return 0.5 * sum(allowances)
+
+
+def _tip_relief(inputs: RatingInputs) -> float:
+    """C_a [um]: tip relief and root relief of the mate, the smaller of both gears; at least that of running in."""
+    pinion, wheel = inputs.scene.pinion.modifications, inputs.scene.wheel.modifications
+    designed = min(
+        pinion.tip_relief_um + wheel.root_relief_um,
+        wheel.tip_relief_um + pinion.root_relief_um,
+    )
+    run_in = 0.5 * sum(iso6336_1.running_in_relief(one.limits[0]) for one in inputs.strengths)
+    return max(designed, run_in)
+
+
+def reduced_mass(inputs: RatingInputs) -> float:
+    """m_red of both gears as discs down to the bores that the scene gives, their shafts with them else [kg/mm]."""
+    sections = inputs.scene.pinion, inputs.scene.wheel
+    inertias = [
+        iso6336_1.disc_inertia(
+            gear.tip_radius + gear.root_radius, section.bore_diameter_mm or 0.0, material.density_kg_m3
+        )
+        for gear, section, material in zip(
+            (inputs.mesh.pinion, inputs.mesh.wheel), sections, inputs.scene.materials, strict=True
+        )
+    ]
+    radii = inputs.mesh.pinion.base_radius, inputs.mesh.wheel.base_radius
+    return iso6336_1.reduced_mass((inertias[0], inertias[1]), radii)
+
+
+def _softening(inputs: RatingInputs) -> Array:
+    """Share of the stiffness of a full load that is left under less than 100 N/mm (t,)."""
+    return np.asarray((np.minimum(inputs.load, iso6336_1.LOW_LOAD) / iso6336_1.LOW_LOAD) ** 0.25)
+
+
+def _dynamic_factor(inputs: RatingInputs) -> tuple[Array, tuple[str, ...]]:
+    """K_v (t,) by method B, and notes."""
+    standard, softening, mesh = inputs.scene.contact_standard, _softening(inputs), inputs.mesh
+    mass = reduced_mass(inputs)
+    speeds = np.array(
+        [
+            iso6336_1.resonance_speed(mesh.pinion.teeth, standard.mesh_stiffness * float(share), mass)
+            for share in softening
+        ]
+    )
+    pitch, profile = _deviations(inputs)
+    ratio = mesh.gear_ratio
+    factor = iso6336_1.dynamic_factor(
+        inputs.operation.pinion_speed_rpm / speeds,
+        inputs.load,
+        single_stiffness=standard.single_stiffness * softening,
+        total_contact_ratio=mesh.total_contact_ratio,
+        pitch_deviation=pitch - _run_in(inputs, pitch),
+        profile_deviation=profile - _run_in(inputs, profile),
+        tip_relief=_tip_relief(inputs),
+        speed_parameter=inputs.velocity * mesh.pinion.teeth / 100.0 * ratio / hypot(1.0, ratio),
+    )
+    return factor.K_v, factor.notes
+
+
+def _transverse_factors(inputs: RatingInputs, load_factor: Array) -> tuple[Array, Array]:
+    """K_Halpha and K_Falpha (t,); ``load_factor`` is K_v K_Hbeta."""
+    wanted, mesh, standard = inputs.rating.transverse_load_factor, inputs.mesh, inputs.scene.contact_standard
+    if wanted == ANALYSIS:
+        of_analysis = inputs.result.transverse_load_factor
+        share = mesh.transverse_contact_ratio * (0.25 + 0.75 / inputs.virtual_contact_ratio)
+        bounds = standard.largest_transverse_load_factor, mesh.total_contact_ratio / share
+        flank, root = (np.clip(of_analysis, 1.0, max(1.0, bound)) for bound in bounds)
+        return flank, root
+    if wanted != METHOD_B:
+        return np.asarray(float(wanted)), np.asarray(float(wanted))
+    pitch, profile = _deviations(inputs)
+    factors = [
+        iso6336_1.transverse_load_factors(
+            load,
+            mesh_stiffness=standard.mesh_stiffness * float(share),
+            deviation=max(pitch, profile) - _run_in(inputs, pitch),
+            transverse_contact_ratio=mesh.transverse_contact_ratio,
+            overlap_ratio=mesh.overlap_ratio,
+            virtual_contact_ratio=inputs.virtual_contact_ratio,
+        )
+        for load, share in zip(inputs.load * load_factor, _softening(inputs), strict=True)
+    ]
+    flank, root = np.array(factors, dtype=float).T
+    return flank, root

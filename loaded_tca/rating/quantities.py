@@ -1,0 +1,103 @@
+"""What a rating finds: name, dimensions, unit and long name of each number, factors by the names of ISO 6336."""
+
+from __future__ import annotations
+
+from loaded_tca.results.declared import Asked, Number
+from loaded_tca.results.quantities import CYCLE_NUMBERS
+
+TORQUE = ("torque",)
+OF_GEARS = ("torque", "gear")
+OF_ROOTS = Asked(
+    lambda scene, _: scene.analysis.root_stress,
+    "needs root stress; set analysis.root_stress = true and run the scene",
+)
+
+_LOADS = {
+    "K_A": "application factor K_A",
+    "K_v": "dynamic factor K_v",
+    "K_Hbeta": "face load factor K_Hbeta",
+    "K_Halpha": "transverse load factor K_Halpha",
+    "K_Fbeta": "face load factor of roots K_Fbeta",
+    "K_Falpha": "transverse load factor of roots K_Falpha",
+    "Z_H": "zone factor Z_H",
+}
+
+
+def _numbers(dims: tuple[str, ...], unit: str, texts: dict[str, str], asked: Asked | None = None) -> dict[str, Number]:
+    labels = {name: text if dims == TORQUE else "" for name, text in texts.items()}
+    return {name: Number(dims, unit, text, label=labels[name], asked=asked) for name, text in texts.items()}
+
+
+NUMBERS: dict[str, Number] = {
+    "torque": CYCLE_NUMBERS["torque"].changed(label="pinion torque"),
+    **_numbers(OF_GEARS, "1", {"cycles": "load cycles N_L"}),
+    **_numbers(TORQUE, "1", _LOADS),
+    "Z_E": Number(TORQUE, "MPa^0.5", "elasticity factor Z_E", column="Z_E", label="elasticity factor Z_E"),
+    **_numbers(TORQUE, "1", {"Z_eps": "contact ratio factor Z_eps", "Z_beta": "helix angle factor Z_beta"}),
+    **_numbers(OF_GEARS, "1", {"Z_BD": "single contact factors Z_B, Z_D"}),
+    **_numbers(TORQUE, "MPa", {"sigma_H0": "nominal contact stress sigma_H0"}),
+    **_numbers(OF_GEARS, "MPa", {"sigma_H": "contact stress sigma_H", "sigma_H_lim": "sigma_H_lim"}),
+    **_numbers(
+        OF_GEARS,
+        "1",
+        {
+            "Z_NT": "life factor Z_NT",
+            "Z_L": "lubricant factor Z_L",
+            "Z_v": "velocity factor Z_v",
+            "Z_R": "roughness factor Z_R",
+            "Z_W_reference": "work hardening factor Z_W",
+            "Z_W_static": "work hardening factor Z_W, static",
+            "Z_X": "size factor Z_X",
+        },
+    ),
+    **_numbers(OF_GEARS, "MPa", {"sigma_HG": "pitting strength sigma_HG"}),
+    **_numbers(OF_GEARS, "1", {"flank_safety": "safety against pitting S_H"}),
+    **_numbers(OF_GEARS, "h", {"flank_life": "life of flanks at the required safety"}),
+    **_numbers(
+        OF_GEARS,
+        "1",
+        {
+            "Y_F": "form factor Y_F",
+            "Y_S": "stress correction factor Y_S",
+            "Y_beta": "helix angle factor Y_beta",
+            "Y_B": "rim thickness factor Y_B",
+            "Y_DT": "deep tooth factor Y_DT",
+        },
+    ),
+    **_numbers(
+        OF_GEARS,
+        "MPa",
+        {"sigma_F0": "nominal root stress sigma_F0", "sigma_F": "root stress sigma_F", "sigma_F_lim": "sigma_F_lim"},
+    ),
+    **_numbers(
+        OF_GEARS,
+        "1",
+        {
+            "Y_ST": "stress correction factor of test gears Y_ST",
+            "Y_NT": "life factor Y_NT",
+            "Y_delta_relT": "relative notch sensitivity Y_delta_relT",
+            "Y_delta_relT_static": "relative notch sensitivity, static",
+            "Y_R_relT": "relative surface factor Y_R_relT",
+            "Y_X": "size factor Y_X",
+            "Y_M": "mean stress influence factor Y_M",
+        },
+    ),
+    **_numbers(OF_GEARS, "MPa", {"sigma_FG": "root strength sigma_FG"}),
+    **_numbers(OF_GEARS, "1", {"root_safety": "safety against tooth breakage S_F"}),
+    **_numbers(OF_GEARS, "h", {"root_life": "life of roots at the required safety"}),
+    **_numbers(TORQUE, "MPa", {"local_flank_stress": "local: largest contact pressure with K_A K_v"}),
+    **_numbers(
+        OF_GEARS,
+        "mm",
+        {"local_flank_radius": "local: radius of its place", "local_flank_axial": "local: axial place"},
+    ),
+    **_numbers(OF_GEARS, "1", {"local_flank_safety": "local: safety against pitting"}),
+    **_numbers(OF_GEARS, "h", {"local_flank_life": "local: life of flanks at the required safety"}),
+    **_numbers(OF_GEARS, "MPa", {"local_root_stress": "local: largest root tension with K_A K_v"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "1", {"local_stress_ratio": "local: smallest over largest stress R"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "1", {"local_Y_M": "local: mean stress influence factor Y_M"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "MPa", {"local_sigma_FG": "local: root strength sigma_FG"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "1", {"local_root_safety": "local: safety against tooth breakage"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "h", {"local_root_life": "local: life of roots at the required safety"}, OF_ROOTS),
+}
+"""Names in ``Rating.dataset``, and what each is, in the order of the summary."""

@@ -1,0 +1,211 @@
+"""Ratings of solved meshes: closed forms, limits, load factors, printed safeties, and what is refused."""
+
+from dataclasses import replace
+from math import cos, pi, radians
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
+from loaded_tca.rating.inputs import inputs_of
+from loaded_tca.rating.loads import reduced_mass
+from loaded_tca.scene import read_scene
+from loaded_tca.tribology.slices import slices_of
+from tests.samples.rating import HARD, RATED, solved
+from tests.samples.results import SCENES
+
+METHOD_B = {"rating.dynamic_factor": "method B", "rating.transverse_load_factor": "method B"}
+ROUNDING = 1e-12  # of a few products and roots, with room for any order of them
+
+
+def test_stresses_are_nominal_ones_times_load_factors():
+    changes = {"operation.application_factor": 1.5, "operation.dynamic_factor": 1.2}
+    changes |= {"rating.face_load_factor": 1.3, "rating.transverse_load_factor": 1.1}
+    rated, plain = solved(**changes).rating(), solved(**{"rating.face_load_factor": 1.0}).rating()
+    flank, root = 1.5 * 1.2 * 1.3 * 1.1, 1.5 * 1.2 * rated.K_Fbeta * 1.1
+    assert_allclose(rated.sigma_H, plain.sigma_H * flank**0.5, rtol=ROUNDING)
+    assert_allclose(rated.sigma_F, plain.sigma_F * root[:, None], rtol=ROUNDING)
+    assert_allclose(rated.local_flank_stress, plain.local_flank_stress * (1.5 * 1.2) ** 0.5, rtol=ROUNDING)
+    assert_allclose(rated.local_root_stress, plain.local_root_stress * 1.5 * 1.2, rtol=ROUNDING)
+    assert_allclose(rated.flank_safety, rated.sigma_HG / rated.sigma_H, rtol=ROUNDING)
+    assert_allclose(plain.sigma_H, plain.Z_BD * plain.sigma_H0[:, None], rtol=ROUNDING)
+
+
+def test_nominal_stresses_are_those_of_the_standard_by_hand():
+    rated, scene = solved().rating(), solved().scene
+    pinion, wheel = scene.mesh().pinion, scene.mesh().wheel
+    alpha, module = radians(20.0), pinion.normal_module
+    ratio, diameter = wheel.teeth / pinion.teeth, module * pinion.teeth
+    working = scene.mesh().working_pressure_angle
+    zone = (2.0 * cos(working) / (cos(alpha) ** 2 * np.sin(working))) ** 0.5
+    assert_allclose(rated.Z_H, zone, rtol=ROUNDING)
+    force, width = 2.0 * np.array([100e3, 200e3]) / diameter, 18.0
+    share = ((4.0 - scene.mesh().transverse_contact_ratio) / 3.0) ** 0.5
+    stress = zone * rated.Z_E * share * np.sqrt(force / (diameter * width) * (ratio + 1.0) / ratio)
+    assert_allclose(rated.sigma_H0, stress, rtol=ROUNDING)
+    bending = (force / (width * module))[:, None] * rated.Y_F * rated.Y_S  # spur: Y_beta is 1; thick rims: Y_B, too
+    assert_allclose(rated.sigma_F0, bending, rtol=ROUNDING)
+
+
+def test_life_at_a_required_safety_is_that_whose_safety_it_is():
+    rated = solved().rating()
+    for place in range(2):
+        flank, root = float(rated.flank_safety[1, place]), float(rated.root_safety[1, place])
+        changed = solved(**{"rating.required_flank_safety": flank, "rating.required_root_safety": root}).rating()
+        # exponents of the lines between knees multiply rounding of a stress by up to 33
+        assert_allclose(changed.flank_life[1, place], 20000.0, rtol=1e-9)
+        assert_allclose(changed.root_life[1, place], 20000.0, rtol=1e-9)
+
+
+def test_load_cycles_count_turns_of_each_gear():
+    rated, scene = solved().rating(), solved().scene
+    turns = 1500.0 * 60.0 * 20000.0
+    expected = [turns, turns * scene.pinion.teeth / scene.wheel.teeth]
+    assert_allclose(rated.cycles, [expected, expected], rtol=ROUNDING)
+
+
+def test_no_tooth_lives_above_its_static_strength():
+    rated = solved(**{"rating.required_flank_safety": 90.0, "rating.required_root_safety": 90.0}).rating()
+    for name in ("flank_life", "root_life", "local_flank_life", "local_root_life"):
+        assert_array_equal(rated.values(name), 0.0)
+    assert any("below the required 90 under 100, 200 N m" in note for note in rated.notes())
+
+
+def test_lower_stress_than_the_end_of_the_curve_is_borne_for_ever():
+    rated = solved(**{"rating.required_flank_safety": 1e-3, "rating.required_root_safety": 1e-3}).rating()
+    assert np.isinf(rated.flank_life).all()
+    assert np.isinf(rated.local_root_life).all()
+
+
+def test_local_stresses_are_those_of_the_contact_and_the_roots():
+    whole, rated = solved(), solved().rating()
+    tension = np.nanmax(whole.root_tension, axis=1)
+    assert_allclose(rated.local_root_stress, tension, rtol=ROUNDING)
+    # Formula of a line contact at each slice beside the pressures of the solver: 16 x 24 cells on crowned flanks, whose
+    # ellipse is not as slender as a line, and peaks of edges, which the mean over a quarter module leaves out.
+    peaks = np.nanmax(whole.peak_pressure, axis=(1, 2))
+    assert_allclose(rated.local_flank_stress, peaks, rtol=0.1)
+
+
+def test_mean_stress_lowers_the_strength_of_roots():
+    once, reversed_ = solved().rating(), solved(**{"wheel.strength.root_stress_ratio": -1.0}).rating()
+    sensitivity = 0.8 - 0.15 * once.Y_S[0, 1]  # case-hardened, annex B of ISO 6336-3:2006
+    expected = 1.0 / (1.0 + (1.0 - sensitivity) / (1.0 + sensitivity))
+    assert_allclose(reversed_.Y_M[:, 1], expected, rtol=ROUNDING)
+    assert_array_equal(reversed_.Y_M[:, 0], 1.0)
+    assert_allclose(reversed_.root_safety[:, 1], expected * once.root_safety[:, 1], rtol=ROUNDING)
+    assert_array_equal(reversed_.local_stress_ratio[:, 1], -1.0)
+    assert (once.local_stress_ratio <= 0.0).all()
+
+
+def test_face_load_factors_of_the_analysis_count_from_one_on():
+    rated, whole = solved().rating(), solved()
+    assert_allclose(rated.K_Hbeta, np.maximum(1.0, whole.face_load_factor), rtol=ROUNDING)
+
+
+def test_transverse_load_factor_of_the_analysis_stays_within_its_bounds():
+    rated, scene = solved(**{"rating.transverse_load_factor": "analysis"}).rating(), solved().scene
+    ratio = scene.mesh().transverse_contact_ratio
+    assert_allclose(rated.K_Halpha, 3.0 / (4.0 - ratio), rtol=ROUNDING)  # spur: one pair carries all, 1/Z_eps^2
+    assert_allclose(rated.K_Falpha, 1.0 / (0.25 + 0.75 / ratio), rtol=ROUNDING)
+
+
+def test_dynamic_factor_by_method_b_rises_with_speed_below_resonance():
+    excess = []
+    for speed in (100.0, 200.0):
+        changes = METHOD_B | {"rating.tolerance_class": 6, "operation.pinion_speed_rpm": speed}
+        excess.append(solved(**changes).rating().K_v - 1.0)
+    assert_allclose(excess[1], 2.0 * excess[0], rtol=1e-9)  # proportional to N; the difference of 1.00x costs digits
+    assert (excess[0] > 0.0).all()
+    assert excess[0][1] < excess[0][0]  # less under more load
+
+
+def test_coarser_tolerance_classes_raise_load_factors():
+    fine, coarse = (solved(**METHOD_B, **{"rating.tolerance_class": number}).rating() for number in (5, 9))
+    assert (coarse.K_v > fine.K_v).all()
+    assert (coarse.K_Halpha > fine.K_Halpha).all()
+    assert (coarse.flank_safety < fine.flank_safety).all()
+
+
+def test_reduced_mass_is_that_of_two_discs():
+    inputs = inputs_of(solved(**{"pinion.bore_diameter_mm": 20.0}))
+    masses = []
+    for gear, bore in ((inputs.mesh.pinion, 20.0), (inputs.mesh.wheel, 0.0)):
+        mean = gear.tip_radius + gear.root_radius
+        masses.append(pi / 32.0 * 7.85e-6 * (mean**4 - bore**4) / gear.base_radius**2)
+    assert_allclose(reduced_mass(inputs), masses[0] * masses[1] / sum(masses), rtol=ROUNDING)
+
+
+def test_softer_gear_hardens_at_work():
+    soft = {"material": "42CrMo4", "hardness_HBW": 250.0, "proof_stress_MPa": 800.0}
+    rated = solved(**{"wheel.strength": HARD | soft}).rating()
+    assert rated.Z_W_reference[0, 1] > 1.0
+    assert_array_equal(rated.Z_W_reference[:, 0], 1.0)
+    assert rated.Y_ST.shape == (2, 2)
+
+
+def test_results_without_root_stress_have_no_local_safety_of_roots():
+    whole = solved(**{"analysis.root_stress": False})
+    rated = whole.rating()
+    assert not rated.has("local_root_safety")
+    with pytest.raises(NotAskedError, match=r"local_root_safety: needs root stress; set analysis.root_stress = true"):
+        rated.local_root_safety  # noqa: B018
+    assert "tooth breakage S_F" in rated.summary()
+
+
+def test_summary_and_figures_have_both_gears():
+    rated = solved().rating()
+    figures = rated.key_figures()
+    assert figures[1]["pinion_torque_Nm"] == 200.0
+    assert figures[1]["wheel_flank_safety"] == rated.flank_safety[1, 1]
+    assert figures[0]["pinion_flank_life_h"] == rated.flank_life[0, 0]
+    line = next(line for line in rated.summary().splitlines() if line.startswith("safety against pitting S_H"))
+    assert line.count("|") == 2
+    assert "required S_H 1, S_F 1.4" in rated.summary()
+
+
+def test_pressure_at_an_edge_is_told(monkeypatch):
+    slices = slices_of(solved())
+    at_edge = replace(slices, on_edge=np.ones_like(slices.on_edge))
+    monkeypatch.setattr("loaded_tca.rating.evaluate.slices_of", lambda _: at_edge)
+    with pytest.warns(AccuracyWarning, match="rating: the largest pressure"):
+        solved().rating()
+
+
+REFUSED = [
+    ({"pinion.strength": None}, "pinion.strength: missing; nothing is rated without allowable stresses"),
+    ({"operation": None}, "operation: missing; strength, cycles and K_v depend on pinion_speed_rpm"),
+    ({"lubricant": None}, "lubricant: missing"),
+    ({"analysis.load_sharing": False}, "analysis.load_sharing: false"),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), REFUSED)
+def test_what_is_missing_is_told(changes, words):
+    with pytest.raises(InputError, match=words):
+        solved(**changes).rating()
+
+
+def test_everything_missing_is_told_at_once():
+    bare = dict.fromkeys(RATED)
+    with pytest.raises(InputError) as refused:
+        solved(**bare).rating()
+    assert len(refused.value.problems) == 5
+
+
+@pytest.mark.parametrize("name", ["mesh_cycle_bevel", "hypoid_13x42", "planet_ring"])
+def test_other_families_are_refused(name):
+    other = SimpleNamespace(scene=read_scene(SCENES / f"{name}.toml"))
+    with pytest.raises(InputError, match=r"(pair.type|wheel.teeth): .*rating covers one operating point of external"):
+        inputs_of(other)
+
+
+def test_unloaded_results_and_few_positions_are_refused():
+    idle = SimpleNamespace(scene=solved().scene, torque=np.array([0.0, 1e5]), path=range(3))
+    with pytest.raises(InputError) as refused:
+        inputs_of(idle)
+    positions, torque = refused.value.problems
+    assert positions.startswith("analysis.positions: 3; a rating takes 5 or more")
+    assert torque.startswith("pinion torque: 0 N m")

@@ -1,0 +1,53 @@
+"""The command that rates a result: its files, its table, what it refuses."""
+
+import csv
+import json
+import os
+
+import pytest
+
+from tests.samples.rating import solved
+
+
+@pytest.fixture
+def out(tmp_path, monkeypatch):
+    """The directory of a result."""
+    monkeypatch.chdir(tmp_path)
+    os.mkdir("out")
+    solved().save("out/result.nc")
+    return "out"
+
+
+def test_command_writes_what_the_call_finds(run, out):
+    code, text, _ = run(
+        "rating", out, "--set", "rating.required_root_safety=90", "--set", "operation.application_factor=2"
+    )
+    assert code == 0
+    changes = {"rating.required_root_safety": 90.0, "operation.application_factor": 2.0}
+    expected = solved(**changes).rating()
+    assert all(line in text for line in expected.summary().splitlines())
+    assert {*os.listdir(out)} == {"result.nc", "rating.json", "rating.csv"}
+    with open(f"{out}/rating.json", encoding="utf-8") as file:
+        written = json.load(file)
+    assert [row["wheel_flank_safety"] for row in written["torques"]] == expected.flank_safety[:, 1].tolist()
+    assert written["notes"] == [*expected.notes()]
+    with open(f"{out}/rating.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["pinion_torque_Nm"] for row in rows] == ["100", "200"]
+    assert [row["pinion_root_life_h"] for row in rows] == ["0", "0"]  # above the static strength
+    assert list(rows[0]) == list(expected.figures)
+
+
+REFUSED = [
+    (("--set", "pinion.teeth=21"), "--set pinion.teeth: an analysis depends on it"),
+    (("--set", "rating.life_hours=-1"), "rating.life_hours: found -1"),
+    (("--set", "pinion.strength.hardness_HV=100"), "pinion.strength.hardness_HV: found 100 HV; allowed for kind 'Eh'"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "words"), REFUSED)
+def test_command_refuses_in_one_line(run, out, arguments, words):
+    code, _, errors = run("rating", out, *arguments)
+    assert code == 2
+    assert any(words in line for line in errors), errors
+    assert os.listdir(out) == ["result.nc"]
