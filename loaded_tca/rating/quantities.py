@@ -5,8 +5,8 @@ from __future__ import annotations
 from loaded_tca.results.declared import Asked, Number
 from loaded_tca.results.quantities import CYCLE_NUMBERS
 
-TORQUE = ("torque",)
-OF_GEARS = ("torque", "gear")
+CASE = ("case",)
+OF_GEARS = ("case", "gear")
 OF_ROOTS = Asked(
     lambda scene, _: scene.analysis.root_stress,
     "needs root stress; set analysis.root_stress = true and run the scene",
@@ -24,18 +24,18 @@ _LOADS = {
 
 
 def _numbers(dims: tuple[str, ...], unit: str, texts: dict[str, str], asked: Asked | None = None) -> dict[str, Number]:
-    labels = {name: text if dims == TORQUE else "" for name, text in texts.items()}
+    labels = {name: text if dims == CASE else "" for name, text in texts.items()}
     return {name: Number(dims, unit, text, label=labels[name], asked=asked) for name, text in texts.items()}
 
 
 NUMBERS: dict[str, Number] = {
-    "torque": CYCLE_NUMBERS["torque"].changed(label="pinion torque"),
+    "torque": CYCLE_NUMBERS["torque"].changed(dims=CASE, label="pinion torque"),
     **_numbers(OF_GEARS, "1", {"cycles": "load cycles N_L"}),
-    **_numbers(TORQUE, "1", _LOADS),
-    "Z_E": Number(TORQUE, "MPa^0.5", "elasticity factor Z_E", column="Z_E", label="elasticity factor Z_E"),
-    **_numbers(TORQUE, "1", {"Z_eps": "contact ratio factor Z_eps", "Z_beta": "helix angle factor Z_beta"}),
+    **_numbers(CASE, "1", _LOADS),
+    "Z_E": Number(CASE, "MPa^0.5", "elasticity factor Z_E", column="Z_E", label="elasticity factor Z_E"),
+    **_numbers(CASE, "1", {"Z_eps": "contact ratio factor Z_eps", "Z_beta": "helix angle factor Z_beta"}),
     **_numbers(OF_GEARS, "1", {"Z_BD": "single contact factors Z_B, Z_D"}),
-    **_numbers(TORQUE, "MPa", {"sigma_H0": "nominal contact stress sigma_H0"}),
+    **_numbers(CASE, "MPa", {"sigma_H0": "nominal contact stress sigma_H0"}),
     **_numbers(OF_GEARS, "MPa", {"sigma_H": "contact stress sigma_H", "sigma_H_lim": "sigma_H_lim"}),
     **_numbers(
         OF_GEARS,
@@ -85,7 +85,7 @@ NUMBERS: dict[str, Number] = {
     **_numbers(OF_GEARS, "MPa", {"sigma_FG": "root strength sigma_FG"}),
     **_numbers(OF_GEARS, "1", {"root_safety": "safety against tooth breakage S_F"}),
     **_numbers(OF_GEARS, "h", {"root_life": "life of roots at the required safety"}),
-    **_numbers(TORQUE, "MPa", {"local_flank_stress": "local: largest contact pressure with K_A K_v"}),
+    **_numbers(CASE, "MPa", {"local_flank_stress": "local: largest contact pressure with K_A K_v"}),
     **_numbers(
         OF_GEARS,
         "mm",

@@ -347,8 +347,6 @@ def spectrum_safety(curve: SNCurve, stresses: ArrayLike, cycles: ArrayLike) -> f
     >>> round(spectrum_safety(curve, [1000.0], [5e7]), 6)
     1.5
     """
-    from scipy.optimize import brentq  # half a second, which what imports curves alone does not need
-
     _require_cycles(cycles)
     level, number = np.broadcast_arrays(np.asarray(stresses, dtype=float), np.asarray(cycles, dtype=float))
     require(interval_check("stresses", level, "[0, inf)", "MPa"))

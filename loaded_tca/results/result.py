@@ -77,7 +77,7 @@ class Result(Numbers, ABC):
 
     def key_figures(self) -> tuple[dict[str, float], ...]:
         """Return the figures for each torque, by names that end in their unit; NaN: not known."""
-        rows = (self.under(torque) for torque in range(self.dataset.sizes["torque"]))
+        rows = (self.under(torque) for torque in range(self.dataset["torque"].size))
         return tuple({name: figure.of(row) for name, figure in self.figures.items()} for row in rows)
 
     def under(self, torque: int) -> Row:
