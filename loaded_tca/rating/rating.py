@@ -58,7 +58,8 @@ class Rating(Result):
     ----------
     result : MeshCycle
     dataset : xarray.Dataset
-        All numbers with their units, over ``case`` (a torque, of which it is the coordinate) and ``gear``. A life is inf where the stress is borne for ever.
+        All numbers with their units, over ``case``, each with its ``torque``, and ``gear``. A life is inf where the stress
+        is borne for ever.
     remarks : tuple of str
         What lies outside the ranges of the standard.
     """
