@@ -58,7 +58,7 @@ class Rating(Result):
     ----------
     result : MeshCycle
     dataset : xarray.Dataset
-        All numbers with their units, over ``case``, each with its ``torque``, and ``gear``. A life is inf where the stress
+        All numbers with their units, over ``case``, each of a ``torque``, and ``gear``. A life is inf where the stress
         is borne for ever.
     remarks : tuple of str
         What lies outside the ranges of the standard.
