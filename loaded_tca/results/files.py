@@ -247,7 +247,7 @@ def _loaded(file: BinaryIO) -> xarray.Dataset:
         dataset = xarray.open_dataset(store, decode_times=False)
         for name in sorted(store.ds.variables, key=lambda name: dataset.variables[name].dtype.kind != "O"):
             variable = dataset.variables[name].load()
-            if variable.dtype.kind == "O":
+            if variable.dtype.kind == "O" and name not in dataset.dims:  # an index stays as it is
                 variable.values = _shared(variable.values)
             del store.ds.variables[name]
     return dataset
