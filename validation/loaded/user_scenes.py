@@ -302,8 +302,8 @@ the analysis would need more than half of the machine's.
 
 Of the electric drive with root stress on two idle cores a helper makes the models of the roots while the other thread
 solves the states: the analysis takes 0.77 to 0.80 of the time of one job (26 and 30 s for 33 and 38 s), by a quarter
-more processor time, since both threads need one interpreter. What does not gain: states in halves, two threads of which wait
-for the interpreter a quarter of their time; other thresholds of the allocator.
+more processor time, since both threads need one interpreter. What does not gain: states in halves, two threads
+of which wait for the interpreter a quarter of their time; other thresholds of the allocator.
 
 ## Scenes by defaults
 
