@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from loaded_tca.cli.directories import REPORT, outdated_files, remove_empty_parts, require_place_of
 from loaded_tca.cli.inputs import (
@@ -31,6 +32,7 @@ from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_s
 from loaded_tca.errors import InputError, require
 
 if TYPE_CHECKING:
+    from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
 
 # The modules that compute and draw take most of a second to import: each command imports what it needs.
@@ -123,24 +125,12 @@ def revolution(options: argparse.Namespace) -> None:
 
 def tribology(options: argparse.Namespace) -> None:
     """Write loss, temperatures and films of a result at speeds, with tables and pictures, and show the summary."""
-    from dataclasses import replace
-
     from loaded_tca.output.other_results import write_tribology
     from loaded_tca.plots import png_of, tribology_figures
-    from loaded_tca.results.mesh_cycle import MeshCycle
 
-    path = result_file(options.result)
-    if options.result.is_dir():
-        require_result(options.result, path, "loaded-tca tribology")
-    result = MeshCycle.load(path)
-    directory = options.out or path.parent
-    check_place(directory)
-    changes = changes_of(options)
-    require(*((_is_of_tribology(key), f"--set {key}: {OF_TRIBOLOGY}") for key in changes))
-    if options.speed is not None:
-        changes.setdefault("operation.pinion_speed_rpm", options.speed[0])
-    changed = replace(result, scene=result.scene.with_changes(changes)) if changes else result
-    evaluated = changed.tribology(options.speed)
+    speed = {} if options.speed is None else {"operation.pinion_speed_rpm": options.speed[0]}
+    result, directory = _changed_result(options, "tribology", _is_of_tribology, OF_TRIBOLOGY, speed)
+    evaluated = result.tribology(options.speed)
     pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(evaluated).items()}
     written = write_tribology(evaluated, directory, pictures)
     each = range(len(options.speed or [None]))
@@ -149,21 +139,34 @@ def tribology(options: argparse.Namespace) -> None:
 
 def rating(options: argparse.Namespace) -> None:
     """Write safeties and lives of a result with all factors, and show the table."""
-    from dataclasses import replace
-
     from loaded_tca.output.other_results import write_rating
+
+    result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
+    rated = result.rating()
+    print_summary(rated.summary(), write_rating(rated, directory))
+
+
+def _changed_result(
+    options: argparse.Namespace,
+    command: str,
+    is_allowed: Callable[[str], bool],
+    allowed: str,
+    defaults: Mapping[str, Any] = {},
+) -> tuple[MeshCycle, Path]:
+    """Result that a command evaluates, with what its options and else ``defaults`` change, and where its files go."""
     from loaded_tca.results.mesh_cycle import MeshCycle
 
     path = result_file(options.result)
     if options.result.is_dir():
-        require_result(options.result, path, "loaded-tca rating")
+        require_result(options.result, path, f"loaded-tca {command}")
     result = MeshCycle.load(path)
     directory = options.out or path.parent
     check_place(directory)
     changes = changes_of(options)
-    require(*((_is_of_rating(key), f"--set {key}: {OF_RATING}") for key in changes))
-    rated = (replace(result, scene=result.scene.with_changes(changes)) if changes else result).rating()
-    print_summary(rated.summary(), write_rating(rated, directory))
+    require(*((is_allowed(key), f"--set {key}: {allowed}") for key in changes))
+    if changes := {**defaults, **changes}:
+        result = replace(result, scene=result.scene.with_changes(changes))
+    return result, directory
 
 
 OF_RATING = (

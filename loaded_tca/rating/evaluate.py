@@ -29,7 +29,7 @@ def evaluated(inputs: RatingInputs) -> tuple[Arrays, tuple[str, ...], bool]:
     rated, curves = _of_flanks(inputs, stresses, flanks)
     roots, root_notes = _of_roots(inputs, loads)
     local, at_edge = _local_flanks(inputs, loads, flanks.strength, curves)
-    arrays = {"torque": np.asarray(inputs.torque), "cycles": _both(inputs, inputs.cycles_per_hour * _hours(inputs))}
+    arrays = {"torque": np.asarray(inputs.torque), "cycles": _both(inputs, inputs.cycles)}
     arrays |= loads | stresses | rated | roots | local
     mesh = inputs.mesh
     scope = iso6336_1.scope_notes(
@@ -39,10 +39,6 @@ def evaluated(inputs: RatingInputs) -> tuple[Arrays, tuple[str, ...], bool]:
         profile_shifts=(mesh.pinion.profile_shift, mesh.wheel.profile_shift),
     )
     return arrays, tuple(dict.fromkeys((*scope, *notes, *flanks.notes, *root_notes))), at_edge
-
-
-def _hours(inputs: RatingInputs) -> float:
-    return inputs.rating.life_hours
 
 
 def _both(inputs: RatingInputs, values: object) -> Array:
@@ -73,8 +69,8 @@ def _flank_factors(inputs: RatingInputs) -> iso6336_2.FlankFactors:
     """What both flanks withstand."""
     mesh, wanted = inputs.mesh, inputs.rating
     gears = [
-        iso6336_2.FlankStrength(one.limits[0], one.kind_of_material, one.flank_Rz_um, one.brinell)
-        for one in inputs.strengths
+        iso6336_2.FlankStrength(strength.limits[0], strength.kind_of_material, strength.flank_Rz_um, strength.brinell)
+        for strength in inputs.strengths
     ]
     bases = 2.0 * mesh.pinion.base_radius, 2.0 * mesh.wheel.base_radius
     with named("rating of flanks"):
@@ -84,7 +80,7 @@ def _flank_factors(inputs: RatingInputs) -> iso6336_2.FlankFactors:
             relative_radius=iso6336_2.relative_radius(bases, mesh.working_pressure_angle),
             velocity=inputs.velocity,
             viscosity_40=inputs.lubricant.viscosity_40_mm2_s,
-            cycles=inputs.cycles_per_hour * _hours(inputs),
+            cycles=inputs.cycles,
             gear_ratio=max(mesh.gear_ratio, 1.0 / mesh.gear_ratio),
             limited_pitting=wanted.limited_pitting,
             long_life_factor=wanted.long_life_factor,
@@ -124,11 +120,13 @@ def _of_roots(inputs: RatingInputs, loads: Arrays) -> tuple[Arrays, tuple[str, .
     columns: list[Arrays] = []
     notes: list[str] = []
     for place in range(len(GEARS)):
-        values, said = _of_root(inputs, loads, place)
+        values, remarks = _of_root(inputs, loads, place)
         columns.append(values)
-        notes += [f"{GEARS[place]}: {words}" for words in said]
+        notes += [f"{GEARS[place]}: {remark}" for remark in remarks]
     count = (len(inputs.torque),)
-    arrays = {name: np.stack([np.broadcast_to(one[name], count) for one in columns], axis=-1) for name in columns[0]}
+    arrays = {
+        name: np.stack([np.broadcast_to(values[name], count) for values in columns], axis=-1) for name in columns[0]
+    }
     return arrays, tuple(notes)
 
 
@@ -151,7 +149,7 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
         "notch_parameter": section.notch_parameter,
         "stress_correction_factor": section.stress_correction_factor,
         "normal_module": mesh.pinion.normal_module,
-        "cycles": float(inputs.cycles_per_hour[place] * _hours(inputs)),
+        "cycles": float(inputs.cycles[place]),
         "long_life_factor": inputs.rating.long_life_factor,
     }
     factors = iso6336_3.root_factors(made_of, stress_ratio=strength.root_stress_ratio, **common)
@@ -166,9 +164,9 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
             "root_safety": factors.strength / stress,
         }.items()
     }  # fmt: skip
-    known = np.isfinite(stress)
-    arrays["root_life"] = np.where(known, factors.curve.life(np.where(known, required * stress, 0.0)) / per_hour, nan)
-    notes = factors.notes if known.all() else (*factors.notes, "Y_B: the rim is thinner than the standard allows")
+    rated = np.isfinite(stress)
+    arrays["root_life"] = np.where(rated, factors.curve.life(np.where(rated, required * stress, 0.0)) / per_hour, nan)
+    notes = factors.notes if rated.all() else (*factors.notes, "Y_B: the rim is thinner than the standard allows")
     if not scene.analysis.root_stress:
         return arrays, notes
     local, more = _local_root(inputs, loads, place, made_of, common)
@@ -179,9 +177,9 @@ def _local_root(
     inputs: RatingInputs, loads: Arrays, place: int, made_of: iso6336_3.RootStrength, common: dict[str, float]
 ) -> tuple[Arrays, tuple[str, ...]]:
     """Safety and life of the root of one gear by the largest computed tension (t,), and notes."""
-    result, given = inputs.result, inputs.strengths[place].root_stress_ratio
+    result, asked = inputs.result, inputs.strengths[place].root_stress_ratio
     tension = np.nanmax(result.root_tension[..., place], axis=1) * loads["K_A"] * loads["K_v"]
-    ratio = np.clip(np.minimum(result.root_stress_ratio[:, place], given), -1.2, 0.0)
+    ratio = np.clip(np.minimum(result.root_stress_ratio[:, place], asked), -1.2, 0.0)
     notes: tuple[str, ...] = ()
     try:
         factors = iso6336_3.root_factors(made_of, stress_ratio=ratio, **common)

@@ -70,6 +70,11 @@ class RatingInputs:
         return 60.0 * self.operation.pinion_speed_rpm * np.array([1.0, ratio])
 
     @property
+    def cycles(self) -> Array:
+        """Load cycles N_L of pinion and wheel in the life that is asked for (2,)."""
+        return self.cycles_per_hour * self.rating.life_hours
+
+    @property
     def virtual_contact_ratio(self) -> float:
         """eps_alpha_n."""
         return self.mesh.transverse_contact_ratio / cos(self.mesh.pinion.base_helix_angle) ** 2
@@ -89,14 +94,14 @@ def inputs_of(result: CycleNumbers) -> RatingInputs:
     if scene.wheel.teeth < 0:
         raise InputError(f"wheel.teeth: {scene.wheel.teeth}, a ring; {COVERED}")
     no_limits = "missing; nothing is rated without allowable stresses: give material, or kind with its stresses"
-    given = {
+    needed = {
         "pinion.strength": (scene.pinion.strength, no_limits),
         "wheel.strength": (scene.wheel.strength, no_limits),
         "rating": (scene.rating, "missing; it has the required safeties and the hours"),
         "operation": (scene.operation, "missing; strength, cycles and K_v depend on pinion_speed_rpm"),
         "lubricant": (scene.lubricant, "missing; the strength of flanks depends on viscosity_40_mm2_s"),
     }
-    problems = [f"{name}: {words}" for name, (section, words) in given.items() if section is None]
+    problems = [f"{name}: {words}" for name, (section, words) in needed.items() if section is None]
     analysis, torques = scene.analysis, np.asarray(result.torque)
     if not analysis.load_sharing:
         problems.append("analysis.load_sharing: false; K_Hbeta is that of a mesh: set it to true and run the scene")
@@ -109,7 +114,7 @@ def inputs_of(result: CycleNumbers) -> RatingInputs:
     ]
     if problems:
         raise InputError(problems)
-    sections: Any = tuple(section for section, _ in given.values())
+    sections: Any = tuple(section for section, _ in needed.values())
     pinion, wheel, *others = sections
     return RatingInputs(result, scene, scene.mesh(), (pinion, wheel), *others)
 

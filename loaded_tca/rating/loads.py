@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import named
-from loaded_tca.reference import iso6336_1
+from loaded_tca.reference import iso6336, iso6336_1
 from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.reference.iso6336_3 import face_load_factor
 from loaded_tca.scene.rating import ANALYSIS, METHOD_B
@@ -39,7 +39,7 @@ def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...
         "K_v": dynamic,
         "K_Hbeta": face,
         "K_Halpha": ones * flank,
-        "K_Fbeta": np.array([face_load_factor(float(one), height) for one in face]),
+        "K_Fbeta": np.array([face_load_factor(float(factor), height) for factor in face]),
         "K_Falpha": ones * root,
     }
     return factors, notes
@@ -49,7 +49,7 @@ def _deviations(inputs: RatingInputs) -> tuple[float, float]:
     """f_pb and f_f_alpha of the tolerance class, the larger of both gears [um]."""
     assert inputs.rating.tolerance_class is not None
     pitches, profiles = [], []
-    for name, gear in (("pinion", inputs.mesh.pinion), ("wheel", inputs.mesh.wheel)):
+    for name, gear in zip(GEARS, (inputs.mesh.pinion, inputs.mesh.wheel), strict=True):
         with named(f"rating.tolerance_class: {name}"):
             tolerances = flank_tolerances(
                 gear.teeth, gear.normal_module, gear.face_width, inputs.rating.tolerance_class, gear.helix_angle
@@ -62,20 +62,20 @@ def _deviations(inputs: RatingInputs) -> tuple[float, float]:
 def _run_in(inputs: RatingInputs, deviation: float) -> float:
     """Running-in allowance for a deviation, the mean of both gears [um]."""
     allowances = [
-        float(iso6336_1.running_in_allowance(one.kind_of_material, deviation, one.limits[0], inputs.velocity))
-        for one in inputs.strengths
+        float(iso6336_1.running_in_allowance(strength.kind_of_material, deviation, strength.limits[0], inputs.velocity))
+        for strength in inputs.strengths
     ]
     return 0.5 * sum(allowances)
 
 
 def _tip_relief(inputs: RatingInputs) -> float:
-    """C_a [um]: tip relief and root relief of the mate, the smaller of both gears; at least that of running in."""
+    """C_a [um]: tip relief with root relief of the mating gear, the smaller of both; at least that of running in."""
     pinion, wheel = inputs.scene.pinion.modifications, inputs.scene.wheel.modifications
     designed = min(
         pinion.tip_relief_um + wheel.root_relief_um,
         wheel.tip_relief_um + pinion.root_relief_um,
     )
-    run_in = 0.5 * sum(iso6336_1.running_in_relief(one.limits[0]) for one in inputs.strengths)
+    run_in = 0.5 * sum(iso6336_1.running_in_relief(strength.limits[0]) for strength in inputs.strengths)
     return max(designed, run_in)
 
 
@@ -94,27 +94,19 @@ def reduced_mass(inputs: RatingInputs) -> float:
     return iso6336_1.reduced_mass((inertias[0], inertias[1]), radii)
 
 
-def _softening(inputs: RatingInputs) -> Array:
-    """Share of the stiffness of a full load that is left under less than 100 N/mm (t,)."""
-    return np.asarray((np.minimum(inputs.load, iso6336_1.LOW_LOAD) / iso6336_1.LOW_LOAD) ** 0.25)
-
-
 def _dynamic_factor(inputs: RatingInputs) -> tuple[Array, tuple[str, ...]]:
     """K_v (t,) by method B, and notes."""
-    standard, softening, mesh = inputs.scene.contact_standard, _softening(inputs), inputs.mesh
-    mass = reduced_mass(inputs)
+    standard, mesh, mass = inputs.scene.contact_standard, inputs.mesh, reduced_mass(inputs)
+    shares = iso6336.share_of_stiffness(inputs.load)
     speeds = np.array(
-        [
-            iso6336_1.resonance_speed(mesh.pinion.teeth, standard.mesh_stiffness * float(share), mass)
-            for share in softening
-        ]
+        [iso6336_1.resonance_speed(mesh.pinion.teeth, standard.mesh_stiffness * float(share), mass) for share in shares]
     )
     pitch, profile = _deviations(inputs)
     ratio = mesh.gear_ratio
     factor = iso6336_1.dynamic_factor(
         inputs.operation.pinion_speed_rpm / speeds,
         inputs.load,
-        single_stiffness=standard.single_stiffness * softening,
+        single_stiffness=standard.single_stiffness * shares,
         total_contact_ratio=mesh.total_contact_ratio,
         pitch_deviation=pitch - _run_in(inputs, pitch),
         profile_deviation=profile - _run_in(inputs, profile),
@@ -129,8 +121,8 @@ def _transverse_factors(inputs: RatingInputs, load_factor: Array) -> tuple[Array
     wanted, mesh, standard = inputs.rating.transverse_load_factor, inputs.mesh, inputs.scene.contact_standard
     if wanted == ANALYSIS:
         of_analysis = inputs.result.transverse_load_factor
-        share = mesh.transverse_contact_ratio * (0.25 + 0.75 / inputs.virtual_contact_ratio)
-        bounds = standard.largest_transverse_load_factor, mesh.total_contact_ratio / share
+        ratios = mesh.transverse_contact_ratio, mesh.overlap_ratio, inputs.virtual_contact_ratio
+        bounds = standard.largest_transverse_load_factor, iso6336_1.largest_root_load_factor(*ratios)
         flank, root = (np.clip(of_analysis, 1.0, max(1.0, bound)) for bound in bounds)
         return flank, root
     if wanted != METHOD_B:
@@ -145,7 +137,7 @@ def _transverse_factors(inputs: RatingInputs, load_factor: Array) -> tuple[Array
             overlap_ratio=mesh.overlap_ratio,
             virtual_contact_ratio=inputs.virtual_contact_ratio,
         )
-        for load, share in zip(inputs.load * load_factor, _softening(inputs), strict=True)
+        for load, share in zip(inputs.load * load_factor, iso6336.share_of_stiffness(inputs.load), strict=True)
     ]
     flank, root = np.array(factors, dtype=float).T
     return flank, root

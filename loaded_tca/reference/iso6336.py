@@ -9,11 +9,16 @@ from __future__ import annotations
 
 from math import asin, cos, degrees, inf, pi, radians, sin, sqrt, tan
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import InputError, require, require_positive
 
 _STEEL = 206000.0
-_FULL_LOAD = 100.0  # N/mm, from which on the stiffness of teeth is constant
+FULL_LOAD = 100.0
+"""Load for each mm of face width [N/mm] from which on the stiffness of teeth is constant."""
 _THEORETICAL_TO_REAL = 0.8  # C_M: measured single stiffness over the theoretical one, for solid discs
 
 
@@ -367,7 +372,7 @@ def single_stiffness(
     basic_rack_factor: float = 1.0,
     gear_blank_factor: float = 1.0,
     youngs_modulus: float = _STEEL,
-    specific_load: float = _FULL_LOAD,
+    specific_load: float = FULL_LOAD,
 ) -> float:
     r"""Single stiffness c' of a tooth pair [N/(mm um)].
 
@@ -404,7 +409,30 @@ def single_stiffness(
     )
     _require_slopes(helix_angle=helix_angle)
     solid = _THEORETICAL_TO_REAL * theoretical_single_stiffness * cos(helix_angle) * youngs_modulus / _STEEL
-    return solid * gear_blank_factor * basic_rack_factor * (min(specific_load, _FULL_LOAD) / _FULL_LOAD) ** 0.25
+    return solid * gear_blank_factor * basic_rack_factor * float(share_of_stiffness(specific_load))
+
+
+@checked
+def share_of_stiffness(specific_load: ArrayLike) -> Array:
+    """Stiffness of teeth over that of a full load.
+
+    Parameters
+    ----------
+    specific_load : array [N/mm]
+        F_t K_A/b.
+
+    References
+    ----------
+    ISO 6336-1, single stiffness under less than 100 N/mm.
+
+    Examples
+    --------
+    >>> share_of_stiffness([6.25, 100.0, 500.0]).tolist()
+    [0.5, 1.0, 1.0]
+    """
+    load = np.asarray(specific_load, dtype=float)
+    require(interval_check("specific_load", load, "[0, inf)", "N/mm"))
+    return np.asarray((np.minimum(load, FULL_LOAD) / FULL_LOAD) ** 0.25)
 
 
 @checked

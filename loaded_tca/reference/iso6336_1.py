@@ -17,14 +17,12 @@ from numpy.typing import ArrayLike
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import require, require_positive
-from loaded_tca.reference.iso6336 import largest_transverse_load_factor
+from loaded_tca.reference.iso6336 import FULL_LOAD, largest_transverse_load_factor
 from loaded_tca.reference.iso6336_5 import material_kind
 
 RANGES = ("subcritical", "main resonance", "intermediate", "supercritical")
 """Ranges of the resonance ratio: up to N_S, up to 1.15, up to 1.5, above."""
 MAIN_RESONANCE_END, SUPERCRITICAL = 1.15, 1.5
-LOW_LOAD = 100.0
-"""Load for each mm of face width below which the main resonance is wider [N/mm]."""
 PRESSURE_ANGLES, LARGEST_HELIX = (15.0, 25.0), 30.0
 """Normal pressure angles and helix angle for which the standard was checked [deg]."""
 _ROUNDING = 1e-9  # deg
@@ -200,8 +198,16 @@ def running_in_relief(limit_stress: float) -> float:
     return (limit_stress / 97.0 - 18.45) ** 2 / 18.0 + 1.5
 
 
-_RUN_IN = {"GG": 0.275, "GGG ferritic": 0.275, **dict.fromkeys(("Eh", "IF", "NT", "NV", "NV nitrocarburized"), 0.075)}
-_LARGEST_HARD = 3.0  # um, of hardened flanks at any speed
+_GREY, _HARDENED = ("GG", "GGG ferritic"), ("Eh", "IF", "NT", "NV", "NV nitrocarburized")
+
+
+def _run_in(kind: str, amount: Array, speed: Array, soft: float, grey: float, hard: float, largest: float) -> Array:
+    """Shares of deviations [um] of soft, grey and hardened flanks; the last no larger than a number at any speed."""
+    family = material_kind(kind).family
+    if family in _HARDENED:
+        return np.minimum(hard * amount, np.full(speed.shape, largest))
+    bound = np.where(speed <= 5.0, inf, np.where(speed <= 10.0, 80.0, 40.0))
+    return np.asarray((grey if family in _GREY else soft) * np.minimum(amount, bound))
 
 
 @checked
@@ -240,20 +246,7 @@ def running_in_allowance(kind: str, deviation: float, limit_stress: float, veloc
     require((0.0 <= deviation < inf, f"deviation: {deviation} um is negative or not finite"))
     speed = np.asarray(velocity, dtype=float)
     require(interval_check("velocity", speed, "[0, inf)", "m/s"))
-    family = material_kind(kind).family
-    share = _RUN_IN.get(family, 160.0 / limit_stress)
-    largest = np.where(speed <= 5.0, inf, np.where(speed <= 10.0, 80.0, 40.0)) * share
-    if share == _RUN_IN["Eh"] and family in _RUN_IN:
-        largest = np.full(speed.shape, _LARGEST_HARD)
-    return np.minimum(share * deviation, largest)
-
-
-_RUN_IN_HELIX = {
-    "GG": 0.55,
-    "GGG ferritic": 0.55,
-    **dict.fromkeys(("Eh", "IF", "NT", "NV", "NV nitrocarburized"), 0.15),
-}
-_LARGEST_HELIX_HARD = 6.0  # um, of hardened flanks at any speed
+    return _run_in(kind, np.asarray(deviation), speed, 160.0 / limit_stress, 0.275, 0.075, largest=3.0)
 
 
 @checked
@@ -292,12 +285,7 @@ def running_in_misalignment(
     require(
         interval_check("misalignment", amount, "[0, inf)", "um"), interval_check("velocity", speed, "[0, inf)", "m/s")
     )
-    family = material_kind(kind).family
-    share = _RUN_IN_HELIX.get(family, min(1.0, 320.0 / limit_stress))
-    largest = np.where(speed <= 5.0, inf, np.where(speed <= 10.0, 80.0, 40.0)) * share
-    if family in _RUN_IN_HELIX and share == _RUN_IN_HELIX["Eh"]:
-        largest = np.full(speed.shape, _LARGEST_HELIX_HARD)
-    return np.minimum(share * amount, largest)
+    return _run_in(kind, amount, speed, min(1.0, 320.0 / limit_stress), 0.55, 0.15, largest=6.0)
 
 
 @checked
@@ -474,7 +462,7 @@ def dynamic_factor(
     resonance = 1.0 + first * b_p + second * b_f + fourth * b_k
     above = fifth * b_p + sixth * b_f + seventh
     between = above + (resonance - above) * (SUPERCRITICAL - ratio) / (SUPERCRITICAL - MAIN_RESONANCE_END)
-    edge = 0.5 + 0.35 * np.sqrt(np.minimum(load, LOW_LOAD) / LOW_LOAD)
+    edge = 0.5 + 0.35 * np.sqrt(np.minimum(load, FULL_LOAD) / FULL_LOAD)
     place = (ratio > edge).astype(int) + (ratio > MAIN_RESONANCE_END) + (ratio >= SUPERCRITICAL)
     factor = np.maximum(1.0, np.choose(place, np.broadcast_arrays(place, below, resonance, between, above)[1:]))
     notes = _dynamic_notes(place, speed, load)
@@ -489,9 +477,38 @@ def _dynamic_notes(place: Array, speed: Array, load: Array) -> tuple[str, ...]:
         (place == 1, "K_v: N lies in the main resonance, which the standard says to avoid or to analyse by method A"),
         (place == 2, "K_v: N lies between main resonance and supercritical range; a line between both is rough"),
         (speed < USEFUL_SPEED, f"K_v: (v z_1/100) sqrt(u^2/(1 + u^2)) is below {USEFUL_SPEED:g} m/s: not needed there"),
-        (load < LOW_LOAD, f"K_v: the load is below {LOW_LOAD:g} N/mm, where c' falls with (w/{LOW_LOAD:g})^0.25"),
+        (load < FULL_LOAD, f"K_v: the load is below {FULL_LOAD:g} N/mm, where c' falls with (w/{FULL_LOAD:g})^0.25"),
     )
     return tuple(words for holds, words in cases if bool(np.any(holds)))
+
+
+@checked
+def largest_root_load_factor(
+    transverse_contact_ratio: float, overlap_ratio: float, virtual_contact_ratio: float
+) -> float:
+    r"""Upper bound of K_Falpha.
+
+    .. math:: \frac{\varepsilon_\gamma}{\varepsilon_\alpha Y_\varepsilon},\qquad
+        Y_\varepsilon = 0.25 + \frac{0.75}{\varepsilon_{\alpha n}}
+
+    Parameters
+    ----------
+    transverse_contact_ratio, overlap_ratio, virtual_contact_ratio : float
+        eps_alpha, eps_beta, eps_alpha_n.
+
+    References
+    ----------
+    ISO 6336-1:2019, formula (76).
+
+    Examples
+    --------
+    >>> largest_root_load_factor(1.5, 0.0, 1.5)
+    1.3333333333333333
+    """
+    require_positive(transverse_contact_ratio=transverse_contact_ratio, virtual_contact_ratio=virtual_contact_ratio)
+    require((0.0 <= overlap_ratio < inf, f"overlap_ratio: {overlap_ratio} is negative or not finite"))
+    share = 0.25 + 0.75 / virtual_contact_ratio
+    return (transverse_contact_ratio + overlap_ratio) / (transverse_contact_ratio * share)
 
 
 @checked
@@ -554,7 +571,6 @@ def transverse_load_factors(
     total = transverse_contact_ratio + overlap_ratio
     part = 0.4 * mesh_stiffness * error / load
     factor = 0.5 * total * (0.9 + part) if total <= 2.0 else 0.9 + (2.0 * (total - 1.0) / total) ** 0.5 * part
-    share = 0.25 + 0.75 / virtual_contact_ratio
-    largest_root = total / (transverse_contact_ratio * share)
-    flank, root = (np.maximum(1.0, np.minimum(factor, bound)) for bound in (largest, largest_root))
+    of_roots = largest_root_load_factor(transverse_contact_ratio, overlap_ratio, virtual_contact_ratio)
+    flank, root = (np.maximum(1.0, np.minimum(factor, bound)) for bound in (largest, of_roots))
     return np.asarray(flank), np.asarray(root)

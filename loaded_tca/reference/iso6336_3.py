@@ -11,7 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import acos, cos, degrees, hypot, inf, log, pi, radians, sin, sqrt, tan
 
+import numpy as np
+
+import loaded_tca.roots as roots
 from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import GeometryError, require, require_positive
 from loaded_tca.reference.iso6336 import virtual_teeth
 from loaded_tca.reference.iso6336_3_strength import RootFactors, RootStrength, root_factors
@@ -186,24 +190,16 @@ def root_section(
 
 
 def _touching_angle(depth: float, offset: float, teeth: float) -> float:
-    """Angle theta at which the tangent of 30 degrees touches the fillet [rad].
+    """Angle theta at which the tangent of 30 degrees touches the fillet [rad]."""
 
-    Newton's steps from the end of the bracket where the difference has the sign of its second derivative, which
-    keeps one sign: they approach the root from one side (Fourier's condition).
-    """
-    slope = 2.0 * depth / teeth
+    def difference(angle: Array, _: Indices) -> Array:
+        return np.asarray(angle - 2.0 * depth / teeth * np.tan(angle) + offset)
 
-    def difference(angle: float) -> float:
-        return angle - slope * tan(angle) + offset
-
-    low, high = 0.0, 0.49 * pi
-    if difference(low) * difference(high) > 0.0:
+    ends = np.array([[0.0], [0.49 * pi]])
+    values = difference(ends, np.zeros(1, dtype=int))
+    if values[0, 0] * values[1, 0] > 0.0:
         raise GeometryError("no critical section: no tangent of 30 degrees touches the fillet")
-    angle, step = low if difference(low) * slope <= 0.0 else high, inf
-    while abs(step) > 1e-14:
-        step = difference(angle) / (1.0 - slope / cos(angle) ** 2)
-        angle -= step
-    return angle
+    return float(roots.find_roots(difference, ends, values, 1e-15)[0])
 
 
 def _single_contact(

@@ -314,13 +314,13 @@ def warn_of_face_ends(keys: Sequence[str], slopes: Array, kinks: Array, stacklev
 
 
 def warn_of_end_strips(
-    result: CycleNumbers, keys: Sequence[str], changes: Sequence[PairChange | None], stacklevel: int
+    result: CycleNumbers, keys: Sequence[str], motions: Array, kinks: Array, stacklevel: int
 ) -> None:
     """Tell where K_Hbeta is that of a strip at an end of the common face which goes with a key.
 
-    Where the faces of both gears end at one place :func:`warn_of_face_ends` tells it.
+    ``motions`` and ``kinks`` are those of :func:`common_face_motions`. Where the faces of both gears end at one place
+    :func:`warn_of_face_ends` tells it.
     """
-    motions, kinks = common_face_motions(result, changes)
     moved = np.where(kinks == 0.0, motions, 0.0) != 0.0
     strips = [
         int(face_forces(result.gear_pair, result.path, rows)[1].argmax())

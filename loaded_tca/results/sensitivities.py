@@ -332,13 +332,18 @@ class Sensitivities:
             lacking = [rival[1] for rival in rivals if rival is not None]
             warn_of_strips(self.keys, by_torque, others - by_torque, lacking, stacklevel=3)
         warn_of_face_ends(self.keys, by_torque, kinks, stacklevel=3)
-        warn_of_end_strips(result, self.keys, self.changes, stacklevel=3)
+        warn_of_end_strips(result, self.keys, *self._common_face, stacklevel=3)
         return by_torque
 
     @property
     def face_load_factor_kinks(self) -> Array:
         """Derivatives of K_Hbeta by growing values of the keys less those by falling ones, (torque, key)."""
         return self._of_largest_strips[1]
+
+    @cached_property
+    def _common_face(self) -> tuple[Array, Array]:
+        """Motions of the ends of the common face with the keys, and their kinks."""
+        return common_face_motions(self.result, self.changes)
 
     @cached_property
     def _of_largest_strips(self) -> tuple[Array, Array]:
@@ -353,9 +358,8 @@ class Sensitivities:
         motions, gaps = (
             np.concatenate([getattr(one, name) for one in (self.growth, kinks)]) for name in ("motions", "gaps")
         )
-        common_face = np.concatenate(common_face_motions(self.result, self.changes))
         slopes, by_motion = face_load_factor_changes(
-            self.result, self._grids, self.tangents.grids, motions, common_face, strips
+            self.result, self._grids, self.tangents.grids, motions, np.concatenate(self._common_face), strips
         )
         torques = np.concatenate([self.torques, self._of_levers(kinks)])
         change = self.tangents.functional_change(self.tangents.gathered(slopes), gaps, torques)
