@@ -296,28 +296,32 @@ def _advance(
         value, edges = field.restricted(rows).heights(phi1[rows], *(trial * scale).T)
         return value - penalty[rows] * np.maximum(0.0, -edges).sum(axis=-1), edges
 
-    rows = np.arange(len(points))
+    rows, tried = np.arange(len(points)), 0
     before = field.value(here.station, phi1) - penalty * np.maximum(0.0, -here.edges).sum(axis=-1)
     before -= MERIT_SLACK * sum(field.pair.base_radii)
     share, result = np.zeros(len(points)), points.copy()
-    for halving in range(MOST_HALVINGS):
-        trial = points[rows] + step[rows] * 0.5**halving
-        after, edges = merit(rows, trial)
-        bent = np.flatnonzero((after < before[rows]) & ((multipliers[rows] > 0.0).sum(axis=-1) == 1))
+    while rows.size and tried < MOST_HALVINGS:
+        # more and more shares at once: the few ascents that accept none cost calls, not points
+        shares = 0.5 ** np.arange(tried, min(2 * tried + 1, MOST_HALVINGS))
+        tried += len(shares)
+        owner = np.repeat(rows, len(shares))
+        trial = points[owner] + step[owner] * np.tile(shares, len(rows))[:, None]
+        after, edges = merit(owner, trial)
+        held = (multipliers[owner] > 0.0).sum(axis=-1)
+        bent = np.flatnonzero((after < before[owner]) & (held == 1))
         if bent.size:
-            trial[bent] += _back_to_edge(here.slopes[rows[bent]], edges[bent], multipliers[rows[bent]])
-            after[bent], _ = merit(rows[bent], trial[bent])
-        astray = np.flatnonzero((after < before[rows]) & ((multipliers[rows] > 0.0).sum(axis=-1) <= 1))
+            trial[bent] += _back_to_edge(here.slopes[owner[bent]], edges[bent], multipliers[owner[bent]])
+            after[bent], _ = merit(owner[bent], trial[bent])
+        astray = np.flatnonzero((after < before[owner]) & (held <= 1))
         if astray.size:
-            part = rows[astray]
+            part = owner[astray]
             trial[astray] = _back_to_ridge(field.restricted(part), phi1[part], trial[astray], multipliers[part], scale)
             after[astray], _ = merit(part, trial[astray])
-        good = after >= before[rows]
-        result[rows[good]] = trial[good]
-        share[rows[good]] = 0.5**halving
-        rows = rows[~good]
-        if not rows.size:
-            break
+        good = (after >= before[owner]).reshape(len(rows), -1)
+        first, accepted = good.argmax(axis=1), good.any(axis=1)
+        result[rows[accepted]] = trial.reshape(len(rows), -1, 2)[accepted, first[accepted]]
+        share[rows[accepted]] = shares[first[accepted]]
+        rows = rows[~accepted]
     return result, share
 
 
