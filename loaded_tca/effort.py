@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from loaded_tca.compliance import default_density
+from loaded_tca.compliance.teeth import layers_across
 from loaded_tca.contact.checks import BYTES_PER_CELL, MOST_CELLS, machine_memory
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.machine_speed import machine_speed
@@ -172,7 +172,7 @@ def _layers(scene: Scene) -> list[int]:
     pair, layers = scene.pair(), []
     for gear in (pair.pinion, pair.wheel):
         try:
-            layers.append(default_density(gear).lengthwise)
+            layers.append(layers_across(gear))
         except (InputError, GeometryError):
             layers.append(1)
     return layers

@@ -2,9 +2,9 @@
 
 Two works that stand for an analysis are done once on a machine, in half a second of processor time: a stack of small
 contact problems, as states of a cycle are, and dense eliminations, as models of gear bodies are. What they take is kept
-beside the models of teeth, see :mod:`loaded_tca.compliance.flexibility`: for this version of the package, of NumPy and
-of SciPy, and for this machine. A file that is missing, damaged or of another machine is made anew; where none can be
-written, each process measures for itself.
+beside the models of teeth, see :mod:`loaded_tca.compliance.kept`: for the contact solver as it is, for this version of
+NumPy and of SciPy, and for this machine. A file that is missing, damaged or of another machine is made anew; where none
+can be written, each process measures for itself.
 """
 
 from __future__ import annotations
@@ -16,15 +16,13 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
+import scipy
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.flexibility import kept
-from loaded_tca.contact.problem import ContactProblem
-from loaded_tca.contact.solver import solve_problems
+from loaded_tca.compliance.kept import kept
 from loaded_tca.threads import one_thread
 
 STATES_REFERENCE, MODELS_REFERENCE = 7.7e-3, 6.0e-3
@@ -77,6 +75,8 @@ def _quickest(work: Callable[[], object]) -> float:
 
 def _contacts() -> Callable[[], object]:
     """Problems of paraboloids of several curvatures, each under its load."""
+    from loaded_tca.contact import ContactProblem, solve_problems  # once on a machine
+
     place = (np.arange(CELLS) + 0.5) / CELLS - 0.5
     problems = [
         ContactProblem(
@@ -109,10 +109,15 @@ def _eliminations() -> Callable[[], object]:
 
 
 def _key() -> str:
-    """Digest of the machine and of all versions that its speed depends on."""
-    versions = [version(name) for name in ("loaded_tca", "numpy", "scipy")]
+    """Digest of the machine and of all programmes that its speed depends on."""
+    here = Path(__file__)
+    sources = [here, *sorted(here.with_name("contact").glob("*.py"))]
+    versions = np.__version__, scipy.__version__
     machine = platform.node(), platform.machine(), platform.python_version(), os.cpu_count(), _processor()
-    return hashlib.sha256(f"speed {Path(__file__).read_bytes()!r} {versions} {machine}".encode()).hexdigest()
+    digest = hashlib.sha256(f"speed {versions} {machine}".encode())
+    for source in sources:
+        digest.update(source.read_bytes())
+    return digest.hexdigest()
 
 
 def _processor() -> str:

@@ -13,8 +13,8 @@ no work once the main thread has ended.
 
 from __future__ import annotations
 
-import multiprocessing
 import os
+import sys
 import threading
 from _thread import start_new_thread
 from collections import deque
@@ -91,7 +91,8 @@ def jobs() -> int:
     InputError
         If ``LOADED_TCA_JOBS`` is no whole number from one.
     """
-    if _alone.get() or multiprocessing.parent_process() is not None:
+    process = sys.modules.get("multiprocessing.process")  # which those that it started have loaded
+    if _alone.get() or (process is not None and process.parent_process() is not None):
         return 1
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     asked = _asked.get() or _jobs_of_environment()

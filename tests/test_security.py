@@ -14,7 +14,7 @@ import pytest
 import xarray
 
 from loaded_tca import InputError, load_result, parse_scene, read_scene
-from loaded_tca.compliance import flexibility
+from loaded_tca.compliance import flexibility, kept
 from loaded_tca.exchange import files
 from loaded_tca.flanks import topography
 from loaded_tca.results.files import read_dataset, write_dataset
@@ -192,7 +192,7 @@ class Pickled:
 def test_kept_model_is_never_unpickled(tmp_path):
     path = tmp_path / "model.npz"
     np.savez(path, digest=np.array([Pickled(tmp_path / "run")], dtype=object))
-    assert flexibility._read(path, "key", flexibility.ToothFlexibility) is None
+    assert kept._read(path, "key", flexibility.ToothFlexibility) is None
     assert not (tmp_path / "run").exists()
     np.load(path, allow_pickle=True)["digest"]
     assert (tmp_path / "run").exists()  # so it would have

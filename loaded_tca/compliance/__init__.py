@@ -9,15 +9,13 @@ if TYPE_CHECKING:
         ToothCompliance,
         default_density,
         flank_lines,
-        require_teeth,
         tooth_compliance,
-        warn_of_teeth,
-        way_out_told,
     )
     from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
     from loaded_tca.compliance.layout import MeshDensity
     from loaded_tca.compliance.model import BendingModel, model_of
     from loaded_tca.compliance.root_stress import RootStress, root_stress_model
+    from loaded_tca.compliance.teeth import require_teeth, warn_of_teeth, way_out_told
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 

@@ -4,10 +4,6 @@ A study of torques, positions or mounting errors asks again and again for the sa
 made of all numbers that enter: outline and nodes of the body, places of the table, material, side, and the programme
 itself. Equal keys are equal models; any other outline, bore, material, density or version is another one.
 
-On disk it lies in ``$XDG_CACHE_HOME/loaded_tca``, by default ``~/.cache/loaded_tca``; the environment variable
-``LOADED_TCA_CACHE`` names another folder, or says ``off``. The folder may be removed at any time. Files that cannot be
-read, or are not what they should be, are made anew; a folder that cannot be written is done without.
-
 Models from disk save 0.9 to 2.7 s of processor time of the first analysis of a process, 30 to 50 % of it (the mesh
 cycles and the matched face-milled pair among the examples' scenes).
 
@@ -26,20 +22,13 @@ Displacements inside a half-plane and a half-space under a normal force on the s
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import math
-import os
-import tempfile
-import zipfile
-from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from threading import RLock
-from typing import TypeVar, cast
 
 import numpy as np
 import scipy
@@ -48,6 +37,7 @@ from numpy.polynomial.chebyshev import chebpts2
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.body import FlankPlaces, ToothFrame, factorised, gear_body, gear_nodes
 from loaded_tca.compliance.finite_elements import FACES, Discretisation, discretise
+from loaded_tca.compliance.kept import kept
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
@@ -241,17 +231,8 @@ HEIGHTS = 6
 LENGTHS_PER_LAYER = 2.0
 """Places across the face, over the layers of elements, and at least:"""
 LEAST_LENGTHS = 11
-FOLDER = "LOADED_TCA_CACHE"
-"""Environment variable: where to keep models on disk, or "off"."""
-MOST_IN_MEMORY = 8
-MOST_ON_DISK = 64
-"""Files of 0.1 to 2 MB each, of root stress 1 to 10; the oldest go."""
 SAME_OUTLINE = 1e-9
 """Numbers are the same if they agree to this part of the size of the gear: far above rounding."""
-UNREADABLE = OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile
-_recent: OrderedDict[str, object] = OrderedDict()
-_lock = RLock()  # a handler of a signal may ask for a model amidst another call
-Model = TypeVar("Model")
 
 
 @dataclass(frozen=True, eq=False)
@@ -318,42 +299,6 @@ def kept_flexibility(frame: ToothFrame) -> ToothFlexibility:
     return kept(key_of(frame), ToothFlexibility, lambda: tooth_flexibility(frame))
 
 
-def kept(key: str, kind: type[Model], make: Callable[[], Model]) -> Model:
-    """What is known under a key, made if it is not known yet; its arrays cannot be written to.
-
-    Parameters
-    ----------
-    key : str
-        As :func:`key_of` makes them.
-    kind : type
-        A dataclass of arrays alone.
-    make : callable
-    """
-    folder = _folder()
-    with _lock:
-        model = _recent.get(key)
-    if model is None and folder is not None:
-        model = _read(folder / f"{key}.npz", key, kind)
-    if model is None:
-        model = make()
-        if folder is not None:
-            _write(folder, key, model)
-    for values in vars(model).values():
-        values.setflags(write=False)
-    with _lock:
-        _recent.pop(key, None)
-        _recent[key] = model
-        while len(_recent) > MOST_IN_MEMORY:
-            _recent.popitem(last=False)
-    return cast(Model, model)
-
-
-def forget() -> None:
-    """Forget what is kept in memory; files stay."""
-    with _lock:
-        _recent.clear()
-
-
 def key_of(frame: ToothFrame, places: FlankPlaces | None = None, what: str = "") -> str:
     """Digest of all that the flexibility of a gear's teeth depends on, or ``what`` else of forces at ``places``."""
     nodes, material = frame.nodes, frame.gear.material
@@ -380,49 +325,3 @@ def _programme() -> str:
     for module in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(module.read_bytes())
     return f"{version('loaded_tca')} {digest.hexdigest()}"
-
-
-def _folder() -> Path | None:
-    """Where models are kept on disk, if anywhere."""
-    wanted = os.environ.get(FOLDER, "")
-    if wanted:
-        return None if wanted == "off" else Path(os.path.expanduser(wanted))
-    caches = Path(os.environ.get("XDG_CACHE_HOME", ""))
-    with contextlib.suppress(RuntimeError):  # nobody's home is known
-        return (caches if caches.is_absolute() else Path.home() / ".cache") / "loaded_tca"
-    return None
-
-
-def _read(path: Path, key: str, kind: type[Model]) -> Model | None:
-    """Return what a file keeps under a key; None if it is not there, damaged, or another gear's."""
-    try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            digest = str(file["digest"])
-            model = kind(**{name: file[name] for name in file.files if name != "digest"})
-            return model if digest == _digest(key, model) else None
-    except UNREADABLE:
-        return None
-
-
-def _digest(key: str, model: object) -> str:
-    """Digest of a key and of all numbers that are kept under it."""
-    digest = hashlib.sha256(key.encode())
-    for name, array in vars(model).items():
-        digest.update(f"{name} {array.dtype} {array.shape}".encode() + np.ascontiguousarray(array).tobytes())
-    return digest.hexdigest()
-
-
-def _write(folder: Path, key: str, model: object) -> None:
-    """Write a file as a whole or not at all, and remove the oldest beyond the most."""
-    with contextlib.suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True)
-        descriptor, unfinished = tempfile.mkstemp(dir=folder, suffix=".unfinished")
-        try:
-            with os.fdopen(descriptor, "wb") as file:
-                np.savez(file, digest=np.array(_digest(key, model)), **vars(model))
-            os.replace(unfinished, folder / f"{key}.npz")
-        finally:
-            Path(unfinished).unlink(missing_ok=True)
-        files = sorted(folder.glob("*.npz"), key=lambda path: path.stat().st_mtime)
-        for old in files[:-MOST_ON_DISK]:
-            old.unlink(missing_ok=True)

@@ -31,9 +31,9 @@ from numpy.polynomial.chebyshev import chebvander
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
-from loaded_tca.compliance import flexibility
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
-from loaded_tca.compliance.flexibility import MOST_IN_MEMORY, ToothFlexibility, depth_displacement, kept_flexibility
+from loaded_tca.compliance.flexibility import ToothFlexibility, depth_displacement, kept_flexibility
+from loaded_tca.compliance.kept import MOST_IN_MEMORY, forget_kept
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.errors import InputError
 from loaded_tca.material import Material
@@ -255,7 +255,7 @@ def _model(
 def forget() -> None:
     """Forget the models that are kept in memory; files stay."""
     _model.cache_clear()
-    flexibility.forget()
+    forget_kept()
 
 
 _KEPT: WeakKeyDictionary[FlankLine, tuple[ref[GearCompliance], _Places]] = WeakKeyDictionary()

@@ -15,7 +15,8 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import body_torsion
-from loaded_tca.compliance.compliance import rim_compliance, tooth_compliance, way_out_told
+from loaded_tca.compliance.compliance import rim_compliance, tooth_compliance
+from loaded_tca.compliance.teeth import way_out_told
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.supports import SupportCompliance, support_compliance

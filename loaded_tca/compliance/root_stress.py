@@ -32,9 +32,10 @@ from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.body import FlankPlaces, ToothFrame, gear_body, gear_nodes
 from loaded_tca.compliance.compliance import default_density, require_bending
 from loaded_tca.compliance.finite_elements import Discretisation
-from loaded_tca.compliance.flexibility import LEAST_LENGTHS, LENGTHS_PER_LAYER, MOST_IN_MEMORY, kept, key_of
+from loaded_tca.compliance.flexibility import LEAST_LENGTHS, LENGTHS_PER_LAYER, key_of
 from loaded_tca.compliance.geometry import BodyNodes, tangent_angles
 from loaded_tca.compliance.influence import FlankLine, lagrange_coefficients, shares_of_grid
+from loaded_tca.compliance.kept import MOST_IN_MEMORY, kept
 from loaded_tca.compliance.layout import LARGEST_GRADING, MeshDensity
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear

@@ -1,18 +1,32 @@
 """Macro geometry of gears, and the cutters and machine settings that cut them."""
 
-from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
-from loaded_tca.gears.bevel import BevelGear
-from loaded_tca.gears.bevel_blank import BevelBlank
-from loaded_tca.gears.bevel_mesh import BevelMesh, bevel_mesh
-from loaded_tca.gears.blank_gear import BlankGear
-from loaded_tca.gears.cylindrical import CylindricalGear, transverse_profile
-from loaded_tca.gears.cylindrical_mesh import CylindricalMesh
-from loaded_tca.gears.face_milled import Blade, Cutter, FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
-from loaded_tca.gears.hypoid import HypoidCones, HypoidMesh
-from loaded_tca.gears.hypoid_blank import HypoidBlank
-from loaded_tca.gears.internal_mesh import InternalMesh
-from loaded_tca.gears.pitch_cones import PitchConeParameters, pitch_cones_by_method_1
-from loaded_tca.gears.ring import PinionCutter, RingGear
+from typing import TYPE_CHECKING
+
+from loaded_tca.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
+    from loaded_tca.gears.bevel import BevelGear
+    from loaded_tca.gears.bevel_blank import BevelBlank
+    from loaded_tca.gears.bevel_meshes import BevelMesh, bevel_mesh
+    from loaded_tca.gears.blank_gear import BlankGear
+    from loaded_tca.gears.cylindrical import CylindricalGear, transverse_profile
+    from loaded_tca.gears.cylindrical_mesh import CylindricalMesh
+    from loaded_tca.gears.face_milled import (
+        Blade,
+        Cutter,
+        FaceMilledBlank,
+        FaceMilledGear,
+        FaceMilledMesh,
+        MachineSettings,
+    )
+    from loaded_tca.gears.hypoid import HypoidCones, HypoidMesh
+    from loaded_tca.gears.hypoid_blank import HypoidBlank
+    from loaded_tca.gears.internal_mesh import InternalMesh
+    from loaded_tca.gears.pitch_cones import PitchConeParameters, pitch_cones_by_method_1
+    from loaded_tca.gears.ring import PinionCutter, RingGear
+else:
+    __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
     "BevelBlank",

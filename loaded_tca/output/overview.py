@@ -13,10 +13,9 @@ from loaded_tca.effort import expected_run_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.plain import plain
-from loaded_tca.results.figures import RIM_LABEL
 from loaded_tca.results.gear_warnings import questions, warn_of_gears
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
-from loaded_tca.results.root_stress import rim_factor
+from loaded_tca.results.root_stress import RIM_LABEL, rim_factor
 from loaded_tca.results.summary import shown
 from loaded_tca.scene.section import Section, contents
 from loaded_tca.unloaded.path import contact_span, roll_lengths_of_flanks

@@ -36,14 +36,15 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import unmodified
 from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank
 from loaded_tca.flanks.modification import FlankModifications
-from loaded_tca.gears.bevel_mesh import BevelMesh
+from loaded_tca.gears.bevel_meshes import BevelMesh
 from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 from loaded_tca.gears.hypoid import HypoidCones, OffsetFrame
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
 from loaded_tca.plain import plain
-from loaded_tca.tooth.families import BevelTooth, FaceMilledTooth
+from loaded_tca.tooth.face_milled import FaceMilledTooth
+from loaded_tca.tooth.families import BevelTooth
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ from loaded_tca.results.key_figures import (
     reduced,
     span_of,
 )
-from loaded_tca.results.root_stress import FACTORS
+from loaded_tca.results.root_stress import FACTORS, RIM_LABEL
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -327,7 +327,6 @@ FIGURES: dict[str, Figure] = {
 }
 """Name -> figure, in the order of tables and files; those of root stress where a scene asks for it."""
 
-RIM_LABEL = "    Y_B of thin rims, not in it: pinion | wheel"
 SUMMARY: tuple[Line, ...] = (
     Line("pinion torque [N m]", ("pinion_torque_Nm",), True),
     Line("peak pressure [MPa] | pinion angle [deg]", ("peak_pressure_MPa", "pinion_angle_at_peak_deg"), True),

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from loaded_tca.compliance.body import body_torsion
 from loaded_tca.errors import InputError, NotAskedError
 from loaded_tca.results.declared import PAIRS, Numbers
 from loaded_tca.results.quantities import (
@@ -93,6 +92,8 @@ class CycleNumbers(Numbers):
         """
         if not self.scene.analysis.teeth_bend or not stiffness > 0.0:
             return math.nan
+        from loaded_tca.compliance.body import body_torsion  # finite elements, which an overview needs not
+
         return 1.0 / (1.0 / stiffness - 1e3 * self.face_width * sum(body_torsion(self.gear_pair)))
 
     @property

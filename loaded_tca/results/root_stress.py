@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import loaded_tca.compliance as compliance
 from loaded_tca.arrays import GEARS, Array, Indices
-from loaded_tca.compliance import FlankLine, RootStress, flank_lines
-from loaded_tca.contact.patch import top_weights
 from loaded_tca.reference.iso6336_3 import THINNEST_RIM, face_load_factor, rim_thickness_factor
 from loaded_tca.results.quantities import ON_FILLETS, PLACE, ROOT_QUANTITIES
 from loaded_tca.threads import one_blas_thread
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from loaded_tca.compliance import FlankLine, RootStress
     from loaded_tca.loaded.loaded_grid import LoadedGrid
     from loaded_tca.pairs.gear import Gear
     from loaded_tca.pairs.gear_pair import GearPair
@@ -163,7 +163,7 @@ def _loads(
         both: list[Array] = []
         for state, row in enumerate(rows):
             if (one := row[k]) is not None:
-                line = flank_lines(pair, number, one)[gear]
+                line = compliance.flank_lines(pair, number, one)[gear]
                 forces = model.forces_of_table(line, one.slice_force)
                 both = both or [np.zeros((len(rows), len(force))) for force in forces]
                 both[0][state], both[1][state] = forces
@@ -198,7 +198,7 @@ def stress_at_extreme(
     callable
         Of any line: the stress per force on it (m,) [MPa/N].
     """
-    loads = [(flank_lines(pair, grid.number, grid.separation)[gear], grid.slice_force) for grid in grids]
+    loads = [(compliance.flank_lines(pair, grid.number, grid.separation)[gear], grid.slice_force) for grid in grids]
     tooth, side, *middle = place
     near = _next_to(middle, model.tangent_angle.shape[1:])
     stress = sum(model.per_force(tooth, line, side, *near) @ forces for line, forces in loads)
@@ -213,6 +213,8 @@ def _next_to(place: Sequence[int], shape: tuple[int, ...]) -> list[Indices]:
 
 def _weights_of_top(values: Array) -> Array:
     """Weights of values about their largest one (up to 3, up to 3) in the sum of it and of what parabolas exceed it."""
+    from loaded_tca.contact.patch import top_weights  # transforms, which an overview needs not
+
     at, across = np.unravel_index(int(values.argmax()), values.shape)
     weights = np.zeros(values.shape)
     weights[at, across] = -1.0
@@ -237,6 +239,7 @@ def _ratio(largest: Array, smallest: Array) -> Array:
 
 FACTORS = "form", "stress_correction", "helix_angle"
 """Of ISO 6336-3, as their key figures are named."""
+RIM_LABEL = "    Y_B of thin rims, not in it: pinion | wheel"
 
 
 def root_figures(result: CycleNumbers, torque: int) -> dict[str, float]:

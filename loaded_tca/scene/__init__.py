@@ -3,24 +3,26 @@
 A scene file is TOML with the unit in every key; ``read_scene`` makes a ``Scene`` of it, or tells every
 problem at once. All values are checked and kept in the engineer's units; ``Scene.pair`` converts them. Each family of
 gear pairs is a module here, with its sections and its class of scenes; ``pair.type`` picks it. A new family is such a
-module, with ``@family`` and its types over its class, and one line of import below.
+module, with ``@family`` and its types over its class, and an entry of ``MODULES`` in ``scene/parse.py``.
 """
 
-# ruff: noqa: I001  -- the order of import is the order in which messages and documents name the families
+from typing import TYPE_CHECKING
 
-from loaded_tca.scene import cylindrical, internal, bevel, face_milled, blank_face_milled
-from loaded_tca.scene.cylindrical import CylindricalScene
-from loaded_tca.scene.internal import InternalScene
-from loaded_tca.scene.bevel import BevelScene
-from loaded_tca.scene.face_milled import FaceMilledScene
-from loaded_tca.scene.blank_face_milled import BlankFaceMilledScene
-from loaded_tca.scene.parse import describe_keys
-from loaded_tca.scene.face_milled import hypoid_table
-from loaded_tca.scene.flank_form import FlankForm, Measurement
-from loaded_tca.scene.model import Scene
-from loaded_tca.scene.parse import scene_from_table
-from loaded_tca.scene.parse import parse_scene, read_scene
-from loaded_tca.scene.sections import Analysis, ElasticMaterial, Load, Modifications
+from loaded_tca.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from loaded_tca.scene import bevel, blank_face_milled, cylindrical, face_milled, internal
+    from loaded_tca.scene.bevel import BevelScene
+    from loaded_tca.scene.blank_face_milled import BlankFaceMilledScene
+    from loaded_tca.scene.cylindrical import CylindricalScene
+    from loaded_tca.scene.face_milled import FaceMilledScene, hypoid_table
+    from loaded_tca.scene.flank_form import FlankForm, Measurement
+    from loaded_tca.scene.internal import InternalScene
+    from loaded_tca.scene.model import Scene
+    from loaded_tca.scene.parse import describe_keys, parse_scene, read_scene, scene_from_table
+    from loaded_tca.scene.sections import Analysis, ElasticMaterial, Load, Modifications
+else:
+    __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
     "Analysis",

@@ -11,7 +11,7 @@ from loaded_tca.arrays import GEARS
 from loaded_tca.errors import require
 from loaded_tca.gears.bevel import BevelGear, pitch_angles
 from loaded_tca.gears.bevel_blank import BevelBlank
-from loaded_tca.gears.bevel_mesh import BevelMesh
+from loaded_tca.gears.bevel_meshes import BevelMesh
 from loaded_tca.gears.checks import LARGEST_PRESSURE_ANGLE
 from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair

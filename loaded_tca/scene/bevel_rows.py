@@ -12,7 +12,7 @@ import numpy as np
 from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank, tooth_angle
 from loaded_tca.gears.bevel import BevelGear
 from loaded_tca.gears.bevel_blank import BevelBlank
-from loaded_tca.gears.bevel_mesh import BevelMesh
+from loaded_tca.gears.bevel_meshes import BevelMesh
 from loaded_tca.gears.blank_gear import SECTIONS
 from loaded_tca.gears.cylindrical_mesh import Room
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh, FlankName

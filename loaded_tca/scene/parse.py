@@ -10,6 +10,7 @@ import re
 import sys
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -170,8 +171,35 @@ def toml_table(text: str, source: str) -> dict[str, Any]:
         raise InputError(f"{source}: line {lines[0]} holds a whole number of more than {most} digits") from None
 
 
-FAMILIES: dict[str, type[Scene]] = {}
-"""Type of a gear pair, as files call it -> the scenes of its family; filled by ``family``."""
+MODULES = {
+    "cylindrical": ("cylindrical", "internal"),
+    "straight_bevel": ("bevel",),
+    "spiral_bevel": ("bevel",),
+    "face_milled": ("face_milled", "blank_face_milled"),
+}
+"""Type of a gear pair, as files call it -> the modules of its scenes and their variants, in the order of messages."""
+
+
+class _Families(Mapping[str, "type[Scene]"]):
+    """Scenes of each type of gear pair, whose modules are imported when a scene of that type is."""
+
+    def __init__(self) -> None:
+        self.known: dict[str, type[Scene]] = {}
+
+    def __getitem__(self, kind: str) -> type[Scene]:
+        for module in MODULES[kind]:
+            import_module(f"loaded_tca.scene.{module}")
+        return self.known[kind]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(MODULES)
+
+    def __len__(self) -> int:
+        return len(MODULES)
+
+
+FAMILIES = _Families()
+"""Type of a gear pair -> the scenes of its family; filled by ``family``."""
 
 VARIANTS: dict[type[Scene], dict[type[Scene], str]] = {}
 """Class of a family -> its variants, which scenes of other keys are, and of what; filled by ``variant``."""
@@ -183,7 +211,7 @@ def family(*types: str) -> Callable[[SceneType], SceneType]:
     """Make a class of scenes known to scene files, under the types of gear pairs of its section [pair]."""
 
     def known(scene: SceneType) -> SceneType:
-        FAMILIES.update(dict.fromkeys(types, scene))
+        FAMILIES.known.update(dict.fromkeys(types, scene))
         return scene
 
     return known

@@ -2,7 +2,7 @@
 
 import pytest
 
-from loaded_tca.compliance.flexibility import FOLDER
+from loaded_tca.compliance.kept import FOLDER
 
 
 @pytest.fixture(autouse=True)

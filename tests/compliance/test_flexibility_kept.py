@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from loaded_tca.compliance import MeshDensity
-from loaded_tca.compliance import flexibility as kept
+from loaded_tca.compliance import MeshDensity, flexibility, kept
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
 from loaded_tca.compliance.flexibility import kept_flexibility, key_of
 from loaded_tca.flanks import FlankModifications, SplineFlank
@@ -25,22 +24,22 @@ ARRAYS = "heights", "lengths", "displacement", "depth", "local_height", "local_v
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     """An empty folder for models, and nothing in memory."""
-    kept.forget()
+    kept.forget_kept()
     monkeypatch.setenv(kept.FOLDER, str(tmp_path / "models"))
     yield tmp_path / "models"
-    kept.forget()
+    kept.forget_kept()
 
 
 @pytest.fixture
 def made(monkeypatch):
     """Frames for which a model was made."""
-    frames, make = [], kept.tooth_flexibility
+    frames, make = [], flexibility.tooth_flexibility
 
     def counted(frame):
         frames.append(frame)
         return make(frame)
 
-    monkeypatch.setattr(kept, "tooth_flexibility", counted)
+    monkeypatch.setattr(flexibility, "tooth_flexibility", counted)
     return frames
 
 
@@ -68,7 +67,7 @@ def test_model_is_made_once(made):
 
 def test_model_from_disk_is_the_same(made, folder):
     first = kept_flexibility(frame_of())
-    kept.forget()
+    kept.forget_kept()
     same(kept_flexibility(frame_of()), first)
     assert len(made) == 1
     assert [path.suffix for path in folder.iterdir()] == [".npz"]
@@ -140,7 +139,7 @@ def test_a_change_far_below_rounding_is_the_same_model():
 
 def test_another_version_is_another_model(monkeypatch):
     before = key_of(frame_of())
-    monkeypatch.setattr(kept, "_programme", lambda: "0.0.0")
+    monkeypatch.setattr(flexibility, "_programme", lambda: "0.0.0")
     assert key_of(frame_of()) != before
 
 
@@ -157,7 +156,7 @@ def test_a_valid_file_with_other_numbers_is_made_anew(other, made, folder):
     (path,) = folder.iterdir()
     arrays = dict(np.load(path))
     np.savez(path, **arrays | other(arrays))
-    kept.forget()
+    kept.forget_kept()
     same(kept_flexibility(frame_of()), first)
     assert len(made) == 2
 
@@ -182,10 +181,10 @@ def test_a_damaged_file_is_made_anew(damage, made, folder):
         np.savez(path, **arrays | {"digest": "of another gear"})
     else:
         np.savez(path, **arrays | {"depth": np.nan * arrays["depth"]})
-    kept.forget()
+    kept.forget_kept()
     same(kept_flexibility(frame_of()), first)
     assert len(made) == 2
-    kept.forget()
+    kept.forget_kept()
     kept_flexibility(frame_of())
     assert len(made) == 2  # the file was mended
 
@@ -194,7 +193,7 @@ def test_a_folder_that_cannot_be_made_is_done_without(made, tmp_path, monkeypatc
     (tmp_path / "file").write_text("")
     monkeypatch.setenv(kept.FOLDER, str(tmp_path / "file" / "models"))
     first = kept_flexibility(frame_of())
-    kept.forget()
+    kept.forget_kept()
     same(kept_flexibility(frame_of()), first)
     assert len(made) == 2
 
@@ -203,7 +202,7 @@ def test_a_folder_that_cannot_be_written_is_done_without(made, folder, monkeypat
     def refuse(*_, **__):
         raise PermissionError("read-only")
 
-    monkeypatch.setattr(kept.tempfile, "mkstemp", refuse)
+    monkeypatch.setattr("tempfile.mkstemp", refuse)
     kept_flexibility(frame_of())
     assert len(made) == 1
     assert not list(folder.iterdir())
@@ -223,7 +222,7 @@ def test_nothing_is_kept_on_disk_where_it_is_switched_off(made, tmp_path, monkey
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv(kept.FOLDER, "off")
     kept_flexibility(frame_of())
-    kept.forget()
+    kept.forget_kept()
     kept_flexibility(frame_of())
     assert len(made) == 2
     assert not list(tmp_path.iterdir())

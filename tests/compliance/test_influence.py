@@ -9,7 +9,8 @@ from loaded_tca.compliance import FlankLine, MeshDensity, gear_compliance, influ
 from loaded_tca.compliance.body import gear_nodes
 from loaded_tca.compliance.dissection import factorise
 from loaded_tca.compliance.finite_elements import discretise
-from loaded_tca.compliance.flexibility import MOST_IN_MEMORY, depth_displacement
+from loaded_tca.compliance.flexibility import depth_displacement
+from loaded_tca.compliance.kept import MOST_IN_MEMORY
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears.cylindrical import half_tooth

@@ -8,10 +8,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.compliance import FlankLine, MeshDensity, root_stress_model
-from loaded_tca.compliance import flexibility as kept
 from loaded_tca.compliance import root_stress as module
 from loaded_tca.compliance.body import ToothFrame, gear_body, gear_nodes
 from loaded_tca.compliance.flexibility import key_of
+from loaded_tca.compliance.kept import FOLDER, forget_kept
 from loaded_tca.compliance.root_stress import (
     DENSITY,
     LAYER_OVER_RADIUS,
@@ -195,11 +195,11 @@ def test_helical_gear_has_its_stress_along_the_face_where_its_load_is():
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """An empty folder for models, and nothing in memory."""
-    kept.forget()
+    forget_kept()
     module._model.cache_clear()
-    monkeypatch.setenv(kept.FOLDER, str(tmp_path))
+    monkeypatch.setenv(FOLDER, str(tmp_path))
     yield tmp_path
-    kept.forget()
+    forget_kept()
     module._model.cache_clear()
 
 
@@ -214,7 +214,7 @@ def made(monkeypatch):
 def test_model_is_made_once_and_found_on_disk(folder, made):
     first = root_stress_model(pinion(), TINY)
     assert root_stress_model(pinion(), TINY) is first
-    kept.forget()
+    forget_kept()
     module._model.cache_clear()
     again = root_stress_model(pinion(), TINY)
     assert len(made) == len(list(folder.glob("*.npz"))) == 1

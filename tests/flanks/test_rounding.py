@@ -11,7 +11,7 @@ from loaded_tca.flanks.base import outward_normal, unmodified
 from loaded_tca.flanks.rounding import LOWER, TIP, UPPER, EdgeRounding, RoundedFlank, edge_places, sharp
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
-from loaded_tca.tooth.families import FaceMilledTooth
+from loaded_tca.tooth import FaceMilledTooth
 from tests.refusals import refusals
 from tests.samples.face_milled import published_wheel
 from tests.samples.gear_pairs import gear_pair

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import bevel_mesh
-from loaded_tca.gears.bevel_mesh import BevelMesh
+from loaded_tca.gears.bevel_meshes import BevelMesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair

@@ -21,8 +21,8 @@ from threadpoolctl import threadpool_limits
 
 from loaded_tca import AccuracyWarning, analyse, read_scene, sample_separation, solve_contact, trace_contact
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.flexibility import FOLDER
 from loaded_tca.compliance.influence import forget
+from loaded_tca.compliance.kept import FOLDER
 from loaded_tca.edges.free import edge_compliance
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
