@@ -356,8 +356,8 @@ class DynamicFactor:
     notes: tuple[str, ...]
 
 
-def _coefficients(total_contact_ratio: float) -> tuple[float, ...]:
-    """C_v1 to C_v7 (table 8)."""
+def dynamic_coefficients(total_contact_ratio: float) -> tuple[float, ...]:
+    """C_v1 to C_v7 of eps_gamma (table 8), of bevel gears too (ISO 10300-1, table 3)."""
     ratio = total_contact_ratio
     if ratio <= 2.0:
         second, third, fourth, sixth = 0.34, 0.23, 0.90, 0.47
@@ -456,7 +456,7 @@ def dynamic_factor(
     )
     softness = stiffness / load
     b_p, b_f, b_k = softness * pitch, softness * profile, np.abs(1.0 - softness * tip_relief)
-    constants = _coefficients(total_contact_ratio)
+    constants = dynamic_coefficients(total_contact_ratio)
     first, second, third, fourth, fifth, sixth, seventh = constants
     below = 1.0 + ratio * (first * b_p + second * b_f + third * b_k)
     resonance = 1.0 + first * b_p + second * b_f + fourth * b_k

@@ -173,11 +173,7 @@ def root_section(
     rho, z = root_radius_coefficient, virtual_teeth(teeth, helix_angle, pressure_angle)
     gap = 0.25 * pi - dedendum_coefficient * tan(pressure_angle)
     gap -= rho * (1.0 - sin(pressure_angle)) / cos(pressure_angle)
-    depth = rho - dedendum_coefficient + profile_shift
-    angle = _touching_angle(depth, 2.0 / z * (0.5 * pi - gap) - _TANGENT, z)
-    below = depth / cos(angle) - rho
-    thickness = z * sin(_TANGENT - angle) + sqrt(3.0) * below
-    radius = rho + 2.0 * depth**2 / (cos(angle) * (z * cos(angle) ** 2 - 2.0 * depth))
+    angle, thickness, radius, below = fillet_section(gap, rho - dedendum_coefficient + profile_shift, rho, z)
     diameter, load_angle, half = _single_contact(
         teeth, z, profile_shift, tip_diameter, transverse_contact_ratio, helix_angle, pressure_angle
     )
@@ -187,6 +183,33 @@ def root_section(
             f"no critical section: thickness {thickness:.4g}, lever {lever:.4g}, radius {radius:.4g} m_n"
         )
     return RootSection(thickness, lever, radius, load_angle, pressure_angle)
+
+
+def fillet_section(gap: float, depth: float, radius: float, teeth: float) -> tuple[float, float, float, float]:
+    """Where tangents of 30 degrees touch the fillets that a rack cuts, in normal modules.
+
+    Parameters
+    ----------
+    gap, depth, radius : float
+        E and G of the rack, rho_fP of its rounding.
+    teeth : float
+        z_n.
+
+    Returns
+    -------
+    angle, thickness, radius, below : float
+        theta [rad]; s_Fn; rho_F; G/cos(theta) - rho_fP, of the lever.
+
+    Raises
+    ------
+    GeometryError
+        If there is no such place.
+    """
+    angle = _touching_angle(depth, 2.0 / teeth * (0.5 * pi - gap) - _TANGENT, teeth)
+    below = depth / cos(angle) - radius
+    thickness = teeth * sin(_TANGENT - angle) + sqrt(3.0) * below
+    bend = radius + 2.0 * depth**2 / (cos(angle) * (teeth * cos(angle) ** 2 - 2.0 * depth))
+    return angle, thickness, bend, below
 
 
 def _touching_angle(depth: float, offset: float, teeth: float) -> float:

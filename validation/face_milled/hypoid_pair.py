@@ -34,7 +34,7 @@ from loaded_tca.gears import (
     pitch_cones_by_method_1,
 )
 from loaded_tca.pairs.bevel import BevelMounting, face_milled_pair
-from loaded_tca.reference.iso10300 import VirtualPair
+from loaded_tca.reference.iso10300_1 import VirtualPair
 from loaded_tca.scene import read_scene
 from loaded_tca.unloaded import relative_curvature, trace_contact
 from validation.face_milled.hypoid_axes import Errors, Housing, Sheet, Surface
