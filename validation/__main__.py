@@ -40,6 +40,7 @@ CASES = (
     "cylindrical.fzg_c14_root_stress",
     "tribology.published",
     "rating.strength",
+    "rating.rings",
     "rating.solved",
     "bevel.iso_23509_sample",
     "face_milled.settings",
