@@ -4,7 +4,8 @@ Reports of KISSsoft 03/2017A after ISO 6336:2006, method B, beside a public mode
 (gfsReboucas/Drivetrain, @NREL_5MW/stage_01.rtf and stage_02.rtf): planets and rings of both stages, spur gears. From
 teeth, diameters and centre distance of the scene: critical sections, Y_F, Y_S, nominal stresses, Z factors. The rings
 are cut by pinion-type cutters of 36 and 30 teeth. Tolerances are half a last digit, a whole one of the lever h_Fe, two
-of stresses: the report bends teeth with tips and a contact ratio in the middle of their tolerances, here they are nominal.
+of stresses: the report bends teeth with tips and a contact ratio in the middle of their tolerances, here they are
+nominal.
 
 ``rating.stages`` has the safeties of the whole stages.
 """
