@@ -670,8 +670,8 @@ FAULTS = (
     Fault(
         "root stress: h/b of the lower teeth",
         "scene/cylindrical.py",
-        "return max(gear.tip_radius",
-        "return min(gear.tip_radius",
+        "return max(heights)",
+        "return min(heights)",
         "results/test_root_figures.py::test_height_of_the_higher_teeth_counts",
     ),
     Fault(
@@ -2114,6 +2114,34 @@ FAULTS = (
         "named_material(material, quality, hardness=hardness, scale=scale)",
         "named_material(material, quality, hardness=hardness)",
         "scene/test_rating_sections.py::test_hardness_counts_in_the_scale_of_its_key",
+    ),
+    Fault(
+        "the radius of a ring's fillet has the sign of its teeth",
+        "reference/iso6336_3.py",
+        "(abs(z) * cos(angle) ** 2 - 2.0 * depth))",
+        "(z * cos(angle) ** 2 - 2.0 * depth))",
+        "reference/test_iso6336_3.py::test_rings_have_the_digits_that_kisssoft_prints",
+    ),
+    Fault(
+        "the outer point of single contact of a ring lies below its tip as of a gear",
+        "reference/iso6336_3.py",
+        "roll = sqrt(tip**2 - base**2) - sign * pi",
+        "roll = sqrt(tip**2 - base**2) - pi",
+        "reference/test_iso6336_3.py::test_rings_have_the_digits_that_kisssoft_prints",
+    ),
+    Fault(
+        "a ring counts as a solid disc in the reduced mass",
+        "rating/loads.py",
+        "(2.0 * gear.outer_radius, mean) if isinstance(gear, RingGear)",
+        "(mean, 0.0) if isinstance(gear, RingGear)",
+        "rating/test_rings.py::test_ring_is_hollow_in_the_reduced_mass",
+    ),
+    Fault(
+        "Y_B of a ring is that of an external gear",
+        "results/root_stress.py",
+        "    if gear.is_ring:",
+        "    if gear.is_ring and gear.is_solid:",
+        "rating/test_rings.py::test_thin_rim_of_a_ring_raises_its_root_stress_alone",
     ),
 )
 

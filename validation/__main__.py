@@ -40,6 +40,7 @@ CASES = (
     "cylindrical.fzg_c14_root_stress",
     "tribology.published",
     "rating.strength",
+    "rating.rings",
     "rating.solved",
     "rating.iso_tr_10300_30",
     "bevel.iso_23509_sample",

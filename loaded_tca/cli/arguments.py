@@ -71,7 +71,7 @@ files in DIR:
 {tribology_pictures}
 Friction of the teeth alone; docs/guide/efficiency_and_scuffing.md says more."""
 RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubricant] of the scene say what the gears
-are made of, what is required and how they run; --set gives or changes them. External cylindrical pairs, one operating
+are made of, what is required and how they run; --set gives or changes them. Cylindrical pairs, one operating
 point under each torque.
 
 files in DIR:

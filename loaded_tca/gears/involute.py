@@ -64,6 +64,7 @@ class InvoluteGear:
     face_width: float
     pressure_angle: float
     helix_angle: float
+    profile_shift: float
 
     if TYPE_CHECKING:  # a property of each gear
 

@@ -151,7 +151,7 @@ def _standard_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
         if math.isfinite(nominal):
             yield f"nominal root stress, ISO, {name} [MPa]", *(plain(nominal * torque) for torque in torques)
     if math.isfinite(scene.tooth_height_over_width):
-        yield RIM_LABEL.strip(), *(shown(rim_factor(gear), "") for gear in (pair.pinion, pair.wheel))
+        yield RIM_LABEL.strip(), *(shown(rim_factor(gear, pair.module), "") for gear in (pair.pinion, pair.wheel))
 
 
 def _strength_rows(scene: Scene) -> Iterator[Row]:

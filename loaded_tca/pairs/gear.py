@@ -271,11 +271,30 @@ class Gear:
         if self.is_solid:
             return math.inf
         rho, _ = self.nominal_flank.grid(2, 2)
-        ends, outwards = self._ends, self.form.sections.outwards
-        root = self._root_radius(ends)
-        height = outwards * (rho[-1] - root)  # both lengths across the axis: they lie in one direction
-        rim = outwards * (root - self.bore_radius(ends))
-        return float((rim / height).min()) if (height > 0.0).all() else math.inf
+        # both lengths across the axis: they lie in one direction
+        height = self.form.sections.outwards * (rho[-1] - self._root_radius(self._ends))
+        return float((self._rims / height).min()) if (height > 0.0).all() else math.inf
+
+    @property
+    def is_ring(self) -> bool:
+        """Whether the teeth point towards the axis."""
+        return self.form.sections.outwards < 0.0
+
+    @property
+    def rim_thickness(self) -> float:
+        """Thickness s_R of the rim behind the roots [mm], the smallest one of a cone; inf for a solid gear.
+
+        Raises
+        ------
+        InputError
+            If the bore leaves no rim.
+        """
+        return math.inf if self.is_solid else float(self._rims.min())
+
+    @property
+    def _rims(self) -> Array:
+        """Thickness of the rim behind the roots in the sections of both ends [mm]."""
+        return self.form.sections.outwards * (self._root_radius(self._ends) - self.bore_radius(self._ends))
 
     @property
     def smallest_bore(self) -> float:

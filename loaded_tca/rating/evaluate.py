@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import nan
+from math import copysign, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,12 +31,12 @@ def evaluated(inputs: RatingInputs) -> tuple[Arrays, tuple[str, ...], bool]:
     local, at_edge = _local_flanks(inputs, loads, flanks.strength, curves)
     arrays = {"torque": np.asarray(inputs.torque), "cycles": _both(inputs, inputs.cycles)}
     arrays |= loads | stresses | rated | roots | local
-    mesh = inputs.mesh
+    mesh, ring = inputs.mesh, inputs.mesh.wheel.teeth < 0
     scope = iso6336_1.scope_notes(
         pressure_angle=mesh.pinion.pressure_angle,
         helix_angle=mesh.pinion.helix_angle,
         transverse_contact_ratio=mesh.transverse_contact_ratio,
-        profile_shifts=(mesh.pinion.profile_shift, mesh.wheel.profile_shift),
+        profile_shifts=(0.0, 0.0) if ring else (mesh.pinion.profile_shift, mesh.wheel.profile_shift),
     )
     return arrays, tuple(dict.fromkeys((*scope, *notes, *flanks.notes, *root_notes))), at_edge
 
@@ -72,7 +72,7 @@ def _flank_factors(inputs: RatingInputs) -> iso6336_2.FlankFactors:
         iso6336_2.FlankStrength(strength.limits[0], strength.kind_of_material, strength.flank_Rz_um, strength.brinell)
         for strength in inputs.strengths
     ]
-    bases = 2.0 * mesh.pinion.base_radius, 2.0 * mesh.wheel.base_radius
+    bases = 2.0 * mesh.pinion.base_radius, copysign(2.0 * mesh.wheel.base_radius, mesh.wheel.teeth)
     with named("rating of flanks"):
         return iso6336_2.flank_factors(
             gears[0],
@@ -137,7 +137,7 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
     assert section is not None  # refused before
     gear = (inputs.result.gear_pair.pinion, inputs.result.gear_pair.wheel)[place]
     of_class = inputs.rating.tolerance_class
-    rim = rim_factor(gear)
+    rim = rim_factor(gear, mesh.pinion.normal_module)
     deep = iso6336_3.deep_tooth_factor(inputs.virtual_contact_ratio, of_class) if of_class else 1.0
     form, correction, helix = scene.root_factors[place]
     nominal = scene.nominal_root_stress[place] * inputs.torque * rim * deep

@@ -10,7 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError
-from loaded_tca.gears import CylindricalMesh
+from loaded_tca.gears import CylindricalMesh, InternalMesh
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.rating import RatingSection, StrengthSection
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FEWEST = 5
 """Positions over a pitch: of fewer the largest pressure and K_Hbeta miss much of the mesh."""
-COVERED = "rating covers one operating point of external cylindrical pairs"
+COVERED = "rating covers one operating point of cylindrical pairs"
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class RatingInputs:
     ----------
     result : MeshCycle
     scene : CylindricalScene
-    mesh : CylindricalMesh
+    mesh : CylindricalMesh or InternalMesh
     strengths : (StrengthSection, StrengthSection)
         Of pinion and wheel.
     rating : RatingSection
@@ -41,7 +41,7 @@ class RatingInputs:
 
     result: CycleNumbers
     scene: CylindricalScene
-    mesh: CylindricalMesh
+    mesh: CylindricalMesh | InternalMesh
     strengths: tuple[StrengthSection, StrengthSection]
     rating: RatingSection
     operation: Operation
@@ -66,7 +66,7 @@ class RatingInputs:
     @property
     def cycles_per_hour(self) -> Array:
         """Load cycles of pinion and wheel in an hour (2,)."""
-        ratio = self.mesh.pinion.teeth / self.mesh.wheel.teeth
+        ratio = self.mesh.pinion.teeth / self.mesh.wheel.tooth_count
         return 60.0 * self.operation.pinion_speed_rpm * np.array([1.0, ratio])
 
     @property
@@ -91,8 +91,6 @@ def inputs_of(result: CycleNumbers) -> RatingInputs:
     scene = result.scene
     if not isinstance(scene, CylindricalScene):
         raise InputError(f'pair.type: "{scene.geometry.type}"; {COVERED}')
-    if scene.wheel.teeth < 0:
-        raise InputError(f"wheel.teeth: {scene.wheel.teeth}, a ring; {COVERED}")
     no_limits = "missing; nothing is rated without allowable stresses: give material, or kind with its stresses"
     needed = {
         "pinion.strength": (scene.pinion.strength, no_limits),

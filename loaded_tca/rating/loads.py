@@ -9,6 +9,7 @@ import numpy as np
 
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import named
+from loaded_tca.gears import RingGear
 from loaded_tca.reference import iso6336, iso6336_1
 from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.reference.iso6336_3 import face_load_factor
@@ -52,7 +53,7 @@ def _deviations(inputs: RatingInputs) -> tuple[float, float]:
     for name, gear in zip(GEARS, (inputs.mesh.pinion, inputs.mesh.wheel), strict=True):
         with named(f"rating.tolerance_class: {name}"):
             tolerances = flank_tolerances(
-                gear.teeth, gear.normal_module, gear.face_width, inputs.rating.tolerance_class, gear.helix_angle
+                gear.tooth_count, gear.normal_module, gear.face_width, inputs.rating.tolerance_class, gear.helix_angle
             )
         pitches.append(tolerances.single_pitch * cos(gear.transverse_pressure_angle))
         profiles.append(tolerances.profile_form)
@@ -80,16 +81,20 @@ def _tip_relief(inputs: RatingInputs) -> float:
 
 
 def reduced_mass(inputs: RatingInputs) -> float:
-    """m_red of both gears as discs down to the bores that the scene gives, their shafts with them else [kg/mm]."""
+    """m_red of both gears as discs down to the bores that the scene gives, their shafts with them else [kg/mm].
+
+    A ring reaches from the middle of its teeth to its outer diameter.
+    """
     sections = inputs.scene.pinion, inputs.scene.wheel
-    inertias = [
-        iso6336_1.disc_inertia(
-            gear.tip_radius + gear.root_radius, section.bore_diameter_mm or 0.0, material.density_kg_m3
+    inertias = []
+    for gear, section, material in zip(
+        (inputs.mesh.pinion, inputs.mesh.wheel), sections, inputs.scene.materials, strict=True
+    ):
+        mean = gear.tip_radius + gear.root_radius
+        ends = (
+            (2.0 * gear.outer_radius, mean) if isinstance(gear, RingGear) else (mean, section.bore_diameter_mm or 0.0)
         )
-        for gear, section, material in zip(
-            (inputs.mesh.pinion, inputs.mesh.wheel), sections, inputs.scene.materials, strict=True
-        )
-    ]
+        inertias.append(iso6336_1.disc_inertia(*ends, material.density_kg_m3))
     radii = inputs.mesh.pinion.base_radius, inputs.mesh.wheel.base_radius
     return iso6336_1.reduced_mass((inertias[0], inertias[1]), radii)
 

@@ -1,4 +1,4 @@
-"""Closed forms of ISO 6336 for external cylindrical gears: contact stress, mesh stiffness, bounds of load factors.
+"""Closed forms of ISO 6336 for cylindrical gears: contact stress, mesh stiffness, bounds of load factors.
 
 Plain numbers in, plain numbers out: lengths in mm, angles in rad, forces in N, moduli and stresses in MPa,
 stiffnesses in N/(mm um), that is N/um per mm of face width. Formulas as in the editions from 2006 on;
@@ -152,12 +152,12 @@ def single_contact_factors(
 
     and M_2 with the gears exchanged: the root of the relative curvature at the inner point of single contact, B of the
     pinion and D of the wheel, over that at the pitch point. :math:`Z_B = \max(1, M_1)` of spur gears, 1 from an overlap
-    ratio of 1 on, and :math:`\max(1, M_1 - \varepsilon_\beta (M_1 - 1))` in between; Z_D likewise.
+    ratio of 1 on, and :math:`\max(1, M_1 - \varepsilon_\beta (M_1 - 1))` in between; Z_D likewise, and 1 of a ring.
 
     Parameters
     ----------
     teeth : (int, int)
-        z of pinion and wheel.
+        z of pinion and wheel, negative of a ring.
     tip_over_base : (float, float)
         d_a/d_b, to where the flanks are in contact.
     working_pressure_angle : float [rad]
@@ -179,9 +179,16 @@ def single_contact_factors(
     >>> ratios = 41.318 / 33.8289, 59.272 / 50.7434  # FZG C14
     >>> [round(factor, 3) for factor in single_contact_factors((16, 24), ratios, radians(22.43934), 1.4626, 0.0)]
     [1.07, 1.0]
+
+    Planet and ring of the second stage of the NREL gearbox, printed 1.00 and 1.00:
+
+    >>> ratios = 815.663 / 710.408, 1906.081 / 1835.220
+    >>> single_contact_factors((36, -93), ratios, radians(15.630), 1.618, 0.0)
+    (1.0, 1.0)
     """
     require(
-        *((count >= 1, f"teeth: {count} is below 1") for count in teeth),
+        (teeth[0] >= 1, f"teeth: {teeth[0]} is below 1"),
+        (teeth[1] >= 1 or teeth[1] < -teeth[0], f"teeth: {teeth[1]} is below 1, and no ring around {teeth[0]} teeth"),
         *((1.0 <= ratio < inf, f"tip_over_base: {ratio} is not in [1, inf)") for ratio in tip_over_base),
         *_angle_checks(working_pressure_angle=working_pressure_angle),
         (1.0 < transverse_contact_ratio < inf, f"transverse_contact_ratio: {transverse_contact_ratio} is not above 1"),
@@ -200,7 +207,7 @@ def single_contact_factors(
     )
     smooth = 1.0 - min(1.0, overlap_ratio)
     first, second = (1.0 + smooth * (tan(working_pressure_angle) / sqrt(one) - 1.0) for one in tangents)
-    return max(1.0, first), max(1.0, second)
+    return max(1.0, first), max(1.0, second) if teeth[1] > 0 else 1.0
 
 
 @checked

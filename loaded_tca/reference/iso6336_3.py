@@ -1,15 +1,16 @@
 """ISO 6336-3, method B, for cylindrical gears: nominal tooth root stress; by name what roots withstand, too.
 
-Load at the outer point of single contact, bending of the section where tangents of 30 degrees touch both fillets, and a
-factor for the notch; a factor of its own for thin rims. Formulas of the edition of 2006; the examples are FZG C14 gears
-of GEARpie. What the edition of 2019, whose text was not seen, changed: ``load_distribution_factor`` belongs to Y_F, and
+Load at the outer point of single contact, bending of the section where tangents of 30 degrees, of rings of 60 degrees,
+touch both fillets, and a factor for the notch; a factor of its own for thin rims. Formulas of the edition of 2006, of
+rings with its corrigendum of 2007; the examples are FZG C14 gears of GEARpie and the rings of the NREL 5 MW gearbox.
+What the edition of 2019, whose text was not seen, changed: ``load_distribution_factor`` belongs to Y_F, and
 ``helix_angle_factor`` has an edition. The strength and its factors are in ``iso6336_3_strength``.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import acos, cos, degrees, hypot, inf, log, pi, radians, sin, sqrt, tan
+from math import acos, copysign, cos, degrees, hypot, inf, log, pi, radians, sin, sqrt, tan
 
 import numpy as np
 
@@ -28,6 +29,7 @@ __all__ = [
     "RootFactors",
     "RootSection",
     "RootStrength",
+    "cut_root_radius",
     "deep_tooth_factor",
     "face_load_factor",
     "helix_angle_factor",
@@ -40,7 +42,7 @@ __all__ = [
 ]
 
 _HELIX_ANGLE_LIMIT = radians(30.0)
-_TANGENT = pi / 3.0  # 60 degrees: the tangents of 30 degrees of external gears
+_TANGENT, _RING_TANGENT = pi / 3.0, pi / 6.0  # of tangents of 30 and 60 degrees against the middle of the tooth
 _LARGEST_HEIGHT_OVER_WIDTH = 1.0 / 3.0
 THIN_RIM, THINNEST_RIM = 1.2, 0.5
 """Thickness of a rim over the height of its teeth, s_R/h_t, below which it raises root stress; down to which the
@@ -56,7 +58,7 @@ class RootSection:
     Attributes
     ----------
     thickness : float
-        s_Fn/m_n, between the points where tangents of 30 degrees touch the fillets.
+        s_Fn/m_n, between the points where tangents of 30 degrees, of rings of 60 degrees, touch the fillets.
     lever : float
         h_Fe/m_n, of a load at the outer point of single contact.
     radius : float
@@ -99,6 +101,52 @@ class RootSection:
 
 
 @checked
+def cut_root_radius(
+    root_radius_coefficient: float,
+    dedendum_coefficient: float,
+    cutter_teeth: int,
+    cutter_profile_shift: float = 0.0,
+) -> float:
+    r"""Root radius rho_fPv/m_n of the rack that stands for a ring's pinion-type cutter.
+
+    .. math:: \varrho_{fPv} = \varrho_{fP} + \frac{(x_0 + h_{fP} - \varrho_{fP})^{1.95}}{3.156 \cdot 1.036^{z_0}}
+
+    with all lengths in normal modules; a cutter of many teeth is a rack.
+
+    Parameters
+    ----------
+    root_radius_coefficient : float
+        rho_fP/m_n, the rounding of the cutter's tip.
+    dedendum_coefficient : float
+        h_fP/m_n.
+    cutter_teeth : int
+        z_0.
+    cutter_profile_shift : float
+        x_0.
+
+    References
+    ----------
+    ISO 6336-3:2006 with its corrigendum of 2007, form factor of internal gears; its text was not seen. Checked by
+    s_Fn, h_Fe and rho_F of the rings of two stages that KISSsoft 03/2017A prints.
+
+    Examples
+    --------
+    >>> round(cut_root_radius(0.3, 1.25, 30), 4)
+    0.3992
+    """
+    height = cutter_profile_shift + dedendum_coefficient - root_radius_coefficient
+    require(
+        (cutter_teeth >= 3, f"cutter_teeth: {cutter_teeth} is below 3"),
+        (0.0 <= root_radius_coefficient < inf, f"root_radius_coefficient: {root_radius_coefficient} is negative"),
+        (
+            0.0 <= height < inf,
+            f"cutter_profile_shift: {cutter_profile_shift} leaves the cutter no addendum beyond its rounding",
+        ),
+    )
+    return root_radius_coefficient + height**1.95 / (3.156 * 1.036**cutter_teeth)
+
+
+@checked
 def root_section(
     teeth: int,
     profile_shift: float,
@@ -110,35 +158,34 @@ def root_section(
     dedendum_coefficient: float = 1.25,
     root_radius_coefficient: float = 0.38,
 ) -> RootSection:
-    r"""Critical section of an external gear without protuberance, cut by a rack.
+    r"""Critical section of a gear without protuberance, cut by a rack; of a ring by the rack of its cutter.
 
     .. math::
-        E = \frac{\pi}{4} - h_{fP} \tan\alpha_n - \rho_{fP}\,\frac{1 - \sin\alpha_n}{\cos\alpha_n},\quad
-        G = \rho_{fP} - h_{fP} + x,\quad
-        H = \frac{2}{z_n} \left(\frac{\pi}{2} - E\right) - \frac{\pi}{3},\quad
+        E = \frac{\pi}{4} - h_{fP} \tan\alpha_n - \varrho_{fP}\,\frac{1 - \sin\alpha_n}{\cos\alpha_n},\quad
+        G = \varrho_{fP} - h_{fP} + x,\quad
+        H = \frac{2}{z_n} \left(\frac{\pi}{2} - E\right) - T,\quad
         \vartheta = \frac{2 G}{z_n} \tan\vartheta - H
 
     .. math::
-        s_{Fn} = z_n \sin\left(\frac{\pi}{3} - \vartheta\right) + \sqrt{3} \left(\frac{G}{\cos\vartheta}
-        - \rho_{fP}\right),\qquad
-        \rho_F = \rho_{fP} + \frac{2 G^2}{\cos\vartheta\,(z_n \cos^2\vartheta - 2 G)}
+        s_{Fn} = z_n \sin(T - \vartheta) + 2 \sin T \left(\frac{G}{\cos\vartheta} - \varrho_{fP}\right),\qquad
+        \varrho_F = \varrho_{fP} + \frac{2 G^2}{\cos\vartheta\,(|z_n| \cos^2\vartheta - 2 G)}
 
-    with all lengths in normal modules.
+    with all lengths in normal modules, T = 60 degrees, and of rings, whose numbers of teeth are negative, 30 degrees.
 
     Parameters
     ----------
     teeth : int
-        z.
+        z; negative of a ring.
     profile_shift : float
         x; as generated, for the thickness of the tooth that is cut.
     tip_diameter : float
-        d_a/m_n.
+        d_a/m_n, positive of a ring, too.
     transverse_contact_ratio : float
         eps_alpha of the pair.
     helix_angle, pressure_angle : float [rad]
         beta, alpha_n.
     dedendum_coefficient, root_radius_coefficient : float
-        h_fP/m_n, rho_fP/m_n of the rack.
+        h_fP/m_n, rho_fP/m_n of the rack; of a ring rho_fPv/m_n of ``cut_root_radius``.
 
     Raises
     ------
@@ -149,16 +196,23 @@ def root_section(
 
     References
     ----------
-    ISO 6336-3:2006, form factor Y_F, method B.
+    ISO 6336-3:2006 with its corrigendum of 2007, form factor Y_F, method B.
 
     Examples
     --------
     >>> section = root_section(16, 0.1817, 82.635 / 4.5, 1.4626, root_radius_coefficient=0.375)
     >>> round(section.form_factor, 2), round(section.stress_correction_factor, 2)
     (1.69, 1.85)
+
+    Ring of the second stage of the NREL gearbox, printed 1.20 and 2.34:
+
+    >>> radius = cut_root_radius(0.3, 1.25, 30)
+    >>> section = root_section(-93, 0.1171, 1906.081 / 21.0, 1.618, root_radius_coefficient=radius)
+    >>> round(section.form_factor, 2), round(section.stress_correction_factor, 2)
+    (1.2, 2.34)
     """
     require(
-        (teeth >= 3, f"teeth: {teeth} is below 3"),
+        (abs(teeth) >= 3, f"teeth: {teeth} is below 3"),
         (0.0 < pressure_angle < 0.25 * pi, f"pressure_angle: {pressure_angle} rad is not between 0 and 45 deg"),
         (abs(helix_angle) < 0.25 * pi, f"helix_angle: {helix_angle} rad is not within 45 deg"),
         (-2.0 < profile_shift < 2.0, f"profile_shift: {profile_shift} is not between -2 and 2"),
@@ -170,14 +224,16 @@ def root_section(
         (0.0 < dedendum_coefficient < inf, f"dedendum_coefficient: {dedendum_coefficient} is not positive and finite"),
         (0.0 < root_radius_coefficient < inf, f"root_radius_coefficient: {root_radius_coefficient} is not positive"),
     )
-    rho, z = root_radius_coefficient, virtual_teeth(teeth, helix_angle, pressure_angle)
+    rho, tangent = root_radius_coefficient, _TANGENT if teeth > 0 else _RING_TANGENT
+    z = copysign(virtual_teeth(abs(teeth), helix_angle, pressure_angle), teeth)
     gap = 0.25 * pi - dedendum_coefficient * tan(pressure_angle)
     gap -= rho * (1.0 - sin(pressure_angle)) / cos(pressure_angle)
     angle, thickness, radius, below = fillet_section(gap, rho - dedendum_coefficient + profile_shift, rho, z)
     diameter, load_angle, half = _single_contact(
         teeth, z, profile_shift, tip_diameter, transverse_contact_ratio, helix_angle, pressure_angle
     )
-    lever = 0.5 * ((cos(half) - sin(half) * tan(load_angle)) * diameter - z * cos(_TANGENT - angle) - below)
+    height = z * cos(tangent - angle) + 2.0 * cos(tangent) * below
+    lever = 0.5 * ((cos(half) - sin(half) * tan(load_angle)) * diameter - height)
     if not (thickness > 0.0 and lever > 0.0 and radius > 0.0):
         raise GeometryError(
             f"no critical section: thickness {thickness:.4g}, lever {lever:.4g}, radius {radius:.4g} m_n"
@@ -186,14 +242,14 @@ def root_section(
 
 
 def fillet_section(gap: float, depth: float, radius: float, teeth: float) -> tuple[float, float, float, float]:
-    """Where tangents of 30 degrees touch the fillets that a rack cuts, in normal modules.
+    """Where tangents of 30 degrees, of rings 60, touch the fillets that a rack cuts, in normal modules.
 
     Parameters
     ----------
     gap, depth, radius : float
         E and G of the rack, rho_fP of its rounding.
     teeth : float
-        z_n.
+        z_n, negative of rings.
 
     Returns
     -------
@@ -205,23 +261,26 @@ def fillet_section(gap: float, depth: float, radius: float, teeth: float) -> tup
     GeometryError
         If there is no such place.
     """
-    angle = _touching_angle(depth, 2.0 / teeth * (0.5 * pi - gap) - _TANGENT, teeth)
+    tangent = _TANGENT if teeth > 0.0 else _RING_TANGENT
+    angle = _touching_angle(depth, 2.0 / teeth * (0.5 * pi - gap) - tangent, teeth)
     below = depth / cos(angle) - radius
-    thickness = teeth * sin(_TANGENT - angle) + sqrt(3.0) * below
-    bend = radius + 2.0 * depth**2 / (cos(angle) * (teeth * cos(angle) ** 2 - 2.0 * depth))
+    thickness = teeth * sin(tangent - angle) + 2.0 * sin(tangent) * below
+    bend = radius + 2.0 * depth**2 / (cos(angle) * (abs(teeth) * cos(angle) ** 2 - 2.0 * depth))
     return angle, thickness, bend, below
 
 
 def _touching_angle(depth: float, offset: float, teeth: float) -> float:
-    """Angle theta at which the tangent of 30 degrees touches the fillet [rad]."""
+    """Angle theta at which the tangent touches the fillet [rad]."""
+    slope = 2.0 * depth / teeth
 
     def difference(angle: Array, _: Indices) -> Array:
-        return np.asarray(angle - 2.0 * depth / teeth * np.tan(angle) + offset)
+        return np.asarray(angle - slope * np.tan(angle) + offset)
 
-    ends = np.array([[0.0], [0.49 * pi]])
+    last = 0.49 * pi if slope <= 0.0 else min(0.49 * pi, acos(min(1.0, sqrt(slope))))  # where the difference is largest
+    ends = np.array([[0.0], [last]])
     values = difference(ends, np.zeros(1, dtype=int))
     if values[0, 0] * values[1, 0] > 0.0:
-        raise GeometryError("no critical section: no tangent of 30 degrees touches the fillet")
+        raise GeometryError("no critical section: no tangent of 30 degrees, or 60 of a ring, touches the fillet")
     return float(roots.find_roots(difference, ends, values, 1e-15)[0])
 
 
@@ -235,19 +294,20 @@ def _single_contact(
     pressure_angle: float,
 ) -> tuple[float, float, float]:
     """d_en/m_n of the outer point of single contact of the virtual gear, alpha_Fen and gamma_e [rad]."""
-    base = 0.5 * virtual * cos(pressure_angle)
+    sign, size = (1.0 if teeth > 0 else -1.0), abs(virtual)
+    base = 0.5 * size * cos(pressure_angle)
     contact_ratio = transverse_contact_ratio / (1.0 - (sin(helix_angle) * cos(pressure_angle)) ** 2)
-    tip = 0.5 * (virtual + tip_diameter - teeth / cos(helix_angle))
+    tip = 0.5 * (size + tip_diameter - abs(teeth) / cos(helix_angle))
     if tip <= base:
         raise GeometryError(f"tip_diameter: {tip_diameter} m_n lies inside the base circle")
-    roll = sqrt(tip**2 - base**2) - pi * cos(pressure_angle) * (contact_ratio - 1.0)
+    roll = sqrt(tip**2 - base**2) - sign * pi * cos(pressure_angle) * (contact_ratio - 1.0)
     if roll < 0.0:
         raise GeometryError("the outer point of single contact lies below the base circle")
     diameter = 2.0 * hypot(roll, base)
     angle = acos(2.0 * base / diameter)
     half = (0.5 * pi + 2.0 * tan(pressure_angle) * profile_shift) / virtual
     half += tan(pressure_angle) - pressure_angle - tan(angle) + angle
-    return diameter, angle - half, half
+    return sign * diameter, angle - half, half
 
 
 @checked

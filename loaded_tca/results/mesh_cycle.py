@@ -216,7 +216,7 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         Raises
         ------
         InputError
-            With every section that is missing; for pairs other than external cylindrical ones, and results without
+            With every section that is missing; for pairs other than cylindrical ones, and results without
             load sharing, of fewer than five positions, or under no torque.
 
         Warns

@@ -16,7 +16,13 @@ import numpy as np
 
 import loaded_tca.compliance as compliance
 from loaded_tca.arrays import GEARS, Array, Indices
-from loaded_tca.reference.iso6336_3 import THINNEST_RIM, face_load_factor, rim_thickness_factor
+from loaded_tca.reference.iso6336_3 import (
+    THINNEST_RIM,
+    THINNEST_RING,
+    face_load_factor,
+    rim_thickness_factor,
+    ring_rim_factor,
+)
 from loaded_tca.results.quantities import ON_FILLETS, PLACE, ROOT_QUANTITIES
 from loaded_tca.threads import one_blas_thread
 
@@ -258,7 +264,8 @@ def root_figures(result: CycleNumbers, torque: int) -> dict[str, float]:
     of_roots = math.nan if math.isnan(ratio + factor) else face_load_factor(max(1.0, factor), ratio)
     gears = result.gear_pair.pinion, result.gear_pair.wheel
     for gear, name in enumerate(GEARS):
-        figures[f"{name}_rim_thickness_factor_iso_6336"] = math.nan if math.isnan(ratio) else rim_factor(gears[gear])
+        rim = math.nan if math.isnan(ratio) else rim_factor(gears[gear], result.gear_pair.module)
+        figures[f"{name}_rim_thickness_factor_iso_6336"] = rim
         figures |= _extreme(result, torque, gear, "root_tension") | _extreme(result, torque, gear, "root_compression")
         figures[f"{name}_root_stress_ratio"] = float(result.root_stress_ratio[torque, gear])
         figures[f"{name}_nominal_root_stress_iso_6336_MPa"] = nominal[gear]
@@ -268,8 +275,11 @@ def root_figures(result: CycleNumbers, torque: int) -> dict[str, float]:
     return figures | {"root_face_load_factor_iso_6336": of_roots}
 
 
-def rim_factor(gear: Gear) -> float:
+def rim_factor(gear: Gear, normal_module: float) -> float:
     """Rim thickness factor Y_B of a gear with a bore, given or by default; NaN for a rim too thin for the standard."""
+    if gear.is_ring:
+        rim = gear.rim_thickness / normal_module
+        return ring_rim_factor(rim) if rim > THINNEST_RING else math.nan
     rim = gear.rim_over_height
     return rim_thickness_factor(rim) if rim > THINNEST_RIM else math.nan
 

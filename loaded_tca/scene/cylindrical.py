@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.gears import CylindricalGear, CylindricalMesh, RingGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
 from loaded_tca.gears.involute import InvoluteMesh
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, cylindrical_pair
@@ -301,7 +301,8 @@ class CylindricalScene(BlankScene):
     def tooth_height_over_width(self) -> float:
         """Height of the higher teeth over the common face width, h/b of ISO 6336-1."""
         mesh = self.mesh()
-        return max(gear.tip_radius - gear.root_radius for gear in (mesh.pinion, mesh.wheel)) / mesh.common_face_width
+        heights = (abs(gear.tip_radius - gear.root_radius) for gear in (mesh.pinion, mesh.wheel))
+        return max(heights) / mesh.common_face_width
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios and diameters."""
@@ -358,18 +359,26 @@ class CylindricalScene(BlankScene):
         return interferences(mounted.room, module, place, nominal=nominal)
 
 
-def _root_section(mesh: CylindricalMesh, gear: CylindricalGear) -> iso6336_3.RootSection | None:
+def _root_section(mesh: InvoluteMesh, gear: CylindricalGear | RingGear) -> iso6336_3.RootSection | None:
     """Critical section of a gear after ISO 6336-3; None where the standard has none."""
+    module, dedendum, shift = gear.normal_module, gear.dedendum_coefficient, gear.profile_shift
     try:
+        if isinstance(gear, RingGear):
+            dedendum = (gear.root_radius - gear.reference_radius) / module + shift
+            radius = gear.fillet_radius / module
+            if gear.cutter is not None:
+                radius = iso6336_3.cut_root_radius(radius, dedendum, gear.cutter.teeth, gear.cutter.profile_shift)
+        else:
+            shift, radius = gear.generating_profile_shift, gear.rack_tip_radius / module
         return iso6336_3.root_section(
             gear.teeth,
-            gear.generating_profile_shift,
-            2.0 * gear.tip_radius / gear.normal_module,
+            shift,
+            2.0 * gear.tip_radius / module,
             mesh.transverse_contact_ratio,
             helix_angle=gear.helix_angle,
             pressure_angle=gear.pressure_angle,
-            dedendum_coefficient=gear.dedendum_coefficient,
-            root_radius_coefficient=gear.rack_tip_radius / gear.normal_module,
+            dedendum_coefficient=dedendum,
+            root_radius_coefficient=radius,
         )
     except (InputError, GeometryError):
         return None

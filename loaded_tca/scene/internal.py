@@ -21,7 +21,6 @@ from loaded_tca.scene.model import Hand, Row, Scene
 from loaded_tca.scene.parse import variant
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.sections import DIAMETER_mm, below
-from loaded_tca.scene.standards import ContactStandard
 from loaded_tca.scene.thickness import as_measured
 
 
@@ -195,26 +194,6 @@ class InternalScene(CylindricalScene):
         """Return where the active profiles start [mm]: roll lengths, that of the ring with a minus."""
         mesh = self.mesh()
         return mesh.pinion_active_profile.start_roll_length, -mesh.wheel_active_profile.start_roll_length
-
-    @property
-    def contact_standard(self) -> ContactStandard:
-        """Contact factors and stiffnesses of ISO 6336 are left out: not defined for internal gears here."""
-        return ContactStandard()
-
-    @property
-    def nominal_root_stress(self) -> tuple[float, float]:
-        """NaN: method B of ISO 6336-3 is left out for internal pairs."""
-        return math.nan, math.nan
-
-    @property
-    def root_sections(self) -> tuple[None, None]:
-        """None, and factors of root stress NaN, as :attr:`nominal_root_stress`."""
-        return None, None
-
-    @property
-    def tooth_height_over_width(self) -> float:
-        """NaN: factors of ISO 6336-3 are left out for internal pairs."""
-        return math.nan
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios, diameters, and the three interferences with their room."""

@@ -9,11 +9,10 @@ from __future__ import annotations
 from abc import ABC
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import hypot, nan, prod
+from math import hypot, inf, nan, prod
 from typing import Any
 
 from loaded_tca.errors import InputError, named
-from loaded_tca.gears import CylindricalMesh
 from loaded_tca.gears.involute import InvoluteMesh
 from loaded_tca.material import Material, contact_modulus
 from loaded_tca.reference import iso6336
@@ -51,7 +50,7 @@ class ContactStandard:
     largest_transverse_load_factor: float = nan
 
 
-def contact_standard(mesh: CylindricalMesh, materials: tuple[Material, Material]) -> ContactStandard:
+def contact_standard(mesh: InvoluteMesh, materials: tuple[Material, Material]) -> ContactStandard:
     """Values of the standard for a pair over its common face."""
     gear, alpha, beta = mesh.pinion, mesh.transverse_contact_ratio, mesh.overlap_ratio
     try:
@@ -66,7 +65,7 @@ def contact_standard(mesh: CylindricalMesh, materials: tuple[Material, Material]
     single = _single_stiffness(mesh, materials)
     return ContactStandard(
         stress_per_root_torque=iso6336.nominal_contact_stress(
-            2.0 / diameter, diameter, mesh.common_face_width, mesh.gear_ratio, factors
+            2.0 / diameter, diameter, mesh.common_face_width, mesh.wheel.teeth / gear.teeth, factors
         ),
         single_contact=single_contact,
         contact_ratio=by_ratio,
@@ -77,10 +76,10 @@ def contact_standard(mesh: CylindricalMesh, materials: tuple[Material, Material]
     )
 
 
-def _single_contact(mesh: CylindricalMesh, overlap_ratio: float) -> tuple[float, float]:
+def _single_contact(mesh: InvoluteMesh, overlap_ratio: float) -> tuple[float, float]:
     """Z_B and Z_D, of the ends of the path of contact that is used."""
     path, gears = mesh.path_of_contact, (mesh.pinion, mesh.wheel)
-    ends = path.E, path.T2 - path.A
+    ends = path.E, abs(path.T2 - path.A)
     first, second = (hypot(end, gear.base_radius) / gear.base_radius for gear, end in zip(gears, ends, strict=True))
     return iso6336.single_contact_factors(
         (mesh.pinion.teeth, mesh.wheel.teeth),
@@ -91,13 +90,14 @@ def _single_contact(mesh: CylindricalMesh, overlap_ratio: float) -> tuple[float,
     )
 
 
-def _single_stiffness(mesh: CylindricalMesh, materials: tuple[Material, Material]) -> float:
-    """c' of both materials; NaN for profile shifts beyond those that the standard has fitted."""
+def _single_stiffness(mesh: InvoluteMesh, materials: tuple[Material, Material]) -> float:
+    """c' of both materials, a ring as a rack; NaN for profile shifts beyond those that the standard has fitted."""
     gear, shifts = mesh.pinion, (mesh.pinion.profile_shift, mesh.wheel.profile_shift)
     if not FITTED_SHIFTS[0] <= sum(shifts) <= FITTED_SHIFTS[1]:
         return nan
     first, second = (
-        iso6336.virtual_teeth(one.teeth, one.helix_angle, one.pressure_angle) for one in (mesh.pinion, mesh.wheel)
+        iso6336.virtual_teeth(one.teeth, one.helix_angle, one.pressure_angle) if one.teeth > 0 else inf
+        for one in (mesh.pinion, mesh.wheel)
     )
     moduli = [material.youngs_modulus for material in materials]
     return iso6336.single_stiffness(

@@ -1,4 +1,4 @@
-from math import cos, pi, radians, sqrt
+from math import cos, pi, radians, sin, sqrt
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -133,6 +133,18 @@ def test_single_contact_factor_goes_to_1_with_the_overlap():
     assert single_contact(overlap=1.0) == single_contact(overlap=3.0) == (1.0, 1.0)
 
 
+def test_single_contact_factor_of_a_pinion_in_a_ring_is_hertz_at_point_b():
+    """Pinion 20 and ring -60 of module 1, alpha 20 deg, no shifts; at a contact ratio of 1.5."""
+    base, angle, pitch = (10.0 * cos(radians(20)), 30.0 * cos(radians(20))), radians(20), pi * cos(radians(20))
+    apart, end = 20.0 * sin(angle), 6.0  # roll length of the pinion at E; B lies one pitch before it
+    ring_at_a = end - 1.5 * pitch + apart
+    tips = sqrt(1.0 + (end / base[0]) ** 2), sqrt(1.0 + (ring_at_a / base[1]) ** 2)
+    relative = [1.0 / roll - 1.0 / (roll + apart) for roll in (end - pitch, 10.0 * sin(angle))]
+    first, second = iso6336.single_contact_factors((20, -60), tips, angle, 1.5, 0.0)
+    assert_allclose(first, (relative[0] / relative[1]) ** 0.5, rtol=ROUNDING)
+    assert first > second == 1.0
+
+
 def test_gears_exchanged_exchange_their_factors():
     tips = (1.22, 1.17)
     assert single_contact(tips=tips) == single_contact((24, 16), tips[::-1])[::-1]
@@ -150,6 +162,7 @@ test_iso6336_refuses = refused_calls(
         lambda: single_contact(teeth=(0, 24), tips=(0.9, 1.2), ratio=1.0, overlap=-1.0),
         ("^teeth: 0 is below 1", "^tip_over_base: 0.9 is not", "^transverse_contact_ratio: 1.0 is", "^overlap_ratio:"),
     ),
+    (lambda: single_contact(teeth=(24, -20)), "teeth: -20 is below 1, and no ring around 24 teeth"),
     (lambda: single_contact(ratio=3.5), "transverse_contact_ratio: 3.5 reaches beyond a base circle"),
     (lambda: iso6336.contact_ratio_factor(4.0, 0.0), "transverse_contact_ratio: 4.0 is not below 4"),
     (lambda: iso6336.largest_transverse_load_factor(4.5, 0.0), "transverse_contact_ratio: 4.5 is not below 4"),

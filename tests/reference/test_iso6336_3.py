@@ -1,4 +1,4 @@
-from math import cos, inf, nan, pi, radians
+from math import cos, inf, nan, pi, radians, sin, tan
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from loaded_tca.errors import GeometryError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.involute import involute
 from loaded_tca.reference.iso6336_3 import (
+    cut_root_radius,
     face_load_factor,
     helix_angle_factor,
     nominal_root_stress,
@@ -51,6 +52,42 @@ def test_critical_section_is_that_of_the_fillet_that_the_rack_cuts(shift):
     assert_allclose(section.thickness, y[place] + y[place + 1], rtol=1e-4)
     bend = np.diff(slope) / np.hypot(np.diff(x), np.diff(y))[1:]
     assert_allclose(section.radius, 1.0 / bend[place], rtol=1e-3)
+
+
+RINGS = {
+    "stage 1": ((-56, -0.5013, 2475.118 / 45.0, 1.278), 36, (2.875, 1.742, 0.494, 19.59, 1.27, 2.13)),
+    "stage 2": ((-93, 0.1171, 1906.081 / 21.0, 1.618), 30, (2.703, 1.444, 0.418, 18.63, 1.20, 2.34)),
+}
+"""NREL 5 MW, as KISSsoft 03/2017A prints: gear, teeth of the cutter, s_Fn, h_Fe, rho_F, alpha_Fen, Y_F, Y_S."""
+
+
+@pytest.mark.parametrize("stage", RINGS)
+def test_rings_have_the_digits_that_kisssoft_prints(stage):
+    gear, cutter, printed = RINGS[stage]
+    section = root_section(*gear, root_radius_coefficient=cut_root_radius(0.3, 1.25, cutter))
+    obtained = section.thickness, section.lever, section.radius, np.degrees(section.load_angle)
+    digits = 5e-4, 1e-3, 5e-4, 5e-3  # half a last digit; a whole one where the contact ratio, of four digits, counts
+    assert (np.abs(np.subtract(obtained, printed[:4])) <= digits).all()
+    assert_allclose([section.form_factor, section.stress_correction_factor], printed[4:], atol=5e-3)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_gear_and_ring_of_many_teeth_are_racks(sign):
+    """Formulas of DIN 3990-3:1987, which takes a ring as a rack with tangents of 30 degrees; here a ring has 60."""
+    angle, height, rho, addendum = radians(20.0), 1.25, 0.38, 1.0
+    tangent, teeth = radians(30.0 if sign > 0 else 60.0), 1_000_000
+    section = root_section(sign * teeth, 0.0, teeth + sign * 2.0 * addendum, 1.0)
+    thickness = 2.0 * (pi / 4.0 + tan(angle) * (height - rho) + rho / cos(angle) - rho * cos(tangent))
+    whole = height + addendum
+    lever = whole - (pi / 4.0 + (height - whole) * tan(angle)) * tan(angle) - rho * (1.0 - sin(tangent))
+    # the largest difference is that of the radius, 2 G^2/(z cos^3 theta) = 1.2e-5 of 0.38 with theta 60 degrees
+    assert_allclose([section.thickness, section.lever, section.radius], [thickness, lever, rho], rtol=1e-4)
+    assert_allclose(section.load_angle, angle, rtol=1e-4)
+
+
+def test_cutter_of_many_teeth_has_the_rounding_of_a_rack():
+    assert cut_root_radius(0.3, 1.25, 10000) == 0.3
+    assert cut_root_radius(0.3, 1.25, 20) > cut_root_radius(0.3, 1.25, 40) > 0.3
 
 
 def test_lever_at_a_contact_ratio_of_1_is_that_of_a_load_at_the_tip():
@@ -115,6 +152,7 @@ test_section_tells_what_is_out_of_range = refusals(
 test_gears_without_a_section_are_refused = refusals(
     lambda change: root_section(**{**USUAL, **change}),
     ({"tip_diameter": 20.0}, "inside the base circle"),
+    ({"teeth": -20, "tip_diameter": 18.0, "profile_shift": -1.9}, "no tangent of 30 degrees, or 60 of a ring"),
     ({"teeth": 8, "tip_diameter": 10.0, "transverse_contact_ratio": 2.9}, "below the base circle"),
     ({"root_radius_coefficient": 30.0}, "no critical section"),
     error=GeometryError,
@@ -122,6 +160,8 @@ test_gears_without_a_section_are_refused = refusals(
 
 
 test_iso6336_3_refuses = refused_calls(
+    (lambda: cut_root_radius(-0.1, 1.25, 2), ("^cutter_teeth: 2 is below 3", "^root_radius_coefficient: -0.1")),
+    (lambda: cut_root_radius(0.3, 1.25, 30, -1.0), "cutter_profile_shift: -1.0 leaves the cutter no addendum"),
     (rim_thickness_factor, "rim_over_height: .* is not above 0.5", [0.5, 0.0, nan]),
     (lambda: root_section(2, 3.0, -1.0, 1.6), ("^teeth:", "^profile_shift:", "^tip_diameter:")),
     (lambda: face_load_factor(0.9, 0.2), r"contact_face_load_factor: 0.9 is below 1"),

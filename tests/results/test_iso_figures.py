@@ -121,5 +121,5 @@ def test_rim_factor_is_that_of_the_bore(rim, factor):
     """Root radius 47.25, height 6.75 mm: rims of so many heights."""
     bore = 2.0 * (47.25 - 6.75 * rim)
     cycle = changed_scene(result("mesh_cycle_spur"), {"pinion.bore_diameter_mm": bore})
-    assert_allclose(rim_factor(cycle.gear_pair.pinion), factor, atol=5e-6)
-    assert rim_factor(cycle.gear_pair.wheel) == 1.0
+    assert_allclose(rim_factor(cycle.gear_pair.pinion, 3.0), factor, atol=5e-6)
+    assert rim_factor(cycle.gear_pair.wheel, 3.0) == 1.0

@@ -2,15 +2,18 @@
 
 import re
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, parse_scene
 from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.reference.iso6336_3 import root_section
 from loaded_tca.results.gear_warnings import warn_of_gears
-from loaded_tca.scene import CylindricalScene, InternalScene, describe_keys
+from loaded_tca.scene import CylindricalScene, InternalScene, describe_keys, read_scene
 from tests.refusals import refused_calls
 from tests.samples.internal_pairs import SCENE
+from tests.samples.results import SCENES
 
 
 @pytest.fixture(scope="module")
@@ -83,9 +86,28 @@ def test_cutter_shapes_the_fillet():
     assert changed(wheel__cutter={"teeth": 20}).mesh().ring.form_radius != parse_scene(SCENE).mesh().ring.form_radius
 
 
-def test_standard_is_not_defined_for_internal_pairs(scene):
-    assert all(value != value for value in scene.nominal_root_stress)
-    assert scene.tooth_height_over_width != scene.tooth_height_over_width
+def test_nominal_stresses_and_stiffness_of_the_nrel_stage_are_those_that_kisssoft_prints():
+    """Planet and ring of stage 2, F_t 285900 N; stiffness with C_R 0.862, printed with three digits."""
+    scene = read_scene(SCENES / "planet_ring.toml")
+    torque, standard = 285900.438 * 378.0, scene.contact_standard
+    # contact ratio and diameters are printed with four and six digits
+    assert_allclose(standard.stress_per_root_torque * torque**0.5, 312.44, atol=1e-2)
+    assert_allclose(torque * np.array(scene.nominal_root_stress), [61.98, 69.12], atol=2e-2)
+    assert_allclose(0.862 * standard.single_stiffness, 14.053, rtol=6e-4)
+    assert_allclose(0.862 * standard.mesh_stiffness, 20.563, rtol=6e-4)
+    assert_allclose(standard.contact_ratio, 0.891, atol=5e-4)
+    assert_allclose(scene.tooth_height_over_width, 47.250 / 550.0, rtol=1e-4)
+
+
+def test_root_section_of_a_ring_without_cutter_has_its_arcs():
+    ring = changed(wheel__root_diameter_mm=None).mesh().ring
+    section = changed(wheel__root_diameter_mm=None).root_sections[1]
+    rack = root_section(
+        ring.teeth, ring.profile_shift, 2.0 * ring.tip_radius / ring.normal_module,
+        changed().mesh().transverse_contact_ratio, helix_angle=ring.helix_angle,
+        root_radius_coefficient=ring.fillet_radius / ring.normal_module,
+    )  # fmt: skip
+    assert_allclose([section.thickness, section.radius], [rack.thickness, rack.radius], rtol=1e-12)  # rounding
 
 
 def test_teeth_apart_make_the_centre_distance_smaller():
