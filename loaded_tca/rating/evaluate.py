@@ -10,6 +10,7 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, named
 from loaded_tca.rating.loads import load_factors
+from loaded_tca.rating.vibration import vibration
 from loaded_tca.reference import iso6336, iso6336_1, iso6336_2, iso6336_3
 from loaded_tca.results.root_stress import rim_factor
 from loaded_tca.tribology.slices import slices_of
@@ -30,7 +31,7 @@ def evaluated(inputs: RatingInputs) -> tuple[Arrays, tuple[str, ...], bool]:
     roots, root_notes = _of_roots(inputs, loads)
     local, at_edge = _local_flanks(inputs, loads, flanks.strength, curves)
     arrays = {"torque": np.asarray(inputs.torque), "cycles": _both(inputs, inputs.cycles)}
-    arrays |= loads | stresses | rated | roots | local
+    arrays |= loads | vibration(inputs) | stresses | rated | roots | local
     mesh = inputs.mesh
     scope = iso6336_1.scope_notes(
         pressure_angle=mesh.pinion.pressure_angle,
