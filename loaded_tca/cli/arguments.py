@@ -345,7 +345,9 @@ def _add_studies(command: Command) -> None:
     study.add_argument("study", metavar="STUDY.toml", help="study file")
     study.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     _add_engine(study)
-    study.add_argument("--rank-by", metavar="FIGURE", help="figure of study.csv, the least is best; default: TE span")
+    study.add_argument(
+        "--rank-by", metavar="FIGURE", help="figure of study.csv that ranks, best first; default: TE span"
+    )
     study.add_argument(
         "--keep-maps",
         metavar="N,N,...",
@@ -358,7 +360,9 @@ def _add_studies(command: Command) -> None:
     text = "result.nc, stage.nc, study.nc, the file of a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
-    report.add_argument("--rank-by", metavar="FIGURE", help="of a study, the least is best; default: TE span")
+    report.add_argument(
+        "--rank-by", metavar="FIGURE", help="of a study, figure that ranks, best first; default: TE span"
+    )
 
 
 def _add_engine(parser: argparse.ArgumentParser) -> None:
