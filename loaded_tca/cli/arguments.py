@@ -77,6 +77,7 @@ point under each torque.
 files in DIR:
   rating.json               safeties, lives and every factor under each torque
   rating.csv                the same, one row per torque
+{safety_pictures}
 docs/guide/strong_enough.md says more."""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
@@ -383,6 +384,8 @@ class _Parser(argparse.ArgumentParser):
             self.epilog = FILES.format(pictures=_list_of_pictures())
         if self.epilog == TRIBOLOGY:
             self.epilog = TRIBOLOGY.format(tribology_pictures=_list_of_tribology())
+        if self.epilog == RATING:
+            self.epilog = RATING.format(safety_pictures=_list_of_safeties())
         return super().format_help()
 
     def error(self, message: str) -> NoReturn:
@@ -414,6 +417,12 @@ def _list_of_tribology() -> str:
     from loaded_tca.plots import TRIBOLOGY_PICTURES
 
     return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in TRIBOLOGY_PICTURES.items())
+
+
+def _list_of_safeties() -> str:
+    from loaded_tca.plots import SAFETY_PICTURES
+
+    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in SAFETY_PICTURES.items())
 
 
 class _Version(argparse.Action):

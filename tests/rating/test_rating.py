@@ -81,7 +81,9 @@ def test_lower_stress_than_the_end_of_the_curve_is_borne_for_ever():
 def test_local_stresses_are_those_of_the_contact_and_the_roots():
     whole, rated = solved(), solved().rating()
     tension = np.nanmax(whole.root_tension, axis=1)
-    assert_allclose(rated.local_root_stress, tension, rtol=ROUNDING)
+    # the place that decides has more reversal, and less tension by what that takes of its strength at the most
+    assert_allclose(rated.local_root_stress, tension, rtol=0.01)
+    assert (rated.local_root_stress <= tension * (1.0 + ROUNDING)).all()
     # Formula of a line contact at each slice beside the pressures of the solver: 16 x 24 cells on crowned flanks, whose
     # ellipse is not as slender as a line, and peaks of edges, which the mean over a quarter module leaves out.
     peaks = np.nanmax(whole.peak_pressure, axis=(1, 2))
