@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -161,7 +162,7 @@ def _scale(safety: Array, required: float) -> tuple[Normalize, Colormap]:
     """Scale of colours from the required safety, or from a smaller least one on, and colours: below it an accent."""
     known = safety[np.isfinite(safety)]
     least = float(known.min()) if known.size else required
-    colours = style.colormaps[f"{COLOURS}_r"].with_extremes(under=ACCENT)
+    colours = colormaps[f"{COLOURS}_r"].with_extremes(under=ACCENT)
     return Normalize(required, max(LARGEST * least, 1.5 * required)), colours
 
 
@@ -186,7 +187,7 @@ def _lines(places: FlankSafeties, gear: int, to_picture: ToPicture) -> Iterator[
     along = np.linspace(0.0, 1.0, 2 * FIELDS)
     for column in np.unique(places.column):
         lines: list[tuple[Array, Array]] = []
-        before = None
+        before = 0
         for position in np.unique(places.position[places.column == column]):
             own = np.flatnonzero((places.column == column) & (places.position == position))
             ends = places.point[own[[0, -1]]] + np.array([[-1.0], [1.0]]) * places.tangent[own[[0, -1]]]
@@ -227,7 +228,7 @@ def _least_seen(axes: Axes, places: FlankSafeties, gear: int, to_picture: ToPict
 def _mark(axes: Axes, at: Array, value: float) -> None:
     """A cross with the number of the smallest safety."""
     axes.plot(*at, "x", color="black", markersize=8.0, markeredgewidth=2.0, zorder=10.0)
-    text = axes.annotate(plain(value), at, (7.0, 5.0), textcoords="offset points", zorder=10.0)
+    text = axes.annotate(plain(value), (float(at[0]), float(at[1])), (7.0, 5.0), textcoords="offset points", zorder=10.0)
     text.set_path_effects([withStroke(linewidth=3.0, foreground="white")])
 
 
