@@ -39,6 +39,7 @@ UNITS = {
     "N_per_um": Unit("N/um", "N/mm", 1e3),
     "Nm_per_mrad": Unit("N m/mrad", "N mm/rad", 1e6),
     "N_per_mm": Unit("N/mm", "N/mm", 1.0),
+    "kg_per_mm": Unit("kg/mm", "kg/mm", 1.0),
     "arcsec": Unit("arcsec", "rad", math.radians(1.0 / 3600.0)),
     "um": Unit("um", "mm", 1e-3),
     "mm": Unit("mm", "mm", 1.0),

@@ -2118,8 +2118,8 @@ FAULTS = (
     Fault(
         "the radius of a ring's fillet has the sign of its teeth",
         "reference/iso6336_3.py",
-        "(abs(z) * cos(angle) ** 2 - 2.0 * depth))",
-        "(z * cos(angle) ** 2 - 2.0 * depth))",
+        "(abs(teeth) * cos(angle) ** 2 - 2.0 * depth))",
+        "(teeth * cos(angle) ** 2 - 2.0 * depth))",
         "reference/test_iso6336_3.py::test_rings_have_the_digits_that_kisssoft_prints",
     ),
     Fault(
@@ -2131,9 +2131,9 @@ FAULTS = (
     ),
     Fault(
         "a ring counts as a solid disc in the reduced mass",
-        "rating/loads.py",
-        "(2.0 * gear.outer_radius, mean) if isinstance(gear, RingGear)",
-        "(mean, 0.0) if isinstance(gear, RingGear)",
+        "rating/vibration.py",
+        "    if isinstance(gear, RingGear):\n        return pi / 32.0 * ((2.0 * gear.outer_radius) ** 4 - (gear.tip_radius + gear.root_radius) ** 4)",
+        "    if isinstance(gear, RingGear):\n        return pi / 32.0 * (gear.tip_radius + gear.root_radius) ** 4",
         "rating/test_rings.py::test_ring_is_hollow_in_the_reduced_mass",
     ),
     Fault(

@@ -6,6 +6,7 @@ import os
 
 import pytest
 
+from loaded_tca.plots import plot_safeties
 from tests.samples.rating import solved
 
 
@@ -13,6 +14,7 @@ from tests.samples.rating import solved
 def out(tmp_path, monkeypatch):
     """The directory of a result."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("loaded_tca.plots.safety_figures", lambda rated: {"safeties": plot_safeties(rated)})  # quick
     os.mkdir("out")
     solved().save("out/result.nc")
     return "out"
@@ -26,7 +28,7 @@ def test_command_writes_what_the_call_finds(run, out):
     changes = {"rating.required_root_safety": 90.0, "operation.application_factor": 2.0}
     expected = solved(**changes).rating()
     assert all(line in text for line in expected.summary().splitlines())
-    assert {*os.listdir(out)} == {"result.nc", "rating.json", "rating.csv"}
+    assert {*os.listdir(out)} == {"result.nc", "rating.json", "rating.csv", "safeties.png"}
     with open(f"{out}/rating.json", encoding="utf-8") as file:
         written = json.load(file)
     assert [row["wheel_flank_safety"] for row in written["torques"]] == expected.flank_safety[:, 1].tolist()

@@ -77,6 +77,7 @@ point under each torque.
 files in DIR:
   rating.json               safeties, lives and every factor under each torque
   rating.csv                the same, one row per torque
+{safety_pictures}
 docs/guide/strong_enough.md says more."""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
@@ -345,7 +346,9 @@ def _add_studies(command: Command) -> None:
     study.add_argument("study", metavar="STUDY.toml", help="study file")
     study.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     _add_engine(study)
-    study.add_argument("--rank-by", metavar="FIGURE", help="figure of study.csv, the least is best; default: TE span")
+    study.add_argument(
+        "--rank-by", metavar="FIGURE", help="figure of study.csv that ranks, best first; default: TE span"
+    )
     study.add_argument(
         "--keep-maps",
         metavar="N,N,...",
@@ -358,7 +361,9 @@ def _add_studies(command: Command) -> None:
     text = "result.nc, stage.nc, study.nc, the file of a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
-    report.add_argument("--rank-by", metavar="FIGURE", help="of a study, the least is best; default: TE span")
+    report.add_argument(
+        "--rank-by", metavar="FIGURE", help="of a study, figure that ranks, best first; default: TE span"
+    )
 
 
 def _add_engine(parser: argparse.ArgumentParser) -> None:
@@ -379,6 +384,8 @@ class _Parser(argparse.ArgumentParser):
             self.epilog = FILES.format(pictures=_list_of_pictures())
         if self.epilog == TRIBOLOGY:
             self.epilog = TRIBOLOGY.format(tribology_pictures=_list_of_tribology())
+        if self.epilog == RATING:
+            self.epilog = RATING.format(safety_pictures=_list_of_safeties())
         return super().format_help()
 
     def error(self, message: str) -> NoReturn:
@@ -410,6 +417,12 @@ def _list_of_tribology() -> str:
     from loaded_tca.plots import TRIBOLOGY_PICTURES
 
     return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in TRIBOLOGY_PICTURES.items())
+
+
+def _list_of_safeties() -> str:
+    from loaded_tca.plots import SAFETY_PICTURES
+
+    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in SAFETY_PICTURES.items())
 
 
 class _Version(argparse.Action):

@@ -104,6 +104,8 @@ def _run_scene(scene: Scene, directory: Path) -> None:
         error.add_note(f"{directory}: the numbers are new, all pictures are missing: {again}")
         raise
     print_summary(result.summary(), [*report, *pictures])
+    if scene.rating is not None:
+        print(f"Safeties and lives: 'loaded-tca rating {directory}'")
 
 
 def revolution(options: argparse.Namespace) -> None:
@@ -138,12 +140,14 @@ def tribology(options: argparse.Namespace) -> None:
 
 
 def rating(options: argparse.Namespace) -> None:
-    """Write safeties and lives of a result with all factors, and show the table."""
+    """Write safeties and lives of a result with all factors and pictures, and show the table."""
     from loaded_tca.output.other_results import write_rating
+    from loaded_tca.plots import png_of, safety_figures
 
     result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
     rated = result.rating()
-    print_summary(rated.summary(), write_rating(rated, directory))
+    pictures = {f"{name}.png": png_of(figure) for name, figure in safety_figures(rated).items()}
+    print_summary(rated.summary(), write_rating(rated, directory, pictures))
 
 
 def _changed_result(

@@ -145,19 +145,21 @@ RATING_FILES = "rating.json", "rating.csv"
 
 
 @checked
-def write_rating(rating: Rating, directory: FilePath) -> tuple[Path, ...]:
-    """Write ``rating.json`` and ``rating.csv``, both or none.
+def write_rating(rating: Rating, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
+    """Write ``rating.json`` and ``rating.csv``, all files or none.
 
     Parameters
     ----------
     rating : Rating
     directory : str or path
         Made if it does not exist.
+    more : mapping of str to bytes
+        Contents of files to write with these, by their names: pictures.
 
     Returns
     -------
     tuple of Path
-        Both files. A life that does not end is null in JSON and inf in CSV.
+        All files. A life that does not end is null in JSON and inf in CSV.
 
     Raises
     ------
@@ -166,7 +168,7 @@ def write_rating(rating: Rating, directory: FilePath) -> tuple[Path, ...]:
     """
     text = figures_json(rating, notes=rating.notes(), warnings=rating.warnings or ())
     contents = text.encode(), csv_table(rating.to_table()).encode()
-    return replace_together(directory, dict(zip(RATING_FILES, contents, strict=True)))
+    return replace_together(directory, {**dict(zip(RATING_FILES, contents, strict=True)), **more})
 
 
 @checked

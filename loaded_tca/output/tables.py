@@ -24,6 +24,7 @@ from loaded_tca.results.quantities import MAP_PARTS, QUANTITIES
 from loaded_tca.results.summary import shown
 from loaded_tca.results.tolerances import key_figure_slopes
 from loaded_tca.studies.ranking import main_figures, ranking, varied_keys
+from loaded_tca.studies.rating import safeties_of, shortfall
 from loaded_tca.units import unit_of
 
 if TYPE_CHECKING:
@@ -324,8 +325,8 @@ def _digits(value: float, sign: str = "+") -> str:
     return f"{value:{sign}.3g}" if math.isfinite(value) else "-"
 
 
-STUDY, RANKING, PICTURES = "study.csv", "ranking.csv", "study_*.png"
-"""Names of the two files and of the pictures."""
+STUDY, RANKING, SHORTFALL, PICTURES = "study.csv", "ranking.csv", "shortfall.csv", "study_*.png"
+"""Names of the files and of the pictures; the third one of studies with safeties."""
 
 
 def write_study(
@@ -333,9 +334,9 @@ def write_study(
     directory: FilePath,
     more: Mapping[str, Buffer] = {},
     rank_by: str | None = None,
-    largest_is_best: bool = False,
+    largest_is_best: bool | None = None,
 ) -> tuple[Path, ...]:
-    """Write ``study.csv`` and ``ranking.csv``, all files or none.
+    """Write ``study.csv`` and ``ranking.csv``, of studies with safeties ``shortfall.csv``, all files or none.
 
     Parameters
     ----------
@@ -361,7 +362,10 @@ def write_study(
     by = rank_by if main_figures(study) else None  # where all variants were refused there is nothing to rank by
     ranked = ranking(study, by, largest_is_best=largest_is_best).to_csv(index=False)
     contents = {STUDY: study_csv(study).encode(), RANKING: ranked.encode(), **more}
-    old = {path.name for path in Path(directory).glob(PICTURES)} - {*contents}
+    if safeties_of(study):
+        contents[SHORTFALL] = shortfall(study).to_csv(index=False).encode()
+    there = {path.name for pattern in (PICTURES, SHORTFALL) for path in Path(directory).glob(pattern)}
+    old = there - {*contents}
     return replace_together(directory, contents, old)
 
 

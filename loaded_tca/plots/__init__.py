@@ -32,6 +32,13 @@ from loaded_tca.plots.revolution import (
     plot_revolution_waterfall,
 )
 from loaded_tca.plots.root_stress import plot_root_stress, plot_root_stress_cycle, plot_root_stress_over_torque
+from loaded_tca.plots.safety import (
+    SAFETY_PICTURES,
+    plot_flank_safety,
+    plot_root_safety,
+    plot_safeties,
+    safety_figures,
+)
 from loaded_tca.plots.sensitivities import (
     plot_removal_weights,
     plot_sensitivity_curves,
@@ -88,6 +95,7 @@ __all__ = [
     "MORE_PICTURES",
     "PICTURES",
     "REVOLUTION_PICTURES",
+    "SAFETY_PICTURES",
     "STAGE_CAPTIONS",
     "STAGE_PICTURES",
     "TRIBOLOGY_PICTURES",
@@ -107,6 +115,7 @@ __all__ = [
     "plot_face_load_on_supports",
     "plot_film_ratio",
     "plot_first_order_scatter",
+    "plot_flank_safety",
     "plot_friction_power",
     "plot_full_mesh",
     "plot_harmonics",
@@ -128,9 +137,11 @@ __all__ = [
     "plot_revolution_spectrum",
     "plot_revolution_waterfall",
     "plot_robustness",
+    "plot_root_safety",
     "plot_root_stress",
     "plot_root_stress_cycle",
     "plot_root_stress_over_torque",
+    "plot_safeties",
     "plot_sensitivity_curves",
     "plot_shafts",
     "plot_sliding_velocities",
@@ -157,6 +168,7 @@ __all__ = [
     "plot_vh_check",
     "png_of",
     "result_figures",
+    "safety_figures",
     "save_figure",
     "show_teeth",
     "stage_figures",

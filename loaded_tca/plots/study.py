@@ -52,7 +52,7 @@ from loaded_tca.plots.study_scatter import (
     plot_study_scatter_matrix,
 )
 from loaded_tca.plots.style import ACCENT, COLOURS, MOST_LABELS, NOT_REACHED, label_of
-from loaded_tca.studies.ranking import figure_values, main_figures, varied_keys
+from loaded_tca.studies.ranking import figure_values, is_largest_best, main_figures, varied_keys
 from loaded_tca.studies.stage import torque_name
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def plot_study(
     study: xarray.Dataset,
     figures: Sequence[str] | None = None,
     rank_by: str | None = None,
-    largest_is_best: bool = False,
+    largest_is_best: bool | None = None,
 ) -> dict[str, Figure]:
     """Return the pictures that fit what a study varies, by the names of their files without the ending.
 
@@ -83,8 +83,8 @@ def plot_study(
         Key figures to show; default: peak-to-peak transmission error, peak pressure and face load factor.
     rank_by : str, optional
         Figure that ranks the variants; default: the first of the figures.
-    largest_is_best : bool
-        Whether its largest value is the best one.
+    largest_is_best : bool, optional
+        Whether its largest value is the best one; default: as in :func:`loaded_tca.studies.rank_variants`.
 
     Returns
     -------
@@ -109,7 +109,7 @@ def plot_study(
         if stepped:
             pictures[f"study_lines_{name}"] = plot_study_lines(study, name, *stepped[:2])
         if len(stepped) > 1:
-            best = largest_is_best and name == rank_by
+            best = largest_is_best if name == rank_by else None
             pictures[f"study_heat_map_{name}"] = plot_study_heat_map(study, name, *stepped[:2], largest_is_best=best)
         if scattered:
             pictures[f"study_histogram_{name}"] = plot_study_histogram(study, name, stepped)
@@ -196,7 +196,7 @@ def plot_study_heat_map(
     across: str | None = None,
     upwards: str | None = None,
     *,
-    largest_is_best: bool = False,
+    largest_is_best: bool | None = None,
 ) -> Figure:
     """Figure over the grid of two varied keys, a panel for each torque, the best cell framed.
 
@@ -210,8 +210,8 @@ def plot_study_heat_map(
         Name of a key figure.
     across, upwards : str, optional
         Keys of the axes; default: the first two.
-    largest_is_best : bool
-        Whether the largest value is the best one.
+    largest_is_best : bool, optional
+        Whether the largest value is the best one; default: as in :func:`loaded_tca.studies.rank_variants`.
 
     Returns
     -------
@@ -223,6 +223,7 @@ def plot_study_heat_map(
         If the study has no such figure, does not vary such a key, or varies one alone.
     """
     values, keys = figure_values(study, figure), varied_keys(study)
+    largest_first = is_largest_best(figure, largest_is_best)
     if len(keys) < 2:
         raise InputError(f"heat map: needs two keys; the study varies {', '.join(keys)} alone")
     across = known_key(study, across or next(key for key in keys if key != upwards))
@@ -234,7 +235,7 @@ def plot_study_heat_map(
     of_cell = _samples_of_cells(rows, columns, (len(y), len(x)))
     for one, torque in zip(axes, torques, strict=True):
         cells = np.array([[percentiles_of(values[of, torque])[1] for of in line] for line in of_cell])
-        _draw_cells(drawing, one, cells, label_of(figure), largest_is_best)
+        _draw_cells(drawing, one, cells, label_of(figure), largest_first)
         asked = np.array([[of.size > 0 for of in line] for line in of_cell])
         missing = asked & ~np.isfinite(cells)
         one.plot(*np.nonzero(missing)[::-1], "x", color=ACCENT, markersize=9.0)
@@ -244,7 +245,7 @@ def plot_study_heat_map(
             axis.set_ticks(range(0, len(ticks), every), ticks[::every])
         one.set(xlabel=key_label(study, across), ylabel=key_label(study, upwards))
         one.set_title(labels[torque] if values.shape[1] > 1 else "", fontsize="small")
-    best = Patch(fill=False, edgecolor=ACCENT, linewidth=2.5, label="largest" if largest_is_best else "least")
+    best = Patch(fill=False, edgecolor=ACCENT, linewidth=2.5, label="largest" if largest_first else "least")
     handles = [best, Line2D([], [], color=ACCENT, marker="x", linestyle="", label=MISSING)][: 1 + crossed]
     drawing.legend(handles=handles, loc="outside lower center", ncols=2, fontsize="small")
     median = [] if max(of.size for line in of_cell for of in line) < 2 else ["medians over the other keys"]

@@ -28,10 +28,11 @@ from loaded_tca.plots.style import ACCENT, COLOURS, MARKERS, MOST_LABELS, NOT_RE
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.parse import parse_scene, toml_table
 from loaded_tca.studies.ranking import (
-    QUANTILE,
     design_keys,
     figure_values,
+    is_largest_best,
     main_figures,
+    quantile_of,
     rank_variants,
     ranking,
     varied_keys,
@@ -230,7 +231,7 @@ LINE = 0.26
 
 
 def plot_study_ranking(
-    study: xarray.Dataset, by: str | None = None, *, torque: int | None = None, largest_is_best: bool = False
+    study: xarray.Dataset, by: str | None = None, *, torque: int | None = None, largest_is_best: bool | None = None
 ) -> Figure:
     """Table of the best variants of :func:`loaded_tca.studies.rank_variants`, with distributions of the best designs.
 
@@ -269,11 +270,14 @@ def plot_study_ranking(
     values = figure_values(study, by or main_figures(study)[0])
     kind = "designs" if design_keys(study) else "variants"
     what = f"{len(cells)} best of {len(ranked)} {kind}" if len(cells) < len(ranked) else kind
-    worst = "least" if largest_is_best else "largest"
-    lucky = 100.0 * (1.0 - QUANTILE if largest_is_best else QUANTILE)
-    quantile = [f"of each figure the {lucky:z.0f} % quantile over the samples"] if design_keys(study) else []
-    of = [f"of each figure the {worst} over the torques"] if torque is None and values.shape[1] > 1 else []
-    order = "largest" if largest_is_best else "least"
+    largest_first = is_largest_best(by or main_figures(study)[0], largest_is_best)
+    worst = "least" if largest_first else "largest"
+    lucky = 100.0 * quantile_of(by or main_figures(study)[0], largest_is_best)
+    apart = largest_is_best is None and any(is_largest_best(name) != largest_first for name in columns if name in study)
+    but = " (the other end of those that are best the other way)" if apart else ""
+    quantile = [f"of each figure the {lucky:z.0f} % quantile over the samples{but}"] if design_keys(study) else []
+    of = [f"of each figure the {worst} over the torques{but}"] if torque is None and values.shape[1] > 1 else []
+    order = "largest" if largest_first else "least"
     what = f"{what}, {order} {without_unit(label_of(by or main_figures(study)[0]))} first"
     set_study_title(drawing, study, values, what, *of, *quantile, *_why_unranked(rank_variants(study, by, torque)))
     return drawing

@@ -38,8 +38,10 @@ from loaded_tca.plots.study_panels import (
     without_unit,
 )
 from loaded_tca.plots.style import ACCENT, COLOURS, MOST_LABELS, label_of, wrapped_label_of
+from loaded_tca.scene import Scene
 from loaded_tca.studies.ranking import design_keys, figure_values, main_figures, nominal_variant, varied_keys
-from loaded_tca.studies.stage import torque_name
+from loaded_tca.studies.rating import REQUIRED, is_rated, required_safeties
+from loaded_tca.studies.stage import subject_of, torque_name
 
 if TYPE_CHECKING:
     import xarray
@@ -54,6 +56,8 @@ MOST_COLUMNS = 20
 
 def plot_study_histogram(study: xarray.Dataset, figure: str, by: Sequence[str] = ()) -> Figure:
     """Scatter of a figure over the variants: histogram, cumulative curve and percentiles, a panel for each torque.
+
+    A safety has a line at that required: the curve there is the probability of a shortfall.
 
     Parameters
     ----------
@@ -89,11 +93,28 @@ def plot_study_histogram(study: xarray.Dataset, figure: str, by: Sequence[str] =
         cumulative.yaxis.set_major_formatter(PercentFormatter(1.0))
         cumulative.set_ylabel("variants up to here")
         one.set_xlabel(label_of(figure))
+        title += _draw_required(one, study, figure, values[:, torque])
         finish_panel(one, values[:, [torque]], "\n".join(title), vertical=False)
     legend_of(drawing, axes, ", ".join(map(label_of, by)))
     what = f"scatter of the {without_unit(label_of(figure))}{under_torques(study, torques)}"
     set_study_title(drawing, study, values, what)
     return drawing
+
+
+def _draw_required(axes: Axes, study: xarray.Dataset, figure: str, values: Array) -> list[str]:
+    """Line at the safety that is required, if it is not far from all; the words of it for the title."""
+    scene = subject_of(study)
+    if figure not in REQUIRED or not isinstance(scene, Scene) or not is_rated(scene):
+        return []
+    levels = np.unique(required_safeties(study, scene, figure))
+    known = values[np.isfinite(values)]
+    if levels.size > 1 or not known.size:
+        return []
+    level, low, high = float(levels[0]), float(known.min()), float(known.max())
+    if 2.0 * low - high <= level <= 2.0 * high - low:
+        axes.axvline(level, color=ACCENT, linestyle="--")
+        return [f"required {plain(level)} (dashed)"]
+    return [f"required {plain(level)}"]
 
 
 def plot_study_over_torque(study: xarray.Dataset, figure: str = TRANSMISSION_ERROR) -> Figure:

@@ -325,6 +325,9 @@ NAMES = {
     "sample": "number of the variant",
     "tip_relief_start_roll": "tip relief start (roll angle)",
     "root_relief_start_roll": "root relief start (roll angle)",
+    **{name: f"safety {name}" for name in ("S_H", "S_F")},
+    **{f"{name}_local": f"local safety {name}" for name in ("S_H", "S_F")},
+    "life_local": "life by local stresses",
     **{without_unit(name): declared.axis for name, declared in FIGURES.items() if declared.axis},
 }
 """Keys and figures whose words alone do not name them."""

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loaded_tca.arrays import GEARS, Array
-from loaded_tca.errors import InputError, named
+from loaded_tca.errors import named
 from loaded_tca.rating.loads import load_factors
+from loaded_tca.rating.roots import deciding_places, local_root_factors, root_of
+from loaded_tca.rating.vibration import vibration
 from loaded_tca.reference import iso6336, iso6336_1, iso6336_2, iso6336_3
 from loaded_tca.results.root_stress import rim_factor
 from loaded_tca.tribology.slices import slices_of
@@ -30,7 +32,7 @@ def evaluated(inputs: RatingInputs) -> tuple[Arrays, tuple[str, ...], bool]:
     roots, root_notes = _of_roots(inputs, loads)
     local, at_edge = _local_flanks(inputs, loads, flanks.strength, curves)
     arrays = {"torque": np.asarray(inputs.torque), "cycles": _both(inputs, inputs.cycles)}
-    arrays |= loads | stresses | rated | roots | local
+    arrays |= loads | vibration(inputs) | stresses | rated | roots | local
     mesh, ring = inputs.mesh, inputs.mesh.wheel.teeth < 0
     scope = iso6336_1.scope_notes(
         pressure_angle=mesh.pinion.pressure_angle,
@@ -132,9 +134,7 @@ def _of_roots(inputs: RatingInputs, loads: Arrays) -> tuple[Arrays, tuple[str, .
 
 def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, tuple[str, ...]]:
     """Numbers of the root of one gear (t,), and notes."""
-    scene, mesh, strength = inputs.scene, inputs.mesh, inputs.strengths[place]
-    section = scene.root_sections[place]
-    assert section is not None  # refused before
+    scene, strength = inputs.scene, inputs.strengths[place]
     gear = (inputs.result.gear_pair.pinion, inputs.result.gear_pair.wheel)[place]
     of_class = inputs.rating.tolerance_class
     rim = rim_factor(gear, mesh.pinion.normal_module)
@@ -142,16 +142,7 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
     form, correction, helix = scene.root_factors[place]
     nominal = scene.nominal_root_stress[place] * inputs.torque * rim * deep
     stress = nominal * loads["K_A"] * loads["K_v"] * loads["K_Fbeta"] * loads["K_Falpha"]
-    made_of = iso6336_3.RootStrength(
-        strength.limits[1], strength.kind_of_material, strength.root_Rz_um, strength.proof_stress_MPa
-    )
-    common = {
-        "notch_parameter": section.notch_parameter,
-        "stress_correction_factor": section.stress_correction_factor,
-        "normal_module": mesh.pinion.normal_module,
-        "cycles": float(inputs.cycles[place]),
-        "long_life_factor": inputs.rating.long_life_factor,
-    }
+    made_of, common = root_of(inputs, place)
     factors = iso6336_3.root_factors(made_of, stress_ratio=strength.root_stress_ratio, **common)
     required, per_hour = inputs.rating.required_root_safety, inputs.cycles_per_hour[place]
     arrays: Arrays = {
@@ -169,26 +160,20 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
     notes = factors.notes if rated.all() else (*factors.notes, "Y_B: the rim is thinner than the standard allows")
     if not scene.analysis.root_stress:
         return arrays, notes
-    local, more = _local_root(inputs, loads, place, made_of, common)
+    local, more = _local_root(inputs, loads, place)
     return arrays | local, (*notes, *more)
 
 
-def _local_root(
-    inputs: RatingInputs, loads: Arrays, place: int, made_of: iso6336_3.RootStrength, common: dict[str, float]
-) -> tuple[Arrays, tuple[str, ...]]:
-    """Safety and life of the root of one gear by the largest computed tension (t,), and notes."""
-    result, asked = inputs.result, inputs.strengths[place].root_stress_ratio
-    tension = np.nanmax(result.root_tension[..., place], axis=1) * loads["K_A"] * loads["K_v"]
-    ratio = np.clip(np.minimum(result.root_stress_ratio[:, place], asked), -1.2, 0.0)
-    notes: tuple[str, ...] = ()
-    try:
-        factors = iso6336_3.root_factors(made_of, stress_ratio=ratio, **common)
-    except InputError:  # cast irons, of which the standard has no sensitivity
-        factors = iso6336_3.root_factors(made_of, **common)
-        notes = ("local Y_M: the standard has no mean stress sensitivity of this material; 1 counts",)
+def _local_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, tuple[str, ...]]:
+    """Safety and life of the root of one gear at the place with the smallest safety (t,), and notes."""
+    worst = deciding_places(inputs, place)
+    tension = worst.tension * loads["K_A"] * loads["K_v"]
+    ratio, factors, notes = local_root_factors(inputs, place, worst.ratio)
     required, per_hour = inputs.rating.required_root_safety, inputs.cycles_per_hour[place]
     return {
         "local_root_stress": tension,
+        "local_root_angle": worst.tangent_angle,
+        "local_root_axial": worst.axial,
         "local_stress_ratio": ratio,
         "local_Y_M": factors.Y_M,
         "local_sigma_FG": factors.strength,

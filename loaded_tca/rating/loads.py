@@ -9,7 +9,7 @@ import numpy as np
 
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import named
-from loaded_tca.gears import RingGear
+from loaded_tca.rating.vibration import resonance_ratio, standard_stiffness
 from loaded_tca.reference import iso6336, iso6336_1
 from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.reference.iso6336_3 import face_load_factor
@@ -80,36 +80,14 @@ def _tip_relief(inputs: RatingInputs) -> float:
     return max(designed, run_in)
 
 
-def reduced_mass(inputs: RatingInputs) -> float:
-    """m_red of both gears as discs down to the bores that the scene gives, their shafts with them else [kg/mm].
-
-    A ring reaches from the middle of its teeth to its outer diameter.
-    """
-    sections = inputs.scene.pinion, inputs.scene.wheel
-    inertias = []
-    for gear, section, material in zip(
-        (inputs.mesh.pinion, inputs.mesh.wheel), sections, inputs.scene.materials, strict=True
-    ):
-        mean = gear.tip_radius + gear.root_radius
-        ends = (
-            (2.0 * gear.outer_radius, mean) if isinstance(gear, RingGear) else (mean, section.bore_diameter_mm or 0.0)
-        )
-        inertias.append(iso6336_1.disc_inertia(*ends, material.density_kg_m3))
-    radii = inputs.mesh.pinion.base_radius, inputs.mesh.wheel.base_radius
-    return iso6336_1.reduced_mass((inertias[0], inertias[1]), radii)
-
-
 def _dynamic_factor(inputs: RatingInputs) -> tuple[Array, tuple[str, ...]]:
     """K_v (t,) by method B, and notes."""
-    standard, mesh, mass = inputs.scene.contact_standard, inputs.mesh, reduced_mass(inputs)
+    standard, mesh = inputs.scene.contact_standard, inputs.mesh
     shares = iso6336.share_of_stiffness(inputs.load)
-    speeds = np.array(
-        [iso6336_1.resonance_speed(mesh.pinion.teeth, standard.mesh_stiffness * float(share), mass) for share in shares]
-    )
     pitch, profile = _deviations(inputs)
     ratio = mesh.gear_ratio
     factor = iso6336_1.dynamic_factor(
-        inputs.operation.pinion_speed_rpm / speeds,
+        resonance_ratio(inputs, standard_stiffness(inputs)),
         inputs.load,
         single_stiffness=standard.single_stiffness * shares,
         total_contact_ratio=mesh.total_contact_ratio,

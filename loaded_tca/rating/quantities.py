@@ -12,6 +12,14 @@ OF_ROOTS = Asked(
     "needs root stress; set analysis.root_stress = true and run the scene",
 )
 
+_RESONANCE = {
+    "resonance_ratio": "resonance ratio N",
+    "resonance_ratio_of_analysis": "N by the mesh stiffness of the analysis",
+}
+_EXCITATION = {
+    "transmission_error_span": "transmission error, peak to peak",
+    "transmission_error_order_1": "transmission error, order 1 of the tooth mesh",
+}
 _LOADS = {
     "K_A": "application factor K_A",
     "K_v": "dynamic factor K_v",
@@ -19,7 +27,6 @@ _LOADS = {
     "K_Halpha": "transverse load factor K_Halpha",
     "K_Fbeta": "face load factor of roots K_Fbeta",
     "K_Falpha": "transverse load factor of roots K_Falpha",
-    "Z_H": "zone factor Z_H",
 }
 
 
@@ -32,6 +39,10 @@ NUMBERS: dict[str, Number] = {
     "torque": CYCLE_NUMBERS["torque"].changed(dims=CASE, label="pinion torque"),
     **_numbers(OF_GEARS, "1", {"cycles": "load cycles N_L"}),
     **_numbers(CASE, "1", _LOADS),
+    **_numbers(CASE, "kg/mm", {"reduced_mass": "reduced mass m_red for each mm of the face"}),
+    **_numbers(CASE, "1", _RESONANCE),
+    **_numbers(CASE, "um", _EXCITATION),
+    **_numbers(CASE, "1", {"Z_H": "zone factor Z_H"}),
     "Z_E": Number(CASE, "MPa^0.5", "elasticity factor Z_E", column="Z_E", label="elasticity factor Z_E"),
     **_numbers(CASE, "1", {"Z_eps": "contact ratio factor Z_eps", "Z_beta": "helix angle factor Z_beta"}),
     **_numbers(OF_GEARS, "1", {"Z_BD": "single contact factors Z_B, Z_D"}),
@@ -93,7 +104,9 @@ NUMBERS: dict[str, Number] = {
     ),
     **_numbers(OF_GEARS, "1", {"local_flank_safety": "local: safety against pitting"}),
     **_numbers(OF_GEARS, "h", {"local_flank_life": "local: life of flanks at the required safety"}),
-    **_numbers(OF_GEARS, "MPa", {"local_root_stress": "local: largest root tension with K_A K_v"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "MPa", {"local_root_stress": "local: root tension with K_A K_v where it decides"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "rad", {"local_root_angle": "local: tangent angle of that place"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "mm", {"local_root_axial": "local: axial place of it"}, OF_ROOTS),
     **_numbers(OF_GEARS, "1", {"local_stress_ratio": "local: smallest over largest stress R"}, OF_ROOTS),
     **_numbers(OF_GEARS, "1", {"local_Y_M": "local: mean stress influence factor Y_M"}, OF_ROOTS),
     **_numbers(OF_GEARS, "MPa", {"local_sigma_FG": "local: root strength sigma_FG"}, OF_ROOTS),

@@ -12,6 +12,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.rating.evaluate import evaluated
+from loaded_tca.rating.findings import findings
 from loaded_tca.rating.inputs import inputs_of
 from loaded_tca.rating.quantities import NUMBERS, OF_GEARS
 from loaded_tca.results.figure import Figure, Figures, labelled
@@ -108,8 +109,8 @@ class Rating(Result):
         return rows
 
     def notes(self) -> tuple[str, ...]:
-        """What lies outside the ranges of the standard, which safeties are too small, what does not count."""
-        return (*self.remarks, *self._short(), NOT_COUNTED)
+        """What lies outside the ranges of the standard, what decides, which safeties are too small, what lacks."""
+        return (*self.remarks, *findings(self), *self._short(), NOT_COUNTED)
 
     def _short(self) -> list[str]:
         """Sentences on safeties below those required."""

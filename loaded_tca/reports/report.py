@@ -34,16 +34,19 @@ from loaded_tca.studies.design_figures import FIGURES
 from loaded_tca.studies.ranking import (
     MAIN,
     PERCENTILES,
-    QUANTILE,
     figure_values,
+    is_largest_best,
     is_sampled,
     main_figures,
     nominal_variant,
+    quantile_of,
     rank_combinations,
     rank_variants,
     varied_keys,
 )
-from loaded_tca.studies.stage import subject_of
+from loaded_tca.studies.rating import CLASS, shortfall
+from loaded_tca.studies.rating import FIGURES as SAFETIES
+from loaded_tca.studies.stage import subject_of, torque_name
 from loaded_tca.threads import one_thread
 
 if TYPE_CHECKING:
@@ -68,9 +71,9 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
     date : str, optional
         Of the analysis; default: of a result and of a stage its own, of a study or design today's.
     rank_by : str, optional
-        Figure that ranks the variants of a study, the least is best; default: the peak-to-peak transmission error.
-        Where the study has distributions, combinations of its other values are ranked, by the 95 % quantile over their
-        samples.
+        Figure that ranks the variants of a study; default: the peak-to-peak transmission error. The least is best, of
+        safeties, lives and films the largest. Where the study has distributions, combinations of its other values are
+        ranked, by the 95 % quantile over their samples, or the 5 % quantile where the largest is best.
 
     Returns
     -------
@@ -181,8 +184,10 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
         "scatter": [*_scatter(study, by)],
         "sampled": sampled,
         "grouped": grouped,
-        "quantile": f"{QUANTILE:.0%}".replace("%", " %"),
-        "ranked_by": label_of(by or next(iter(main_figures(study)), "")),
+        "quantile": _quantiles(study, by),
+        "ranked_by": label_of(ranks := by or next(iter(main_figures(study)), "")),
+        "best": "largest" if is_largest_best(ranks) else "least",
+        "shortfall": _shortfall(study) if sampled or CLASS in varied_keys(study) else None,
         "best_and_worst": _best_and_worst(study, by, combinations if grouped else None),
         "ranking": _ranking(study, by, combinations if grouped else None),
         "most_rows": MOST_ROWS,
@@ -195,6 +200,36 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
         "warnings": explained([f"{reason} ({count} of {variants} variants)" for reason, count in concerned.items()]),
         "pictures": pictures_of(figures, STUDY_CAPTIONS, subject.title),
     }
+
+
+def _quantiles(study: xarray.Dataset, by: str | None) -> str:
+    """Quantile over the samples that stands for a figure, in words: another one of figures whose largest is best."""
+    figures = dict.fromkeys([*([by] if by else []), *main_figures(study)])
+    usual, *others = dict.fromkeys(f"{100.0 * quantile_of(name):.0f} %" for name in figures) or [""]
+    return usual + "".join(f" ({other} of those that are best the other way)" for other in others)
+
+
+def _shortfall(study: xarray.Dataset) -> Table | None:
+    """How probable it is that safeties are below those required, a row for each, torque and group of samples."""
+    frame = shortfall(study)
+    if frame.empty:
+        return None
+    keys, torque = [*frame.columns[: frame.columns.get_loc("figure")]], torque_name(study)
+    heads = [label_of(key) for key in (*keys, torque)]
+    rows = [
+        (
+            SAFETIES[row["figure"]],
+            *(_cell(row[key]) for key in (*keys, torque)),
+            plain(row["required"]),
+            plain(row["median"]),
+            plain(row["least"]),
+            f"{row['below']} of {row['samples']}",
+            f"{100.0 * row['probability']:.3g} ({100.0 * row['low']:.2g} to {100.0 * row['high']:.2g})",
+        )
+        for _, row in frame.iterrows()
+    ]
+    head = ("", *heads, "required", "median", "least", "samples below", "probability [%]")
+    return Table(tuple(rows), head)
 
 
 def _varied(study: xarray.Dataset) -> Table:

@@ -21,6 +21,7 @@ from loaded_tca.plots import (
 )
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
+from loaded_tca.reports.rating_page import rating_content
 from loaded_tca.results.figure import NO_ESTIMATE, Figures, in_percent, labelled
 from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -61,6 +62,7 @@ def result_content(result: MeshCycle) -> dict[str, Any]:
         "glance": pictures_of(glance, CAPTIONS, result.scene.title),
         "pictures": pictures_of(pictures, CAPTIONS, result.scene.title),
         "lubrication": _lubrication(result),
+        "rating": rating_content(result),
     }
 
 

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from loaded_tca.studies.design import DesignModel, DesignResult, load_design, optimise, robustness
     from loaded_tca.studies.other_figures import revolution_figures, tribology_figures
     from loaded_tca.studies.ranking import figures, rank_combinations, rank_variants, study_summary
+    from loaded_tca.studies.rating import rating_figures, shortfall, tolerance_class_study
     from loaded_tca.studies.read import parse_study, read_study, vh_study
     from loaded_tca.studies.rows import load_study
     from loaded_tca.studies.run import process_pool, run_study
@@ -32,12 +33,15 @@ __all__ = [
     "process_pool",
     "rank_combinations",
     "rank_variants",
+    "rating_figures",
     "read_study",
     "revolution_figures",
     "robustness",
     "run_study",
+    "shortfall",
     "stage_figures",
     "study_summary",
+    "tolerance_class_study",
     "tribology_figures",
     "vh_study",
 ]

@@ -24,6 +24,9 @@ from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
 from loaded_tca.scene.keys import did_you_mean, nearest
 from loaded_tca.studies.other_figures import tribology_figures
+from loaded_tca.studies.rating import FIGURES as SAFETIES
+from loaded_tca.studies.rating import MAIN_FIGURES as MAIN_SAFETIES
+from loaded_tca.studies.rating import REQUIRED, rating_figures, shortfall_text
 from loaded_tca.studies.stage import TORQUES, nominal_of, subject_of, torque_name
 from loaded_tca.units import without_unit
 
@@ -31,8 +34,14 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-MAIN_FIGURES = tuple(sorted(declared(lambda figure: figure.rank), key=lambda name: FIGURES[name].rank or 0))
+MAIN_FIGURES = (
+    *sorted(declared(lambda figure: figure.rank), key=lambda name: FIGURES[name].rank or 0),
+    *MAIN_SAFETIES,
+)
 """Figures by which variants are compared unless others are asked for; the first one ranks them."""
+OF_OIL = "efficiency", "scuffing_safety", "micropitting_safety", "least_film_ratio", "least_film_thickness_um"
+LARGEST_IS_BEST = frozenset((*SAFETIES, *OF_OIL))
+"""Figures of which the largest is best; of all others the least."""
 QUANTILE = 0.95
 """Of a figure over the samples of a combination."""
 FEWEST_SAMPLES = 2
@@ -91,8 +100,13 @@ def design_keys(study: xarray.Dataset) -> list[str]:
     return [key for key in keys if study[key].attrs.get("sampling") != "distribution"]
 
 
+def is_largest_best(figure: str, asked: bool | None = None) -> bool:
+    """Whether the largest value of a figure is the best one: as ``asked``, or that of safeties, lives and films."""
+    return figure in LARGEST_IS_BEST if asked is None else asked
+
+
 def ranking(
-    study: xarray.Dataset, by: str | None = None, torque: int | None = None, largest_is_best: bool = False
+    study: xarray.Dataset, by: str | None = None, torque: int | None = None, largest_is_best: bool | None = None
 ) -> pandas.DataFrame:
     """Designs of a study, the best first: :func:`rank_combinations` of one with distributions, else its variants."""
     rank = rank_combinations if design_keys(study) else rank_variants
@@ -100,7 +114,7 @@ def ranking(
 
 
 def rank_combinations(
-    study: xarray.Dataset, by: str | None = None, torque: int | None = None, largest_is_best: bool = False
+    study: xarray.Dataset, by: str | None = None, torque: int | None = None, largest_is_best: bool | None = None
 ) -> pandas.DataFrame:
     """Combinations of the given values of a study with distributions, the best first.
 
@@ -117,10 +131,10 @@ def rank_combinations(
     -------
     pandas.DataFrame
         One row per combination: ``rank`` from 1, ``samples`` (how many are ok), the keys of factors and table, and of
-        each figure, its worst value over the torques, the 95 % quantile over the samples (with ``largest_is_best`` the
-        5 % quantile), and ``warnings`` (of all samples). ``standard_error``: how far other samples of that number would
-        scatter the quantile of the figure that ranks, in its unit (Maritz and Jarrett 1978; NaN for a single one). A
-        combination without the figure has no rank. No rows where every key has a distribution.
+        each figure, its worst value over the torques, the 95 % quantile over the samples (the 5 % quantile where the
+        largest is best), and ``warnings`` (of all samples). ``standard_error``: how far other samples of that number
+        would scatter the quantile of the figure that ranks, in its unit (Maritz and Jarrett 1978; NaN for a single
+        one). A combination without the figure has no rank. No rows where every key has a distribution.
 
     Raises
     ------
@@ -145,16 +159,20 @@ def rank_combinations(
     if not (keys and figures):
         return pandas.DataFrame(columns=["rank", "samples", *keys, *figures, "standard_error", "warnings"])
     groups = variants.groupby(keys, sort=False)
-    ranked = groups[figures].quantile(1.0 - QUANTILE if largest_is_best else QUANTILE)
+    columns = [groups[name].quantile(quantile_of(name, largest_is_best)) for name in figures]
+    ranked, largest_first = pandas.concat(columns, axis=1), is_largest_best(figures[0], largest_is_best)
     ranked.insert(0, "samples", groups["status"].agg(lambda status: int((status == "ok").sum())))
-    ranked.insert(1, "standard_error", groups[figures[0]].agg(lambda values: _standard_error(values, largest_is_best)))
+    ranked.insert(1, "standard_error", groups[figures[0]].agg(lambda values: _standard_error(values, largest_first)))
     ranked["warnings"] = groups["warnings"].sum()
-    ranked = ranked.reset_index().sort_values(
-        figures[0], kind="stable", ignore_index=True, ascending=not largest_is_best
-    )
+    ranked = ranked.reset_index().sort_values(figures[0], kind="stable", ignore_index=True, ascending=not largest_first)
     ranked.insert(0, "rank", pandas.array(ranked.index + 1, dtype="Int64"))
     ranked.loc[ranked[figures[0]].isna(), "rank"] = pandas.NA
     return ranked[["rank", "samples", *keys, *figures, "standard_error", "warnings"]]
+
+
+def quantile_of(figure: str, asked: bool | None = None) -> float:
+    """Quantile over samples that stands for a figure: 5 % where the largest is best, as ``asked`` or of itself."""
+    return 1.0 - QUANTILE if is_largest_best(figure, asked) else QUANTILE
 
 
 def _standard_error(values: pandas.Series, largest_is_best: bool) -> float:
@@ -172,7 +190,7 @@ def _standard_error(values: pandas.Series, largest_is_best: bool) -> float:
 
 
 def rank_variants(
-    study: xarray.Dataset, by: str | None = None, torque: int | None = None, largest_is_best: bool = False
+    study: xarray.Dataset, by: str | None = None, torque: int | None = None, largest_is_best: bool | None = None
 ) -> pandas.DataFrame:
     """Variants of a study, the best first.
 
@@ -184,9 +202,10 @@ def rank_variants(
         Figure that ranks them; default: the peak-to-peak transmission error, or the first one that the study has.
     torque : int, optional
         Index of the torque whose figures are compared. Default: of each figure the worst value over the torques, which
-        is its largest, or with ``largest_is_best`` its least.
-    largest_is_best : bool
-        Whether the largest value is the best one.
+        is its largest, or its least where the largest is best.
+    largest_is_best : bool, optional
+        Whether the largest value is the best one, of all figures. Default: of safeties, lives, films and the
+        efficiency.
 
     Returns
     -------
@@ -213,14 +232,15 @@ def rank_variants(
 
     ranked_by = [by] if by else main_figures(study)[:1]
     require(*index_checks(torque=(torque, study.sizes.get("torque", 0))))
-    worst = np.fmin.reduce if largest_is_best else np.fmax.reduce
     columns = {}
     for name in dict.fromkeys([*ranked_by, *main_figures(study)]):
         values = figure_values(study, name)
+        worst = np.fmin.reduce if is_largest_best(name, largest_is_best) else np.fmax.reduce
         columns[name] = worst(values, axis=1) if torque is None else values[:, torque]
     ranks = columns[ranked_by[0]] if ranked_by else np.full(study.sizes["sample"], np.nan)
-    order = np.argsort(-ranks if largest_is_best else ranks, kind="stable")  # NaN at the end
-    count = int(np.isfinite(ranks).sum())
+    largest_first = is_largest_best(ranked_by[0], largest_is_best) if ranked_by else False
+    order = np.argsort(-ranks if largest_first else ranks, kind="stable")  # NaN at the end
+    count = int((~np.isnan(ranks)).sum())
     frame = pandas.DataFrame(
         {
             "sample": np.arange(len(order)),
@@ -248,7 +268,8 @@ def figures(scene: Scene) -> dict[str, Array]:
     -------
     dict of str to (torques,) array
         By the names of :meth:`MeshCycle.key_figures`, which end in their unit; NaN: not known. Scenes with [operation]
-        or [lubricant] have those of :func:`tribology_figures`, too.
+        or [lubricant] have those of :func:`tribology_figures`, too, those with strengths and [rating] those of
+        :func:`rating_figures`.
 
     Raises
     ------
@@ -268,11 +289,11 @@ def figures(scene: Scene) -> dict[str, Array]:
 
 
 def figures_of(result: MeshCycle) -> dict[str, Array]:
-    """Key figures of a result, (torques,) each, and those of tribology where its scene says how the pair runs."""
-    return result.figure_arrays() | tribology_figures(result)
+    """Key figures of a result, (torques,) each, with those of tribology and of rating that its scene asks for."""
+    return result.figure_arrays() | tribology_figures(result) | rating_figures(result)
 
 
-MAIN = declared(lambda figure: figure.is_scattered)
+MAIN = [*declared(lambda figure: figure.is_scattered), *REQUIRED]
 """Figures that are told, those of them that the study has."""
 PERCENTILES = {"min": 0, "5 %": 5, "median": 50, "95 %": 95, "max": 100}
 MOST_REASONS = 5
@@ -308,7 +329,7 @@ def study_summary(study: xarray.Dataset) -> str:
         f"{count} {word}" for word, count in sorted(status.items(), key=lambda one: (one[0] != "ok", one))
     )
     head = f"{study.sizes['sample']} variants: {counts}"
-    return "\n".join([head, *_told_mixed(study), *_table(study), *_reasons(study)])
+    return "\n".join([head, *_told_mixed(study), *_table(study), *shortfall_text(study), *_reasons(study)])
 
 
 def _told_mixed(study: xarray.Dataset) -> Iterator[str]:
@@ -319,10 +340,15 @@ def _told_mixed(study: xarray.Dataset) -> Iterator[str]:
         yield f"all {combinations} combinations of {', '.join(keys)} together; ranking.csv has each by itself"
 
 
+def _label_of(name: str) -> str:
+    """What the summary calls a figure."""
+    return FIGURES[name].label if name in FIGURES else SAFETIES.get(name) or without_unit(name).replace("_", " ")
+
+
 def _table(study: xarray.Dataset) -> Iterator[str]:
     """Percentiles of the main figures over the variants, one line for each torque."""
     names = [name for name in MAIN if name in study] or main_figures(study)
-    labels = {name: FIGURES[name].label if name in FIGURES else without_unit(name).replace("_", " ") for name in names}
+    labels = {name: _label_of(name) for name in names}
     shown = {name: labelled(name, label) for name, label in labels.items() if np.isfinite(study[name]).any()}
     if not shown:
         return

@@ -1,7 +1,7 @@
 """Ratings of solved meshes: closed forms, limits, load factors, printed safeties, and what is refused."""
 
 from dataclasses import replace
-from math import cos, pi, radians
+from math import cos, radians
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +10,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
 from loaded_tca.rating.inputs import inputs_of
-from loaded_tca.rating.loads import reduced_mass
 from loaded_tca.scene import read_scene
 from loaded_tca.tribology.slices import slices_of
 from tests.samples.rating import HARD, RATED, solved
@@ -82,7 +81,9 @@ def test_lower_stress_than_the_end_of_the_curve_is_borne_for_ever():
 def test_local_stresses_are_those_of_the_contact_and_the_roots():
     whole, rated = solved(), solved().rating()
     tension = np.nanmax(whole.root_tension, axis=1)
-    assert_allclose(rated.local_root_stress, tension, rtol=ROUNDING)
+    # the place that decides has more reversal, and less tension by what that takes of its strength at the most
+    assert_allclose(rated.local_root_stress, tension, rtol=0.01)
+    assert (rated.local_root_stress <= tension * (1.0 + ROUNDING)).all()
     # Formula of a line contact at each slice beside the pressures of the solver: 16 x 24 cells on crowned flanks, whose
     # ellipse is not as slender as a line, and peaks of edges, which the mean over a quarter module leaves out.
     peaks = np.nanmax(whole.peak_pressure, axis=(1, 2))
@@ -127,15 +128,6 @@ def test_coarser_tolerance_classes_raise_load_factors():
     assert (coarse.K_v > fine.K_v).all()
     assert (coarse.K_Halpha > fine.K_Halpha).all()
     assert (coarse.flank_safety < fine.flank_safety).all()
-
-
-def test_reduced_mass_is_that_of_two_discs():
-    inputs = inputs_of(solved(**{"pinion.bore_diameter_mm": 20.0}))
-    masses = []
-    for gear, bore in ((inputs.mesh.pinion, 20.0), (inputs.mesh.wheel, 0.0)):
-        mean = gear.tip_radius + gear.root_radius
-        masses.append(pi / 32.0 * 7.85e-6 * (mean**4 - bore**4) / gear.base_radius**2)
-    assert_allclose(reduced_mass(inputs), masses[0] * masses[1] / sum(masses), rtol=ROUNDING)
 
 
 def test_softer_gear_hardens_at_work():

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.rating.inputs import inputs_of
-from loaded_tca.rating.loads import reduced_mass
+from loaded_tca.rating.vibration import full_second_moment, reduced_mass
 from tests.samples.rating import HARD, RATED
 from tests.samples.tribology import shared
 
@@ -39,11 +39,9 @@ def test_stresses_of_a_ring_have_the_ratio_of_its_curvatures():
 def test_ring_is_hollow_in_the_reduced_mass():
     inputs = inputs_of(solved())
     planet, ring = inputs.mesh.pinion, inputs.mesh.wheel
-    means = [gear.tip_radius + gear.root_radius for gear in (planet, ring)]
-    fourths = means[0] ** 4 - 400.0**4, 2148.82**4 - means[1] ** 4  # bore, outer diameter of the scene
-    masses = [
-        pi / 32.0 * 7.85e-6 * fourth / gear.base_radius**2 for fourth, gear in zip(fourths, (planet, ring), strict=True)
-    ]
+    mean, outer = ring.tip_radius + ring.root_radius, 2148.82  # outer diameter of the scene
+    moments = full_second_moment(planet) - pi / 32.0 * 400.0**4, pi / 32.0 * (outer**4 - mean**4)
+    masses = [7.85e-6 * moment / gear.base_radius**2 for moment, gear in zip(moments, (planet, ring), strict=True)]
     assert_allclose(reduced_mass(inputs), masses[0] * masses[1] / sum(masses), rtol=ROUNDING)
 
 

@@ -3,8 +3,9 @@
 As in ``rating.strength``, with the whole way through an analysis of the pair: nominal stresses, strengths and safeties
 follow from the scene. K_v 1.092, K_Hbeta 1.150 and K_Halpha 1.069 are given as printed, since the report's follow from
 deviations of a grade of the former standard, a gear body and a reduced mass of its own; those by method B of class 6
-and solid discs with the bores of the report stand beside, without a verdict. The report bends its teeth with tips and a
-contact ratio in the middle of their tolerances, here they are nominal: S_F has its printed digits all the same.
+and the bodies of the scene with the bores of the report stand beside, without a verdict. The report bends its teeth
+with tips and a contact ratio in the middle of their tolerances, here they are nominal: S_F has its printed digits all
+the same.
 """
 
 from dataclasses import replace

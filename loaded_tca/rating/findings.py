@@ -1,0 +1,89 @@
+"""What a rating says in sentences: which failure and place decide, and what the local rating sees beyond ISO 6336."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from loaded_tca.arrays import GEARS
+from loaded_tca.plain import plain
+
+if TYPE_CHECKING:
+    from loaded_tca.rating.rating import Rating
+
+FLANK, ROOT = "flank", "root"
+FAILURES = {FLANK: "pitting", ROOT: "tooth breakage"}
+
+
+class Worst(NamedTuple):
+    """The safety of a rating that is the least over that required: its kind, case and gear by index, both numbers."""
+
+    kind: str
+    case: int
+    gear: int
+    safety: float
+    required: float
+
+    def words(self, rating: Rating) -> str:
+        """Gear, failure, torque, and how far the safety is from that required."""
+        part = self.safety / self.required - 1.0
+        distance = f"{abs(part):.1%} {'above' if part >= 0.0 else 'below'}".replace("%", " %")
+        torque = plain(1e-3 * float(rating.torque[self.case]))
+        failure = f"{FAILURES[self.kind]} of the {GEARS[self.gear]} under {torque} N m"
+        return f"{failure}: safety {plain(self.safety)}, {distance} the required {plain(self.required)}"
+
+
+def worst_of(rating: Rating, prefix: str = "") -> Worst:
+    """The safety that is the least over that required, of the standard or, with "local_", of the local ones."""
+    wanted, found = rating.scene.rating, []
+    for kind in FAILURES:
+        if rating.has(name := f"{prefix}{kind}_safety") and np.isfinite(values := rating.values(name)).any():
+            case, gear = (int(place) for place in np.unravel_index(np.nanargmin(values), values.shape))
+            required = float(getattr(wanted, f"required_{kind}_safety"))
+            found.append(Worst(kind, case, gear, float(values[case, gear]), required))
+    return min(found, key=lambda one: one.safety / one.required)
+
+
+def findings(rating: Rating) -> tuple[str, ...]:
+    """Sentences on what decides, and on what the local rating has that the standard does not."""
+    local = worst_of(rating, "local_")
+    of_local = f"by local stresses what decides is {local.words(rating)}, at {_place(rating, local)}"
+    sentences = [f"after ISO 6336 what decides is {worst_of(rating).words(rating)}", of_local, _pressures(rating)]
+    if rating.has("local_root_safety"):
+        sentences.append(_tensions(rating))
+    return tuple(sentences)
+
+
+def _place(rating: Rating, worst: Worst) -> str:
+    at = worst.case, worst.gear
+    if worst.kind == FLANK:
+        diameter, axial = 2.0 * rating.local_flank_radius[at], rating.local_flank_axial[at]
+        return f"diameter {diameter:.4g} mm, axial {axial:z.1f} mm"
+    angle, axial = np.degrees(rating.local_root_angle[at]), rating.local_root_axial[at]
+    return f"tangent angle {angle:.0f} deg, axial {axial:z.1f} mm"
+
+
+def _pressures(rating: Rating) -> str:
+    """The largest local pressure beside sigma_H, with and without the factors that even a contact out."""
+    case = int(rating.local_flank_safety.min(axis=1).argmin())
+    pressure, standard = float(rating.local_flank_stress[case]), float(rating.sigma_H[case].max())
+    uneven = standard / float(rating.Z_eps[case] * rating.Z_beta[case])
+    beyond = "above, by what relief, edges and the place of the load on the flank add" if pressure > uneven else "below"
+    return (
+        f"the largest local pressure is {pressure:.0f} MPa beside sigma_H {standard:.0f} MPa, and {beyond} "
+        f"the {uneven:.0f} MPa that it has without Z_eps and Z_beta, which local stresses lack"
+    )
+
+
+def _tensions(rating: Rating) -> str:
+    """The local tension beside sigma_F of the gear whose root decides."""
+    case, gear = (
+        int(place) for place in np.unravel_index(rating.local_root_safety.argmin(), rating.local_root_safety.shape)
+    )
+    tension, standard = float(rating.local_root_stress[case, gear]), float(rating.sigma_F[case, gear])
+    mean = float(rating.local_Y_M[case, gear])
+    return (
+        f"the local root tension of the {GEARS[gear]} is {tension:.0f} MPa beside sigma_F {standard:.0f} MPa; its "
+        f"stress ratio {rating.local_stress_ratio[case, gear]:.2f} takes {100.0 * (1.0 - mean):.1f} % of the strength"
+    )

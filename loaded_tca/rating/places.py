@@ -1,0 +1,154 @@
+"""Local safeties at every place: of the slices of all contacts on the flanks, and over the fillets of the roots."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import GEARS, Array, index_checks
+from loaded_tca.errors import require
+from loaded_tca.rating.inputs import inputs_of
+from loaded_tca.rating.roots import local_root_factors, stress_ratio
+from loaded_tca.tribology.slices import slices_of
+
+if TYPE_CHECKING:
+    from loaded_tca.rating.rating import Rating
+
+
+@dataclass(frozen=True, eq=False)
+class FlankSafeties:
+    """Local safety against pitting of all slices of all contacts under one torque, in one case.
+
+    Attributes
+    ----------
+    safety : (2, n) array
+        Of pinion and wheel: sigma_HG over the pressure of a line contact times the root of K_A K_v.
+    point, tangent : (n, 3) array [mm]
+        Middles of the slices in the fixed frame, and half their length.
+    radius, axial : (2, n) array [mm]
+        Middles on pinion and wheel.
+    position, column : (n,) int array
+        Indices of position and tooth pair: slices of one contact follow each other along it.
+    """
+
+    safety: Array
+    point: Array
+    tangent: Array
+    radius: Array
+    axial: Array
+    position: Array
+    column: Array
+
+    def deciding(self, gear: int) -> int:
+        """Index of the slice with the smallest safety of a gear."""
+        return int(np.nanargmin(self.safety[gear]))
+
+
+@dataclass(frozen=True, eq=False)
+class RootSafeties:
+    """Local safety against tooth breakage over fillet and face of one gear, both sides of a tooth, in one case.
+
+    Attributes
+    ----------
+    safety : (2, stations, p) array
+        sigma_FG over the largest stress of a turn times K_A K_v, with Y_M of the extremes of each place; inf where no
+        tension is. First the side in contact, then the back.
+    tangent_angle : (2, stations, p) array [rad]
+        Of the fillet to the middle of the tooth.
+    axial : (2, stations, p) array [mm]
+        On the gear itself.
+    """
+
+    safety: Array
+    tangent_angle: Array
+    axial: Array
+
+    def deciding(self) -> tuple[int, int, int]:
+        """Side, station and place along the face of the smallest safety."""
+        side, station, along = np.unravel_index(int(np.nanargmin(self.safety)), self.safety.shape)
+        return int(side), int(station), int(along)
+
+    def over_face(self) -> tuple[Array, Array]:
+        """Axial places [mm] and the smallest safety over both fillets at each."""
+        return self.axial[0, self.axial.shape[1] // 2], np.nanmin(self.safety, axis=(0, 1))
+
+
+@checked
+def flank_safeties(rating: Rating, case: int) -> FlankSafeties:
+    """Local safety against pitting at every slice.
+
+    Parameters
+    ----------
+    rating : Rating
+    case : int
+        Index of the case.
+
+    Returns
+    -------
+    FlankSafeties
+        Of slices whose pressure is known; their smallest safeties are ``rating.local_flank_safety``.
+
+    Raises
+    ------
+    InputError
+        If the rating has no such case.
+    """
+    require(*index_checks(case=(case, len(rating.torque))))
+    sweep = slices_of(rating.result)
+    some = sweep.of_torque(_torque_of(rating, case))
+    some = some[np.isfinite(sweep.pressure[some])]
+    stress = sweep.pressure[some] * np.sqrt(rating.K_A[case] * rating.K_v[case])
+    return FlankSafeties(
+        rating.sigma_HG[case][:, None] / stress,
+        sweep.point[some],
+        sweep.tangent[some],
+        np.stack([sweep.radius[some], sweep.wheel_radius[some]]),
+        np.stack([sweep.axial[some], sweep.wheel_axial[some]]),
+        sweep.position[some],
+        sweep.column[some],
+    )
+
+
+@checked
+def root_safeties(rating: Rating, case: int, gear: int) -> RootSafeties:
+    """Local safety against tooth breakage over fillet and face.
+
+    Parameters
+    ----------
+    rating : Rating
+        Of a result with root stress.
+    case : int
+        Index of the case.
+    gear : int
+        0 the pinion, 1 the wheel.
+
+    Returns
+    -------
+    RootSafeties
+        Its smallest is ``rating.local_root_safety``, which is lower by what the parabola through the largest tension
+        exceeds the places: up to a few tenths of a percent.
+
+    Raises
+    ------
+    InputError
+        If the rating has no such case or gear.
+    NotAskedError
+        If the scene does not ask for root stress.
+    """
+    require(*index_checks(case=(case, len(rating.torque)), gear=(gear, len(GEARS))))
+    torque, stress = _torque_of(rating, case), rating.result.root_stress[gear]
+    largest, smallest = stress.largest[torque], stress.smallest[torque]
+    tense = largest > 0.0
+    _, factors, _ = local_root_factors(inputs_of(rating.result), gear, stress_ratio(largest, smallest))
+    strength = np.broadcast_to(factors.strength, largest.shape)
+    safety = np.full(largest.shape, np.inf)
+    np.divide(strength, largest * rating.K_A[case] * rating.K_v[case], out=safety, where=tense)
+    return RootSafeties(np.where(np.isnan(largest), np.nan, safety), stress.tangent_angle, stress.point[..., 2])
+
+
+def _torque_of(rating: Rating, case: int) -> int:
+    """Index of the torque of a case in its result."""
+    return int(np.abs(rating.result.torque - rating.torque[case]).argmin())

@@ -1,0 +1,96 @@
+"""What roots withstand at the computed stress ratio of each place, and which place decides."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.reference import iso6336_3
+
+if TYPE_CHECKING:
+    from loaded_tca.rating.inputs import RatingInputs
+
+
+def root_of(inputs: RatingInputs, place: int) -> tuple[iso6336_3.RootStrength, dict[str, float]]:
+    """Material of the root of a gear, and what else the factors of its strength take whatever the stress ratio."""
+    strength, section = inputs.strengths[place], inputs.scene.root_sections[place]
+    assert section is not None  # refused before
+    made_of = iso6336_3.RootStrength(
+        strength.limits[1], strength.kind_of_material, strength.root_Rz_um, strength.proof_stress_MPa
+    )
+    return made_of, {
+        "notch_parameter": section.notch_parameter,
+        "stress_correction_factor": section.stress_correction_factor,
+        "normal_module": inputs.mesh.pinion.normal_module,
+        "cycles": float(inputs.cycles[place]),
+        "long_life_factor": inputs.rating.long_life_factor,
+    }
+
+
+def local_root_factors(
+    inputs: RatingInputs, place: int, ratio: Array
+) -> tuple[Array, iso6336_3.RootFactors, tuple[str, ...]]:
+    """Stress ratio R that counts of computed ones, factors of root strength with it, and notes."""
+    made_of, common = root_of(inputs, place)
+    ratio = np.clip(np.minimum(ratio, inputs.strengths[place].root_stress_ratio), -1.2, 0.0)
+    try:
+        return ratio, iso6336_3.root_factors(made_of, stress_ratio=ratio, **common), ()
+    except InputError:  # cast irons, of which the standard has no sensitivity
+        note = "local Y_M: the standard has no mean stress sensitivity of this material; 1 counts"
+        return ratio, iso6336_3.root_factors(made_of, **common), (note,)
+
+
+LEAST_MEAN_STRESS_FACTOR = 0.45
+"""Y_M is above it for any material and R down to -1.2: less tension than this part of the largest never decides."""
+
+
+def stress_ratio(largest: Array, smallest: Array) -> Array:
+    """R of the extremes of a turn; 0 where no tension is."""
+    return np.divide(smallest, largest, out=np.zeros(largest.shape), where=largest > 0.0)
+
+
+class Deciding(NamedTuple):
+    """Where the smallest local safety of a root lies, under each torque (t,).
+
+    Attributes
+    ----------
+    tension : array [MPa]
+        Largest stress of a turn there, by what the largest of all exceeds the nodes.
+    ratio : array
+        Smallest over largest stress there.
+    tangent_angle : array [rad]
+        Of the fillet to the middle of the tooth.
+    axial : array [mm]
+        On the gear itself.
+    """
+
+    tension: Array
+    ratio: Array
+    tangent_angle: Array
+    axial: Array
+
+
+def deciding_places(inputs: RatingInputs, gear: int) -> Deciding:
+    """Places of the smallest strength over tension of the root of one gear.
+
+    That is not the largest tension where stress is reversed more beside it.
+    """
+    result, stress = inputs.result, inputs.result.root_stress[gear]
+    largest = np.where(stress.largest > 0.0, stress.largest, 0.0)  # NaN: not evaluated
+    tops = largest.reshape(len(largest), -1).max(axis=1)
+    some = np.nonzero(largest > LEAST_MEAN_STRESS_FACTOR * tops[:, None, None, None])
+    ratio = stress_ratio(largest[some], stress.smallest[some])
+    use = np.zeros(largest.shape)
+    use[some] = largest[some] / local_root_factors(inputs, gear, ratio)[1].strength
+    flat = use.reshape(len(use), -1).argmax(axis=1)
+    place = np.arange(len(use)), *np.unravel_index(flat, use.shape[1:])
+    above = np.nanmax(result.root_tension[..., gear], axis=1) / tops
+    return Deciding(
+        largest[place] * above,
+        stress_ratio(largest[place], stress.smallest[place]),
+        stress.tangent_angle[place[1:]],
+        stress.point[(*place[1:], 2)],
+    )

@@ -1,0 +1,109 @@
+"""What excites a mesh and how near it is to its resonance: reduced mass of the bodies, N, transmission error."""
+
+from __future__ import annotations
+
+from math import nan, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.gears import RingGear
+from loaded_tca.gears.cylindrical import half_tooth
+from loaded_tca.reference import iso6336, iso6336_1
+from loaded_tca.results.key_figures import mean_over_a_pitch, span_of
+
+if TYPE_CHECKING:
+    from loaded_tca.gears import CylindricalGear
+    from loaded_tca.rating.inputs import RatingInputs
+    from loaded_tca.scene.shafts import ShaftSection
+
+POINTS = 40
+"""Along each part of the outline of a tooth: twice as many change its second moment of area by less than 1e-5."""
+PER_VOLUME = 1e-9
+"""Of a density in kg/m3: kg/mm3."""
+
+
+def full_second_moment(gear: CylindricalGear) -> float:
+    """Polar second moment of area of the transverse section of a gear without a bore, its teeth with it [mm^4].
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear
+    >>> gear = CylindricalGear(teeth=40, normal_module=3.0, face_width=25.0)
+    >>> disc = pi / 32.0 * (gear.tip_radius + gear.root_radius) ** 4
+    >>> round(full_second_moment(gear) / disc, 2)
+    1.0
+    """
+    outline = np.concatenate([*half_tooth(gear, POINTS).values()])
+    x, y = outline.T
+    ends = x[:-1], x[1:], y[:-1], y[1:]
+    squares = ends[0] ** 2 + ends[0] * ends[1] + ends[1] ** 2 + ends[2] ** 2 + ends[2] * ends[3] + ends[3] ** 2
+    return 2.0 * gear.teeth * float((ends[0] * ends[3] - ends[1] * ends[2]) @ squares) / 12.0
+
+
+def _body_moment(gear: CylindricalGear | RingGear) -> float:
+    """Polar second moment of area of a gear without a bore, of a ring from the middle of its teeth on [mm^4]."""
+    if isinstance(gear, RingGear):
+        return pi / 32.0 * ((2.0 * gear.outer_radius) ** 4 - (gear.tip_radius + gear.root_radius) ** 4)
+    return full_second_moment(gear)
+
+
+def _hole_moment(bore: float, shaft: ShaftSection | None, middle: float, face_width: float) -> float:
+    """Polar second moment of area of what is hollow under the face of a gear, its mean over the face [mm^4]."""
+    alone = pi / 32.0 * bore**4
+    if shaft is None:
+        return alone
+    ends = shaft.start_mm + np.cumsum([0.0, *(part.length_mm for part in shaft.sections)])
+    low, high = middle - 0.5 * face_width, middle + 0.5 * face_width
+    lengths = np.clip(np.minimum(ends[1:], high) - np.maximum(ends[:-1], low), 0.0, None)
+    hollow = np.array([pi / 32.0 * part.inner_diameter_mm**4 for part in shaft.sections])
+    return float((lengths @ hollow + (face_width - lengths.sum()) * alone) / face_width)
+
+
+def reduced_mass(inputs: RatingInputs) -> float:
+    """m_red of both gears for each mm of the common face [kg/mm].
+
+    Teeth by their outline, bodies over their own faces down to the bores that the scene gives, or to those of the
+    shafts under them; solid ones where it gives none. A ring reaches from the middle of its teeth to its outer diameter.
+    """
+    scene, mesh = inputs.scene, inputs.mesh
+    gears, sections = (mesh.pinion, mesh.wheel), (scene.pinion, scene.wheel)
+    inertias = [
+        (_body_moment(gear) - _hole_moment(section.bore_diameter_mm or 0.0, section.shaft, middle, width))
+        * (PER_VOLUME * material.density_kg_m3 * width / mesh.common_face_width)
+        for gear, section, material, middle in zip(gears, sections, scene.materials, scene.face_middles, strict=True)
+        for width in (gear.face_width,)
+    ]
+    return iso6336_1.reduced_mass((inertias[0], inertias[1]), (mesh.pinion.base_radius, mesh.wheel.base_radius))
+
+
+def resonance_ratio(inputs: RatingInputs, stiffness: Array) -> Array:
+    """N (t,): speed of the pinion over that at which the mesh resonates with a stiffness (t,) [N/(mm um)]."""
+    mass, teeth, speed = reduced_mass(inputs), inputs.mesh.pinion.teeth, inputs.operation.pinion_speed_rpm
+    known = [each > 0.0 for each in stiffness.tolist()]  # NaN: not known
+    return np.array(
+        [
+            speed / iso6336_1.resonance_speed(teeth, each, mass) if is_known else nan
+            for each, is_known in zip(stiffness.tolist(), known, strict=True)
+        ]
+    )
+
+
+def standard_stiffness(inputs: RatingInputs) -> Array:
+    """c_gamma_alpha of the standard (t,), NaN where it has none [N/(mm um)]."""
+    return np.asarray(inputs.scene.contact_standard.mesh_stiffness * iso6336.share_of_stiffness(inputs.load))
+
+
+def vibration(inputs: RatingInputs) -> dict[str, Array]:
+    """Reduced mass, resonance ratios and excitation by the transmission error of the analysis (t,), by their names."""
+    result, count = inputs.result, len(inputs.torque)
+    stiffness = np.array([mean_over_a_pitch(each) for each in result.mesh_stiffness])
+    spans = [span_of(error, result.places_of_mesh) for error in result.transmission_error]
+    return {
+        "reduced_mass": np.full(count, reduced_mass(inputs)),
+        "resonance_ratio": resonance_ratio(inputs, standard_stiffness(inputs)),
+        "resonance_ratio_of_analysis": resonance_ratio(inputs, stiffness),
+        "transmission_error_span": result.um_per_rad * np.array(spans),
+        "transmission_error_order_1": result.um_per_rad * result.harmonics(1)[:, 0],
+    }

@@ -1,0 +1,244 @@
+"""Safeties and lives as figures of studies, gears of tolerance classes, and how probable it is that a safety is missed.
+
+Samples of a study scatter as gears and mountings do. The part of them whose safety is below that required estimates the
+probability; its bounds are those of a binomial count (Clopper and Pearson 1934), since a few samples say little of
+what is rare. K_v and K_Halpha by method B follow from the tolerances of the class, which no sample scatters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array, real
+from loaded_tca.errors import require
+from loaded_tca.plain import plain
+from loaded_tca.rating import rating_of
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.scene import Scene
+from loaded_tca.studies.stage import torque_name
+from loaded_tca.studies.study import MOST_VARIANTS, Study, is_whole
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+FIGURES = {
+    "S_H": "safety against pitting S_H",
+    "S_F": "safety against tooth breakage S_F",
+    "S_H_local": "local safety against pitting",
+    "S_F_local": "local safety against tooth breakage",
+    "life_h": "life after ISO 6336",
+    "life_local_h": "life by local stresses",
+}
+"""Names in a study, which end in their unit, and what they are: of both gears the less, lives of flanks and roots."""
+MAIN_FIGURES = "S_H_local", "S_F_local"
+"""Those that rankings, summaries and pictures show without being asked for."""
+REQUIRED = {
+    name: f"required_{kind}_safety"
+    for kind, names in {"flank": ("S_H", "S_H_local"), "root": ("S_F", "S_F_local")}.items()
+    for name in names
+}
+"""Safety -> key of [rating] that has what is required."""
+CONFIDENCE = 0.95
+CLASS = "rating.tolerance_class"
+
+
+def is_rated(scene: Scene) -> bool:
+    """Whether a scene says what its gears withstand and what is required of them."""
+    return scene.pinion.strength is not None and scene.wheel.strength is not None and scene.rating is not None
+
+
+def rating_figures(result: MeshCycle) -> dict[str, Array]:
+    """Safeties and lives of a result, of both gears the less; none of scenes without strengths and [rating].
+
+    ``loaded_tca.studies.figures`` has them beside the key figures, so that rankings and pictures of studies have them:
+    ``rank_variants(study, by="S_H_local")``. The largest is best.
+
+    Parameters
+    ----------
+    result : MeshCycle
+
+    Returns
+    -------
+    dict of str to (torques,) array
+        ``S_H``, ``S_F``, ``S_H_local``, ``S_F_local``, ``life_h`` and ``life_local_h`` (the shorter of flanks and
+        roots, inf: without end). NaN: not known, as the local ones of roots without root stress.
+
+    Raises
+    ------
+    InputError
+        As :meth:`loaded_tca.MeshCycle.rating`: what is missing or not covered.
+    """
+    if not is_rated(result.scene):
+        return {}
+    rating, unknown = rating_of(result, warn=False), np.full((len(result.torque), 2), np.nan)
+    of_gears = {
+        name: rating.values(name) if rating.has(name) else unknown
+        for place in ("", "local_")
+        for kind in ("flank", "root")
+        for name in (f"{place}{kind}_safety", f"{place}{kind}_life")
+    }
+    least = {name: values.min(axis=1) for name, values in of_gears.items()}
+    lives = [np.fmin(least[f"{place}flank_life"], least[f"{place}root_life"]) for place in ("", "local_")]
+    safeties = [least[f"{place}{kind}_safety"] for place in ("", "local_") for kind in ("flank", "root")]
+    return dict(zip(FIGURES, (*safeties, *lives), strict=True))
+
+
+@checked
+def tolerance_class_study(scene: Scene, classes: Sequence[int], samples: int = 64, seed: int = 0) -> Study:
+    """Return the study of a scene whose gears are of tolerance classes of ISO 1328-1, each with samples of its slopes.
+
+    Helix and profile slopes of both gears scatter as ``scene.scatter_of_class`` says, at the same points of a Sobol
+    sequence for each class; ``rating.tolerance_class``, from which factors by method B follow, is that class.
+
+    Parameters
+    ----------
+    scene : Scene
+        With strengths and [rating].
+    classes : sequence of int
+        From 1 to 11.
+    samples : int
+        Of each class.
+    seed : int
+        Of the samples.
+
+    Returns
+    -------
+    Study
+        ``shortfall`` of its rows has the probability of each class.
+
+    Raises
+    ------
+    InputError
+        If the scene has no [rating], no class is given, or the standard has no tolerances of the gears.
+
+    Examples
+    --------
+    >>> from loaded_tca import read_scene
+    >>> study = tolerance_class_study(read_scene("examples/scenes/rated_helical.toml"), [5, 8], samples=4)
+    >>> len(study), study.changes(7)["rating.tolerance_class"]
+    (8, 8)
+    """
+    rated, listed = is_rated(scene), isinstance(classes, Sequence) and not isinstance(classes, str) and len(classes) > 0
+    require(
+        (rated, "scene: no strength of both gears and [rating]; a study of safeties needs them"),
+        (listed, f"classes: found {classes!r:.60}; allowed a list of whole numbers from 1 to 11"),
+        (is_whole(samples, 1, MOST_VARIANTS), f"samples: found {samples!r:.60}; allowed a whole number from 1 on"),
+    )
+    table: dict[str, list[float]] = {CLASS: []}
+    for number in classes:
+        require((is_whole(number, 1, 11), f"classes: found {number!r:.60}; allowed whole numbers from 1 to 11"))
+        drawn = Study(scene, distributions=scene.scatter_of_class(number), samples=samples, seed=seed)
+        for sample in range(samples):
+            for key, value in {CLASS: number, **drawn.changes(sample)}.items():
+                table.setdefault(key, []).append(value)
+    return Study(scene, table=table)
+
+
+def safeties_of(study: xarray.Dataset) -> list[str]:
+    """Safeties that a study has, by their names."""
+    return [name for name in REQUIRED if name in study.data_vars and np.isfinite(study[name].values).any()]
+
+
+def required_safeties(study: xarray.Dataset, scene: Scene, name: str) -> Array:
+    """What is required of a safety in each variant of a study (samples,)."""
+    key = f"rating.{REQUIRED[name]}"
+    if key in study.coords:
+        return np.asarray(study[key].values, dtype=float)
+    return np.full(study.sizes["sample"], getattr(scene.rating, REQUIRED[name]))
+
+
+def _bounds(below: int, samples: int) -> tuple[float, float]:
+    """Bounds of the probability of what happened so often in samples, after Clopper and Pearson."""
+    from scipy.stats import beta
+
+    tail = 0.5 * (1.0 - CONFIDENCE)
+    low = 0.0 if below == 0 else float(beta.ppf(tail, below, samples - below + 1))
+    high = 1.0 if below == samples else float(beta.ppf(1.0 - tail, below + 1, samples - below))
+    return low, high
+
+
+@checked
+def shortfall(study: xarray.Dataset, by: Sequence[str] | None = None) -> pandas.DataFrame:
+    """How probable it is that a safety is below that required, by the samples of a study.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        What :func:`loaded_tca.studies.run_study` returns.
+    by : sequence of str, optional
+        Varied keys whose values make groups of samples. Default: those of factors, of tables with distributions, and
+        ``rating.tolerance_class``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each safety, torque and group: keys of the groups, ``figure``, ``pinion_torque_Nm``, ``samples`` (with
+        that figure), ``below``, ``probability``, ``low`` and ``high`` (its bounds, 95 % confidence), ``median`` and
+        ``least`` of the safety, and ``required`` (of the first sample). No rows of a study without safeties.
+
+    Raises
+    ------
+    InputError
+        If the study does not vary a key.
+
+    References
+    ----------
+    Clopper & Pearson 1934, Biometrika 26, 404-413.
+    """
+    import pandas
+
+    from loaded_tca.studies.ranking import design_keys, figure_values, varied_keys
+    from loaded_tca.studies.stage import subject_of
+
+    varied, names = varied_keys(study), safeties_of(study)
+    keys = [*by] if by is not None else [key for key in varied if key == CLASS or key in design_keys(study)]
+    require(*((key in varied, f"by: {key!r:.60}; allowed {', '.join(varied)}") for key in keys))
+    head = [*keys, "figure", torque_name(study)]
+    columns = [*head, "samples", "below", "probability", "low", "high", "median", "least", "required"]
+    rows = []
+    scene = subject_of(study) if names else None
+    groups = dict.fromkeys(zip(*(study[key].values.tolist() for key in keys), strict=True)) if keys else {(): None}
+    for name in names:
+        assert isinstance(scene, Scene)
+        values, required = figure_values(study, name), required_safeties(study, scene, name)
+        for group in groups:
+            of_group = np.ones(len(required), dtype=bool)
+            for key, value in zip(keys, group, strict=True):
+                of_group &= study[key].values == value
+            for torque, moment in enumerate(_torques(study)):
+                known = of_group & np.isfinite(values[:, torque])
+                if known.any():
+                    safeties = values[known, torque]
+                    count, below = len(safeties), int((safeties < required[known]).sum())
+                    numbers = below / count, *_bounds(below, count), np.median(safeties), safeties.min()
+                    rows.append((*group, name, moment, count, below, *map(real, numbers), required[known][0]))
+    return pandas.DataFrame(rows, columns=columns)
+
+
+def _torques(study: xarray.Dataset) -> list[float]:
+    """Torque of each column of the figures [N m], of the first variant that has it."""
+    torques = study[torque_name(study)].values
+    return [float(next(iter(column[np.isfinite(column)]), np.nan)) for column in torques.T]
+
+
+def shortfall_text(study: xarray.Dataset) -> Iterator[str]:
+    """A line for each safety, torque and group with the probability of a shortfall, if samples of a study scatter."""
+    from loaded_tca.studies.ranking import is_sampled, varied_keys
+
+    if not (is_sampled(study) or CLASS in varied_keys(study)):
+        return
+    frame = shortfall(study)
+    keys = [*frame.columns[: frame.columns.get_loc("figure")]]
+    for _, row in frame.iterrows():
+        group = "".join(f", {key} {plain(row[key])}" for key in keys)
+        yield (
+            f"{FIGURES[row['figure']]} below the required {plain(row['required'])} under "
+            f"{plain(row[torque_name(study)])} N m{group}: probability {100.0 * row['probability']:.3g} % "
+            f"({row['below']} of {row['samples']} samples; {100.0 * row['low']:.2g} to {100.0 * row['high']:.2g} % "
+            f"with {100.0 * CONFIDENCE:g} % confidence), median {plain(row['median'])}"
+        )

@@ -1,0 +1,143 @@
+"""Which place decides: local safeties over flanks and roots, pictures of them, and sentences on them."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import InputError
+from loaded_tca.plots import plot_flank_safety, plot_root_safety, safety_figures
+from loaded_tca.rating import flank_safeties, root_safeties
+from loaded_tca.rating.findings import findings, worst_of
+from loaded_tca.reports import write_html_report
+from loaded_tca.reports.rating_page import rating_content
+from tests.samples.rating import HARD, solved
+
+ROUNDING = 1e-12  # of a few products and roots, with room for any order of them
+
+
+def test_least_safety_of_the_slices_is_that_of_the_rating():
+    rated = solved(**{"operation.application_factor": 1.5, "wheel.strength": HARD | {"quality": "ML"}}).rating()
+    for case in range(2):
+        places = flank_safeties(rated, case)
+        assert_allclose(places.safety.min(axis=1), rated.local_flank_safety[case], rtol=ROUNDING)
+        worst = places.deciding(1)
+        assert_allclose(places.radius[1, worst], rated.local_flank_radius[case, 1], rtol=ROUNDING)
+        # both gears have one pressure at a place: the ratio of their safeties is that of their strengths everywhere
+        ratio = rated.sigma_HG[case, 0] / rated.sigma_HG[case, 1]
+        assert_allclose(places.safety[0] / places.safety[1], ratio, rtol=ROUNDING)
+
+
+def test_root_that_decides_has_the_least_safety_of_all_places():
+    rated = solved().rating()
+    for gear in range(2):
+        places, stress = root_safeties(rated, 1, gear), rated.result.root_stress[gear]
+        at = places.deciding()
+        # tops of parabolas exceed the nodes of 5 deg and a face by little
+        assert_allclose(rated.local_root_safety[1, gear], places.safety[at], rtol=0.01)
+        assert rated.local_root_safety[1, gear] <= places.safety[at] * (1.0 + ROUNDING)
+        ratio = stress.smallest[1][at] / stress.largest[1][at]
+        assert_allclose(rated.local_stress_ratio[1, gear], min(ratio, 0.0), rtol=ROUNDING)
+        assert_allclose(rated.local_root_angle[1, gear], stress.tangent_angle[at], rtol=ROUNDING)
+        assert_allclose(rated.local_root_axial[1, gear], stress.point[(*at, 2)], rtol=ROUNDING)
+        # Goodman's line by hand at every place in tension: annex B of ISO 6336-3:2006, case-hardened
+        sensitivity = 0.8 - 0.15 * rated.Y_S[1, gear]
+        tense = stress.largest[1] > 0.0
+        reversal = np.clip(stress.smallest[1][tense] / stress.largest[1][tense], -1.2, 0.0)
+        mean = 1.0 / (1.0 - reversal * (1.0 - sensitivity) / (1.0 + sensitivity))
+        expected = rated.local_sigma_FG[1, gear] / rated.local_Y_M[1, gear] * mean / stress.largest[1][tense]
+        assert_allclose(places.safety[tense], expected, rtol=ROUNDING)
+
+
+def test_smallest_over_the_face_is_that_of_both_fillets():
+    places = root_safeties(solved().rating(), 1, 0)
+    axial, least = places.over_face()
+    assert axial.shape == least.shape == places.safety.shape[2:]
+    assert_allclose(np.nanmin(least), np.nanmin(places.safety), rtol=0.0)
+
+
+def test_sentences_say_what_decides():
+    rated = solved(**{"rating.required_flank_safety": 1.0, "rating.required_root_safety": 9.0}).rating()
+    worst = worst_of(rated)
+    assert (worst.kind, worst.case) == ("root", 1)  # more torque, less safety
+    assert worst.safety == rated.root_safety[1].min()
+    standard, local, pressures, tensions = findings(rated)
+    assert "tooth breakage of the" in standard
+    assert "below the required 9" in standard
+    assert "tangent angle" in local
+    assert f"{rated.local_flank_stress[1]:.0f} MPa" in pressures
+    assert "stress ratio" in tensions
+    assert {standard, local} < {*rated.notes()}
+
+
+def test_findings_of_flanks_alone():
+    rated = solved(**{"analysis.root_stress": False, "rating.required_flank_safety": 50.0}).rating()
+    standard, local, _ = findings(rated)
+    assert standard.startswith("after ISO 6336 what decides is pitting of the")
+    assert "diameter" in local
+
+
+def test_bad_cases_are_refused():
+    rated = solved().rating()
+    with pytest.raises(InputError, match="case: 2 is no index from 0 to 1"):
+        flank_safeties(rated, 2)
+    with pytest.raises(InputError, match="gear: 2 is no index from 0 to 1"):
+        root_safeties(rated, 0, 2)
+
+
+def test_map_of_the_flank_has_the_least_safety_at_its_cross():
+    rated = solved().rating()
+    figure = plot_flank_safety(rated, 1)
+    for axes, least in zip(figure.axes[:2], rated.local_flank_safety[1], strict=True):
+        (mesh,) = axes.collections
+        shown = mesh.get_array()
+        # fields of 1/240 of the picture, pressures between positions along straight lines
+        assert_allclose(shown.min(), least, rtol=1e-3)
+        (cross,) = [line for line in axes.lines if line.get_marker() == "x"]
+        row, column = np.unravel_index(shown.argmin(), shown.shape)
+        borders = mesh.get_coordinates()
+        apart = np.abs(borders[row, column] - np.ravel(cross.get_data())) / np.ptp(borders, axis=(0, 1))
+        assert (apart < 0.03).all()
+
+
+def test_maps_of_both_gears_have_one_scale():
+    rated = solved().rating()
+    flanks, roots = plot_flank_safety(rated), plot_root_safety(rated)
+    for figure in (flanks, roots):
+        scales = {(mesh.norm.vmin, mesh.norm.vmax) for axes in figure.axes[:2] for mesh in axes.collections[:1]}
+        assert len(scales) == 1
+
+
+def test_pictures_are_those_that_the_rating_has():
+    assert [*safety_figures(solved(**{"analysis.root_stress": False}).rating())] == ["safeties", "flank_safety"]
+
+
+def test_report_has_factors_by_gear_and_case(monkeypatch):
+    monkeypatch.setattr("loaded_tca.reports.rating_page.safety_figures", lambda _: {})  # seconds, and tested above
+    content = rating_content(solved())
+    assert [table.caption for table in content["tables"]] == [
+        "Loads and load factors", "Flanks, ISO 6336-2", "Roots, ISO 6336-3", "Local",
+    ]  # fmt: skip
+    assert content["tables"][0].head == ("", "100 N m, pinion", "100 N m, wheel", "200 N m, pinion", "200 N m, wheel")
+    assert {len(row) for table in content["tables"] for row in table.rows} == {5}
+    assert [row[0] for row in content["safeties"].rows] == [
+        "pitting", "tooth breakage", "pitting, local", "tooth breakage, local",
+    ]  # fmt: skip
+
+
+REFUSED = "<li>lubricant: missing; the strength of flanks depends on viscosity_40_mm2_s</li>"
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [({}, "after ISO 6336 what decides is"), pytest.param({"lubricant": None}, REFUSED, marks=pytest.mark.thorough)],
+)
+def test_report_has_a_rating_or_says_why_not(tmp_path, monkeypatch, changes, words):
+    for name in ("result_page.result_figures", "result_page.tribology_figures", "rating_page.safety_figures"):
+        monkeypatch.setattr(f"loaded_tca.reports.{name}", lambda *_, **__: {})  # seconds, and tested by themselves
+    text = write_html_report(solved(**changes), tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "<h2>Rating</h2>" in text
+    assert words in text
+
+
+def test_results_without_rating_have_none_in_their_report():
+    assert rating_content(solved(rating=None)) is None
