@@ -24,7 +24,7 @@ from loaded_tca.loaded.tooth_pairs import ToothPair, tooth_pairs_at
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
 )
-from loaded_tca.results.gap_growth import GapGrowth, gap_growth, motion_rates
+from loaded_tca.results.gap_growth import GapGrowth, MotionGrowth, gap_growth, motion_growth
 from loaded_tca.results.sensitivities import FEW, LINEAR, NEWTON_MILLIMETRES, TORQUE, Sensitivities
 from loaded_tca.results.support_growth import (
     OnSlices,
@@ -143,7 +143,7 @@ class JoinedSensitivities(Sensitivities):
     pairs: Indices = field(init=False)
     growth: GapGrowth = field(init=False)
     changes: tuple[PairChange | None, ...] = field(init=False)
-    motion_rates: Callable[[], Array] = field(init=False)
+    with_motions: Callable[[], MotionGrowth] = field(init=False)
     parts: tuple[Sensitivities | None, ...]
 
     transmission_error = _by_torque("transmission_error")
@@ -243,11 +243,11 @@ def _sensitivities(
         growth = gap_growth(result, tangents, bending, at, [changes[key] for key in named])
         growth = growth.at_keys([keys.index(key) for key in named], len(keys))
         whole = tuple(changes.get(key) for key in keys)
-        rates = partial(motion_rates, result, tangents, bending)
+        with_motions = partial(motion_growth, result, tangents, bending)
     else:
         assert isinstance(bending, SumOfParts)
         raised = np.array([[NEWTON_MILLIMETRES if key == TORQUE else 0.0] for key in keys])
         on_slices = OnSlices(on_supports, tangents)
         growth, whole = growth_on_supports(on_supports, tangents, bending, on_slices, at, keys, changes, raised)
-        rates = partial(motion_rates, result, tangents, bending.on_rigid_supports, on_slices.by_motions)
-    return Sensitivities(tuple(keys), result, tangents, places, columns, growth, whole, rates)
+        with_motions = partial(motion_growth, result, tangents, bending.on_rigid_supports, on_slices.by_motions)
+    return Sensitivities(tuple(keys), result, tangents, places, columns, growth, whole, with_motions)

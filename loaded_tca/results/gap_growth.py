@@ -266,17 +266,40 @@ PART_OF_CELL = 1e-2
 """Motion of grids of which differences are taken, over the smallest cell."""
 
 
-def motion_rates(
+@dataclass(frozen=True, eq=False)
+class MotionGrowth:
+    """Growth of what the loaded states balance as all their grids move along x or y, forces held.
+
+    Any grid is as good as another, so that in the limit of small cells no figure changes by it; what figures change
+    tells how far derivatives depend on the motions of the grids.
+
+    Attributes
+    ----------
+    gaps : (2, n) array [1]
+        At the active cells, with what the forces as they are displace more.
+    lever_torques : (2, grids) array [N]
+        Growth of the torque of each pair by what its cells at the cap carry more.
+    """
+
+    gaps: Array
+    lever_torques: Array
+
+    def rotation_rates(self, tangents: Tangents) -> Array:
+        """Growth of the rotation of each state as one of its grids moves (2, grids) [rad/mm].
+
+        What a pair bends under the forces of others counts as if their grids moved alike.
+        """
+        by_grid = np.add.reduceat(self.gaps * tangents.weights, np.concatenate([[0], tangents.ends[:-1]]), axis=1)
+        return np.asarray((by_grid - self.lever_torques) / tangents.stiffness[tangents.state])
+
+
+def motion_growth(
     result: CycleNumbers,
     tangents: Tangents,
     bending: BendingModel | None,
     displaced: Callable[[Array, float], Array] | None = None,
-) -> Array:
-    """Growth of the rotation of each state as one of its grids moves along x or y (2, grids) [rad/mm], forces held.
-
-    Any grid is as good as another, so that in the limit of small cells it is none; what it is tells how far derivatives
-    depend on the motions of the grids. What a pair bends under the forces of others counts as if their grids moved
-    alike.
+) -> MotionGrowth:
+    """Growth with the motions of the grids.
 
     Parameters
     ----------
@@ -299,8 +322,7 @@ def motion_rates(
     lever_torques = _add_displaced(result, tangents, bending, changes, MovedContacts(gaps, covers, motions), gaps)
     if displaced is not None:
         gaps += [displaced(motion, step) for motion, step in zip(motions, steps, strict=True)]
-    by_grid = np.add.reduceat(gaps * tangents.weights, np.concatenate([[0], tangents.ends[:-1]]), axis=1)
-    return np.asarray((by_grid - lever_torques) / tangents.stiffness[tangents.state])
+    return MotionGrowth(gaps, lever_torques)
 
 
 def _add_forces_at_cap(tangents: Tangents, covers: Sequence[Array], gaps: Array, lever_torques: Array) -> None:

@@ -34,7 +34,7 @@ from loaded_tca.results.figure_slopes import (
     pressure_norm,
     root_slopes,
 )
-from loaded_tca.results.gap_growth import GapGrowth, curvature_growth
+from loaded_tca.results.gap_growth import GapGrowth, MotionGrowth, curvature_growth
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, rough_peaks
 from loaded_tca.results.warnings import warn_of_contacts
 from loaded_tca.threads import one_blas_thread
@@ -82,8 +82,8 @@ class Sensitivities:
         Of the gaps, of the torques of the pairs by that of their levers, motions of the grids.
     changes : tuple of PairChange or None
         Pairs of gears that differ in each key; none of the torque.
-    motion_rates : callable
-        As of :func:`loaded_tca.results.gap_growth.motion_rates`.
+    with_motions : callable
+        Growth with the motions of the grids, as of :func:`loaded_tca.results.gap_growth.motion_growth`.
     """
 
     keys: tuple[str, ...]
@@ -93,7 +93,7 @@ class Sensitivities:
     pairs: Indices
     growth: GapGrowth
     changes: tuple[PairChange | None, ...]
-    motion_rates: Callable[[], Array]
+    with_motions: Callable[[], MotionGrowth]
 
     def __reduce__(self) -> tuple[Callable[..., Sensitivities], tuple[CycleNumbers, tuple[str, ...]]]:
         """Found anew by pickle and copy: the linear systems are large, and quickly made."""
@@ -130,13 +130,21 @@ class Sensitivities:
         by_pair[*self._grids] = values.T
         return by_pair
 
+    @cached_property
+    def _of_motions(self) -> MotionGrowth:
+        return self.with_motions()
+
     def _of_each_pair(self, slopes: Array) -> Array:
         """Changes (keys, grids) of a number of each grid whose derivatives by its forces are ``slopes`` (n,)."""
+        return self._of_each_grid(slopes, self.growth.gaps, self.torques)
+
+    def _of_each_grid(self, slopes: Array, gaps: Array, torques: Array) -> Array:
+        """The same (m, grids) by changes (m, n) of the gaps and (m, states) of the torques."""
         state, grid = self.tangents.state, self.tangents.grid
-        changes, place = np.zeros((len(self.keys), state.size)), np.arange(state.size) - np.searchsorted(state, state)
+        changes, place = np.zeros((len(gaps), state.size)), np.arange(state.size) - np.searchsorted(state, state)
         for number in range(place.max() + 1):
             own = place == number
-            change = self.tangents.functional_change(np.where(own[grid], slopes, 0.0), self.growth.gaps, self.torques)
+            change = self.tangents.functional_change(np.where(own[grid], slopes, 0.0), gaps, torques)
             changes[:, own] = change[:, state[own]]
         return changes
 
@@ -180,7 +188,8 @@ class Sensitivities:
         if moving.any():
             motions = self.growth.motions[..., :2]
             first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
-            of_grids = np.stack([motions, motions - self.growth.shifts]) * self.motion_rates().T
+            rates = self._of_motions.rotation_rates(self.tangents)
+            of_grids = np.stack([motions, motions - self.growth.shifts]) * rates.T
             by_states = np.abs(np.add.reduceat(of_grids.sum(axis=-1), first, axis=-1)).min(axis=0)
             by_grids[*self.places] = (by_states * moving[:, None]).T
         return by_grids
@@ -272,13 +281,35 @@ class Sensitivities:
         warn_of_contacts(self.result, jumps, self._of_changes(self.beside_curvature_jumps), stacklevel=3)
         pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._rough_peaks
         slopes = peak_pressure_slopes(pair, [(one.contact, one.separation, one.pressure) for one in grids], peaks)
-        by_pair = self._of_each_pair(self.tangents.gathered(slopes))
+        by_pair = self._with_contacts(self.tangents.gathered(slopes))
         rough = {i: peak for i, peak in enumerate(peaks) if isinstance(peak, SlicePeak)}
         if rough:
             at, tops = [*rough], [*rough.values()]
             grown = curvature_growth(pair, [grids[i] for i in at], tops, self.changes, self.growth.of_grids(at))
             by_pair[:, at] += grown * [0.5 * peak.pressure if peak.slopes.any() else 0.0 for peak in tops]
         return self._by_pair(by_pair)
+
+    def _with_contacts(self, slopes: Array) -> Array:
+        """Changes (keys, grids) of the tops of smooth contacts, whose derivatives by the forces are ``slopes`` (n,).
+
+        A top that is fitted to few cells changes a little with its place between them. Where a modification moves the
+        contact over a grid that stays, that is no change of the peak: what the motion of the contact point over the
+        grid adds is taken off, by the changes with the motions of all grids, which are nothing else.
+        """
+        modified = [change is not None and change.of_modifications for change in self.changes]
+        smooth = [peak is None for peak in self._rough_peaks]
+        left = self.growth.shifts - self.growth.motions[..., :2]
+        left[np.logical_not(modified)] = left[:, np.logical_not(smooth)] = 0.0
+        if not left.any():
+            return self._of_each_pair(slopes)
+        of_motions = self._of_motions
+        first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
+        torques = -np.add.reduceat(of_motions.lever_torques, first, axis=1)
+        changes = self._of_each_grid(
+            slopes, np.concatenate([self.growth.gaps, of_motions.gaps]), np.concatenate([self.torques, torques])
+        )
+        by_key, by_motion = np.split(changes, [len(self.keys)])
+        return np.asarray(by_key + (left * by_motion.T).sum(axis=-1))
 
     @cached_property
     def _rough_peaks(self) -> list[SlicePeak | InnerPeak | None]:

@@ -129,6 +129,21 @@ def test_figures_of_tooth_pairs_of_a_helical_pair_change_as_whole_analyses_do(na
     assert_allclose(found[carries], expected[carries], rtol=REAL_PAIRS)
 
 
+def test_peak_pressures_follow_contacts_that_a_profile_crowning_moves_over_their_grids():
+    key, step, fewer = "pinion.modifications.profile_crowning_um", 0.2, {"cells": 32, "positions": 2}
+    middle = analysed("mesh_cycle_bevel", False, **fewer)
+    value = value_of(middle.scene, key)
+    low, high = (
+        analysed("mesh_cycle_bevel", False, ((key, value + by),), **fewer).peak_pressure for by in (-step, step)
+    )
+    slope = (high - low) / (2.0 * step)
+    assert not middle.on_edge.any()
+    # grids that stay are 8 % off
+    assert_allclose(
+        middle.sensitivities([key]).peak_pressure[..., 0], slope, rtol=0.0, atol=REAL_PAIRS * np.nanmax(np.abs(slope))
+    )
+
+
 def test_load_shares_of_all_pairs_change_by_nothing_together():
     found = result("mesh_cycle_helical").sensitivities([CROWNING, SLOPE, TORQUE]).load_share
     found = found / np.nanmax(np.abs(found), axis=(0, 1, 2))
