@@ -137,7 +137,7 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
     scene, strength = inputs.scene, inputs.strengths[place]
     gear = (inputs.result.gear_pair.pinion, inputs.result.gear_pair.wheel)[place]
     of_class = inputs.rating.tolerance_class
-    rim = rim_factor(gear, mesh.pinion.normal_module)
+    rim = rim_factor(gear, inputs.mesh.pinion.normal_module)
     deep = iso6336_3.deep_tooth_factor(inputs.virtual_contact_ratio, of_class) if of_class else 1.0
     form, correction, helix = scene.root_factors[place]
     nominal = scene.nominal_root_stress[place] * inputs.torque * rim * deep

@@ -45,7 +45,8 @@ def full_second_moment(gear: CylindricalGear) -> float:
 def _body_moment(gear: CylindricalGear | RingGear) -> float:
     """Polar second moment of area of a gear without a bore, of a ring from the middle of its teeth on [mm^4]."""
     if isinstance(gear, RingGear):
-        return pi / 32.0 * ((2.0 * gear.outer_radius) ** 4 - (gear.tip_radius + gear.root_radius) ** 4)
+        mean = gear.tip_radius + gear.root_radius
+        return pi / 32.0 * ((2.0 * gear.outer_radius) ** 4 - mean**4)
     return full_second_moment(gear)
 
 
@@ -65,7 +66,8 @@ def reduced_mass(inputs: RatingInputs) -> float:
     """m_red of both gears for each mm of the common face [kg/mm].
 
     Teeth by their outline, bodies over their own faces down to the bores that the scene gives, or to those of the
-    shafts under them; solid ones where it gives none. A ring reaches from the middle of its teeth to its outer diameter.
+    shafts under them; solid ones where it gives none. A ring reaches from the middle of its teeth to its outer
+    diameter.
     """
     scene, mesh = inputs.scene, inputs.mesh
     gears, sections = (mesh.pinion, mesh.wheel), (scene.pinion, scene.wheel)
