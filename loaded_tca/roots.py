@@ -69,3 +69,18 @@ def find_roots(
         on = (least < 0.5) & (fa != 0.0)
         rows, part, a, b, fa, fb = rows[on], part[on], a[on], b[on], fa[on], fb[on]
     return np.asarray(best)
+
+
+def find_root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Root of one function between two places where its signs differ, but for rounding, as by :func:`find_roots`.
+
+    What ``scipy.optimize.brentq`` does; importing that takes longer than a scene's overview.
+
+    Examples
+    --------
+    >>> round(find_root(lambda x: x * x - 2.0, 1.0, 3.0), 9)
+    1.414213562
+    """
+    ends = np.array([[low], [high]])
+    values, rounding = np.array([[function(low)], [function(high)]]), 2.0 * float(np.spacing(np.abs(ends).max()))
+    return float(find_roots(lambda x, _: np.array([function(float(x[0]))]), ends, values, rounding)[0])

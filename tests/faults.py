@@ -91,7 +91,7 @@ FAULTS = (
     Fault(
         "hypoid: the offset error moves the wheel along y instead of the common normal",
         "pairs/bevel.py",
-        "+ self.offset * frame.common_normal",
+        "+ self.offset * normal",
         "+ np.array([0.0, self.offset, 0.0])",
         "pairs/test_hypoid_pair.py::test_mounting_errors_move_the_wheel_about_the_common_normal",
     ),

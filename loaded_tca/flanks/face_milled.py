@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import cos, hypot, sin
 from typing import Any
 
@@ -40,6 +40,8 @@ from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 from loaded_tca.gears.hypoid import OffsetFrame
 from loaded_tca.plain import plain
 
+MOST_FLANKS = 8
+"""Flanks that are kept for variants of the micro-geometry."""
 SPLINE_POINTS = (41, 33)
 """Chebyshev-Lobatto points of the B-spline along the profile and lengthwise: it is within 1e-7 mm of usual flanks. The
 generated surface may turn back just below the form line, which takes more points along the profile."""
@@ -248,6 +250,12 @@ class GeneratedFlank(ToothRegion):
 
     def __repr__(self) -> str:
         return f"GeneratedFlank({self.owner})"
+
+
+@lru_cache(maxsize=MOST_FLANKS)
+def generated_flank(gear: FaceMilledGear, flank: FlankName) -> GeneratedFlank:
+    """Exact flank of a gear, made once for its thickness, its angles and its teeth."""
+    return GeneratedFlank(gear, flank)
 
 
 def tooth_angle(gear: FaceMilledGear, rho: Array, z: Array) -> Array:

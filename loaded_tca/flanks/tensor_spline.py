@@ -9,8 +9,7 @@ second-order Taylor polynomial of its edge in each direction: twice continuously
 References
 ----------
 de Boor 2001, A Practical Guide to Splines, chapters IX (piecewise polynomials), XIV (least squares) and XVII (tensor
-products); Fong & Saunders 2011, LSMR: an iterative algorithm for sparse least-squares problems, SIAM J. Sci.
-Comput. 33.
+products); Bjoerck 1996, Numerical Methods for Least Squares Problems, section 7.4 (conjugate gradients).
 """
 
 from __future__ import annotations
@@ -21,9 +20,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
+from loaded_tca.bsplines import basis, derivative, design_matrix, not_a_knot
 from loaded_tca.flanks.base import Bends, Jet
 
 POINTS_AT_ONCE = 4096
@@ -31,6 +30,8 @@ POINTS_AT_ONCE = 4096
 MOST_ROUNDS = 2
 MOST_ITERATIONS = 300
 """Rounds of refinement, and steps of each, of a fit to points off the grid lines; points on them take one step."""
+SETTLED = 1e-12
+"""What is left of a residual, or of its slope over it, at which a round ends: rounding is 1e-15."""
 
 
 class SplineDerivatives(NamedTuple):
@@ -143,11 +144,16 @@ def _pieces(knots: Array, coefficients: Array, degree: int) -> tuple[Array, Arra
 
     The first and the last piece are the continuations, of degree two, about the first and the last break.
     """
-    breaks, spline = knots[degree : len(knots) - degree], scipy.interpolate.BSpline(knots, coefficients, degree)
-    local = np.stack([spline(breaks, nu=order) / math.factorial(order) for order in range(degree + 1)])
-    before, after = local[:, :1].copy(), local[:, -1:].copy()
+    breaks, local = knots[degree : len(knots) - degree], []
+    for order in range(degree + 1):
+        values = design_matrix(knots, degree - order, breaks)
+        local.append(np.tensordot(values, coefficients, 1) / math.factorial(order))
+        if order < degree:
+            knots, coefficients = derivative(knots, coefficients, degree - order)
+    table = np.stack(local)
+    before, after = table[:, :1].copy(), table[:, -1:].copy()
     before[3:] = after[3:] = 0.0
-    return np.concatenate([before, local[:, :-1], after], axis=1), breaks
+    return np.concatenate([before, table[:, :-1], after], axis=1), breaks
 
 
 def fit(
@@ -191,10 +197,13 @@ def fit(
 
 @dataclass(frozen=True, eq=False)
 class _Direction:
-    """Knots of one direction, its basis at every point (points, coefficients), and 1/R of its problem on the lines."""
+    """Knots of one direction, its basis at every point, and 1/R of its problem on the lines.
+
+    The basis is the number (points,) of the first B-spline, and the values (points, degree + 1) of those from it on.
+    """
 
     knots: Array
-    basis: Any
+    basis: tuple[Indices, Array]
     inverse: Array
 
     @classmethod
@@ -207,47 +216,48 @@ class _Direction:
         positions = lines.mean(axis=1)
         positions[0], positions[-1] = lines.min(), lines.max()
         places = np.interp(np.linspace(0.0, len(positions) - 1.0, count), np.arange(len(positions)), positions)
-        skipped = (degree + 1) // 2
-        inner = places[skipped : count - skipped]
-        knots = np.concatenate([np.full(degree + 1, places[0]), inner, np.full(degree + 1, places[-1])])
-        triangle = np.linalg.qr(scipy.interpolate.BSpline.design_matrix(positions, knots, degree).toarray(), mode="r")
-        inverse = np.asarray(scipy.linalg.solve_triangular(triangle, np.eye(len(triangle))))
-        return cls(knots, scipy.interpolate.BSpline.design_matrix(at.ravel(), knots, degree), inverse)
+        knots = not_a_knot(places, degree)
+        triangle = np.linalg.qr(design_matrix(knots, degree, positions), mode="r")
+        return cls(knots, basis(knots, degree, at.ravel()), np.linalg.inv(triangle))
 
 
 def _least_squares(first: _Direction, second: _Direction, values: Array) -> Array:
-    """Coefficients (k, l) whose rows are basis_u x basis_v, preconditioned by R_u x R_v."""
-    from scipy.sparse.linalg import LinearOperator, lsmr
-
+    """Coefficients (k, l) whose rows are basis_u x basis_v, by conjugate gradients preconditioned by R_u x R_v."""
     shape = (len(first.inverse), len(second.inverse))
-    matrix = _row_products(first.basis, second.basis, len(values))
-    transposed = matrix.T.tocsr()
+    places, weights = _row_products(first.basis, second.basis, shape[1])
 
     def relaxed(raw: Array) -> Array:
-        return first.inverse @ raw.reshape(shape) @ second.inverse.T
+        return first.inverse @ raw @ second.inverse.T
 
-    operator: Any = LinearOperator(
-        matrix.shape,
-        matvec=lambda raw: matrix @ relaxed(raw).ravel(),
-        rmatvec=lambda residual: (first.inverse.T @ (transposed @ residual).reshape(shape) @ second.inverse).ravel(),
-        dtype=float,
-    )
-    coefficients, residual = np.zeros(shape), values
+    def spline(coefficients: Array) -> Array:
+        return np.einsum("nk,nk->n", weights, coefficients.ravel()[places])
+
+    def slope(residual: Array) -> Array:
+        """Derivative of half the sum of squares by the raw coefficients."""
+        parts = np.bincount(places.ravel(), (weights * residual[:, None]).ravel(), math.prod(shape))
+        return first.inverse.T @ parts.reshape(shape) @ second.inverse
+
+    coefficients, rest = np.zeros(shape), values
     for _ in range(MOST_ROUNDS):
-        if not residual.any():
-            break
-        raw = lsmr(operator, residual, atol=1e-14, btol=1e-14, conlim=0.0, maxiter=MOST_ITERATIONS)[0]
+        raw, residual, least = np.zeros(shape), rest, SETTLED * float(np.linalg.norm(rest))
+        down = way = slope(residual)
+        for _ in range(MOST_ITERATIONS):
+            square, across = float((down * down).sum()), spline(relaxed(way))
+            length = float(np.linalg.norm(residual))
+            if length <= least or square <= (SETTLED * length) ** 2:
+                break
+            share = square / float(across @ across)
+            raw, residual = raw + share * way, residual - share * across
+            down = slope(residual)
+            way = down + float((down * down).sum()) / square * way
         coefficients = coefficients + relaxed(raw)
-        residual = values - matrix @ coefficients.ravel()
+        rest = values - spline(coefficients)
     return coefficients
 
 
-def _row_products(first: Any, second: Any, rows: int) -> Any:
-    """Sparse matrix whose rows are the Kronecker products of the rows of two, each with equally many entries."""
-    entries = [(part.indices.reshape(rows, -1), part.data.reshape(rows, -1)) for part in (first, second)]
-    columns = entries[0][0][:, :, None] * second.shape[1] + entries[1][0][:, None, :]
-    data = entries[0][1][:, :, None] * entries[1][1][:, None, :]
-    starts = np.arange(rows + 1) * (data.size // rows)
-    return scipy.sparse.csr_array(
-        (data.ravel(), columns.ravel(), starts), shape=(rows, first.shape[1] * second.shape[1])
-    )
+def _row_products(first: tuple[Indices, Array], second: tuple[Indices, Array], columns: int) -> tuple[Indices, Array]:
+    """Kronecker products of the rows of two bases: places (points, m) of their entries, and the entries."""
+    (from_u, in_u), (from_v, in_v) = first, second
+    along, across = np.arange(in_u.shape[1])[:, None], np.arange(in_v.shape[1])
+    places = (from_u[:, None, None] + along) * columns + from_v[:, None, None] + across
+    return places.reshape(len(places), -1), (in_u[:, :, None] * in_v[:, None, :]).reshape(len(places), -1)

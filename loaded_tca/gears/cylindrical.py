@@ -13,13 +13,13 @@ from math import atan, cos, inf, pi, radians, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import tooth_measures
 from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks
 from loaded_tca.gears.involute import InvoluteGear, inverse_involute, involute
+from loaded_tca.roots import find_root
 
 
 @dataclass(frozen=True)
@@ -331,11 +331,10 @@ class CylindricalGear(InvoluteGear):
         flank_end = self.pressure_angle
         if not self.is_undercut or self._above_base(flank_end) <= 0.0 or self._cut_into_flank(flank_end) >= 0.0:
             return flank_end
-        at_base: float = scipy.optimize.brentq(self._above_base, flank_end, 0.5 * pi)
+        at_base = find_root(self._above_base, flank_end, 0.5 * pi)
         if self._cut_into_flank(at_base) <= 0.0:
             return at_base
-        crossing: float = scipy.optimize.brentq(self._cut_into_flank, flank_end, at_base)
-        return crossing
+        return find_root(self._cut_into_flank, flank_end, at_base)
 
     def _above_base(self, slope: float) -> float:
         """Height of a point of the fillet above the base circle [mm]."""

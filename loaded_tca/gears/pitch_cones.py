@@ -11,12 +11,12 @@ from functools import cached_property
 from math import asin, atan, atan2, cos, inf, pi, sin, sqrt, tan
 
 import numpy as np
-import scipy
 
 from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears.checks import half_turn_checks, spiral_check, teeth_checks
 from loaded_tca.gears.hypoid import Both, HypoidCones
+from loaded_tca.roots import find_root
 
 ETA_STEPS = 60
 """Parts of the range of the wheel offset angle in which method 1 is looked for."""
@@ -196,7 +196,7 @@ def _nearest_root(function: Callable[[float], float], start: float) -> float | N
     places = start * np.geomspace(0.1, 3.0, ETA_STEPS)
     values = np.array([function(place) for place in places])
     rows = np.flatnonzero(values[1:] * values[:-1] <= 0.0)
-    roots = [scipy.optimize.brentq(function, places[row], places[row + 1], xtol=1e-16, rtol=1e-14) for row in rows]
+    roots = [find_root(function, places[row], places[row + 1]) for row in rows]
     return min(roots, key=lambda root: abs(root - start), default=None)
 
 

@@ -13,13 +13,13 @@ from math import atan, atan2, cos, inf, pi, radians, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks
 from loaded_tca.gears.involute import InvoluteGear, inverse_involute, involute
+from loaded_tca.roots import find_root
 
 OUTSIDE_MODULES = 7.0
 """Depth of a ring between root and outside that has no outer diameter given, in normal modules."""
@@ -286,7 +286,7 @@ class RingGear(InvoluteGear):
                 f"{self.name}: no fillet fits into the spaces at the root circle, diameter "
                 f"{2.0 * self.root_radius:.4f} mm; reduce root_diameter or profile_shift"
             )
-        return float(scipy.optimize.brentq(room, least, wanted))
+        return find_root(room, least, wanted)
 
     def _arc_centre(self, radius: float) -> tuple[float, float, float]:
         """Centre of an arc that touches flank and root: radius, angle from the middle of the space, flank's roll.

@@ -29,7 +29,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
@@ -88,9 +87,14 @@ class BevelMounting:
         E runs along the common normal of the axes, about which the shaft angle grows, P and G along the axes.
         """
         wheel_point = frame.crossing_points[1]
-        turn = scipy.spatial.transform.Rotation.from_rotvec(self.shaft_angle_error * frame.common_normal)
-        axes = turn.apply(frame.axes)
-        origin = wheel_point + turn.apply(frame.origin - wheel_point) + self.offset * frame.common_normal
+        normal, sine, cosine = frame.common_normal, math.sin(self.shaft_angle_error), math.cos(self.shaft_angle_error)
+
+        def turned(vectors: Array) -> Array:
+            along = (vectors @ normal)[..., None] * normal
+            return along + cosine * (vectors - along) + sine * np.cross(normal, vectors)
+
+        axes = turned(frame.axes)
+        origin = wheel_point + turned(frame.origin - wheel_point) + self.offset * normal
         return origin - np.array([0.0, 0.0, self.pinion_axial]) + self.wheel_axial * axes[2], axes
 
 

@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.roots import find_root
 
 LONG_WAVES = (1.0, 0.35, 0.2)
 """Amplitudes of the first orders of a turn in random deviations: clamping and indexing leave mostly the first one."""
@@ -146,9 +146,7 @@ def random_index(teeth: int, single: float, cumulative: float, seed: int) -> Arr
         if missing <= 0.0:
             return index
         most = 2.0 * (single + step(index)) / step(noise)
-        return index + noise * scipy.optimize.brentq(
-            lambda share: step(index + share * noise) - single, 0.0, most, xtol=1e-14 * most
-        )
+        return index + noise * find_root(lambda share: step(index + share * noise) - single, 0.0, most)
 
     most = min(cumulative / float(np.ptp(waves)), single / step(waves))
     excess = [float(np.ptp(with_noise(amount))) - cumulative for amount in (0.0, most)]
@@ -157,7 +155,5 @@ def random_index(teeth: int, single: float, cumulative: float, seed: int) -> Arr
     elif excess[1] <= 0.0:
         index = with_noise(most)
     else:
-        index = with_noise(
-            scipy.optimize.brentq(lambda amount: float(np.ptp(with_noise(amount))) - cumulative, 0.0, most)
-        )
+        index = with_noise(find_root(lambda amount: float(np.ptp(with_noise(amount))) - cumulative, 0.0, most))
     return index - index.mean()

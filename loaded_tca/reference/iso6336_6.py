@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf, log
+from math import exp, inf, log
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
+import loaded_tca.roots as roots
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import InputError, require
@@ -366,7 +366,7 @@ def spectrum_safety(curve: SNCurve, stresses: ArrayLike, cycles: ArrayLike) -> f
     low, high = float((limits[-1] - heights).min()) - 1e-9, float((limits[0] - heights).min()) + 1e-9
     while excess(high) < 0.0:  # above the static strength, where the first line goes on
         high += 1.0
-    return float(np.exp(scipy.optimize.brentq(excess, low, high, xtol=1e-12, rtol=1e-14)))
+    return exp(roots.find_root(excess, low, high))
 
 
 @checked

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank, tooth_angle
+from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank, generated_flank, tooth_angle
 from loaded_tca.gears.bevel import BevelGear
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.bevel_meshes import BevelMesh
@@ -34,7 +34,7 @@ def flanks_and_points(
     mesh: FaceMilledMesh, sides: Sides
 ) -> tuple[tuple[GeneratedFlank, GeneratedFlank], tuple[Point, Point]]:
     """Flanks in contact of pinion and wheel, without modifications, and their mean pitch points (rho, z) [mm]."""
-    pinion, wheel = (GeneratedFlank(gear, side) for gear, side in zip(mesh.gears, sides, strict=True))
+    pinion, wheel = (generated_flank(gear, side) for gear, side in zip(mesh.gears, sides, strict=True))
     first, second = (pitch_point(gear.blank.mean_cone_distance, gear.blank.pitch_angle) for gear in mesh.gears)
     return (pinion, wheel), (first, second)
 
@@ -166,7 +166,7 @@ def _thickness(gear: FaceMilledGear) -> float:
 def _normal_arc(gear: FaceMilledGear, angle: float) -> float:
     """Length across the teeth, under the mean spiral angle of the flanks cut, of an angle at the mean point [mm]."""
     sides: tuple[FlankName, ...] = ("concave", "convex")
-    cut = [GeneratedFlank(gear, side).angles.spiral for side in sides if getattr(gear.cutter, side) is not None]
+    cut = [generated_flank(gear, side).angles.spiral for side in sides if getattr(gear.cutter, side) is not None]
     blank = gear.blank
     return blank.mean_cone_distance * sin(blank.pitch_angle) * angle * cos(sum(cut) / len(cut))
 

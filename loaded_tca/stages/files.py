@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
 from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, section_lines, toml_table, with_files_from
 from loaded_tca.scene.section import Section
-from loaded_tca.stages.sections import PlanetaryStage, Stage, StageGeometry, StageLoad, stage_from_table
+
+if TYPE_CHECKING:
+    from loaded_tca.stages.sections import Stage
+
+# Whether a file is a stage is asked of scenes, too: they need not know the sections of stages.
 
 
 @checked
@@ -39,6 +44,8 @@ def parse_stage(text: str, source: str = "stage", folder: str | os.PathLike[str]
     loaded_tca.errors.InputError: stage.planets: found 13; allowed a whole number from 1 to 12
     ...
     """
+    from loaded_tca.stages.sections import stage_from_table
+
     table = toml_table(text, source)
     if "stage" not in table and ("pinion" in table or "wheel" in table):
         raise InputError(f"{source}: not a stage but the scene of a pair; run it with 'loaded-tca run'")
@@ -91,6 +98,8 @@ def describe_stage_keys() -> str:
     >>> print(describe_stage_keys().splitlines()[4])
     | `type` | "planetary" | `"planetary"` | kind of stage: the ring stands still |
     """
+    from loaded_tca.stages.sections import PlanetaryStage, StageGeometry, StageLoad
+
     sections: tuple[tuple[str, type[Section], str], ...] = (
         ("stage", PlanetaryStage, "planets, pins, and how the sun is held"),
         ("pair", StageGeometry, "what all gears have in common"),

@@ -11,7 +11,7 @@ import numpy as np
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank, unmodified
 from loaded_tca.flanks.bevel import chebyshev_nodes, face_cone_angles
-from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
+from loaded_tca.flanks.face_milled import MOST_FLANKS, GeneratedFlank, generated_flank, tooth_angle
 from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears.face_milled import BLADE_SIGNS, FaceMilledGear
 from loaded_tca.tooth.families import FILLET_RADIUS_COEFFICIENT, RootCone, ToothForm, ToothGeometry
@@ -19,8 +19,6 @@ from loaded_tca.tooth.fillet import ApexSpheres, ArcFillet
 
 TIP_POINTS = 9
 """Points along the face cone at which the thickness of the tooth is checked."""
-MOST_FLANKS = 8
-"""Nominal flanks that are kept for variants of the micro-geometry."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +87,7 @@ class FaceMilledTooth(ToothGeometry):
         half_angle = 0.5 * float(tooth_angle(gear, np.array([rho]), np.array([z]))[0])
         radius = max(gear.cutter.blade(flank).edge_radius for flank in BLADE_SIGNS)
         if radius == 0.0:
-            spiral = GeneratedFlank(gear, "concave").angles.spiral
+            spiral = generated_flank(gear, "concave").angles.spiral
             radius = FILLET_RADIUS_COEFFICIENT * 2.0 * rho * math.cos(spiral) / gear.teeth
         root = RootCone(blank.root_angle, -blank.root_apex)
         return ToothForm(gear.teeth, half_angle, ApexSpheres(), root, ArcFillet(radius), largest_that_fits=True)
@@ -98,7 +96,7 @@ class FaceMilledTooth(ToothGeometry):
 @lru_cache(maxsize=MOST_FLANKS)
 def _nominal(gear: FaceMilledGear, side: int, exact: bool) -> Flank:
     """Generated flank of a side; its B-spline takes far longer than its modifications."""
-    flank = GeneratedFlank(gear, gear.flank_name(side))
+    flank = generated_flank(gear, gear.flank_name(side))
     if gear.cutter.concave is not None and gear.cutter.convex is not None:
         _require_tip(gear, flank)
     return flank if exact else flank.as_spline()
