@@ -228,7 +228,9 @@ def _least_seen(axes: Axes, places: FlankSafeties, gear: int, to_picture: ToPict
 def _mark(axes: Axes, at: Array, value: float) -> None:
     """A cross with the number of the smallest safety."""
     axes.plot(*at, "x", color="black", markersize=8.0, markeredgewidth=2.0, zorder=10.0)
-    text = axes.annotate(plain(value), (float(at[0]), float(at[1])), (7.0, 5.0), textcoords="offset points", zorder=10.0)
+    text = axes.annotate(
+        plain(value), (float(at[0]), float(at[1])), (7.0, 5.0), textcoords="offset points", zorder=10.0
+    )
     text.set_path_effects([withStroke(linewidth=3.0, foreground="white")])
 
 
