@@ -128,6 +128,37 @@ class Rating(Result):
                         sentences.append(f"{gear}: {words} below the required {least:g} under {torques} N m")
         return sentences
 
+    def sensitivities(self, keys: Sequence[str]) -> xarray.Dataset:
+        """Return the derivatives of the safeties with respect to keys of the scene.
+
+        They follow from those of pressure, root tension and K_Hbeta by the chain rule; see
+        :mod:`loaded_tca.rating.slopes`, which says what is held.
+
+        Parameters
+        ----------
+        keys : sequence of str
+            As of :meth:`loaded_tca.MeshCycle.sensitivities`.
+
+        Returns
+        -------
+        xarray.Dataset
+            ``flank_safety``, ``root_safety``, ``local_flank_safety`` and, with root stress, ``local_root_safety`` over
+            case, gear and key [1 per unit of the key].
+
+        Raises
+        ------
+        InputError
+            As :meth:`loaded_tca.MeshCycle.sensitivities`.
+
+        Warns
+        -----
+        AccuracyWarning
+            Likewise.
+        """
+        from loaded_tca.rating.slopes import rating_slopes
+
+        return rating_slopes(self, keys)
+
     def to_table(self) -> dict[str, Array]:
         """Return all numbers as columns, a row for each torque, by names that end in their unit."""
         return self.figure_arrays()
