@@ -2097,8 +2097,8 @@ FAULTS = (
     Fault(
         "rating: contact pressure grows as the load",
         "rating/evaluate.py",
-        'stress = pressure * np.sqrt(loads["K_A"] * loads["K_v"])',
-        'stress = pressure * loads["K_A"] * loads["K_v"]',
+        'stress = pressure * np.sqrt(loads["K_A"] * loads["K_gamma"] * loads["K_v"])',
+        'stress = pressure * loads["K_A"] * loads["K_gamma"] * loads["K_v"]',
         "rating/test_rating.py::test_stresses_are_nominal_ones_times_load_factors",
     ),
     Fault(
@@ -2142,6 +2142,41 @@ FAULTS = (
         "    if gear.is_ring:",
         "    if gear.is_ring and gear.is_solid:",
         "rating/test_rings.py::test_thin_rim_of_a_ring_raises_its_root_stress_alone",
+    ),
+    Fault(
+        "the sun of a stage meets one planet in a turn",
+        "stages/rating.py",
+        "duty=Duty(factor, (planets, 1)",
+        "duty=Duty(factor, (1, 1)",
+        "stages/test_stage_rating.py::test_load_cycles_count_turns_against_the_carrier_times_mates",
+    ),
+    Fault(
+        "K_gamma is left out of root stress",
+        "rating/evaluate.py",
+        'stress = nominal * loads["K_A"] * loads["K_gamma"]',
+        'stress = nominal * loads["K_A"]',
+        "stages/test_stage_rating.py::test_mesh_load_factor_of_the_analysis_or_a_number_multiplies_loads",
+    ),
+    Fault(
+        "planets bend one way",
+        "stages/rating.py",
+        "return replace(strength, root_stress_ratio=min(ratio, strength.root_stress_ratio)), None",
+        "return strength, None",
+        "stages/test_stage_rating.py::test_planets_bend_to_and_fro",
+    ),
+    Fault(
+        "a fillet of a planet is pressed by the mesh that draws it",
+        "stages/rating.py",
+        "return compression[1] / tension[0], compression[0] / tension[1]",
+        "return compression[0] / tension[0], compression[1] / tension[1]",
+        "stages/test_stage_rating.py::test_fillet_of_a_planet_is_drawn_by_one_mesh_and_pressed_by_the_other",
+    ),
+    Fault(
+        "speeds of a stage are those against the housing",
+        "stages/rating.py",
+        "return stage.operation.sun_speed_rpm * ring / (sun + ring)",
+        "return stage.operation.sun_speed_rpm",
+        "stages/test_stage_rating.py::test_load_cycles_count_turns_against_the_carrier_times_mates",
     ),
 )
 

@@ -41,6 +41,7 @@ CASES = (
     "tribology.published",
     "rating.strength",
     "rating.rings",
+    "rating.stages",
     "rating.solved",
     "bevel.iso_23509_sample",
     "face_milled.settings",

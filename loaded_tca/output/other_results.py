@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from loaded_tca.rating import Rating
     from loaded_tca.results.result import Result
     from loaded_tca.results.revolution import Revolution
-    from loaded_tca.stages import StageResult
+    from loaded_tca.stages import StageRating, StageResult
     from loaded_tca.tribology import Tribology
 
 REVOLUTION_FILES = "revolution.nc", "revolution.json", "revolution.csv", "teeth.csv", "orders.csv"
@@ -145,12 +145,12 @@ RATING_FILES = "rating.json", "rating.csv"
 
 
 @checked
-def write_rating(rating: Rating, directory: FilePath) -> tuple[Path, ...]:
+def write_rating(rating: Rating | StageRating, directory: FilePath) -> tuple[Path, ...]:
     """Write ``rating.json`` and ``rating.csv``, both or none.
 
     Parameters
     ----------
-    rating : Rating
+    rating : Rating or StageRating
     directory : str or path
         Made if it does not exist.
 

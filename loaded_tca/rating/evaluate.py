@@ -51,7 +51,7 @@ def _contact_stresses(inputs: RatingInputs, loads: Arrays) -> Arrays:
     mesh, standard, gear = inputs.mesh, inputs.scene.contact_standard, inputs.mesh.pinion
     ones = np.ones(len(inputs.torque))
     nominal = standard.stress_per_root_torque * np.sqrt(inputs.torque)
-    product = loads["K_A"] * loads["K_v"] * loads["K_Hbeta"] * loads["K_Halpha"]
+    product = loads["K_A"] * loads["K_gamma"] * loads["K_v"] * loads["K_Hbeta"] * loads["K_Halpha"]
     stresses = [iso6336_2.contact_stress(nominal, factor, product) for factor in standard.single_contact]
     zone = iso6336.zone_factor(gear.transverse_pressure_angle, mesh.working_pressure_angle, gear.base_helix_angle)
     return {
@@ -141,7 +141,7 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
     deep = iso6336_3.deep_tooth_factor(inputs.virtual_contact_ratio, of_class) if of_class else 1.0
     form, correction, helix = scene.root_factors[place]
     nominal = scene.nominal_root_stress[place] * inputs.torque * rim * deep
-    stress = nominal * loads["K_A"] * loads["K_v"] * loads["K_Fbeta"] * loads["K_Falpha"]
+    stress = nominal * loads["K_A"] * loads["K_gamma"] * loads["K_v"] * loads["K_Fbeta"] * loads["K_Falpha"]
     made_of = iso6336_3.RootStrength(
         strength.limits[1], strength.kind_of_material, strength.root_Rz_um, strength.proof_stress_MPa
     )
@@ -152,7 +152,10 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
         "cycles": float(inputs.cycles[place]),
         "long_life_factor": inputs.rating.long_life_factor,
     }
-    factors = iso6336_3.root_factors(made_of, stress_ratio=strength.root_stress_ratio, **common)
+    mean = inputs.duty.mean_stress_factors[place]
+    factors = iso6336_3.root_factors(
+        made_of, stress_ratio=strength.root_stress_ratio, mean_stress_factor=mean, **common
+    )
     required, per_hour = inputs.rating.required_root_safety, inputs.cycles_per_hour[place]
     arrays: Arrays = {
         name: np.asarray(value, dtype=float)
@@ -178,11 +181,15 @@ def _local_root(
 ) -> tuple[Arrays, tuple[str, ...]]:
     """Safety and life of the root of one gear by the largest computed tension (t,), and notes."""
     result, asked = inputs.result, inputs.strengths[place].root_stress_ratio
-    tension = np.nanmax(result.root_tension[..., place], axis=1) * loads["K_A"] * loads["K_v"]
-    ratio = np.clip(np.minimum(result.root_stress_ratio[:, place], asked), -1.2, 0.0)
+    tension = np.nanmax(result.root_tension[..., place], axis=1)
+    tension *= loads["K_A"] * loads["K_gamma"] * loads["K_v"]
+    computed = inputs.duty.stress_ratios[place]
+    ratio = np.minimum(result.root_stress_ratio[:, place], asked if computed is None else computed)
+    ratio = np.clip(ratio, -1.2, 0.0)
     notes: tuple[str, ...] = ()
+    mean = inputs.duty.mean_stress_factors[place]
     try:
-        factors = iso6336_3.root_factors(made_of, stress_ratio=ratio, **common)
+        factors = iso6336_3.root_factors(made_of, stress_ratio=ratio, mean_stress_factor=mean, **common)
     except InputError:  # cast irons, of which the standard has no sensitivity
         factors = iso6336_3.root_factors(made_of, **common)
         notes = ("local Y_M: the standard has no mean stress sensitivity of this material; 1 counts",)
@@ -211,7 +218,7 @@ def _local_flanks(
         places[0, torque] = sweep.radius[worst], sweep.wheel_radius[worst]
         places[1, torque] = sweep.axial[worst], sweep.wheel_axial[worst]
         at_edge = at_edge or bool(sweep.on_edge[worst])
-    stress = pressure * np.sqrt(loads["K_A"] * loads["K_v"])
+    stress = pressure * np.sqrt(loads["K_A"] * loads["K_gamma"] * loads["K_v"])
     required = inputs.rating.required_flank_safety
     return {
         "local_flank_stress": stress,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, hypot
+from math import cos, hypot, inf
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """K_A, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (t,) by their names, and notes.
+    """K_A, K_gamma, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (t,) by their names, and notes.
 
     K_Hbeta of the analysis counts from 1 on; K_Halpha and K_Falpha of the analysis are held within the bounds of the
     standard.
@@ -37,6 +37,7 @@ def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...
     height = inputs.scene.tooth_height_over_width
     factors = {
         "K_A": ones * inputs.operation.application_factor,
+        "K_gamma": ones * inputs.duty.mesh_load_factor,
         "K_v": dynamic,
         "K_Hbeta": face,
         "K_Halpha": ones * flank,
@@ -83,7 +84,7 @@ def _tip_relief(inputs: RatingInputs) -> float:
 def reduced_mass(inputs: RatingInputs) -> float:
     """m_red of both gears as discs down to the bores that the scene gives, their shafts with them else [kg/mm].
 
-    A ring reaches from the middle of its teeth to its outer diameter.
+    A ring reaches from the middle of its teeth to its outer diameter; one that is held does not swing.
     """
     sections = inputs.scene.pinion, inputs.scene.wheel
     inertias = []
@@ -95,8 +96,9 @@ def reduced_mass(inputs: RatingInputs) -> float:
             (2.0 * gear.outer_radius, mean) if isinstance(gear, RingGear) else (mean, section.bore_diameter_mm or 0.0)
         )
         inertias.append(iso6336_1.disc_inertia(*ends, material.density_kg_m3))
-    radii = inputs.mesh.pinion.base_radius, inputs.mesh.wheel.base_radius
-    return iso6336_1.reduced_mass((inertias[0], inertias[1]), radii)
+    radii, duty = (inputs.mesh.pinion.base_radius, inputs.mesh.wheel.base_radius), inputs.duty
+    of_wheel = inf if duty.wheel_is_held else inertias[1]
+    return iso6336_1.reduced_mass((inertias[0], of_wheel), radii, meshes=duty.meshes)
 
 
 def _dynamic_factor(inputs: RatingInputs) -> tuple[Array, tuple[str, ...]]:

@@ -14,6 +14,7 @@ OF_ROOTS = Asked(
 
 _LOADS = {
     "K_A": "application factor K_A",
+    "K_gamma": "mesh load factor K_gamma",
     "K_v": "dynamic factor K_v",
     "K_Hbeta": "face load factor K_Hbeta",
     "K_Halpha": "transverse load factor K_Halpha",
@@ -85,7 +86,7 @@ NUMBERS: dict[str, Number] = {
     **_numbers(OF_GEARS, "MPa", {"sigma_FG": "root strength sigma_FG"}),
     **_numbers(OF_GEARS, "1", {"root_safety": "safety against tooth breakage S_F"}),
     **_numbers(OF_GEARS, "h", {"root_life": "life of roots at the required safety"}),
-    **_numbers(CASE, "MPa", {"local_flank_stress": "local: largest contact pressure with K_A K_v"}),
+    **_numbers(CASE, "MPa", {"local_flank_stress": "local: largest contact pressure with K_A K_gamma K_v"}),
     **_numbers(
         OF_GEARS,
         "mm",
@@ -93,7 +94,7 @@ NUMBERS: dict[str, Number] = {
     ),
     **_numbers(OF_GEARS, "1", {"local_flank_safety": "local: safety against pitting"}),
     **_numbers(OF_GEARS, "h", {"local_flank_life": "local: life of flanks at the required safety"}),
-    **_numbers(OF_GEARS, "MPa", {"local_root_stress": "local: largest root tension with K_A K_v"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "MPa", {"local_root_stress": "local: largest root tension with K_A K_gamma K_v"}, OF_ROOTS),
     **_numbers(OF_GEARS, "1", {"local_stress_ratio": "local: smallest over largest stress R"}, OF_ROOTS),
     **_numbers(OF_GEARS, "1", {"local_Y_M": "local: mean stress influence factor Y_M"}, OF_ROOTS),
     **_numbers(OF_GEARS, "MPa", {"local_sigma_FG": "local: root strength sigma_FG"}, OF_ROOTS),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar, Literal
 
 import loaded_tca.warning_kinds as kinds
@@ -260,7 +261,7 @@ class CylindricalScene(BlankScene):
         mesh = self.mesh()
         return mesh.working_pressure_angle, mesh.pinion.base_helix_angle
 
-    @property
+    @cached_property
     def contact_standard(self) -> ContactStandard:
         """Contact factors and stiffnesses of ISO 6336-1 and -2 over the common face."""
         return contact_standard(self.mesh(), build_materials(self.materials))
@@ -280,7 +281,7 @@ class CylindricalScene(BlankScene):
         pinion, wheel = (math.prod(factors) / (area * mesh.pinion.reference_radius) for factors in self.root_factors)
         return pinion, wheel
 
-    @property
+    @cached_property
     def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Form, stress correction and helix angle factor Y_F, Y_S, Y_beta of both gears; NaN as above."""
         mesh = self.mesh()
@@ -291,7 +292,7 @@ class CylindricalScene(BlankScene):
         )
         return pinion, wheel
 
-    @property
+    @cached_property
     def root_sections(self) -> tuple[iso6336_3.RootSection | None, iso6336_3.RootSection | None]:
         """Critical sections of the teeth of both gears after ISO 6336-3; None where it has none."""
         mesh = self.mesh()

@@ -10,7 +10,15 @@ from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
 from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, section_lines, toml_table, with_files_from
 from loaded_tca.scene.section import Section
-from loaded_tca.stages.sections import PlanetaryStage, Stage, StageGeometry, StageLoad, stage_from_table
+from loaded_tca.stages.sections import (
+    PlanetaryStage,
+    Stage,
+    StageGeometry,
+    StageLoad,
+    StageOperation,
+    StageRatingSection,
+    stage_from_table,
+)
 
 
 @checked
@@ -95,6 +103,8 @@ def describe_stage_keys() -> str:
         ("stage", PlanetaryStage, "planets, pins, and how the sun is held"),
         ("pair", StageGeometry, "what all gears have in common"),
         ("load", StageLoad, "what the sun carries"),
+        ("operation", StageOperation, "speed and factors, for rating"),
+        ("rating", StageRatingSection, "what is required of the gears, and factors, for rating"),
     )
     lines = (line for name, section, about in sections for line in section_lines(name, section, about, {}))
     return "\n".join(lines).strip() + "\n"
