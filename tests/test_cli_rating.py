@@ -3,11 +3,14 @@
 import csv
 import json
 import os
+from dataclasses import replace
 
 import pytest
 
 from loaded_tca.plots import plot_safeties
 from tests.samples.rating import solved
+from tests.samples.stages import analysed
+from tests.stages.test_stage_rating import SECTIONS
 
 
 @pytest.fixture
@@ -53,3 +56,24 @@ def test_command_refuses_in_one_line(run, out, arguments, words):
     assert code == 2
     assert any(words in line for line in errors), errors
     assert os.listdir(out) == ["result.nc"]
+
+
+@pytest.fixture
+def stage(tmp_path, monkeypatch):
+    """The directory of a stage with a rating."""
+    monkeypatch.chdir(tmp_path)
+    result, _ = analysed()
+    replace(result, stage=result.stage.with_changes(SECTIONS)).save("stage")
+    return "stage"
+
+
+def test_command_rates_the_stage_of_a_directory(run, stage):
+    code, text, _ = run("rating", stage, "--set", "rating.mesh_load_factor=1.3", "--out", "rated")
+    assert code == 0
+    assert "sun | planet | ring" in text
+    with open("rated/rating.json", encoding="utf-8") as file:
+        (row,) = json.load(file)["torques"]
+    assert row["K_gamma"] == row["ring_mesh_K_gamma"] == 1.3
+    code, _, errors = run("rating", stage, "--set", "sun.teeth=21")
+    assert code == 2
+    assert any("--set sun.teeth: an analysis depends on it; allowed keys of [sun.strength]" in line for line in errors)

@@ -41,6 +41,7 @@ CASES = (
     "tribology.published",
     "rating.strength",
     "rating.rings",
+    "rating.stages",
     "rating.solved",
     "rating.iso_tr_10300_30",
     "bevel.iso_23509_sample",

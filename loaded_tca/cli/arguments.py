@@ -71,8 +71,8 @@ files in DIR:
 {tribology_pictures}
 Friction of the teeth alone; docs/guide/efficiency_and_scuffing.md says more."""
 RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubricant] of the scene say what the gears
-are made of, what is required and how they run; --set gives or changes them. Cylindrical pairs, one operating
-point under each torque.
+are made of, what is required and how they run, of a stage [sun.strength], [planet.strength] and [ring.strength]; --set
+gives or changes them. Cylindrical pairs and planetary stages, one operating point under each torque.
 
 files in DIR:
   rating.json               safeties, lives and every factor under each torque
@@ -256,7 +256,8 @@ def _add_rating(command: Command) -> None:
     """Add the command that rates a result."""
     text = "show safeties and lives of flanks and roots of a result, after ISO 6336 and by its local stresses"
     reader = command("rating", run_by.rating, text, RATING)
-    reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+    text = "result.nc, or stage.nc of a stage, or the directory that holds it"
+    reader.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     text = "another value of a key, for instance rating.life_hours=5000; may be given again for other keys"
     reader.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
     reader.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: beside the result")

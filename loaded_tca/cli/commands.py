@@ -34,6 +34,7 @@ from loaded_tca.errors import InputError, require
 if TYPE_CHECKING:
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
+    from loaded_tca.stages import StageResult
 
 # The modules that compute and draw take most of a second to import: each command imports what it needs.
 
@@ -143,11 +144,30 @@ def rating(options: argparse.Namespace) -> None:
     """Write safeties and lives of a result with all factors and pictures, and show the table."""
     from loaded_tca.output.other_results import write_rating
     from loaded_tca.plots import png_of, safety_figures
+    from loaded_tca.stages.result import STAGE_FILE
 
+    if result_file(options.result).name == STAGE_FILE:
+        stage, directory = _changed_stage(options)
+        of_stage = stage.rating()
+        print_summary(of_stage.summary(), write_rating(of_stage, directory))
+        return
     result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
     rated = result.rating()
     pictures = {f"{name}.png": png_of(figure) for name, figure in safety_figures(rated).items()}
     print_summary(rated.summary(), write_rating(rated, directory, pictures))
+
+
+def _changed_stage(options: argparse.Namespace) -> tuple[StageResult, Path]:
+    """Result of a stage with what its rating is to take otherwise, and where its files go."""
+    from loaded_tca.stages import StageResult
+
+    path = result_file(options.result)
+    result = StageResult.load(path)
+    directory = options.out or path.parent
+    check_place(directory)
+    changes = changes_of(options)
+    require(*((_is_of_rating(key, STAGE_STRENGTHS), f"--set {key}: {OF_STAGE_RATING}") for key in changes))
+    return replace(result, stage=result.stage.with_changes(changes)) if changes else result, directory
 
 
 def _changed_result(
@@ -173,16 +193,18 @@ def _changed_result(
     return result, directory
 
 
-OF_RATING = (
-    "an analysis depends on it; allowed keys of [pinion.strength], [wheel.strength], [rating], [operation] and "
-    "[lubricant]"
+STRENGTHS = "pinion.strength", "wheel.strength"
+STAGE_STRENGTHS = "sun.strength", "planet.strength", "ring.strength"
+OF_RATING, OF_STAGE_RATING = (
+    f"an analysis depends on it; allowed keys of {', '.join(f'[{name}]' for name in sections)}, [rating], [operation] "
+    "and [lubricant]"
+    for sections in (STRENGTHS, STAGE_STRENGTHS)
 )
 
 
-def _is_of_rating(key: str) -> bool:
-    """Whether a key of a scene concerns rating alone, so that a result stays valid."""
-    section = key.rpartition(".")[0]
-    return section in ("pinion.strength", "wheel.strength", "rating", "operation", "lubricant")
+def _is_of_rating(key: str, strengths: Sequence[str] = STRENGTHS) -> bool:
+    """Whether a key of a scene or stage concerns rating alone, so that a result stays valid."""
+    return key.rpartition(".")[0] in (*strengths, "rating", "operation", "lubricant")
 
 
 ROUGHNESS, THERMAL = "roughness_Ra_um", ("conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK")

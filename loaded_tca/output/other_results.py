@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from loaded_tca.rating import Rating
     from loaded_tca.results.result import Result
     from loaded_tca.results.revolution import Revolution
-    from loaded_tca.stages import StageResult
+    from loaded_tca.stages import StageRating, StageResult
     from loaded_tca.tribology import Tribology
 
 REVOLUTION_FILES = "revolution.nc", "revolution.json", "revolution.csv", "teeth.csv", "orders.csv"
@@ -145,12 +145,14 @@ RATING_FILES = "rating.json", "rating.csv"
 
 
 @checked
-def write_rating(rating: Rating, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
+def write_rating(
+    rating: Rating | StageRating, directory: FilePath, more: Mapping[str, Buffer] = {}
+) -> tuple[Path, ...]:
     """Write ``rating.json`` and ``rating.csv``, all files or none.
 
     Parameters
     ----------
-    rating : Rating
+    rating : Rating or StageRating
     directory : str or path
         Made if it does not exist.
     more : mapping of str to bytes

@@ -16,6 +16,7 @@ from loaded_tca.results.quantities import (
 )
 from loaded_tca.results.revolution import REVOLUTION_QUANTITIES
 from loaded_tca.stages import StageResult
+from loaded_tca.stages.rating import STAGE_RATING_NUMBERS
 from loaded_tca.tribology.quantities import NUMBERS, TORQUE
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ def describe_results() -> str:
         "Planetary stages": _numbers(StageResult.NUMBERS),
         "Tribology; of several speeds most with an axis `speed`": _numbers(NUMBERS, of_torques=True),
         "Rating": _numbers(RATING_NUMBERS, of_torques=True),
+        "Rating of planetary stages: gears are sun, planet and ring": _numbers(STAGE_RATING_NUMBERS, of_torques=True),
     }
     return "\n".join("\n".join([f"### {title}", "", *lines, ""]) for title, lines in sections.items())
 

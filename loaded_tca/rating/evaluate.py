@@ -53,7 +53,7 @@ def _contact_stresses(inputs: RatingInputs, loads: Arrays) -> Arrays:
     mesh, standard, gear = inputs.mesh, inputs.scene.contact_standard, inputs.mesh.pinion
     ones = np.ones(len(inputs.torque))
     nominal = standard.stress_per_root_torque * np.sqrt(inputs.torque)
-    product = loads["K_A"] * loads["K_v"] * loads["K_Hbeta"] * loads["K_Halpha"]
+    product = loads["K_A"] * loads["K_gamma"] * loads["K_v"] * loads["K_Hbeta"] * loads["K_Halpha"]
     stresses = [iso6336_2.contact_stress(nominal, factor, product) for factor in standard.single_contact]
     zone = iso6336.zone_factor(gear.transverse_pressure_angle, mesh.working_pressure_angle, gear.base_helix_angle)
     return {
@@ -141,7 +141,7 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
     deep = iso6336_3.deep_tooth_factor(inputs.virtual_contact_ratio, of_class) if of_class else 1.0
     form, correction, helix = scene.root_factors[place]
     nominal = scene.nominal_root_stress[place] * inputs.torque * rim * deep
-    stress = nominal * loads["K_A"] * loads["K_v"] * loads["K_Fbeta"] * loads["K_Falpha"]
+    stress = nominal * loads["K_A"] * loads["K_gamma"] * loads["K_v"] * loads["K_Fbeta"] * loads["K_Falpha"]
     made_of, common = root_of(inputs, place)
     factors = iso6336_3.root_factors(made_of, stress_ratio=strength.root_stress_ratio, **common)
     required, per_hour = inputs.rating.required_root_safety, inputs.cycles_per_hour[place]
@@ -167,8 +167,8 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
 def _local_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, tuple[str, ...]]:
     """Safety and life of the root of one gear at the place with the smallest safety (t,), and notes."""
     worst = deciding_places(inputs, place)
-    tension = worst.tension * loads["K_A"] * loads["K_v"]
-    ratio, factors, notes = local_root_factors(inputs, place, worst.ratio)
+    tension = worst.tension * loads["K_A"] * loads["K_gamma"] * loads["K_v"]
+    ratio, factors, notes = local_root_factors(inputs, place, worst.ratio, np.arange(len(tension)))
     required, per_hour = inputs.rating.required_root_safety, inputs.cycles_per_hour[place]
     return {
         "local_root_stress": tension,
@@ -196,7 +196,7 @@ def _local_flanks(
         places[0, torque] = sweep.radius[worst], sweep.wheel_radius[worst]
         places[1, torque] = sweep.axial[worst], sweep.wheel_axial[worst]
         at_edge = at_edge or bool(sweep.on_edge[worst])
-    stress = pressure * np.sqrt(loads["K_A"] * loads["K_v"])
+    stress = pressure * np.sqrt(loads["K_A"] * loads["K_gamma"] * loads["K_v"])
     required = inputs.rating.required_flank_safety
     return {
         "local_flank_stress": stress,

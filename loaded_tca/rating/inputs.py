@@ -24,6 +24,31 @@ COVERED = "rating covers one operating point of cylindrical pairs"
 
 
 @dataclass(frozen=True, eq=False)
+class Duty:
+    """How the gears of a pair are loaded beside its torque: those of a planetary stage by several mates.
+
+    Attributes
+    ----------
+    mesh_load_factor : array (t,) or float
+        K_gamma.
+    meshes : (int, int)
+        Mates that pinion and wheel have at once, each of which loads every tooth once in a turn against the carrier.
+    wheel_is_held : bool
+        Whether the wheel does not swing, as a ring in a housing.
+    mean_stress_factors : (float or None, float or None)
+        Y_M of pinion and wheel, where it does not follow from a stress ratio.
+    stress_ratios : (array (t,) or None, array (t,) or None)
+        Smallest over largest computed root stress of a turn, where other mates add to those of the mesh.
+    """
+
+    mesh_load_factor: Array | float = 1.0
+    meshes: tuple[int, int] = (1, 1)
+    wheel_is_held: bool = False
+    mean_stress_factors: tuple[float | None, float | None] = (None, None)
+    stress_ratios: tuple[Array | None, Array | None] = (None, None)
+
+
+@dataclass(frozen=True, eq=False)
 class RatingInputs:
     """A result with the sections of its scene that a rating needs.
 
@@ -37,6 +62,7 @@ class RatingInputs:
     rating : RatingSection
     operation : Operation
     lubricant : LubricantSection
+    duty : Duty
     """
 
     result: CycleNumbers
@@ -46,6 +72,7 @@ class RatingInputs:
     rating: RatingSection
     operation: Operation
     lubricant: LubricantSection
+    duty: Duty = Duty()
 
     @property
     def torque(self) -> Array:
@@ -54,8 +81,8 @@ class RatingInputs:
 
     @property
     def load(self) -> Array:
-        """F_t K_A/b (t,) [N/mm], at the reference circle."""
-        force = self.torque / self.mesh.pinion.reference_radius
+        """F_t K_A K_gamma/b (t,) [N/mm], at the reference circle."""
+        force = self.duty.mesh_load_factor * self.torque / self.mesh.pinion.reference_radius
         return np.asarray(force * self.operation.application_factor / self.mesh.common_face_width)
 
     @property
@@ -67,7 +94,7 @@ class RatingInputs:
     def cycles_per_hour(self) -> Array:
         """Load cycles of pinion and wheel in an hour (2,)."""
         ratio = self.mesh.pinion.teeth / self.mesh.wheel.tooth_count
-        return 60.0 * self.operation.pinion_speed_rpm * np.array([1.0, ratio])
+        return 60.0 * self.operation.pinion_speed_rpm * np.array([1.0, ratio]) * self.duty.meshes
 
     @property
     def cycles(self) -> Array:
@@ -80,7 +107,7 @@ class RatingInputs:
         return self.mesh.transverse_contact_ratio / cos(self.mesh.pinion.base_helix_angle) ** 2
 
 
-def inputs_of(result: CycleNumbers) -> RatingInputs:
+def inputs_of(result: CycleNumbers, duty: Duty = Duty()) -> RatingInputs:
     """Sections of the scene of a result that a rating needs.
 
     Raises
@@ -113,8 +140,8 @@ def inputs_of(result: CycleNumbers) -> RatingInputs:
     if problems:
         raise InputError(problems)
     sections: Any = tuple(section for section, _ in needed.values())
-    pinion, wheel, *others = sections
-    return RatingInputs(result, scene, scene.mesh(), (pinion, wheel), *others)
+    pinion, wheel, wanted, operation, lubricant = sections
+    return RatingInputs(result, scene, scene.mesh(), (pinion, wheel), wanted, operation, lubricant, duty)
 
 
 def _outside(scene: CylindricalScene) -> list[tuple[str, str, bool, str]]:

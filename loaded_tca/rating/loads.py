@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """K_A, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (t,) by their names, and notes.
+    """K_A, K_gamma, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (t,) by their names, and notes.
 
     K_Hbeta of the analysis counts from 1 on; K_Halpha and K_Falpha of the analysis are held within the bounds of the
     standard.
@@ -37,6 +37,7 @@ def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...
     height = inputs.scene.tooth_height_over_width
     factors = {
         "K_A": ones * inputs.operation.application_factor,
+        "K_gamma": ones * inputs.duty.mesh_load_factor,
         "K_v": dynamic,
         "K_Hbeta": face,
         "K_Halpha": ones * flank,

@@ -25,7 +25,7 @@ class FlankSafeties:
     Attributes
     ----------
     safety : (2, n) array
-        Of pinion and wheel: sigma_HG over the pressure of a line contact times the root of K_A K_v.
+        Of pinion and wheel: sigma_HG over the pressure of a line contact times the root of K_A K_gamma K_v.
     point, tangent : (n, 3) array [mm]
         Middles of the slices in the fixed frame, and half their length.
     radius, axial : (2, n) array [mm]
@@ -54,8 +54,8 @@ class RootSafeties:
     Attributes
     ----------
     safety : (2, stations, p) array
-        sigma_FG over the largest stress of a turn times K_A K_v, with Y_M of the extremes of each place; inf where no
-        tension is. First the side in contact, then the back.
+        sigma_FG over the largest stress of a turn times K_A K_gamma K_v, with Y_M of the extremes of each place; inf
+        where no tension is. First the side in contact, then the back.
     tangent_angle : (2, stations, p) array [rad]
         Of the fillet to the middle of the tooth.
     axial : (2, stations, p) array [mm]
@@ -100,7 +100,7 @@ def flank_safeties(rating: Rating, case: int) -> FlankSafeties:
     sweep = slices_of(rating.result)
     some = sweep.of_torque(_torque_of(rating, case))
     some = some[np.isfinite(sweep.pressure[some])]
-    stress = sweep.pressure[some] * np.sqrt(rating.K_A[case] * rating.K_v[case])
+    stress = sweep.pressure[some] * np.sqrt(rating.K_A[case] * rating.K_gamma[case] * rating.K_v[case])
     return FlankSafeties(
         rating.sigma_HG[case][:, None] / stress,
         sweep.point[some],
@@ -142,10 +142,11 @@ def root_safeties(rating: Rating, case: int, gear: int) -> RootSafeties:
     torque, stress = _torque_of(rating, case), rating.result.root_stress[gear]
     largest, smallest = stress.largest[torque], stress.smallest[torque]
     tense = largest > 0.0
-    _, factors, _ = local_root_factors(inputs_of(rating.result), gear, stress_ratio(largest, smallest))
+    inputs = inputs_of(rating.result, rating.duty)
+    _, factors, _ = local_root_factors(inputs, gear, stress_ratio(largest, smallest), torque)
     strength = np.broadcast_to(factors.strength, largest.shape)
     safety = np.full(largest.shape, np.inf)
-    np.divide(strength, largest * rating.K_A[case] * rating.K_v[case], out=safety, where=tense)
+    np.divide(strength, largest * rating.K_A[case] * rating.K_gamma[case] * rating.K_v[case], out=safety, where=tense)
     return RootSafeties(np.where(np.isnan(largest), np.nan, safety), stress.tangent_angle, stress.point[..., 2])
 
 

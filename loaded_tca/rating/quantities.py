@@ -22,6 +22,7 @@ _EXCITATION = {
 }
 _LOADS = {
     "K_A": "application factor K_A",
+    "K_gamma": "mesh load factor K_gamma",
     "K_v": "dynamic factor K_v",
     "K_Hbeta": "face load factor K_Hbeta",
     "K_Halpha": "transverse load factor K_Halpha",
@@ -96,7 +97,7 @@ NUMBERS: dict[str, Number] = {
     **_numbers(OF_GEARS, "MPa", {"sigma_FG": "root strength sigma_FG"}),
     **_numbers(OF_GEARS, "1", {"root_safety": "safety against tooth breakage S_F"}),
     **_numbers(OF_GEARS, "h", {"root_life": "life of roots at the required safety"}),
-    **_numbers(CASE, "MPa", {"local_flank_stress": "local: largest contact pressure with K_A K_v"}),
+    **_numbers(CASE, "MPa", {"local_flank_stress": "local: largest contact pressure with K_A K_gamma K_v"}),
     **_numbers(
         OF_GEARS,
         "mm",
@@ -104,7 +105,9 @@ NUMBERS: dict[str, Number] = {
     ),
     **_numbers(OF_GEARS, "1", {"local_flank_safety": "local: safety against pitting"}),
     **_numbers(OF_GEARS, "h", {"local_flank_life": "local: life of flanks at the required safety"}),
-    **_numbers(OF_GEARS, "MPa", {"local_root_stress": "local: root tension with K_A K_v where it decides"}, OF_ROOTS),
+    **_numbers(
+        OF_GEARS, "MPa", {"local_root_stress": "local: root tension with K_A K_gamma K_v where it decides"}, OF_ROOTS
+    ),
     **_numbers(OF_GEARS, "rad", {"local_root_angle": "local: tangent angle of that place"}, OF_ROOTS),
     **_numbers(OF_GEARS, "mm", {"local_root_axial": "local: axial place of it"}, OF_ROOTS),
     **_numbers(OF_GEARS, "1", {"local_stress_ratio": "local: smallest over largest stress R"}, OF_ROOTS),

@@ -13,7 +13,7 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.rating.evaluate import evaluated
 from loaded_tca.rating.findings import findings
-from loaded_tca.rating.inputs import inputs_of
+from loaded_tca.rating.inputs import Duty, inputs_of
 from loaded_tca.rating.quantities import NUMBERS, OF_GEARS
 from loaded_tca.results.figure import Figure, Figures, labelled
 from loaded_tca.results.files import RATING
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from loaded_tca.results.declared import Number, Row
     from loaded_tca.scene import Scene
 
-NOT_COUNTED = "pitch deviations and load paths beside K_A K_v are not in local safeties; Z_X is 1"
+NOT_COUNTED = "pitch deviations and load paths beside K_A K_gamma K_v are not in local safeties; Z_X is 1"
 
 
 def _of_gear(name: str, factor: float, place: int, row: Row) -> float:
@@ -63,6 +63,8 @@ class Rating(Result):
         is borne for ever.
     remarks : tuple of str
         What lies outside the ranges of the standard.
+    duty : Duty
+        How gears are loaded by other mates.
     """
 
     KIND: ClassVar = RATING
@@ -75,6 +77,7 @@ class Rating(Result):
     result: CycleNumbers
     dataset: xarray.Dataset
     remarks: tuple[str, ...] = ()
+    duty: Duty = Duty()
 
     def __repr__(self) -> str:
         flank, root = self.flank_safety.min(), self.root_safety.min()
@@ -169,12 +172,14 @@ class Rating(Result):
 
 
 @checked
-def rating_of(result: CycleNumbers, *, warn: bool = True) -> Rating:
+def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -> Rating:
     """Rating of a result; see :meth:`loaded_tca.MeshCycle.rating`.
 
     Parameters
     ----------
     result : MeshCycle
+    duty : Duty
+        How gears are loaded by other mates, as those of a planetary stage.
     warn : bool
         Whether accuracy warnings are given.
 
@@ -182,10 +187,10 @@ def rating_of(result: CycleNumbers, *, warn: bool = True) -> Rating:
     -------
     Rating
     """
-    arrays, notes, at_edge = evaluated(inputs_of(result))
+    arrays, notes, at_edge = evaluated(inputs_of(result, duty))
     sentences = [kinds.RATED_AT_EDGE.sentence()] if at_edge else []
     about: dict[str, Any] = {"version": result.version, "warnings": "\n".join(sentences)}
     dataset = Rating.dataset_of(arrays, **about).assign_coords(gear=[*GEARS])
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
-    return Rating(result, dataset, notes)
+    return Rating(result, dataset, notes, duty)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import InputError
 from loaded_tca.reference import iso6336_3
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from loaded_tca.rating.inputs import RatingInputs
 
 
-def root_of(inputs: RatingInputs, place: int) -> tuple[iso6336_3.RootStrength, dict[str, float]]:
+def root_of(inputs: RatingInputs, place: int) -> tuple[iso6336_3.RootStrength, dict[str, Any]]:
     """Material of the root of a gear, and what else the factors of its strength take whatever the stress ratio."""
     strength, section = inputs.strengths[place], inputs.scene.root_sections[place]
     assert section is not None  # refused before
@@ -27,15 +27,21 @@ def root_of(inputs: RatingInputs, place: int) -> tuple[iso6336_3.RootStrength, d
         "normal_module": inputs.mesh.pinion.normal_module,
         "cycles": float(inputs.cycles[place]),
         "long_life_factor": inputs.rating.long_life_factor,
+        "mean_stress_factor": inputs.duty.mean_stress_factors[place],
     }
 
 
 def local_root_factors(
-    inputs: RatingInputs, place: int, ratio: Array
+    inputs: RatingInputs, place: int, ratio: Array, torque: Indices | int
 ) -> tuple[Array, iso6336_3.RootFactors, tuple[str, ...]]:
-    """Stress ratio R that counts of computed ones, factors of root strength with it, and notes."""
+    """Stress ratio R that counts of computed ones, factors of root strength with it, and notes.
+
+    ``torque`` is the index of the torque of each ratio, or of all: other mates press a root more than the mesh does.
+    """
     made_of, common = root_of(inputs, place)
-    ratio = np.clip(np.minimum(ratio, inputs.strengths[place].root_stress_ratio), -1.2, 0.0)
+    of_mates = inputs.duty.stress_ratios[place]
+    highest = inputs.strengths[place].root_stress_ratio if of_mates is None else of_mates[torque]
+    ratio = np.clip(np.minimum(ratio, highest), -1.2, 0.0)
     try:
         return ratio, iso6336_3.root_factors(made_of, stress_ratio=ratio, **common), ()
     except InputError:  # cast irons, of which the standard has no sensitivity
@@ -84,7 +90,7 @@ def deciding_places(inputs: RatingInputs, gear: int) -> Deciding:
     some = np.nonzero(largest > LEAST_MEAN_STRESS_FACTOR * tops[:, None, None, None])
     ratio = stress_ratio(largest[some], stress.smallest[some])
     use = np.zeros(largest.shape)
-    use[some] = largest[some] / local_root_factors(inputs, gear, ratio)[1].strength
+    use[some] = largest[some] / local_root_factors(inputs, gear, ratio, some[0])[1].strength
     flat = use.reshape(len(use), -1).argmax(axis=1)
     place = np.arange(len(use)), *np.unravel_index(flat, use.shape[1:])
     above = np.nanmax(result.root_tension[..., gear], axis=1) / tops

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import nan, pi
+from math import inf, nan, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -67,7 +67,7 @@ def reduced_mass(inputs: RatingInputs) -> float:
 
     Teeth by their outline, bodies over their own faces down to the bores that the scene gives, or to those of the
     shafts under them; solid ones where it gives none. A ring reaches from the middle of its teeth to its outer
-    diameter.
+    diameter; one that is held does not swing.
     """
     scene, mesh = inputs.scene, inputs.mesh
     gears, sections = (mesh.pinion, mesh.wheel), (scene.pinion, scene.wheel)
@@ -77,7 +77,9 @@ def reduced_mass(inputs: RatingInputs) -> float:
         for gear, section, material, middle in zip(gears, sections, scene.materials, scene.face_middles, strict=True)
         for width in (gear.face_width,)
     ]
-    return iso6336_1.reduced_mass((inertias[0], inertias[1]), (mesh.pinion.base_radius, mesh.wheel.base_radius))
+    of_wheel = inf if inputs.duty.wheel_is_held else inertias[1]
+    radii = mesh.pinion.base_radius, mesh.wheel.base_radius
+    return iso6336_1.reduced_mass((inertias[0], of_wheel), radii, meshes=inputs.duty.meshes)
 
 
 def resonance_ratio(inputs: RatingInputs, stiffness: Array) -> Array:

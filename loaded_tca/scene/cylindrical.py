@@ -281,7 +281,7 @@ class CylindricalScene(BlankScene):
         pinion, wheel = (math.prod(factors) / (area * mesh.pinion.reference_radius) for factors in self.root_factors)
         return pinion, wheel
 
-    @property
+    @cached_property
     def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Form, stress correction and helix angle factor Y_F, Y_S, Y_beta of both gears; NaN as above."""
         mesh = self.mesh()

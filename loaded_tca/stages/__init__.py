@@ -7,6 +7,7 @@ from loaded_tca.lazy import lazy_names
 if TYPE_CHECKING:
     from loaded_tca.stages.analyse import analyse_stage, rebalanced
     from loaded_tca.stages.files import describe_stage_keys, parse_stage, read_stage
+    from loaded_tca.stages.rating import StageRating
     from loaded_tca.stages.result import StageResult
     from loaded_tca.stages.sections import Stage
 else:
@@ -14,6 +15,7 @@ else:
 
 __all__ = [
     "Stage",
+    "StageRating",
     "StageResult",
     "analyse_stage",
     "describe_stage_keys",

@@ -98,12 +98,14 @@ def describe_stage_keys() -> str:
     >>> print(describe_stage_keys().splitlines()[4])
     | `type` | "planetary" | `"planetary"` | kind of stage: the ring stands still |
     """
-    from loaded_tca.stages.sections import PlanetaryStage, StageGeometry, StageLoad
+    from loaded_tca.stages.sections import PlanetaryStage, StageGeometry, StageLoad, StageOperation, StageRatingSection
 
     sections: tuple[tuple[str, type[Section], str], ...] = (
         ("stage", PlanetaryStage, "planets, pins, and how the sun is held"),
         ("pair", StageGeometry, "what all gears have in common"),
         ("load", StageLoad, "what the sun carries"),
+        ("operation", StageOperation, "speed and factors, for rating"),
+        ("rating", StageRatingSection, "what is required of the gears, and factors, for rating"),
     )
     lines = (line for name, section, about in sections for line in section_lines(name, section, about, {}))
     return "\n".join(lines).strip() + "\n"

@@ -29,6 +29,8 @@ from loaded_tca.units import MICROMETRES
 if TYPE_CHECKING:
     import xarray
 
+    from loaded_tca.stages.rating import StageRating
+
 STAGE_FILE, *MESH_FILES = FILES = "stage.nc", "sun_mesh.nc", "ring_mesh.nc"
 """Names of the files of a result: the stage, and the mesh cycles of its two meshes."""
 MOST_ORDERS = 6
@@ -277,6 +279,30 @@ class StageResult(AnalysisResult):
             ("order of the mesh", "stage [um]", "one path [um]"),
             *orders,
         ]
+
+    def rating(self) -> StageRating:
+        """Return safeties and lives of sun, planets and ring, after ISO 6336 and by the local stresses.
+
+        Materials, required safeties, speed and oil are those of the stage: [sun.strength], [planet.strength],
+        [ring.strength], [rating], [operation], [lubricant].
+
+        Returns
+        -------
+        loaded_tca.stages.rating.StageRating
+
+        Raises
+        ------
+        InputError
+            With every section that is missing, and as of the rating of a pair.
+
+        Warns
+        -----
+        AccuracyWarning
+            Where the largest pressure lies at an edge of a flank.
+        """
+        from loaded_tca.stages.rating import stage_rating_of  # which takes results
+
+        return stage_rating_of(self)
 
     @checked
     def save(self, directory: FilePath) -> tuple[Path, ...]:

@@ -18,10 +18,19 @@ from loaded_tca.scene import cylindrical
 from loaded_tca.scene.blank import OTHER
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.internal import InternalScene, RingSection
-from loaded_tca.scene.keys import Choice, Key, Line, List, Number, Whole, above_zero, key
+from loaded_tca.scene.keys import Choice, Either, Key, Line, List, Number, Whole, above_zero, key
 from loaded_tca.scene.parse import toml_lines
+from loaded_tca.scene.rating import ANALYSIS, LOAD_FACTOR, RatingSection
 from loaded_tca.scene.section import Rule, Section, as_table, check, contents, key_at, made, replaced_by, subsection
-from loaded_tca.scene.sections import Analysis, DIAMETER_mm, ElasticMaterial, Load, TORQUE_Nm
+from loaded_tca.scene.sections import (
+    FACTOR,
+    Analysis,
+    DIAMETER_mm,
+    ElasticMaterial,
+    Load,
+    LubricantSection,
+    TORQUE_Nm,
+)
 from loaded_tca.stages.kinematics import spacing_problems
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
@@ -164,6 +173,24 @@ class StageLoad(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
+class StageOperation(Section):
+    """[operation] of a stage: how it runs, for rating; the analysis takes nothing of it."""
+
+    sun_speed_rpm: float = key(above_zero(1e6), "speed of the sun; the ring stands still")
+    application_factor: float = key(FACTOR, "application factor K_A", 1.0)
+    dynamic_factor: float = key(FACTOR, "dynamic factor K_v of both meshes", 1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageRatingSection(RatingSection):
+    """[rating] of a stage: that of a pair, with the mesh load factor."""
+
+    mesh_load_factor: str | float = key(
+        Either((Choice((ANALYSIS,)), LOAD_FACTOR)), "mesh load factor K_gamma: of the analysis, or a number", ANALYSIS
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class Stage(Section):
     """A planetary stage in the engineer's units, as read from a stage file.
 
@@ -178,6 +205,9 @@ class Stage(Section):
     ring : internal.RingSection
     material : ElasticMaterial or None
     load : StageLoad
+    operation : StageOperation or None
+    lubricant : LubricantSection or None
+    rating : StageRatingSection or None
     analysis : Analysis
         ``torques_Nm`` are torques of the sun.
     """
@@ -192,6 +222,11 @@ class Stage(Section):
         ElasticMaterial, "material of all gears; needed unless each has its own", optional=True
     )
     load: StageLoad = subsection(StageLoad, "what the sun carries")
+    operation: StageOperation | None = subsection(StageOperation, "speed and factors, for rating", optional=True)
+    lubricant: LubricantSection | None = subsection(LubricantSection, "the oil, for rating", optional=True)
+    rating: StageRatingSection | None = subsection(
+        StageRatingSection, "what is required of the gears, and factors, for rating", optional=True
+    )
     analysis: Analysis = subsection(Analysis, "how finely both meshes are computed")
 
     rules: ClassVar[tuple[Rule, ...]] = (
@@ -288,13 +323,14 @@ class Stage(Section):
         driving: Driving = "pinion" if self.stage.driving == "sun" else "wheel"
         planets, torque = len(self.stage.angles), 1e-3 * self.sun_torques[0]
         other = OTHER[self.sun.hand or "right"]
+        sun, planet = replace(self.sun, strength=None), replace(self.planet, strength=None)  # of rating alone
         shared: dict[str, Any] = {"material": self.material, "analysis": replace(self.analysis, torques_Nm=None)}
         with in_words_of(SUN_MESH):
             of_sun = CylindricalScene(
                 title=f"{self.title}: sun and planet".strip(": "),
                 geometry=cylindrical.Geometry(**common, driving=driving),
-                pinion=self.sun,
-                wheel=self.planet,
+                pinion=sun,
+                wheel=planet,
                 load=Load(pinion_torque_Nm=torque / planets),
                 **shared,
             )
@@ -302,8 +338,8 @@ class Stage(Section):
             of_ring = InternalScene(
                 title=f"{self.title}: planet and ring".strip(": "),
                 geometry=cylindrical.Geometry(**common, driving=driving, sense="negative"),
-                pinion=replace(self.planet, hand=other),
-                wheel=self.ring,
+                pinion=replace(planet, hand=other),
+                wheel=replace(self.ring, strength=None),
                 load=Load(pinion_torque_Nm=torque * self.planet.teeth / self.sun.teeth / planets),
                 **shared,
             )
@@ -405,17 +441,24 @@ def in_words_of(gears: Mapping[str, str]) -> Iterator[None]:
     ...
     loaded_tca.errors.GeometryError: ring: its spaces close
     """
-
-    def told(problem: str) -> str:
-        problem = problem.replace("load.pinion_torque_Nm", "load.sun_torque_Nm")
-        return re.sub(r"\b(pinion|wheel)\b", lambda word: gears[word[0]], problem)
-
     try:
         yield
     except InputError as error:
-        raise InputError(map(told, error.problems)) from None
+        raise InputError(words_of(gears, problem) for problem in error.problems) from None
     except GeometryError as error:
-        raise GeometryError(told(str(error))) from None
+        raise GeometryError(words_of(gears, str(error))) from None
+
+
+def words_of(gears: Mapping[str, str], sentence: str) -> str:
+    """Return a sentence on a pair in the words of the stage.
+
+    Examples
+    --------
+    >>> words_of(SUN_MESH, "wheel: Y_S is large")
+    'planet: Y_S is large'
+    """
+    sentence = sentence.replace("load.pinion_torque_Nm", "load.sun_torque_Nm")
+    return re.sub(r"\b(pinion|wheel)\b", lambda word: gears[word[0]], sentence)
 
 
 def stage_from_table(table: Mapping[str, Any]) -> Stage:

@@ -61,6 +61,7 @@ DEAR = {
     "loaded.root_stress_cycle",
     "loaded.root_stress_space",
     "loaded.root_stress_precision",
+    "rating.stages",
     "loaded.root_face_load",
     "loaded.numbers_to_copy",
     "calculix.mesh_cycle",

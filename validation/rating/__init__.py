@@ -2,5 +2,6 @@
 
 - ``rings``: critical sections, nominal stresses and factors of planets and rings of two printed stages.
 - ``solved``: the whole way from a scene through its solved mesh to safeties that a report prints.
+- ``stages``: two whole planetary stages, from stage files to safeties that reports print.
 - ``strength``: K, Z and Y factors, strengths and safeties that two sources print; a spectrum of ISO 6336-6.
 """

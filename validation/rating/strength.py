@@ -11,7 +11,8 @@ MPa, twice that is allowed.
 The same report's stage 2: planet (36 teeth) and ring (93 teeth of 34CrNiMo6, 240 HBW, 700 and 290 MPa), whose strengths
 follow from printed speeds, roughness and notches; Z_W of the ring, Y_M 0.7 of the planet.
 
-ISO/TR 6336-30, example 1: Z_L, Z_v, Z_R, strengths and pitting safeties.
+ISO/TR 6336-30, example 1: Z_L, Z_v, Z_R, Z_NT, Z_B, Z_D, K_Fbeta, strengths and pitting safeties, as the program
+Drivetrain prints them (MATISO_6336.m); it prints no root stress, and none of the other seven examples.
 
 ISO 6336-6:2019, annex C: bins 3 to 44 of its spectrum, S_H = 1.374 where the life is used up (as the program Drivetrain
 prints table C.2). Its S-N curve goes on above the static strength, by 1 % of stress. Where teeth break there, as
@@ -26,6 +27,7 @@ from loaded_tca.gears import CylindricalMesh
 from loaded_tca.material import Material, contact_modulus
 from loaded_tca.reference import iso6336, iso6336_1, iso6336_2, iso6336_3, iso6336_6
 from validation.cylindrical.iso_tr_6336_30 import PUBLISHED as TR
+from validation.cylindrical.iso_tr_6336_30 import pair as example_1
 from validation.cylindrical.nrel_5mw_stage_3 import CENTRE_DISTANCE, pair
 from validation.table import Row
 
@@ -203,7 +205,19 @@ def _example_1() -> list[Row]:
         gear_ratio=103 / 17,
     )  # fmt: skip
     case, safeties = "ISO/TR 6336-30 ex. 1", factors.safety(1301.35343)
+    mesh = example_1()
+    height = (mesh.pinion.tip_radius - mesh.pinion.root_radius) / mesh.common_face_width
+    root = iso6336_3.face_load_factor(1.16, height)
+    single = iso6336.single_contact_factors(
+        (17, 103), tuple(gear.tip_radius / gear.base_radius for gear in (mesh.pinion, mesh.wheel)),
+        mesh.working_pressure_angle, mesh.transverse_contact_ratio, mesh.overlap_ratio,
+    )  # fmt: skip
     return [
+        Row(case, TR, "pinion: life factor Z_NT", 0.910, float(factors.Z_NT[0]), 6e-4),
+        Row(case, TR, "wheel: life factor Z_NT", 0.962, float(factors.Z_NT[1]), 6e-4),
+        Row(case, TR, "single contact factor Z_B", 1.0, single[0], 1e-9),
+        Row(case, TR, "single contact factor Z_D", 1.0, single[1], 1e-9),
+        Row(case, TR, "face load factor K_Fbeta", 1.12803, root, 4e-4, "K_Hbeta 1.160, printed as 1.16"),
         Row(case, TR, "lubricant factor Z_L", 1.04739, factors.Z_L, 5e-6),
         Row(case, TR, "velocity factor Z_v", 0.96911, float(factors.Z_v), 5e-6),
         Row(case, TR, "roughness factor Z_R", 0.96599, factors.Z_R, 5e-6),
