@@ -16,22 +16,22 @@ from loaded_tca.scene.rating import RatingSection, StrengthSection
 
 if TYPE_CHECKING:
     from loaded_tca.results.numbers import CycleNumbers
+    from loaded_tca.scene import Scene
     from loaded_tca.scene.sections import LubricantSection, Operation
 
 FEWEST = 5
 """Positions over a pitch: of fewer the largest pressure and K_Hbeta miss much of the mesh."""
-COVERED = "rating covers one operating point of external cylindrical pairs"
+COVERED = "rating covers external cylindrical, bevel and hypoid pairs"
 
 
 @dataclass(frozen=True, eq=False)
-class RatingInputs:
-    """A result with the sections of its scene that a rating needs.
+class CommonInputs:
+    """A result with the sections of its scene that a rating needs, whatever the kind of gears.
 
     Attributes
     ----------
     result : MeshCycle
-    scene : CylindricalScene
-    mesh : CylindricalMesh
+    scene : Scene
     strengths : (StrengthSection, StrengthSection)
         Of pinion and wheel.
     rating : RatingSection
@@ -40,8 +40,7 @@ class RatingInputs:
     """
 
     result: CycleNumbers
-    scene: CylindricalScene
-    mesh: CylindricalMesh
+    scene: Scene
     strengths: tuple[StrengthSection, StrengthSection]
     rating: RatingSection
     operation: Operation
@@ -53,6 +52,30 @@ class RatingInputs:
         return self.result.torque
 
     @property
+    def cycles_per_hour(self) -> Array:
+        """Load cycles of pinion and wheel in an hour (2,)."""
+        ratio = self.scene.pinion.teeth / self.scene.wheel.teeth
+        return 60.0 * self.operation.pinion_speed_rpm * np.array([1.0, ratio])
+
+    @property
+    def cycles(self) -> Array:
+        """Load cycles N_L of pinion and wheel in the life that is asked for (2,)."""
+        return self.cycles_per_hour * self.rating.life_hours
+
+
+@dataclass(frozen=True, eq=False)
+class RatingInputs(CommonInputs):
+    """What a rating after ISO 6336 takes besides.
+
+    Attributes
+    ----------
+    mesh : CylindricalMesh
+    """
+
+    scene: CylindricalScene
+    mesh: CylindricalMesh
+
+    @property
     def load(self) -> Array:
         """F_t K_A/b (t,) [N/mm], at the reference circle."""
         force = self.torque / self.mesh.pinion.reference_radius
@@ -62,17 +85,6 @@ class RatingInputs:
     def velocity(self) -> float:
         """Velocity at the reference circle [m/s]."""
         return 2e-3 * pi * self.mesh.pinion.reference_radius * self.operation.pinion_speed_rpm / 60.0
-
-    @property
-    def cycles_per_hour(self) -> Array:
-        """Load cycles of pinion and wheel in an hour (2,)."""
-        ratio = self.mesh.pinion.teeth / self.mesh.wheel.teeth
-        return 60.0 * self.operation.pinion_speed_rpm * np.array([1.0, ratio])
-
-    @property
-    def cycles(self) -> Array:
-        """Load cycles N_L of pinion and wheel in the life that is asked for (2,)."""
-        return self.cycles_per_hour * self.rating.life_hours
 
     @property
     def virtual_contact_ratio(self) -> float:
@@ -89,10 +101,20 @@ def inputs_of(result: CycleNumbers) -> RatingInputs:
         With everything that is missing or not covered.
     """
     scene = result.scene
-    if not isinstance(scene, CylindricalScene):
-        raise InputError(f'pair.type: "{scene.geometry.type}"; {COVERED}')
-    if scene.wheel.teeth < 0:
+    if not isinstance(scene, CylindricalScene) or scene.wheel.teeth < 0:
         raise InputError(f"wheel.teeth: {scene.wheel.teeth}, a ring; {COVERED}")
+    sections, problems = sections_of(result)
+    problems += [
+        f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
+    ]
+    if problems:
+        raise InputError(problems)
+    return RatingInputs(result, scene, **sections, mesh=scene.mesh())
+
+
+def sections_of(result: CycleNumbers) -> tuple[dict[str, Any], list[str]]:
+    """Strengths of both gears and the other sections that every rating takes, and what is wrong with a result."""
+    scene = result.scene
     no_limits = "missing; nothing is rated without allowable stresses: give material, or kind with its stresses"
     needed = {
         "pinion.strength": (scene.pinion.strength, no_limits),
@@ -109,14 +131,9 @@ def inputs_of(result: CycleNumbers) -> RatingInputs:
         problems.append(f"analysis.positions: {len(result.path)}; a rating takes {FEWEST} or more: run the scene again")
     if not (torques > 0.0).all():
         problems.append("pinion torque: 0 N m; a rating takes torques above 0")
-    problems += [
-        f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
-    ]
-    if problems:
-        raise InputError(problems)
-    sections: Any = tuple(section for section, _ in needed.values())
-    pinion, wheel, *others = sections
-    return RatingInputs(result, scene, scene.mesh(), (pinion, wheel), *others)
+    pinion, wheel, *_ = (section for section, _ in needed.values())
+    others = {name: section for name, (section, _) in needed.items() if "." not in name}
+    return {"strengths": (pinion, wheel), **others}, problems
 
 
 def _outside(scene: CylindricalScene) -> list[tuple[str, str, bool, str]]:

@@ -11,6 +11,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
+from loaded_tca.rating.bevel import bevel_evaluated, bevel_inputs_of
 from loaded_tca.rating.evaluate import evaluated
 from loaded_tca.rating.inputs import inputs_of
 from loaded_tca.rating.quantities import NUMBERS, OF_GEARS
@@ -19,6 +20,7 @@ from loaded_tca.results.files import RATING
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.result import Result, figures_of
 from loaded_tca.results.summary import shown
+from loaded_tca.scene.spiral import SpiralScene
 
 if TYPE_CHECKING:
     import xarray
@@ -90,8 +92,10 @@ class Rating(Result):
         wanted, operation = self.scene.rating, self.scene.operation
         assert wanted is not None  # refused before
         assert operation is not None
+        of_bevel = isinstance(self.scene, SpiralScene)
+        standard = "ISO 10300-2 and -3:2023, method B1" if of_bevel else "ISO 6336-2:2019 and -3:2006"
         return (
-            f"ISO 6336-2:2019 and -3:2006, pinion at {operation.pinion_speed_rpm:g} rpm for {wanted.life_hours:g} h; "
+            f"{standard}, pinion at {operation.pinion_speed_rpm:g} rpm for {wanted.life_hours:g} h; "
             f"required S_H {wanted.required_flank_safety:g}, S_F {wanted.required_root_safety:g}; pinion | wheel"
         )
 
@@ -150,7 +154,8 @@ def rating_of(result: CycleNumbers, *, warn: bool = True) -> Rating:
     -------
     Rating
     """
-    arrays, notes, at_edge = evaluated(inputs_of(result))
+    of_bevel = isinstance(result.scene, SpiralScene)
+    arrays, notes, at_edge = bevel_evaluated(bevel_inputs_of(result)) if of_bevel else evaluated(inputs_of(result))
     sentences = [kinds.RATED_AT_EDGE.sentence()] if at_edge else []
     about: dict[str, Any] = {"version": result.version, "warnings": "\n".join(sentences)}
     dataset = Rating.dataset_of(arrays, **about).assign_coords(gear=[*GEARS])

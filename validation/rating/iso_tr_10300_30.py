@@ -172,7 +172,7 @@ def _loads(sample: Sample) -> dict[str, float]:
     allowance = float(iso6336_1.running_in_allowance("Eh", sample.pitch_deviation, sample.limits[0]))
     deviation, ratio = sample.pitch_deviation - allowance, pair.total_contact_ratio
     load = APPLICATION * sample.tangential_force / pair.widths[1]
-    mass = iso10300_1.reduced_mass((first, second), radians(20.0), 7860.0)
+    mass = iso10300_1.reduced_mass((first, second), radians(20.0))
     speed = iso6336_1.resonance_speed(sample.teeth[0], iso10300_1.MESH_STIFFNESS, mass)
     factor, one = (
         float(iso10300_1.dynamic_factor(each, load, pitch_deviation=deviation, total_contact_ratio=ratio).K_v)
