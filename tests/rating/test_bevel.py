@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from loaded_tca.errors import InputError, NotAskedError, noted_accuracy_warnings
 from loaded_tca.rating.bevel import bevel_inputs_of
 from loaded_tca.rating.bevel_sheet import bevel_sheet
-from loaded_tca.reference import iso10300_2, iso10300_3
+from loaded_tca.reference import iso10300_1, iso10300_2, iso10300_3
 from loaded_tca.scene import read_scene
 from tests.samples.rating import OF_SAMPLE_1, RATED, bevel_solved
 from tests.samples.results import SCENES
@@ -60,6 +60,15 @@ def test_stresses_are_nominal_ones_times_load_factors():
     assert_allclose(rated.sigma_F0[1], 2.0 * rated.sigma_F0[0], rtol=ROUNDING)
     assert_allclose(rated.sigma_H0[1], 2.0**0.5 * rated.sigma_H0[0], rtol=ROUNDING)
     assert_allclose(rated.flank_safety, rated.sigma_HG / rated.sigma_H, rtol=ROUNDING)
+
+
+def test_small_cutters_lower_the_face_load_factor_of_roots():
+    changes = {"pair.blank.lengthwise_curve": "cutter_circle", "pair.blank.cutter_radius_mm": 70.0}
+    rated = bevel_solved(**changes).rating()
+    distance = bevel_sheet(bevel_solved().scene).members[1].mean_cone_distance
+    curved = iso10300_1.lengthwise_curvature_factor(70.0, distance, np.radians(35.0))
+    assert curved > 1.02
+    assert_allclose(rated.K_Fbeta, 1.65 / curved, rtol=ROUNDING)
 
 
 def test_local_flank_stress_stands_against_the_same_strength():
