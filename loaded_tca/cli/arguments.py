@@ -253,7 +253,7 @@ def _add_tribology(command: Command) -> None:
 
 def _add_rating(command: Command) -> None:
     """Add the command that rates a result."""
-    text = "show safeties and lives of flanks and roots of a result, after ISO 6336 and by its local stresses"
+    text = "show safeties and lives of flanks and roots of a result, after ISO 6336 or 10300 and by its local stresses"
     reader = command("rating", run_by.rating, text, RATING)
     reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
     text = "another value of a key, for instance rating.life_hours=5000; may be given again for other keys"

@@ -1,4 +1,4 @@
-"""What a rating finds: name, dimensions, unit and long name of each number, factors by the names of ISO 6336."""
+"""What a rating finds: name, dimensions, unit, long name of each number, factors by names of ISO 6336 and 10300."""
 
 from __future__ import annotations
 

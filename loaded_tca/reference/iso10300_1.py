@@ -439,6 +439,53 @@ def dynamic_factor(
     return BevelDynamicFactor(np.maximum(value, 1.0), tuple(words for holds, words in cases if bool(np.any(holds))))
 
 
+EMPIRICAL_GRADES = range(5, 9)
+"""Accuracy grades of ISO 17485 for which K_v by method C was found."""
+
+
+@checked
+def dynamic_factor_by_grade(outer_velocity: ArrayLike, grade: int) -> BevelDynamicFactor:
+    r"""Dynamic factor K_v by method C, from the accuracy grade alone.
+
+    .. math:: K_v = \left(\frac{A}{A + \sqrt{200\,v_{et2}}}\right)^{-X}, \qquad X = 0.25 (B - 4)^{0.667}, \qquad
+              A = 50 + 56 (1 - X)
+
+    Parameters
+    ----------
+    outer_velocity : array [m/s]
+        v_et2, of the wheel at its outer pitch diameter.
+    grade : int
+        B of ISO 17485, 5 to 8; of finer ones K_v is 1 to 1.1.
+
+    Returns
+    -------
+    BevelDynamicFactor
+
+    References
+    ----------
+    ISO 10300-1:2023, formulas (22) to (27); the curve is that of AGMA 2001 and 2003 with Q_v = 16 - B.
+
+    Examples
+    --------
+    >>> round(float(dynamic_factor_by_grade(10.0, 6).K_v), 3)
+    1.185
+    """
+    speed = np.asarray(outer_velocity, dtype=float)
+    require(
+        interval_check("outer_velocity", speed, "[0, inf)", "m/s"),
+        (
+            grade in EMPIRICAL_GRADES,
+            f"grade: {grade} is not one of {min(EMPIRICAL_GRADES)} to {max(EMPIRICAL_GRADES)}",
+        ),
+    )
+    exponent = 0.25 * (grade - 4.0) ** 0.667
+    constant = 50.0 + 56.0 * (1.0 - exponent)
+    fastest = (constant + 13.0 - grade) ** 2 / 200.0
+    notes = (f"K_v: a velocity above {fastest:.3g} m/s, the largest of method C for grade {grade}",)
+    factor = (constant / (constant + np.sqrt(200.0 * speed))) ** -exponent
+    return BevelDynamicFactor(factor, notes if bool(np.any(speed > fastest)) else ())
+
+
 MOUNTINGS = {
     "pattern under full load": (1.00, 1.00, 1.00),
     "pattern under light test load": (1.05, 1.10, 1.25),
