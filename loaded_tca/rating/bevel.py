@@ -172,7 +172,7 @@ def _stiffness_notes(inputs: BevelInputs) -> tuple[str, ...]:
         return ()
     if abs(modulus / STEEL_MODULUS - 1.0) <= NEARLY:
         return ()
-    return ("c', c_gamma: those of steel, which the gears are not made of",)
+    return ("c', c_gamma: those of steel, which the gears are not",)
 
 
 def _dynamic_factor(inputs: BevelInputs, load: Array, softer: Array) -> tuple[Array, tuple[str, ...]]:

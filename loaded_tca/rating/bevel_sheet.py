@@ -24,6 +24,8 @@ from loaded_tca.scene.bevel_rows import flanks_and_points, mean_thickness
 from loaded_tca.scene.spiral import Side, SpiralScene
 from loaded_tca.tooth.families import FILLET_RADIUS_COEFFICIENT
 
+_ROUNDING = 1e-9
+
 
 @dataclass(frozen=True)
 class BevelMember:
@@ -218,6 +220,9 @@ def _of_equations(mesh: BevelMesh) -> BevelSheet:
     notes = [f"rho_a0: spherical involutes have no tool; {FILLET_RADIUS_COEFFICIENT:g} m_mn, or what fits the slots"]
     if circle is None and pair.spiral_angle:
         notes.append("K_F0: 1, the lengthwise curve has no cutter")
+    shifts = mesh.pinion.profile_shift + mesh.wheel.profile_shift
+    if abs(shifts) > _ROUNDING:
+        notes.append(f"scope: profile shifts have a sum of {shifts:.4g}; the standard holds for a sum of 0")
     radius = inf if circle is None else circle.radius
     teeth = mesh.pinion.teeth, mesh.wheel.teeth
     return BevelSheet((first, second), pair, teeth, width, pressure, 0.0, radius, tuple(notes))

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import InputError, NotAskedError, noted_accuracy_warnings
-from loaded_tca.rating.bevel import bevel_inputs_of
+from loaded_tca.rating.bevel import _stiffness_notes, bevel_inputs_of
 from loaded_tca.rating.bevel_sheet import bevel_sheet
 from loaded_tca.reference import iso10300_1, iso10300_2, iso10300_3
 from loaded_tca.scene import read_scene
@@ -112,13 +112,23 @@ def test_what_the_standard_assumes_is_told():
     notes = bevel_solved().rating().notes()
     assert "rho_a0: spherical involutes have no tool; 0.38 m_mn, or what fits the slots" in notes
     assert "K_F0: 1, the lengthwise curve has no cutter" in notes
-    soft = {"youngs_modulus_MPa": 120000.0, "poisson_ratio": 0.3}
     straight = bevel_sheet(read_scene(SCENES / "straight_bevel.toml"))
     assert straight.wheel == 0  # the pinion of that scene has more teeth
     assert_allclose(straight.gear_ratio, 39 / 32)
     assert not any("K_F0" in note for note in straight.notes)
-    scene = bevel_solved(material=soft).scene
-    assert scene.material.youngs_modulus_MPa == 120000.0
+    shifted = read_scene(SCENES / "straight_bevel.toml").with_changes({"pinion.profile_shift": 0.1})
+    assert bevel_sheet(shifted).notes[-1].startswith("scope: profile shifts have a sum of 0.1; ")
+
+
+def test_stiffnesses_of_other_materials_are_told():
+    whole = bevel_solved()
+    soft = SimpleNamespace(contact_modulus=0.5 * whole.gear_pair.contact_modulus)
+    inputs = bevel_inputs_of(whole)
+    wanted = SimpleNamespace(
+        gear_pair=soft, face_load_factor=whole.face_load_factor, torque=whole.torque, path=whole.path, scene=whole.scene
+    )
+    assert _stiffness_notes(inputs) == ()
+    assert _stiffness_notes(replace(inputs, result=wanted)) == ("c', c_gamma: those of steel, which the gears are not",)
 
 
 def test_wheels_that_do_not_roll_have_straight_teeth():
