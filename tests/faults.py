@@ -2186,6 +2186,48 @@ FAULTS = (
         "return stage.operation.sun_speed_rpm",
         "stages/test_stage_rating.py::test_load_cycles_count_turns_against_the_carrier_times_mates",
     ),
+    Fault(
+        "ISO 10300: contact lines go on beyond the ends of the zone of action",
+        "reference/iso10300_1.py",
+        "low, high = (min(max(end, 0.0), effective) for end in ends)",
+        "low, high = ends",
+        "reference/test_iso10300_2.py::test_samples_have_their_printed_numbers",
+    ),
+    Fault(
+        "ISO 10300: contact lines are shortened by the root of the sum that fits sample 1 alone",
+        "reference/iso10300_1.py",
+        "shortened = sqrt(1.0 - (place / farthest) ** 2) * (1.0 - sqrt(effective / whole))",
+        "shortened = 1.0 - sqrt(effective / whole)",
+        "reference/test_iso10300_2.py::test_samples_have_their_printed_numbers",
+    ),
+    Fault(
+        "ISO 10300: the load of the tip stands on the datum line",
+        "reference/iso10300_3.py",
+        "half += tan(alpha) - alpha - tan(at_tip) + at_tip",
+        "half += 0.0",
+        "reference/test_iso10300_3.py::test_samples_have_their_printed_numbers",
+    ),
+    Fault(
+        "rating of bevels: K_v counts with the effective face width",
+        "rating/bevel.py",
+        "load = inputs.virtual_force * application / whole",
+        "load = inputs.virtual_force * application / effective",
+        "rating/test_bevel.py::test_the_scene_of_sample_1_has_its_printed_factors",
+    ),
+    Fault(
+        "rating of bevels: the root has the face load factor of the flank",
+        "rating/bevel.py",
+        '"K_Fbeta": face / curved',
+        '"K_Fbeta": face',
+        "rating/test_bevel.py::test_small_cutters_lower_the_face_load_factor_of_roots",
+    ),
+    Fault(
+        "rating of bevels: edges of tools are larger than the slot",
+        "rating/bevel_sheet.py",
+        "edge_radius=min(own.edge_radius / module or FILLET_RADIUS_COEFFICIENT, room)",
+        "edge_radius=own.edge_radius / module or FILLET_RADIUS_COEFFICIENT",
+        "rating/test_bevel.py::test_edges_that_do_not_fit_the_slot_are_told",
+    ),
 )
 
 

@@ -44,6 +44,7 @@ CASES = (
     "rating.stages",
     "rating.solved",
     "rating.iso_tr_10300_30",
+    "rating.bevel_solved",
     "bevel.iso_23509_sample",
     "face_milled.settings",
     "face_milled.swept_cutter",

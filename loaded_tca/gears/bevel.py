@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.errors import GeometryError, InputError, require
+from loaded_tca.gears.blank_gear import height_over_pitch_cone
 from loaded_tca.gears.checks import (
     bore_check,
     face_check,
@@ -290,6 +291,23 @@ class BevelGear:
     def mean_normal_module(self) -> float:
         """m_mn = m_et cos(beta_m) R_m/R_e [mm]."""
         return self.outer_module * cos(self.spiral_angle) * self.mean_cone_distance / self.outer_cone_distance
+
+    @property
+    def normal_pressure_angle(self) -> float:
+        """Mean normal pressure angle alpha_n on the pitch cone, tan(alpha_n) = tan(alpha) cos(beta_m) [rad]."""
+        return atan(tan(self.pressure_angle) * cos(self.spiral_angle))
+
+    @property
+    def mean_addendum(self) -> float:
+        """h_am, normal to the pitch cone at R_m [mm]."""
+        angle = self.tip_angle if self.face_angle is None else self.face_angle
+        return height_over_pitch_cone(self.pitch_angle, (angle, self.face_apex), self.mean_cone_distance)
+
+    @property
+    def mean_dedendum(self) -> float:
+        """h_fm, normal to the pitch cone at R_m [mm]."""
+        angle = self.root_cone_angle if self.root_angle is None else self.root_angle
+        return -height_over_pitch_cone(self.pitch_angle, (angle, self.root_apex), self.mean_cone_distance)
 
     @property
     def base_angle(self) -> float:

@@ -56,6 +56,21 @@ def virtual_curvature(cone_distance: float, pitch_angle: float, spiral_angle: fl
     return (1.0 - turned) / (cone_distance * tan(pitch_angle))
 
 
+def height_over_pitch_cone(pitch_angle: float, cone: tuple[float, float], distance: float) -> float:
+    """Height of a face or root cone over the pitch cone, across that at a cone distance [mm]; negative below it.
+
+    Parameters
+    ----------
+    pitch_angle : float [rad]
+    cone : (float, float) [rad], [mm]
+        Its angle, and how far its apex lies beyond that of the pitch cone, away from the teeth.
+    distance : float [mm]
+    """
+    angle, apex = cone
+    above = angle - pitch_angle
+    return (distance * sin(above) + apex * sin(angle)) / cos(above)
+
+
 def cutter_sine(cone_distance: float, mean_distance: float, spiral_angle: float, cutter_radius: float) -> float:
     r"""sin(beta) at a cone distance, where the circle of a cutter has the spiral angle at the mean one.
 
@@ -330,7 +345,7 @@ class BlankGear:
             if cone is not None:
                 angle, apex = cone
                 above = angle - self.pitch_angle
-                height = (self.cone_distances[1] * sin(above) + apex * sin(angle)) / cos(above)
+                height = height_over_pitch_cone(self.pitch_angle, cone, self.cone_distances[1])
                 changes |= {f"{name}_angle": sign * above, f"mean_{name}": sign * height}
                 changes["face_apex" if face is cone else "root_apex"] = apex
         return replace(self, **changes) if changes else self

@@ -26,6 +26,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from loaded_tca.errors import InputError, require
+from loaded_tca.gears.blank_gear import height_over_pitch_cone
 from loaded_tca.gears.checks import face_check, half_turn_checks, teeth_checks
 
 FlankName = Literal["concave", "convex"]
@@ -307,15 +308,11 @@ class FaceMilledBlank:
 
     def tip_height(self, distance: float) -> float:
         """Height of the face cone above the pitch cone, across it at a cone distance [mm]."""
-        return self._height(self.face_angle, self.face_apex, distance)
+        return height_over_pitch_cone(self.pitch_angle, (self.face_angle, self.face_apex), distance)
 
     def root_height(self, distance: float) -> float:
         """Height of the root cone above the pitch cone, negative for a dedendum [mm]."""
-        return self._height(self.root_angle, self.root_apex, distance)
-
-    def _height(self, angle: float, apex: float, distance: float) -> float:
-        above = angle - self.pitch_angle
-        return (distance * sin(above) + apex * sin(angle)) / cos(above)
+        return height_over_pitch_cone(self.pitch_angle, (self.root_angle, self.root_apex), distance)
 
 
 def _finite_checks(values: MachineSettings | FaceMilledBlank) -> Iterator[tuple[bool, str]]:

@@ -1,4 +1,4 @@
-"""Rating of loaded contacts: safeties and lives of flanks and roots after ISO 6336, and by the local stresses."""
+"""Rating of loaded contacts: safeties and lives of flanks and roots after ISO 6336 or 10300, and by local stresses."""
 
 from typing import TYPE_CHECKING
 

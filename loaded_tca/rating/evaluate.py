@@ -17,7 +17,7 @@ from loaded_tca.results.root_stress import rim_factor
 from loaded_tca.tribology.slices import slices_of
 
 if TYPE_CHECKING:
-    from loaded_tca.rating.inputs import RatingInputs
+    from loaded_tca.rating.inputs import CommonInputs, RatingInputs
     from loaded_tca.reference.iso6336_6 import SNCurve
 
 Arrays = dict[str, Array]
@@ -30,8 +30,8 @@ def evaluated(inputs: RatingInputs) -> tuple[Arrays, tuple[str, ...], bool]:
     flanks = _flank_factors(inputs)
     rated, curves = _of_flanks(inputs, stresses, flanks)
     roots, root_notes = _of_roots(inputs, loads)
-    local, at_edge = _local_flanks(inputs, loads, flanks.strength, curves)
-    arrays = {"torque": np.asarray(inputs.torque), "cycles": _both(inputs, inputs.cycles)}
+    local, at_edge = local_flanks(inputs, loads, flanks.strength, curves)
+    arrays = {"torque": np.asarray(inputs.torque), "cycles": both(inputs, inputs.cycles)}
     arrays |= loads | vibration(inputs) | stresses | rated | roots | local
     mesh, ring = inputs.mesh, inputs.mesh.wheel.teeth < 0
     scope = iso6336_1.scope_notes(
@@ -43,7 +43,7 @@ def evaluated(inputs: RatingInputs) -> tuple[Arrays, tuple[str, ...], bool]:
     return arrays, tuple(dict.fromkeys((*scope, *notes, *flanks.notes, *root_notes))), at_edge
 
 
-def _both(inputs: RatingInputs, values: object) -> Array:
+def both(inputs: CommonInputs, values: object) -> Array:
     """Values of both gears, or one of both, for each torque (t, 2)."""
     return np.array(np.broadcast_to(np.asarray(values, dtype=float), (len(inputs.torque), 2)))
 
@@ -61,7 +61,7 @@ def _contact_stresses(inputs: RatingInputs, loads: Arrays) -> Arrays:
         "Z_E": ones * iso6336.elasticity_factor(inputs.result.gear_pair.contact_modulus),
         "Z_eps": ones * standard.contact_ratio,
         "Z_beta": ones * standard.helix_angle,
-        "Z_BD": _both(inputs, standard.single_contact),
+        "Z_BD": both(inputs, standard.single_contact),
         "sigma_H0": nominal,
         "sigma_H": np.stack(stresses, axis=-1),
     }
@@ -105,13 +105,13 @@ def _of_flanks(
         "Z_X": factors.Z_X,
         "sigma_HG": factors.strength,
     }
-    whole = {name: _both(inputs, values) for name, values in arrays.items()}
+    whole = {name: both(inputs, values) for name, values in arrays.items()}
     whole["flank_safety"] = whole["sigma_HG"] / stresses["sigma_H"]
-    whole["flank_life"] = _lives(inputs, factors.curves, required * stresses["sigma_H"])
+    whole["flank_life"] = lives(inputs, factors.curves, required * stresses["sigma_H"])
     return whole, factors.curves
 
 
-def _lives(inputs: RatingInputs, curves: tuple[SNCurve, ...], stresses: Array) -> Array:
+def lives(inputs: CommonInputs, curves: tuple[SNCurve, ...], stresses: Array) -> Array:
     """Hours (t, 2) that stresses (t, 2) are borne."""
     columns = [curve.life(stress) for curve, stress in zip(curves, stresses.T, strict=True)]
     return np.stack(columns, axis=-1) / inputs.cycles_per_hour
@@ -160,11 +160,11 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
     notes = factors.notes if rated.all() else (*factors.notes, "Y_B: the rim is thinner than the standard allows")
     if not scene.analysis.root_stress:
         return arrays, notes
-    local, more = _local_root(inputs, loads, place)
+    local, more = local_root(inputs, loads, place)
     return arrays | local, (*notes, *more)
 
 
-def _local_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, tuple[str, ...]]:
+def local_root(inputs: CommonInputs, loads: Arrays, place: int) -> tuple[Arrays, tuple[str, ...]]:
     """Safety and life of the root of one gear at the place with the smallest safety (t,), and notes."""
     worst = deciding_places(inputs, place)
     tension = worst.tension * loads["K_A"] * loads["K_gamma"] * loads["K_v"]
@@ -182,8 +182,8 @@ def _local_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays
     }, notes
 
 
-def _local_flanks(
-    inputs: RatingInputs, loads: Arrays, strength: Array, curves: tuple[SNCurve, SNCurve]
+def local_flanks(
+    inputs: CommonInputs, loads: Arrays, strength: Array, curves: tuple[SNCurve, SNCurve]
 ) -> tuple[Arrays, bool]:
     """Largest contact pressure of slices, its place, safety and life of both gears; whether one lies at an edge."""
     sweep, count = slices_of(inputs.result), len(inputs.torque)
@@ -203,5 +203,5 @@ def _local_flanks(
         "local_flank_radius": places[0],
         "local_flank_axial": places[1],
         "local_flank_safety": strength / stress[:, None],
-        "local_flank_life": _lives(inputs, curves, required * np.stack([stress, stress], axis=-1)),
+        "local_flank_life": lives(inputs, curves, required * np.stack([stress, stress], axis=-1)),
     }, at_edge

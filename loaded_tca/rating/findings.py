@@ -1,4 +1,4 @@
-"""What a rating says in sentences: which failure and place decide, and what the local rating sees beyond ISO 6336."""
+"""What a rating says in sentences: which failure and place decide, and what local stresses add to the standard."""
 
 from __future__ import annotations
 
@@ -49,7 +49,11 @@ def findings(rating: Rating) -> tuple[str, ...]:
     """Sentences on what decides, and on what the local rating has that the standard does not."""
     local = worst_of(rating, "local_")
     of_local = f"by local stresses what decides is {local.words(rating)}, at {_place(rating, local)}"
-    sentences = [f"after ISO 6336 what decides is {worst_of(rating).words(rating)}", of_local, _pressures(rating)]
+    sentences = [
+        f"after {rating.standard} what decides is {worst_of(rating).words(rating)}",
+        of_local,
+        _pressures(rating),
+    ]
     if rating.has("local_root_safety"):
         sentences.append(_tensions(rating))
     return tuple(sentences)
@@ -68,6 +72,8 @@ def _pressures(rating: Rating) -> str:
     """The largest local pressure beside sigma_H, with and without the factors that even a contact out."""
     case = int(rating.local_flank_safety.min(axis=1).argmin())
     pressure, standard = float(rating.local_flank_stress[case]), float(rating.sigma_H[case].max())
+    if not rating.has("Z_beta"):
+        return f"the largest local pressure is {pressure:.0f} MPa beside sigma_H {standard:.0f} MPa"
     uneven = standard / float(rating.Z_eps[case] * rating.Z_beta[case])
     beyond = "above, by what relief, edges and the place of the load on the flank add" if pressure > uneven else "below"
     return (

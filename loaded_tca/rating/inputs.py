@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
 from math import cos, pi
 from typing import TYPE_CHECKING, Any
 
@@ -15,12 +16,13 @@ from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.rating import RatingSection, StrengthSection
 
 if TYPE_CHECKING:
+    from loaded_tca.reference.iso6336_3 import RootSection
     from loaded_tca.results.numbers import CycleNumbers
+    from loaded_tca.scene import Scene
     from loaded_tca.scene.sections import LubricantSection, Operation
 
 FEWEST = 5
 """Positions over a pitch: of fewer the largest pressure and K_Hbeta miss much of the mesh."""
-COVERED = "rating covers one operating point of cylindrical pairs"
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,14 +51,13 @@ class Duty:
 
 
 @dataclass(frozen=True, eq=False)
-class RatingInputs:
-    """A result with the sections of its scene that a rating needs.
+class CommonInputs(ABC):
+    """A result with the sections of its scene that a rating needs, whatever the kind of gears.
 
     Attributes
     ----------
     result : MeshCycle
-    scene : CylindricalScene
-    mesh : CylindricalMesh or InternalMesh
+    scene : Scene
     strengths : (StrengthSection, StrengthSection)
         Of pinion and wheel.
     rating : RatingSection
@@ -66,18 +67,61 @@ class RatingInputs:
     """
 
     result: CycleNumbers
-    scene: CylindricalScene
-    mesh: CylindricalMesh | InternalMesh
+    scene: Scene
     strengths: tuple[StrengthSection, StrengthSection]
     rating: RatingSection
     operation: Operation
     lubricant: LubricantSection
-    duty: Duty = Duty()
+    duty: Duty = field(default=Duty(), kw_only=True)
 
     @property
     def torque(self) -> Array:
         """Pinion torques (t,) [N mm]."""
         return self.result.torque
+
+    @property
+    @abstractmethod
+    def normal_module(self) -> float:
+        """Of both gears, of bevel gears in the middle of the face [mm]."""
+
+    @abstractmethod
+    def root_section(self, place: int) -> RootSection:
+        """Critical section of the pinion, 0, or the wheel, 1, after the standard."""
+
+    @property
+    def cycles_per_hour(self) -> Array:
+        """Load cycles of pinion and wheel in an hour (2,)."""
+        ratio = abs(self.scene.pinion.teeth / self.scene.wheel.teeth)
+        return 60.0 * self.operation.pinion_speed_rpm * np.array([1.0, ratio]) * self.duty.meshes
+
+    @property
+    def cycles(self) -> Array:
+        """Load cycles N_L of pinion and wheel in the life that is asked for (2,)."""
+        return self.cycles_per_hour * self.rating.life_hours
+
+
+@dataclass(frozen=True, eq=False)
+class RatingInputs(CommonInputs):
+    """What a rating after ISO 6336 takes besides.
+
+    Attributes
+    ----------
+    mesh : CylindricalMesh or InternalMesh
+    """
+
+    scene: CylindricalScene
+    mesh: CylindricalMesh | InternalMesh
+
+    @property
+    def normal_module(self) -> float:
+        """m_n [mm]."""
+        return self.mesh.pinion.normal_module
+
+    def root_section(self, place: int) -> RootSection:
+        """Critical section of the pinion, 0, or the wheel, 1, after ISO 6336-3."""
+        section = self.scene.root_sections[place]
+        assert section is not None  # refused before
+        return section
 
     @property
     def load(self) -> Array:
@@ -89,17 +133,6 @@ class RatingInputs:
     def velocity(self) -> float:
         """Velocity at the reference circle [m/s]."""
         return 2e-3 * pi * self.mesh.pinion.reference_radius * self.operation.pinion_speed_rpm / 60.0
-
-    @property
-    def cycles_per_hour(self) -> Array:
-        """Load cycles of pinion and wheel in an hour (2,)."""
-        ratio = self.mesh.pinion.teeth / self.mesh.wheel.tooth_count
-        return 60.0 * self.operation.pinion_speed_rpm * np.array([1.0, ratio]) * self.duty.meshes
-
-    @property
-    def cycles(self) -> Array:
-        """Load cycles N_L of pinion and wheel in the life that is asked for (2,)."""
-        return self.cycles_per_hour * self.rating.life_hours
 
     @property
     def virtual_contact_ratio(self) -> float:
@@ -117,7 +150,19 @@ def inputs_of(result: CycleNumbers, duty: Duty = Duty()) -> RatingInputs:
     """
     scene = result.scene
     if not isinstance(scene, CylindricalScene):
-        raise InputError(f'pair.type: "{scene.geometry.type}"; {COVERED}')
+        raise InputError(f'pair.type: "{scene.geometry.type}"; ISO 6336 is for cylindrical pairs')
+    sections, problems = sections_of(result)
+    problems += [
+        f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
+    ]
+    if problems:
+        raise InputError(problems)
+    return RatingInputs(result, scene, **sections, mesh=scene.mesh(), duty=duty)
+
+
+def sections_of(result: CycleNumbers) -> tuple[dict[str, Any], list[str]]:
+    """Strengths of both gears and the other sections that every rating takes, and what is wrong with a result."""
+    scene = result.scene
     no_limits = "missing; nothing is rated without allowable stresses: give material, or kind with its stresses"
     needed = {
         "pinion.strength": (scene.pinion.strength, no_limits),
@@ -134,14 +179,9 @@ def inputs_of(result: CycleNumbers, duty: Duty = Duty()) -> RatingInputs:
         problems.append(f"analysis.positions: {len(result.path)}; a rating takes {FEWEST} or more: run the scene again")
     if not (torques > 0.0).all():
         problems.append("pinion torque: 0 N m; a rating takes torques above 0")
-    problems += [
-        f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
-    ]
-    if problems:
-        raise InputError(problems)
-    sections: Any = tuple(section for section, _ in needed.values())
-    pinion, wheel, wanted, operation, lubricant = sections
-    return RatingInputs(result, scene, scene.mesh(), (pinion, wheel), wanted, operation, lubricant, duty)
+    pinion, wheel, *_ = (section for section, _ in needed.values())
+    others = {name: section for name, (section, _) in needed.items() if "." not in name}
+    return {"strengths": (pinion, wheel), **others}, problems
 
 
 def _outside(scene: CylindricalScene) -> list[tuple[str, str, bool, str]]:

@@ -10,7 +10,6 @@ import numpy as np
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array, index_checks
 from loaded_tca.errors import require
-from loaded_tca.rating.inputs import inputs_of
 from loaded_tca.rating.roots import local_root_factors, stress_ratio
 from loaded_tca.tribology.slices import slices_of
 
@@ -142,8 +141,7 @@ def root_safeties(rating: Rating, case: int, gear: int) -> RootSafeties:
     torque, stress = _torque_of(rating, case), rating.result.root_stress[gear]
     largest, smallest = stress.largest[torque], stress.smallest[torque]
     tense = largest > 0.0
-    inputs = inputs_of(rating.result, rating.duty)
-    _, factors, _ = local_root_factors(inputs, gear, stress_ratio(largest, smallest), torque)
+    _, factors, _ = local_root_factors(rating.inputs, gear, stress_ratio(largest, smallest), torque)
     strength = np.broadcast_to(factors.strength, largest.shape)
     safety = np.full(largest.shape, np.inf)
     np.divide(strength, largest * rating.K_A[case] * rating.K_gamma[case] * rating.K_v[case], out=safety, where=tense)

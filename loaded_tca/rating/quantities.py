@@ -1,9 +1,10 @@
-"""What a rating finds: name, dimensions, unit and long name of each number, factors by the names of ISO 6336."""
+"""What a rating finds: name, dimensions, unit, long name of each number, factors by names of ISO 6336 and 10300."""
 
 from __future__ import annotations
 
 from loaded_tca.results.declared import Asked, Number
 from loaded_tca.results.quantities import CYCLE_NUMBERS
+from loaded_tca.scene.cylindrical import CylindricalScene
 
 CASE = ("case",)
 OF_GEARS = ("case", "gear")
@@ -20,6 +21,14 @@ _EXCITATION = {
     "transmission_error_span": "transmission error, peak to peak",
     "transmission_error_order_1": "transmission error, order 1 of the tooth mesh",
 }
+OF_CYLINDRICAL = Asked(
+    lambda scene, _: isinstance(scene, CylindricalScene), "a factor of ISO 6336; bevel pairs have those of ISO 10300"
+)
+OF_BEVEL = Asked(
+    lambda scene, _: not isinstance(scene, CylindricalScene),
+    "a factor of ISO 10300, of bevel and hypoid pairs; cylindrical pairs have those of ISO 6336",
+)
+
 _LOADS = {
     "K_A": "application factor K_A",
     "K_gamma": "mesh load factor K_gamma",
@@ -40,13 +49,16 @@ NUMBERS: dict[str, Number] = {
     "torque": CYCLE_NUMBERS["torque"].changed(dims=CASE, label="pinion torque"),
     **_numbers(OF_GEARS, "1", {"cycles": "load cycles N_L"}),
     **_numbers(CASE, "1", _LOADS),
-    **_numbers(CASE, "kg/mm", {"reduced_mass": "reduced mass m_red for each mm of the face"}),
-    **_numbers(CASE, "1", _RESONANCE),
+    **_numbers(CASE, "kg/mm", {"reduced_mass": "reduced mass m_red for each mm of the face"}, OF_CYLINDRICAL),
+    **_numbers(CASE, "1", _RESONANCE, OF_CYLINDRICAL),
     **_numbers(CASE, "um", _EXCITATION),
-    **_numbers(CASE, "1", {"Z_H": "zone factor Z_H"}),
+    **_numbers(CASE, "1", {"Z_H": "zone factor Z_H"}, OF_CYLINDRICAL),
+    **_numbers(CASE, "1", {"Z_MB": "mid-zone factor Z_M-B", "Z_LS": "load sharing factor Z_LS"}, OF_BEVEL),
     "Z_E": Number(CASE, "MPa^0.5", "elasticity factor Z_E", column="Z_E", label="elasticity factor Z_E"),
-    **_numbers(CASE, "1", {"Z_eps": "contact ratio factor Z_eps", "Z_beta": "helix angle factor Z_beta"}),
-    **_numbers(OF_GEARS, "1", {"Z_BD": "single contact factors Z_B, Z_D"}),
+    **_numbers(
+        CASE, "1", {"Z_eps": "contact ratio factor Z_eps", "Z_beta": "helix angle factor Z_beta"}, OF_CYLINDRICAL
+    ),
+    **_numbers(OF_GEARS, "1", {"Z_BD": "single contact factors Z_B, Z_D"}, OF_CYLINDRICAL),
     **_numbers(CASE, "MPa", {"sigma_H0": "nominal contact stress sigma_H0"}),
     **_numbers(OF_GEARS, "MPa", {"sigma_H": "contact stress sigma_H", "sigma_H_lim": "sigma_H_lim"}),
     **_numbers(
@@ -62,6 +74,7 @@ NUMBERS: dict[str, Number] = {
             "Z_X": "size factor Z_X",
         },
     ),
+    **_numbers(CASE, "1", {"Z_KP": "bevel gear factor Z_KP", "Z_Hyp": "hypoid factor Z_Hyp"}, OF_BEVEL),
     **_numbers(OF_GEARS, "MPa", {"sigma_HG": "pitting strength sigma_HG"}),
     **_numbers(OF_GEARS, "1", {"flank_safety": "safety against pitting S_H"}),
     **_numbers(OF_GEARS, "h", {"flank_life": "life of flanks at the required safety"}),
@@ -75,6 +88,23 @@ NUMBERS: dict[str, Number] = {
             "Y_B": "rim thickness factor Y_B",
             "Y_DT": "deep tooth factor Y_DT",
         },
+        OF_CYLINDRICAL,
+    ),
+    **_numbers(
+        OF_GEARS,
+        "1",
+        {"Y_Fa": "form factor Y_Fa, load at the tip", "Y_Sa": "stress correction factor Y_Sa, load at the tip"},
+        OF_BEVEL,
+    ),
+    **_numbers(
+        CASE,
+        "1",
+        {
+            "Y_eps": "contact ratio factor Y_eps",
+            "Y_BS": "bevel spiral angle factor Y_BS",
+            "Y_LS": "load sharing factor Y_LS",
+        },
+        OF_BEVEL,
     ),
     **_numbers(
         OF_GEARS,

@@ -11,15 +11,17 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
+from loaded_tca.rating.bevel import BevelInputs, bevel_evaluated, bevel_inputs_of
 from loaded_tca.rating.evaluate import evaluated
 from loaded_tca.rating.findings import findings
-from loaded_tca.rating.inputs import Duty, inputs_of
+from loaded_tca.rating.inputs import CommonInputs, Duty, inputs_of
 from loaded_tca.rating.quantities import NUMBERS, OF_GEARS
 from loaded_tca.results.figure import Figure, Figures, labelled
 from loaded_tca.results.files import RATING
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.result import Result, figures_of
 from loaded_tca.results.summary import shown
+from loaded_tca.scene.spiral import SpiralScene
 
 if TYPE_CHECKING:
     import xarray
@@ -61,10 +63,10 @@ class Rating(Result):
     dataset : xarray.Dataset
         All numbers with their units, over ``case``, each of a ``torque``, and ``gear``. A life is inf where the stress
         is borne for ever.
+    inputs : CommonInputs
+        What it took of the result and its scene.
     remarks : tuple of str
         What lies outside the ranges of the standard.
-    duty : Duty
-        How gears are loaded by other mates.
     """
 
     KIND: ClassVar = RATING
@@ -76,8 +78,8 @@ class Rating(Result):
 
     result: CycleNumbers
     dataset: xarray.Dataset
+    inputs: CommonInputs
     remarks: tuple[str, ...] = ()
-    duty: Duty = Duty()
 
     def __repr__(self) -> str:
         flank, root = self.flank_safety.min(), self.root_safety.min()
@@ -89,13 +91,20 @@ class Rating(Result):
         return self.result.scene
 
     @property
+    def standard(self) -> str:
+        """The standard whose factors these are."""
+        return "ISO 10300" if isinstance(self.scene, SpiralScene) else "ISO 6336"
+
+    @property
     def scope(self) -> str:
         """Speed, hours and what is required, in words."""
         wanted, operation = self.scene.rating, self.scene.operation
         assert wanted is not None  # refused before
         assert operation is not None
+        of_bevel = isinstance(self.scene, SpiralScene)
+        standard = "ISO 10300-2 and -3:2023, method B1" if of_bevel else "ISO 6336-2:2019 and -3:2006"
         return (
-            f"ISO 6336-2:2019 and -3:2006, pinion at {operation.pinion_speed_rpm:g} rpm for {wanted.life_hours:g} h; "
+            f"{standard}, pinion at {operation.pinion_speed_rpm:g} rpm for {wanted.life_hours:g} h; "
             f"required S_H {wanted.required_flank_safety:g}, S_F {wanted.required_root_safety:g}; pinion | wheel"
         )
 
@@ -151,7 +160,7 @@ class Rating(Result):
         Raises
         ------
         InputError
-            As :meth:`loaded_tca.MeshCycle.sensitivities`.
+            As :meth:`loaded_tca.MeshCycle.sensitivities`, and of bevel and hypoid pairs.
 
         Warns
         -----
@@ -187,10 +196,12 @@ def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -
     -------
     Rating
     """
-    arrays, notes, at_edge = evaluated(inputs_of(result, duty))
+    of_bevel = isinstance(result.scene, SpiralScene)
+    inputs = bevel_inputs_of(result) if of_bevel else inputs_of(result, duty)
+    arrays, notes, at_edge = bevel_evaluated(inputs) if isinstance(inputs, BevelInputs) else evaluated(inputs)
     sentences = [kinds.RATED_AT_EDGE.sentence()] if at_edge else []
     about: dict[str, Any] = {"version": result.version, "warnings": "\n".join(sentences)}
     dataset = Rating.dataset_of(arrays, **about).assign_coords(gear=[*GEARS])
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
-    return Rating(result, dataset, notes, duty)
+    return Rating(result, dataset, inputs, notes)

@@ -11,20 +11,19 @@ from loaded_tca.errors import InputError
 from loaded_tca.reference import iso6336_3
 
 if TYPE_CHECKING:
-    from loaded_tca.rating.inputs import RatingInputs
+    from loaded_tca.rating.inputs import CommonInputs
 
 
-def root_of(inputs: RatingInputs, place: int) -> tuple[iso6336_3.RootStrength, dict[str, Any]]:
+def root_of(inputs: CommonInputs, place: int) -> tuple[iso6336_3.RootStrength, dict[str, Any]]:
     """Material of the root of a gear, and what else the factors of its strength take whatever the stress ratio."""
-    strength, section = inputs.strengths[place], inputs.scene.root_sections[place]
-    assert section is not None  # refused before
+    strength, section = inputs.strengths[place], inputs.root_section(place)
     made_of = iso6336_3.RootStrength(
         strength.limits[1], strength.kind_of_material, strength.root_Rz_um, strength.proof_stress_MPa
     )
     return made_of, {
         "notch_parameter": section.notch_parameter,
         "stress_correction_factor": section.stress_correction_factor,
-        "normal_module": inputs.mesh.pinion.normal_module,
+        "normal_module": inputs.normal_module,
         "cycles": float(inputs.cycles[place]),
         "long_life_factor": inputs.rating.long_life_factor,
         "mean_stress_factor": inputs.duty.mean_stress_factors[place],
@@ -32,7 +31,7 @@ def root_of(inputs: RatingInputs, place: int) -> tuple[iso6336_3.RootStrength, d
 
 
 def local_root_factors(
-    inputs: RatingInputs, place: int, ratio: Array, torque: Indices | int
+    inputs: CommonInputs, place: int, ratio: Array, torque: Indices | int
 ) -> tuple[Array, iso6336_3.RootFactors, tuple[str, ...]]:
     """Stress ratio R that counts of computed ones, factors of root strength with it, and notes.
 
@@ -79,7 +78,7 @@ class Deciding(NamedTuple):
     axial: Array
 
 
-def deciding_places(inputs: RatingInputs, gear: int) -> Deciding:
+def deciding_places(inputs: CommonInputs, gear: int) -> Deciding:
     """Places of the smallest strength over tension of the root of one gear.
 
     That is not the largest tension where stress is reversed more beside it.

@@ -24,7 +24,7 @@ import numpy as np
 
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError
-from loaded_tca.rating.inputs import RatingInputs, inputs_of
+from loaded_tca.rating.inputs import RatingInputs
 from loaded_tca.rating.loads import load_factors
 from loaded_tca.results.derivatives import JoinedSensitivities
 from loaded_tca.results.gap_growth import curvature_growth
@@ -50,8 +50,10 @@ def rating_slopes(rating: Rating, keys: Sequence[str]) -> xarray.Dataset:
     """Derivatives of the safeties of a rating; see :meth:`loaded_tca.rating.Rating.sensitivities`."""
     import xarray
 
+    inputs = rating.inputs
+    if not isinstance(inputs, RatingInputs):
+        raise InputError(f'pair.type: "{rating.scene.geometry.type}"; derivatives of safeties are of cylindrical pairs')
     sensitivities = rating.result.sensitivities(keys)
-    inputs = inputs_of(rating.result, rating.duty)
     factors = _factor_slopes(inputs, sensitivities)
     torque = np.array([NEWTON_MILLIMETRES * (key == TORQUE) for key in keys]) / rating.torque[:, None]
     dynamic = factors["K_v"]

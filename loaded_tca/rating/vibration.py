@@ -16,6 +16,7 @@ from loaded_tca.results.key_figures import mean_over_a_pitch, span_of
 if TYPE_CHECKING:
     from loaded_tca.gears import CylindricalGear
     from loaded_tca.rating.inputs import RatingInputs
+    from loaded_tca.results.numbers import CycleNumbers
     from loaded_tca.scene.shafts import ShaftSection
 
 POINTS = 40
@@ -100,14 +101,20 @@ def standard_stiffness(inputs: RatingInputs) -> Array:
 
 
 def vibration(inputs: RatingInputs) -> dict[str, Array]:
-    """Reduced mass, resonance ratios and excitation by the transmission error of the analysis (t,), by their names."""
-    result, count = inputs.result, len(inputs.torque)
-    stiffness = np.array([mean_over_a_pitch(each) for each in result.mesh_stiffness])
-    spans = [span_of(error, result.places_of_mesh) for error in result.transmission_error]
+    """Reduced mass, resonance ratios and what excites the mesh (t,), by their names."""
+    stiffness = np.array([mean_over_a_pitch(each) for each in inputs.result.mesh_stiffness])
     return {
-        "reduced_mass": np.full(count, reduced_mass(inputs)),
+        "reduced_mass": np.full(len(inputs.torque), reduced_mass(inputs)),
         "resonance_ratio": resonance_ratio(inputs, standard_stiffness(inputs)),
         "resonance_ratio_of_analysis": resonance_ratio(inputs, stiffness),
+        **excitation(inputs.result),
+    }
+
+
+def excitation(result: CycleNumbers) -> dict[str, Array]:
+    """Transmission error of the analysis (t,), peak to peak and its first order, by their names [um]."""
+    spans = [span_of(error, result.places_of_mesh) for error in result.transmission_error]
+    return {
         "transmission_error_span": result.um_per_rad * np.array(spans),
         "transmission_error_order_1": result.um_per_rad * result.harmonics(1)[:, 0],
     }

@@ -14,7 +14,7 @@ deviations count over b_v.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import asin, atan, cos, inf, log10, pi, sin, sqrt, tan
+from math import asin, atan, cos, degrees, inf, log10, pi, sin, sqrt, tan
 from typing import NamedTuple
 
 import numpy as np
@@ -275,6 +275,49 @@ class VirtualPair:
         return self.normal_radius * cos(self.contact_line_angle) ** 2
 
 
+LARGEST_SPIRAL, LARGEST_PRESSURE, LARGEST_WIDTH = 45.0, 30.0, 13.0
+"""(beta_m1 + beta_m2)/2 and alpha_e [deg], and b over m_mn, above which experience has to confirm a rating."""
+_ROUNDING = 1e-9
+
+
+@checked
+def scope_notes(pair: VirtualPair, face_width: float) -> tuple[str, ...]:
+    """What of a pair lies outside the scope of the standard, a sentence for each.
+
+    Parameters
+    ----------
+    pair : VirtualPair
+    face_width : float [mm]
+        b_2.
+
+    References
+    ----------
+    ISO 10300-1 and ISO/TR 10300-30:2024, scope and its warning.
+
+    Examples
+    --------
+    >>> pair = VirtualPair((0.3, 1.27), (80.0, 80.0), (0.9, 0.9), (0.0, 0.0), 0.35, 0.0, 3.0, (3.0, 3.0), 20.0)
+    >>> scope_notes(pair, 25.0)
+    ('scope: a mean spiral angle of 51.6 deg is above 45 deg',)
+    """
+    require_positive(face_width=face_width)
+    spiral, pressure = degrees(pair.spiral_angle), degrees(pair.effective_pressure_angle)
+    ratio, wide = pair.contact_ratios[0], face_width / pair.mean_normal_module
+    cases = (
+        (ratio >= 2.0, f"a profile contact ratio eps_v_alpha of {ratio:.4g} is not below 2"),
+        (
+            spiral > LARGEST_SPIRAL + _ROUNDING,
+            f"a mean spiral angle of {spiral:.3g} deg is above {LARGEST_SPIRAL:g} deg",
+        ),
+        (
+            pressure > LARGEST_PRESSURE + _ROUNDING,
+            f"an effective pressure angle of {pressure:.3g} deg is above {LARGEST_PRESSURE:g} deg",
+        ),
+        (wide > LARGEST_WIDTH + _ROUNDING, f"a face width of {wide:.3g} m_mn is above {LARGEST_WIDTH:g} m_mn"),
+    )
+    return tuple(f"scope: {words}" for holds, words in cases if holds)
+
+
 def load_share(specific_load: ArrayLike) -> Array:
     """C_F, by which both stiffnesses fall below 100 N/mm of F_vmt K_A/b_v,eff (12, 13)."""
     load = np.asarray(specific_load, dtype=float)
@@ -283,7 +326,7 @@ def load_share(specific_load: ArrayLike) -> Array:
 
 
 @checked
-def reduced_mass(mean_diameters: Both, pressure_angle: float, density: float = 7860.0) -> float:
+def reduced_mass(mean_diameters: Both, pressure_angle: float, densities: Both = (7860.0, 7860.0)) -> float:
     r"""Reduced mass m_red of both gears as solid discs, for each mm of face width [kg/mm].
 
     .. math:: m^*= \frac{\pi}{8}\,\varrho\,\frac{d_m^2}{\cos^2\alpha_n}, \qquad
@@ -295,7 +338,7 @@ def reduced_mass(mean_diameters: Both, pressure_angle: float, density: float = 7
         d_m.
     pressure_angle : float [rad]
         (alpha_nD + alpha_nC)/2, the mean of both flanks.
-    density : float [kg/m3]
+    densities : (float, float) [kg/m3]
 
     References
     ----------
@@ -307,10 +350,13 @@ def reduced_mass(mean_diameters: Both, pressure_angle: float, density: float = 7
     >>> round(reduced_mass((54.918, 152.987), radians(20.0)), 6)
     0.009339
     """
-    first, second = mean_diameters
-    require_positive(pinion_diameter=first, wheel_diameter=second, density=density)
+    (first, second), (light, heavy) = mean_diameters, densities
+    require_positive(pinion_diameter=first, wheel_diameter=second, pinion_density=light, wheel_density=heavy)
     require((0.0 < pressure_angle < 0.25 * pi, f"pressure_angle: {pressure_angle} rad is not between 0 and 45 deg"))
-    masses = [pi / 8.0 * 1e-9 * density * (each / cos(pressure_angle)) ** 2 for each in mean_diameters]
+    masses = [
+        pi / 8.0 * 1e-9 * density * (each / cos(pressure_angle)) ** 2
+        for each, density in zip(mean_diameters, densities, strict=True)
+    ]
     return masses[0] * masses[1] / (masses[0] + masses[1])
 
 
@@ -323,7 +369,12 @@ class BevelDynamicFactor(NamedTuple):
 
 @checked
 def dynamic_factor(
-    resonance_ratio: ArrayLike, specific_load: ArrayLike, *, pitch_deviation: float, total_contact_ratio: float
+    resonance_ratio: ArrayLike,
+    specific_load: ArrayLike,
+    *,
+    pitch_deviation: float,
+    total_contact_ratio: float,
+    single_stiffness: ArrayLike = SINGLE_STIFFNESS,
 ) -> BevelDynamicFactor:
     r"""Dynamic factor K_v by method B.
 
@@ -346,6 +397,8 @@ def dynamic_factor(
         f_p,eff, of the wheel after running in.
     total_contact_ratio : float
         eps_v_gamma.
+    single_stiffness : array [N/(mm um)]
+        c', with its fall by :func:`load_share`.
 
     Returns
     -------
@@ -373,8 +426,7 @@ def dynamic_factor(
         (1.0 < total_contact_ratio < inf, f"total_contact_ratio: {total_contact_ratio} is not above 1 and finite"),
     )
     first, second, third, fourth, fifth, sixth, seventh = dynamic_coefficients(total_contact_ratio)
-    stiffness = SINGLE_STIFFNESS * load_share(load)
-    pitch = stiffness * pitch_deviation / load
+    pitch = np.asarray(single_stiffness, dtype=float) * pitch_deviation / load
     below = 1.0 + ratio * ((first + second) * pitch + third)
     main = 1.0 + (first + second) * pitch + fourth
     above = (fifth + sixth) * pitch + seventh
@@ -385,6 +437,53 @@ def dynamic_factor(
         ((ratio > 1.25) & (ratio < 1.5), "K_v: N lies between main resonance and supercritical range"),
     )
     return BevelDynamicFactor(np.maximum(value, 1.0), tuple(words for holds, words in cases if bool(np.any(holds))))
+
+
+EMPIRICAL_GRADES = range(5, 9)
+"""Accuracy grades of ISO 17485 for which K_v by method C was found."""
+
+
+@checked
+def dynamic_factor_by_grade(outer_velocity: ArrayLike, grade: int) -> BevelDynamicFactor:
+    r"""Dynamic factor K_v by method C, from the accuracy grade alone.
+
+    .. math:: K_v = \left(\frac{A}{A + \sqrt{200\,v_{et2}}}\right)^{-X}, \qquad X = 0.25 (B - 4)^{0.667}, \qquad
+              A = 50 + 56 (1 - X)
+
+    Parameters
+    ----------
+    outer_velocity : array [m/s]
+        v_et2, of the wheel at its outer pitch diameter.
+    grade : int
+        B of ISO 17485, 5 to 8; of finer ones K_v is 1 to 1.1.
+
+    Returns
+    -------
+    BevelDynamicFactor
+
+    References
+    ----------
+    ISO 10300-1:2023, formulas (22) to (27); the curve is that of AGMA 2001 and 2003 with Q_v = 16 - B.
+
+    Examples
+    --------
+    >>> round(float(dynamic_factor_by_grade(10.0, 6).K_v), 3)
+    1.185
+    """
+    speed = np.asarray(outer_velocity, dtype=float)
+    require(
+        interval_check("outer_velocity", speed, "[0, inf)", "m/s"),
+        (
+            grade in EMPIRICAL_GRADES,
+            f"grade: {grade} is not one of {min(EMPIRICAL_GRADES)} to {max(EMPIRICAL_GRADES)}",
+        ),
+    )
+    exponent = 0.25 * (grade - 4.0) ** 0.667
+    constant = 50.0 + 56.0 * (1.0 - exponent)
+    fastest = (constant + 13.0 - grade) ** 2 / 200.0
+    notes = (f"K_v: a velocity above {fastest:.3g} m/s, the largest of method C for grade {grade}",)
+    factor = (constant / (constant + np.sqrt(200.0 * speed))) ** -exponent
+    return BevelDynamicFactor(factor, notes if bool(np.any(speed > fastest)) else ())
 
 
 MOUNTINGS = {

@@ -33,7 +33,7 @@ def mid_zone_factor(pair: VirtualPair) -> float:
               \left(\sqrt{(d_{va2}/d_{vb2})^2 - 1} - F_2 \pi/z_{v2}\right)}}
 
     with F_1 = 2 and F_2 = 2 (eps_v_alpha - 1) without overlap, both eps_v_alpha from an overlap ratio of 1 on, and
-    straight lines in between.
+    straight lines in between. The gear with fewer teeth counts as the first.
 
     Parameters
     ----------
@@ -50,7 +50,9 @@ def mid_zone_factor(pair: VirtualPair) -> float:
     """
     profile, face = pair.contact_ratios
     share = min(max(face, 0.0), 1.0)
-    places = 2.0 + (profile - 2.0) * share, 2.0 * profile - 2.0 + (2.0 - profile) * share
+    places = [2.0 + (profile - 2.0) * share, 2.0 * profile - 2.0 + (2.0 - profile) * share]
+    if pair.teeth[0] > pair.teeth[1]:
+        places.reverse()
     rest = [
         sqrt((tip / base) ** 2 - 1.0) - place * pi / teeth
         for tip, base, place, teeth in zip(pair.tip_diameters, pair.base_diameters, places, pair.teeth, strict=True)

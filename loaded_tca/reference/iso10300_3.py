@@ -15,6 +15,8 @@ from loaded_tca.errors import GeometryError, require, require_positive
 from loaded_tca.reference.iso6336_3 import RootSection, fillet_section
 from loaded_tca.reference.iso10300_1 import VirtualPair
 
+_ROUNDING = 1e-12  # m_mn, of a rounding that fills the slot
+
 
 @checked
 def tip_section(
@@ -96,7 +98,7 @@ def tip_section(
     )
     gap = 0.25 * pi - thickness_shift - tool_depth * tan(alpha) - protuberance
     gap -= edge_radius * (1.0 - sin(alpha)) / cos(alpha)
-    if gap < 0.0:
+    if gap < -_ROUNDING:
         raise GeometryError(f"edge_radius: {edge_radius:.4g} m_mn does not fit on the bottom of the slot")
     if not generated:
         above = 0.5 * (tip_diameter - teeth) - profile_shift

@@ -204,7 +204,9 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         )
 
     def rating(self) -> Rating:
-        """Return safeties and lives of flanks and roots under each torque, after ISO 6336 and by the local stresses.
+        """Return safeties and lives of flanks and roots under each torque, after a standard and by the local stresses.
+
+        The standard is ISO 6336, of bevel and hypoid pairs ISO 10300, method B1.
 
         Materials, required safeties, speed and oil are those of the scene: [pinion.strength], [wheel.strength],
         [rating], [operation], [lubricant].
@@ -216,8 +218,8 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         Raises
         ------
         InputError
-            With every section that is missing; for pairs other than cylindrical ones, and results without
-            load sharing, of fewer than five positions, or under no torque.
+            With every section that is missing; for pairs outside the standard, and results without load sharing, of
+            fewer than five positions, or under no torque.
 
         Warns
         -----

@@ -134,7 +134,7 @@ def _flank_rows(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
         ("spiral angle beta_m of this flank [deg]", *(_deg(abs(flank.angles.spiral)) for flank in flanks)),
         ("pressure angle alpha_n of this flank [deg]", *(_deg(flank.angles.pressure) for flank in flanks)),
         ("flank below the pitch cone, mid-face [mm]", *(f"{depth:z.4f}" for depth in depths)),
-        ("normal tooth thickness s_mn as cut [mm]", *(_shown(_thickness(flank.gear)) for flank in flanks)),
+        ("normal tooth thickness s_mn as cut [mm]", *(_shown(mean_thickness(flank.gear)) for flank in flanks)),
         ("normal pitch at R_m less both s_mn [mm]", _shown(mean_backlash(flanks))),
     ]
 
@@ -144,7 +144,7 @@ def mean_backlash(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> float:
 
     The backlash j_mn of ISO 23509, normal to the flanks, is cos(alpha_n) of it.
     """
-    return sum(_normal_arc(flank.gear, pi / flank.gear.teeth) - _thickness(flank.gear) for flank in flanks)
+    return sum(_normal_arc(flank.gear, pi / flank.gear.teeth) - mean_thickness(flank.gear) for flank in flanks)
 
 
 def room_and_module(mesh: FaceMilledMesh, sides: Sides) -> tuple[Room, float]:
@@ -155,7 +155,7 @@ def room_and_module(mesh: FaceMilledMesh, sides: Sides) -> tuple[Room, float]:
     return Room(0.0 if isnan(backlash) else backlash, (0.0, 0.0), mesh.tip_clearances), module
 
 
-def _thickness(gear: FaceMilledGear) -> float:
+def mean_thickness(gear: FaceMilledGear) -> float:
     """Thickness across the teeth on the pitch cone at the mean point [mm]; NaN: only one flank is cut."""
     if None in (gear.cutter.concave, gear.cutter.convex):
         return nan

@@ -202,7 +202,14 @@ class RatingSection(Section):
         METHOD_B,
     )
     tolerance_class: int | None = key(
-        Whole(1, 11), "tolerance class of both gears after ISO 1328-1:2013, for factors by method B", None, "none"
+        Whole(1, 11),
+        "tolerance class of both gears after ISO 1328-1:2013, of bevel gears accuracy grade from 2 on of "
+        "ISO 17485:2006, for factors by method B",
+        None,
+        "none",
+    )
+    profile_crowning: str = key(
+        Choice(("low", "high")), "profile crowning of bevel gears, for Z_LS of ISO 10300-2: e_LS 3 or 1.5", "low"
     )
     limited_pitting: bool = key(Choice((False, True)), "whether some pits are allowed", False)
     long_life_factor: float = key(Number(LONG_LIFE, 1.0), "Z_NT and Y_NT at 1e10 load cycles", LONG_LIFE)

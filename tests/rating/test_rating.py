@@ -10,10 +10,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
 from loaded_tca.rating.inputs import inputs_of
-from loaded_tca.scene import read_scene
 from loaded_tca.tribology.slices import slices_of
 from tests.samples.rating import HARD, RATED, solved
-from tests.samples.results import SCENES
 
 METHOD_B = {"rating.dynamic_factor": "method B", "rating.transverse_load_factor": "method B"}
 ROUNDING = 1e-12  # of a few products and roots, with room for any order of them
@@ -185,13 +183,6 @@ def test_everything_missing_is_told_at_once():
     with pytest.raises(InputError) as refused:
         solved(**bare).rating()
     assert len(refused.value.problems) == 5
-
-
-@pytest.mark.parametrize("name", ["mesh_cycle_bevel", "hypoid_13x42"])
-def test_other_families_are_refused(name):
-    other = SimpleNamespace(scene=read_scene(SCENES / f"{name}.toml"))
-    with pytest.raises(InputError, match=r"pair.type: .*rating covers one operating point of cylindrical"):
-        inputs_of(other)
 
 
 def test_unloaded_results_and_few_positions_are_refused():

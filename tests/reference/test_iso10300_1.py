@@ -123,6 +123,21 @@ def test_dynamic_factor_is_proportional_to_speed_and_continuous_between_ranges()
     assert "between main resonance" in factor(1.3).notes[0]
 
 
+def test_dynamic_factor_by_grade_is_the_curve_of_agma():
+    def of_agma(number, feet_per_minute):
+        exponent = 0.25 * (12.0 - number) ** (2.0 / 3.0)
+        constant = 50.0 + 56.0 * (1.0 - exponent)
+        return ((constant + feet_per_minute**0.5) / constant) ** exponent
+
+    assert round(of_agma(6, 801.1), 3) == 1.377  # Shigley, example 14-4
+    for grade in (5, 8):
+        factor, notes = iso10300_1.dynamic_factor_by_grade(801.1 * 0.3048 / 60.0, grade)
+        assert_allclose(factor, of_agma(16 - grade, 801.1), rtol=4e-3)  # 200 for 60/0.3048
+        assert notes == ()
+    (note,) = iso10300_1.dynamic_factor_by_grade([1.0, 60.0], 8).notes
+    assert note.startswith("K_v: a velocity above ")
+
+
 def test_both_stiffnesses_fall_below_full_load():
     assert_allclose(iso10300_1.load_share([50.0, 100.0, 300.0]), [0.5, 1.0, 1.0])
 
@@ -175,6 +190,10 @@ test_virtual_pair_refuses = refused_calls(
     ),
     (lambda: iso10300_1.reduced_mass((50.0, 100.0), 1.0), "pressure_angle: 1.0 rad is not between 0 and 45 deg"),
     (lambda: iso10300_1.load_share(0.0), "specific_load"),
+    (
+        lambda: iso10300_1.dynamic_factor_by_grade(-1.0, 10),
+        ("outer_velocity", "grade: 10 is not one of 5 to 8"),
+    ),
     (
         lambda: iso10300_1.dynamic_factor(-1.0, 400.0, pitch_deviation=-1.0, total_contact_ratio=1.0),
         ("resonance_ratio", "pitch_deviation: -1.0 um", "total_contact_ratio: 1.0 is not above 1"),

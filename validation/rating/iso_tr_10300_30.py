@@ -6,8 +6,8 @@ numbers as the open program ISO10300Calc (afuentesaz/AGMAStandards, its self tes
 That program misses Z_LS of sample 2 and l_bm of sample 3, and calls the latter an error of the report: with contact
 lines that end at the ends of the zone of action both have their printed digits here.
 
-Not compared: K_v 1.000 of sample 3, which its own printed K of 0.589 contradicts, and K_Halpha* 0.900 of sample 2,
-where its deviation counts as mm; K_Halpha is 1 there for the offset alone.
+Not compared: K_v 1.000 of sample 3, which its own printed K of 0.589 contradicts, its N of 0.084 (0.0858 here), and
+K_Halpha* 0.900 of sample 2, where its deviation counts as mm; K_Halpha is 1 there for the offset alone.
 """
 
 from math import cos, radians, sin
@@ -172,7 +172,7 @@ def _loads(sample: Sample) -> dict[str, float]:
     allowance = float(iso6336_1.running_in_allowance("Eh", sample.pitch_deviation, sample.limits[0]))
     deviation, ratio = sample.pitch_deviation - allowance, pair.total_contact_ratio
     load = APPLICATION * sample.tangential_force / pair.widths[1]
-    mass = iso10300_1.reduced_mass((first, second), radians(20.0), 7860.0)
+    mass = iso10300_1.reduced_mass((first, second), radians(20.0))
     speed = iso6336_1.resonance_speed(sample.teeth[0], iso10300_1.MESH_STIFFNESS, mass)
     factor, one = (
         float(iso10300_1.dynamic_factor(each, load, pitch_deviation=deviation, total_contact_ratio=ratio).K_v)

@@ -1,0 +1,287 @@
+"""Rating of bevel and hypoid pairs: stresses, strengths, safeties, lives after ISO 10300, method B1, and local ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loaded_tca.arrays import GEARS, Array
+from loaded_tca.errors import GeometryError, InputError, named
+from loaded_tca.rating.bevel_sheet import BevelSheet, bevel_sheet
+from loaded_tca.rating.evaluate import both, lives, local_flanks, local_root
+from loaded_tca.rating.inputs import CommonInputs, sections_of
+from loaded_tca.rating.roots import root_of
+from loaded_tca.rating.vibration import excitation
+from loaded_tca.reference import iso6336, iso6336_1, iso6336_3, iso10300_1, iso10300_2, iso10300_3
+from loaded_tca.reference.iso6336_2 import FlankFactors, FlankStrength
+from loaded_tca.reference.iso17485 import single_pitch_tolerance
+from loaded_tca.scene.rating import ANALYSIS, METHOD_B
+from loaded_tca.scene.spiral import SpiralScene
+
+if TYPE_CHECKING:
+    from loaded_tca.reference.iso6336_3 import RootSection
+    from loaded_tca.results.numbers import CycleNumbers
+
+Arrays = dict[str, Array]
+STEEL_MODULUS = 206e3 / (2.0 * (1.0 - 0.3**2))
+"""E* of two steel gears, whose stiffnesses the standard has [MPa]."""
+NEARLY = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class BevelInputs(CommonInputs):
+    """What a rating after ISO 10300 takes besides.
+
+    Attributes
+    ----------
+    sheet : BevelSheet
+    """
+
+    scene: SpiralScene
+    sheet: BevelSheet
+
+    @property
+    def normal_module(self) -> float:
+        """m_mn [mm]."""
+        return self.sheet.pair.mean_normal_module
+
+    def root_section(self, place: int) -> RootSection:
+        """Critical section of the pinion, 0, or the wheel, 1, after ISO 10300-3."""
+        return self.sheet.root_section(place)
+
+    @property
+    def mean_force(self) -> Array:
+        """F_mt1, tangential at the mean point of the pinion (t,) [N]."""
+        return self.torque / (0.5 * self.sheet.mean_diameters[0])
+
+    @property
+    def virtual_force(self) -> Array:
+        """F_vmt, of the virtual gears (t,) [N]."""
+        pair = self.sheet.pair
+        return self.mean_force * (cos(pair.spiral_angle) / cos(pair.spiral_angles[0]))
+
+    @property
+    def velocity(self) -> float:
+        """v_mt2, of the wheel at its mean point [m/s]."""
+        teeth, speed = self.sheet.teeth, self.operation.pinion_speed_rpm
+        return 1e-3 * pi * self.sheet.mean_diameters[1] * speed * teeth[0] / teeth[1] / 60.0
+
+
+def bevel_inputs_of(result: CycleNumbers) -> BevelInputs:
+    """Sections of the scene of a result that a rating of bevel pairs needs.
+
+    Raises
+    ------
+    InputError
+        With everything that is missing or not covered.
+    """
+    scene = result.scene
+    assert isinstance(scene, SpiralScene)
+    sections, problems = sections_of(result)
+    rating = scene.rating
+    if rating is not None and rating.transverse_load_factor == ANALYSIS:
+        problems.append(
+            'rating.transverse_load_factor: "analysis"; the analysis has no K_Halpha of bevel pairs, whose mean length '
+            f'of contact lines is not known: give "{METHOD_B}" or a number'
+        )
+    try:
+        sheet = bevel_sheet(scene)
+        for place in range(len(GEARS)):
+            sheet.root_section(place)
+    except InputError as error:
+        problems += error.problems
+    except GeometryError as error:
+        problems.append(f"pair: ISO 10300-3 has no root stress of this pair: {error}")
+    if problems:
+        raise InputError(problems)
+    return BevelInputs(result, scene, **sections, sheet=sheet)
+
+
+def bevel_evaluated(inputs: BevelInputs) -> tuple[Arrays, tuple[str, ...], bool]:
+    """Arrays of ``NUMBERS`` by their names, notes, and whether the largest pressure of a torque lies at an edge."""
+    loads, notes = _load_factors(inputs)
+    share = iso10300_2.load_sharing_factor(inputs.sheet.pair, inputs.rating.profile_crowning)
+    stresses, hypoid, held = _contact_stresses(inputs, loads, share)
+    flanks = _flank_factors(inputs, hypoid)
+    required = inputs.rating.required_flank_safety
+    rated = {
+        name: both(inputs, values)
+        for name, values in {
+            "sigma_H_lim": flanks.limit_stresses, "Z_NT": flanks.Z_NT, "Z_L": flanks.Z_L, "Z_v": flanks.Z_v,
+            "Z_R": flanks.Z_R, "Z_W_reference": flanks.Z_W, "Z_W_static": flanks.Z_W_static, "Z_X": flanks.Z_X,
+            "sigma_HG": flanks.strength,
+        }.items()
+    }  # fmt: skip
+    rated["flank_safety"] = rated["sigma_HG"] / stresses["sigma_H"]
+    rated["flank_life"] = lives(inputs, flanks.curves, required * stresses["sigma_H"])
+    roots, root_notes = _of_roots(inputs, loads, share**2)
+    local, at_edge = local_flanks(inputs, loads, flanks.strength, flanks.curves)
+    arrays = {"torque": np.asarray(inputs.torque), "cycles": both(inputs, inputs.cycles)}
+    arrays |= loads | excitation(inputs.result) | stresses | rated | roots | local
+    scope = iso10300_1.scope_notes(inputs.sheet.pair, inputs.sheet.face_width)
+    told = (*scope, *notes, *inputs.sheet.notes, *held, *flanks.notes, *root_notes)
+    return arrays, tuple(dict.fromkeys(told)), at_edge
+
+
+def _pitch_deviation(inputs: BevelInputs) -> float:
+    """f_pt of the gear with more teeth after running in [um]."""
+    sheet, grade = inputs.sheet, inputs.rating.tolerance_class
+    assert grade is not None
+    gear = sheet.wheel
+    with named(f"rating.tolerance_class: {GEARS[gear]}"):
+        deviation = single_pitch_tolerance(
+            sheet.teeth[gear], sheet.pair.mean_normal_module, sheet.tolerance_diameter(gear), grade
+        )
+    allowances = [
+        float(iso6336_1.running_in_allowance(strength.kind_of_material, deviation, strength.limits[0], inputs.velocity))
+        for strength in inputs.strengths
+    ]
+    return deviation - 0.5 * sum(allowances)
+
+
+def _load_factors(inputs: BevelInputs) -> tuple[Arrays, tuple[str, ...]]:
+    """K_A, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (t,) by their names, and notes."""
+    wanted, sheet, ones = inputs.rating, inputs.sheet, np.ones(len(inputs.torque))
+    application = inputs.operation.application_factor
+    effective, whole = sheet.pair.widths
+    softer = iso10300_1.load_share(inputs.virtual_force * application / effective)
+    load = inputs.virtual_force * application / whole
+    dynamic, notes = ones * inputs.operation.dynamic_factor, _stiffness_notes(inputs)
+    if wanted.dynamic_factor == METHOD_B:
+        dynamic, more = _dynamic_factor(inputs, load, softer)
+        notes += more
+    face = ones * (inputs.result.face_load_factor if wanted.face_load_factor == ANALYSIS else wanted.face_load_factor)
+    face = np.maximum(face, 1.0)
+    transverse = ones
+    if wanted.transverse_load_factor == METHOD_B:
+        transverse = iso10300_1.transverse_load_factor(
+            load * dynamic * face,
+            mesh_stiffness=iso10300_1.MESH_STIFFNESS * softer,
+            pitch_deviation=_pitch_deviation(inputs),
+            total_contact_ratio=sheet.pair.total_contact_ratio,
+            relative_offset=2.0 * abs(sheet.offset) / sheet.mean_diameters[1],
+        )
+    else:
+        transverse = ones * float(wanted.transverse_load_factor)
+    curved = iso10300_1.lengthwise_curvature_factor(
+        sheet.cutter_radius, sheet.members[1].mean_cone_distance, sheet.members[1].spiral_angle
+    )
+    factors = {
+        "K_A": ones * application, "K_gamma": ones, "K_v": dynamic, "K_Hbeta": face, "K_Halpha": transverse,
+        "K_Fbeta": face / curved, "K_Falpha": transverse,
+    }  # fmt: skip
+    return factors, notes
+
+
+def _stiffness_notes(inputs: BevelInputs) -> tuple[str, ...]:
+    """What is to be known of the stiffnesses by method B."""
+    wanted, modulus = inputs.rating, inputs.result.gear_pair.contact_modulus
+    if METHOD_B not in (wanted.dynamic_factor, wanted.transverse_load_factor):
+        return ()
+    if abs(modulus / STEEL_MODULUS - 1.0) <= NEARLY:
+        return ()
+    return ("c', c_gamma: those of steel, which the gears are not",)
+
+
+def _dynamic_factor(inputs: BevelInputs, load: Array, softer: Array) -> tuple[Array, tuple[str, ...]]:
+    """K_v (t,) by method B, and notes."""
+    sheet, (first, second) = inputs.sheet, inputs.scene.materials
+    mass = iso10300_1.reduced_mass(
+        sheet.mean_diameters, sheet.mean_pressure_angle, (first.density_kg_m3, second.density_kg_m3)
+    )
+    speeds = [
+        iso6336_1.resonance_speed(sheet.teeth[0], iso10300_1.MESH_STIFFNESS * float(each), mass) for each in softer
+    ]
+    return iso10300_1.dynamic_factor(
+        inputs.operation.pinion_speed_rpm / np.array(speeds),
+        load,
+        pitch_deviation=_pitch_deviation(inputs),
+        total_contact_ratio=sheet.pair.total_contact_ratio,
+        single_stiffness=iso10300_1.SINGLE_STIFFNESS * softer,
+    )
+
+
+def _contact_stresses(inputs: BevelInputs, loads: Arrays, share: float) -> tuple[Arrays, float, tuple[str, ...]]:
+    """Contact stress of the standard and its factors; Z_Hyp, and a note where a bound of it counts."""
+    pair, ones = inputs.sheet.pair, np.ones(len(inputs.torque))
+    elastic = iso6336.elasticity_factor(inputs.result.gear_pair.contact_modulus)
+    zone = iso10300_2.mid_zone_factor(pair)
+    hypoid, bounded = 1.0, False
+    if inputs.sheet.offset:
+        hypoid, bounded = iso10300_2.hypoid_factor(pair.spiral_angles, pair.contact_line_angle, pair.pressure_angle)
+    of_force = iso10300_2.nominal_contact_stress(1.0, pair, zone * share * elastic)
+    nominal = of_force * np.sqrt(inputs.mean_force / (cos(pair.pressure_angle) * cos(pair.spiral_angles[0])))
+    product = loads["K_A"] * loads["K_v"] * loads["K_Hbeta"] * loads["K_Halpha"]
+    arrays = {
+        "Z_MB": zone * ones, "Z_LS": share * ones, "Z_E": elastic * ones, "Z_KP": iso10300_2.BEVEL_FACTOR * ones,
+        "Z_Hyp": hypoid * ones, "sigma_H0": nominal, "sigma_H": both(inputs, (nominal * np.sqrt(product))[:, None]),
+    }  # fmt: skip
+    return arrays, hypoid, ("Z_Hyp: counts as 0.6, the least of the standard",) if bounded else ()
+
+
+def _flank_factors(inputs: BevelInputs, hypoid: float) -> FlankFactors:
+    """What both flanks withstand."""
+    pinion, wheel = (
+        FlankStrength(strength.limits[0], strength.kind_of_material, strength.flank_Rz_um, strength.brinell)
+        for strength in inputs.strengths
+    )
+    with named("rating of flanks"):
+        return iso10300_2.bevel_flank_factors(
+            pinion,
+            wheel,
+            hypoid_factor=hypoid,
+            relative_radius=inputs.sheet.pair.relative_radius,
+            velocity=inputs.velocity,
+            viscosity_40=inputs.lubricant.viscosity_40_mm2_s,
+            cycles=inputs.cycles,
+            gear_ratio=inputs.sheet.gear_ratio,
+            limited_pitting=inputs.rating.limited_pitting,
+            long_life_factor=inputs.rating.long_life_factor,
+        )
+
+
+def _of_roots(inputs: BevelInputs, loads: Arrays, share: float) -> tuple[Arrays, tuple[str, ...]]:
+    """Root stress, strength, safety and life of both gears after ISO 10300-3, and by the computed root tension."""
+    pair, ones = inputs.sheet.pair, np.ones(len(inputs.torque))
+    ratio = iso10300_3.contact_ratio_factor(pair)
+    spiral = iso10300_3.bevel_spiral_angle_factor(pair, inputs.sheet.whole_depths)
+    nominal = inputs.virtual_force * (ratio * spiral * share / (pair.widths[1] * pair.mean_normal_module))
+    columns, notes = [], [] if pair.spiral_angle else ["Y_BS: 1; the standard has not validated it for straight teeth"]
+    for place, gear in enumerate(GEARS):
+        values, remarks = _of_root(inputs, loads, nominal, place)
+        columns.append(values)
+        notes += [f"{gear}: {remark}" for remark in remarks]
+    arrays = {
+        name: np.stack([np.broadcast_to(values[name], ones.shape) for values in columns], axis=-1)
+        for name in columns[0]
+    }
+    return arrays | {"Y_eps": ratio * ones, "Y_BS": spiral * ones, "Y_LS": share * ones}, tuple(notes)
+
+
+def _of_root(inputs: BevelInputs, loads: Arrays, nominal: Array, place: int) -> tuple[Arrays, tuple[str, ...]]:
+    """Numbers of the root of one gear (t,), and notes; ``nominal`` lacks Y_Fa Y_Sa."""
+    strength, section = inputs.strengths[place], inputs.root_section(place)
+    nominal = nominal * section.form_factor * section.stress_correction_factor
+    stress = nominal * loads["K_A"] * loads["K_v"] * loads["K_Fbeta"] * loads["K_Falpha"]
+    made_of, common = root_of(inputs, place)
+    factors = iso6336_3.root_factors(made_of, stress_ratio=strength.root_stress_ratio, **common)
+    required, per_hour = inputs.rating.required_root_safety, inputs.cycles_per_hour[place]
+    arrays: Arrays = {
+        name: np.asarray(value, dtype=float)
+        for name, value in {
+            "Y_Fa": section.form_factor, "Y_Sa": section.stress_correction_factor, "sigma_F0": nominal,
+            "sigma_F": stress, "sigma_F_lim": strength.limits[1], "Y_ST": factors.Y_ST, "Y_NT": factors.Y_NT,
+            "Y_delta_relT": factors.Y_delta_relT, "Y_delta_relT_static": factors.Y_delta_relT_static,
+            "Y_R_relT": factors.Y_R_relT, "Y_X": factors.Y_X, "Y_M": factors.Y_M, "sigma_FG": factors.strength,
+            "root_safety": factors.strength / stress,
+            "root_life": factors.curve.life(required * stress) / per_hour,
+        }.items()
+    }  # fmt: skip
+    notes = (*inputs.sheet.edge_notes(place), *factors.notes)
+    if not inputs.scene.analysis.root_stress:
+        return arrays, notes
+    local, more = local_root(inputs, loads, place)
+    return arrays | local, (*notes, *more)
