@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import cos, degrees, inf, isnan, pi, sin, tan
+from math import cos, degrees, inf, pi, sin, tan
 
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import GeometryError, InputError
@@ -231,15 +231,11 @@ def _of_equations(mesh: BevelMesh) -> BevelSheet:
 @lru_cache(maxsize=16)
 def _of_settings(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> BevelSheet:
     """Sheet of face-milled gears, of their flanks as they are cut; kept, since these take 0.1 s to make."""
+    _require_drive_side(mesh, sides)
     flanks, _ = flanks_and_points(mesh, sides)
     spirals = abs(flanks[0].angles.spiral), abs(flanks[1].angles.spiral)
     offsets, limit = (0.0, 0.0), 0.0
     if isinstance(mesh, HypoidMesh):
-        if sides[0] != "concave":
-            raise InputError(
-                "pair.pinion_flank: the convex flank of a hypoid pinion is in contact; formulas of its curvature in "
-                "ISO 10300-1 were not found, rating covers the drive side"
-            )
         cones = mesh.cones
         spirals = cones.rolling_spiral_angles((mesh.pinion.teeth, mesh.wheel.teeth))
         offsets, limit = (cones.axial_offset_angle, cones.offset_angle), limit_pressure_angle(cones, spirals)
@@ -258,18 +254,31 @@ def _of_settings(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> BevelSheet:
     return BevelSheet((first, second), pair, teeth, width, pressure - limit, mesh.offset, radius, tuple(notes))
 
 
+def _require_drive_side(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> None:
+    """Refuse teeth of one flank, and the flank of a hypoid pair of which formulas are missing."""
+    problems = [
+        f"{gear.name}.cutter: one blade; rating needs whole teeth, concave and convex"
+        for gear in mesh.gears
+        if None in (gear.cutter.concave, gear.cutter.convex)
+    ]
+    if isinstance(mesh, HypoidMesh) and sides[0] != "concave":
+        problems.append(
+            "pair.pinion_flank: the convex flank of a hypoid pinion is in contact; formulas of its curvature in "
+            "ISO 10300-1 were not found, rating covers the drive side"
+        )
+    if problems:
+        raise InputError(problems)
+
+
 def _milled(gear: FaceMilledGear, side: Side, spiral: float) -> BevelMember:
     blank = gear.blank
-    thickness = mean_thickness(gear)
-    if isnan(thickness):
-        raise InputError(f"{gear.name}.cutter: one blade; rating needs whole teeth, concave and convex")
     return BevelMember(
         pitch_angle=blank.pitch_angle,
         spiral_angle=spiral,
         mean_cone_distance=blank.mean_cone_distance,
         addendum=blank.tip_height(blank.mean_cone_distance),
         dedendum=-blank.root_height(blank.mean_cone_distance),
-        thickness=thickness,
+        thickness=mean_thickness(gear),
         edge_radius=gear.cutter.blade(side).edge_radius,
         generated=gear.machine.rolls,
     )
