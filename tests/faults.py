@@ -2228,6 +2228,48 @@ FAULTS = (
         "edge_radius=own.edge_radius / module or FILLET_RADIUS_COEFFICIENT",
         "rating/test_bevel.py::test_edges_that_do_not_fit_the_slot_are_told",
     ),
+    Fault(
+        "masses count over the common face instead of each gear's own",
+        "rating/vibration.py",
+        "material.density_kg_m3 * width / mesh.common_face_width",
+        "material.density_kg_m3",
+        "rating/test_vibration.py::test_hollow_shaft_takes_its_hole_from_the_body",
+    ),
+    Fault(
+        "the largest tension decides of a root, whatever its stress ratio",
+        "rating/roots.py",
+        "use[some] = largest[some] / local_root_factors(inputs, gear, ratio)[1].strength",
+        "use[some] = largest[some]",
+        "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
+    ),
+    Fault(
+        "derivatives of safeties leave out that of K_v",
+        "rating/slopes.py",
+        'dynamic = factors["K_v"]',
+        'dynamic = 0.0 * factors["K_v"]',
+        "rating/test_slopes.py::test_closed_forms_follow_relief_and_torque_as_their_differences",
+    ),
+    Fault(
+        "the least safety ranks first",
+        "studies/ranking.py",
+        "return figure in LARGEST_IS_BEST if asked is None else asked",
+        "return bool(asked)",
+        "studies/test_rating.py::test_largest_safety_ranks_first",
+    ),
+    Fault(
+        "a probability has the bounds of one tail",
+        "studies/rating.py",
+        "tail = 0.5 * (1.0 - CONFIDENCE)",
+        "tail = 1.0 - CONFIDENCE",
+        "studies/test_rating.py::test_shortfall_has_bounds_of_a_binomial_count",
+    ),
+    Fault(
+        "roughness of a gearbox model is Rz, not Ra",
+        "exchange/strength.py",
+        "RZ_OVER_RA = 6.0",
+        "RZ_OVER_RA = 1.0",
+        "exchange/test_strength.py::test_steel_by_its_name_has_limits_of_the_file",
+    ),
 )
 
 

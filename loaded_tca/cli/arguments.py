@@ -106,6 +106,7 @@ STUDY = """files in DIR:
   study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
   study.csv                 the same, one row per variant and torque
   ranking.csv               one row per variant, the best by --rank-by first
+  shortfall.csv             of scenes with strengths: how probable safeties below those required are
   study_*.png               pictures that fit what varies
   study.rows.jsonl          the variants that are done; the same command goes on from there
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""

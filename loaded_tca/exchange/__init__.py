@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from loaded_tca.exchange.files import parse_rexs, read_rexs, with_attributes
     from loaded_tca.exchange.model import Attribute, Component, Model
     from loaded_tca.exchange.stage import ImportedStage, describe_stages, import_stage
+    from loaded_tca.exchange.strength import LoadBin, load_spectrum
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
@@ -15,9 +16,11 @@ __all__ = [
     "Attribute",
     "Component",
     "ImportedStage",
+    "LoadBin",
     "Model",
     "describe_stages",
     "import_stage",
+    "load_spectrum",
     "parse_rexs",
     "read_rexs",
     "with_attributes",

@@ -23,6 +23,7 @@ from loaded_tca.exchange.gears import (
 from loaded_tca.exchange.model import LENGTH, Component, Model, Reading
 from loaded_tca.exchange.modifications import Teeth, modification_keys
 from loaded_tca.exchange.shafts import diameter_at, rest_of, shaft_section
+from loaded_tca.exchange.strength import strength_section
 from loaded_tca.pairs.gear import ON_SHAFT
 from loaded_tca.scene import Scene, scene_from_table
 from loaded_tca.scene.keys import literal
@@ -156,6 +157,8 @@ def import_stage(
     table: dict[str, Any] = {"title": _title(chosen), "pair": pair_section(gearbox, chosen, flanks, run)}
     for n, name in enumerate(GEARS):
         table[name] = gear_section(gearbox, chosen, n, flanks[n], table["pair"])
+        if strength := strength_section(reading, chosen.gears[n]):
+            table[name]["strength"] = strength
     table |= _materials(reading, chosen, table)
     table["load"] = {"pinion_torque_Nm": run.torque}
     if run.speed:

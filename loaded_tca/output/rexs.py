@@ -1,9 +1,9 @@
 """Results written back into the REXS model that a scene came from, under the names that REXS has for them.
 
 Of the stage: the load distribution over the common face with its places, K_Hbeta, and since version 1.5 the mesh
-stiffness over the positions. Of shafts that the scene has: their deflection and torsion. Of their bearings: forces and
-tilting moments. REXS has further names for stresses, but those of standards: what finite elements and half-spaces give
-is none of these.
+stiffness over the positions; in version 1.7 the rating after ISO 6336, of stage and gears. Of shafts that the scene
+has: their deflection and torsion. Of their bearings: forces and tilting moments. REXS has further names for stresses,
+but those of standards: what finite elements and half-spaces give is none of these.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import require
 from loaded_tca.exchange.files import LARGEST_FILE, parse_rexs, with_attributes
 from loaded_tca.exchange.gearbox import Gearbox, Stage
+from loaded_tca.exchange.gears import gear_data
 from loaded_tca.exchange.model import LENGTH, Attribute, Model, Reading
 from loaded_tca.exchange.shafts import ShaftFrame
 from loaded_tca.input_files import read_bytes
@@ -26,6 +27,7 @@ from loaded_tca.loaded.shaft_lines import ShaftLine, shaft_lines
 from loaded_tca.results.files import replace_file
 from loaded_tca.results.load_factors import STRIPS, face_forces
 from loaded_tca.results.numbers import index_or_largest
+from loaded_tca.scene.rating import is_rated
 from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
@@ -106,6 +108,8 @@ def rexs_results(result: MeshCycle, model: Model, stage: str, torque: int | None
     _require_same(result, of_stage)
     index = index_or_largest(result.torque, torque)
     results: Results = {stage: _of_stage(result, model.version, index)}
+    for component, attributes in _of_rating(result, gearbox, of_stage, index).items():
+        results.setdefault(component, {}).update(attributes)
     for n, gear in enumerate(GEARS):
         shaft = of_stage.shafts[n]
         if shaft is None or getattr(result.scene, gear).shaft is None:
@@ -159,6 +163,57 @@ def _of_stage(result: MeshCycle, version: str, torque: int) -> dict[str, Attribu
     if version in ("1.5", "1.6", "1.7") and np.isfinite(stiffness).all():
         attributes["meshing_stiffness_characteristic"] = Attribute(_floats(stiffness), "N / mm")
     return attributes
+
+
+RATED_SINCE = "1.7"
+"""Version from which REXS has names for what ISO 6336 gives."""
+OF_STAGE = {
+    "K_A": ("application_factor_iso_6336_2019", "none"),
+    "K_v": ("dynamic_factor_iso_6336_2019", "none"),
+    "K_Hbeta": ("face_load_factor_contact_stress_iso_6336_2019", "none"),
+    "K_Halpha": ("transverse_load_factor_contact_stress_iso_6336_2019", "none"),
+    "K_Fbeta": ("face_load_factor_root_stress_iso_6336_2019", "none"),
+    "K_Falpha": ("transverse_load_factor_root_stress_iso_6336_2019", "none"),
+    "reduced_mass": ("reduced_gear_pair_mass_iso_6336_2019", "kg / mm"),
+    "resonance_ratio": ("resonance_ratio_iso_6336_2019", "none"),
+    "Z_H": ("zone_factor_pitting_iso_6336_2019", "none"),
+    "Z_E": ("elasticity_factor_pitting_iso_6336_2019", "(N / mm^2)^0.5"),
+    "Z_eps": ("contact_ratio_factor_pitting_iso_6336_2019", "none"),
+    "Z_beta": ("helix_angle_factor_pitting_iso_6336_2019", "none"),
+    "sigma_H0": ("nominal_contact_stress_iso_6336_2019", "N / mm^2"),
+}
+OF_GEARS = {
+    "Z_BD": ("tooth_contact_factor_pitting_iso_6336_2019", "none"),
+    "Z_NT": ("life_factor_pitting_iso_6336_2019", "none"),
+    "sigma_H": ("contact_stress_iso_6336_2019", "N / mm^2"),
+    "flank_safety": ("safety_factor_pitting_iso_6336_2019", "none"),
+    "Y_F": ("form_factor_tooth_root_iso_6336_2006", "none"),
+    "Y_S": ("stress_correction_factor_tooth_root_iso_6336_2006", "none"),
+    "Y_NT": ("life_factor_tooth_root_iso_6336_2006", "none"),
+    "Y_delta_relT": ("relative_notch_sensitivity_factor_tooth_root_iso_6336_2006", "none"),
+    "sigma_F0": ("nominal_tooth_root_stress_iso_6336_2006", "N / mm^2"),
+    "sigma_F": ("tooth_root_stress_iso_6336_2006", "N / mm^2"),
+    "root_safety": ("safety_factor_tooth_root_iso_6336_2006", "none"),
+}
+"""Numbers of a rating -> attributes of the stage, and of what the model has of a gear in it, with their units."""
+
+
+def _of_rating(result: MeshCycle, gearbox: Gearbox, stage: Stage, torque: int) -> Results:
+    """Safeties and factors of ISO 6336-2:2019 and -3:2006, of scenes with strengths and [rating] and version 1.7."""
+    if gearbox.reading.model.version < RATED_SINCE or not is_rated(result.scene):
+        return {}
+    rating = result.rating()
+    results: Results = {stage.id: _attributes({name: rating.values(name)[torque] for name in OF_STAGE}, OF_STAGE)}
+    for gear, data in enumerate(gear_data(gearbox.reading, stage)):
+        if data is not None:
+            results[data.id] = _attributes({name: rating.values(name)[torque, gear] for name in OF_GEARS}, OF_GEARS)
+    return results
+
+
+def _attributes(values: dict[str, Any], names: dict[str, tuple[str, str]]) -> dict[str, Attribute]:
+    """Numbers that are known, by the names of the model."""
+    known = {name: float(value) for name, value in values.items() if math.isfinite(value)}
+    return {names[name][0]: Attribute(value, names[name][1]) for name, value in known.items()}
 
 
 def _of_shaft(line: ShaftLine, frame: ShaftFrame) -> dict[str, Attribute]:

@@ -111,7 +111,7 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
     for name, one, colour in zip(GEARS, both, GEAR_COLOURS, strict=True):
         places, least = one.over_face()
         below.plot(places, np.where(np.isfinite(least), least, np.nan), color=colour, label=name)
-    below.axhline(required, color=ACCENT, linestyle="--", label=f"required {plain(required)}")
+    below.axhline(required, color="black", linestyle="--", label=f"required {plain(required)}")
     below.set(xlabel="axial position on each gear [mm]", ylabel="smallest over the fillets")
     below.set_ylim(0.0, float(scale.vmax or LARGEST))
     below.grid(alpha=0.3)
@@ -131,23 +131,26 @@ def plot_safeties(rating: Rating) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    names = [name for name in SAFETIES if rating.has(name)]
+    names = [name for name in SAFETIES if rating.has(name) and np.isfinite(rating.values(name)).any()]
     figure = Figure(figsize=(8.5, 1.8 + 0.75 * len(names)), layout="constrained")
     axes = figure.add_subplot()
     for row, name in enumerate(names):
         required = _required(rating, "root" if "root" in name else "flank")
         for gear, colour in enumerate(GEAR_COLOURS):
             values = rating.values(name)[:, gear]
+            values = values[np.isfinite(values)]
+            if not values.size:  # a rim thinner than the standard allows
+                continue
             at = row + (gear - 0.5) * 0.36
             axes.barh(at, values.min(), 0.34, color=colour, label=GEARS[gear] if row == 0 else "")
             axes.plot(values, np.full(len(values), at), "|", color="black", markersize=7.0)
-            axes.text(values.min(), at, f" {plain(values.min())}", va="center", fontsize="small")
+            axes.text(0.0, at, f"  {plain(values.min())}", va="center", fontsize="small", color="white", weight="bold")
         label = "required" if row == 0 else ""
         axes.plot([required, required], [row - 0.42, row + 0.42], color="black", linewidth=2.5, label=label)
     axes.set_yticks(range(len(names)), [SAFETIES[name] for name in names])
     axes.invert_yaxis()
     axes.set_xlabel("safety, the least of all cases; strokes: each case")
-    axes.set_xlim(0.0, 1.15 * max(float(rating.values(name).max()) for name in names))
+    axes.set_xlim(0.0, 1.15 * max(float(np.nanmax(rating.values(name))) for name in names))
     axes.grid(axis="x", alpha=0.3)
     axes.set_axisbelow(True)
     return style.finished(figure, axes, rating.result, "safeties beside those required", rating.scope)

@@ -39,8 +39,9 @@ from loaded_tca.plots.study_panels import (
 )
 from loaded_tca.plots.style import ACCENT, COLOURS, MOST_LABELS, label_of, wrapped_label_of
 from loaded_tca.scene import Scene
+from loaded_tca.scene.rating import is_rated
 from loaded_tca.studies.ranking import design_keys, figure_values, main_figures, nominal_variant, varied_keys
-from loaded_tca.studies.rating import REQUIRED, is_rated, required_safeties
+from loaded_tca.studies.rating import REQUIRED, required_safeties
 from loaded_tca.studies.stage import subject_of, torque_name
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ def evaluated(inputs: RatingInputs) -> tuple[Arrays, tuple[str, ...], bool]:
     """Arrays of ``NUMBERS`` by their names, notes, and whether the largest pressure of a torque lies at an edge."""
     loads, notes = load_factors(inputs)
     stresses = _contact_stresses(inputs, loads)
-    flanks = _flank_factors(inputs)
+    flanks = strength_of_flanks(inputs)
     rated, curves = _of_flanks(inputs, stresses, flanks)
     roots, root_notes = _of_roots(inputs, loads)
     local, at_edge = local_flanks(inputs, loads, flanks.strength, curves)
@@ -67,7 +67,7 @@ def _contact_stresses(inputs: RatingInputs, loads: Arrays) -> Arrays:
     }
 
 
-def _flank_factors(inputs: RatingInputs) -> iso6336_2.FlankFactors:
+def strength_of_flanks(inputs: RatingInputs) -> iso6336_2.FlankFactors:
     """What both flanks withstand."""
     mesh, wanted = inputs.mesh, inputs.rating
     gears = [

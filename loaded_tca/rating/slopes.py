@@ -86,8 +86,8 @@ def _factor_slopes(inputs: RatingInputs, sensitivities: Sensitivities) -> dict[s
 
 def _factors_at(inputs: RatingInputs, key: str, sign: float, face: Array) -> tuple[dict[str, Array], float]:
     """Load factors with a key moved to one side, and how far; ``face`` are the derivatives of K_Hbeta (t,)."""
-    result, torque = inputs.result, 0.0
     scene: Any = inputs.scene
+    result, torque = inputs.result, 0.0
     value = 1e-3 * float(inputs.torque.max()) if key == TORQUE else value_at(scene, key)
     step = sign * STEP * (abs(value) or 1.0)
     if key == TORQUE:
@@ -134,9 +134,8 @@ def _of_contact(under: Sensitivities, place: tuple[int, int, int]) -> Array:
     """Relative derivatives (keys,) of the largest slice pressure of the contact of a state and tooth pair."""
     tangents, pair = under.tangents, under.result.gear_pair
     state_of = under.places[:, tangents.state]
-    (number,) = np.flatnonzero(
-        (state_of[0] == place[0]) & (state_of[1] == place[1]) & (under.pairs == place[2])
-    ).tolist()
+    (here,) = np.flatnonzero((state_of[0] == place[0]) & (state_of[1] == place[1]) & (under.pairs == place[2]))
+    number = int(here)
     grid = tangents.grids[number]
     (peak,) = largest_slice_pressures(pair, [(grid.contact, grid.separation, grid.pressure)])
     row = tangents.gathered(

@@ -16,6 +16,7 @@ from loaded_tca.rating.quantities import NUMBERS, OF_GEARS
 from loaded_tca.reports.page import Table, parts_of, pictures_of
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.summary import shown
+from loaded_tca.scene.rating import is_rated
 
 if TYPE_CHECKING:
     from loaded_tca.results.mesh_cycle import MeshCycle
@@ -31,12 +32,6 @@ BLOCKS = {
 """First number of each table, and its caption."""
 
 
-def is_rated(result: MeshCycle) -> bool:
-    """Whether the scene of a result says what a gear withstands and what is required."""
-    scene = result.scene
-    return scene.rating is not None and (scene.pinion.strength is not None or scene.wheel.strength is not None)
-
-
 def rating_content(result: MeshCycle) -> dict[str, Any] | None:
     """Return what the template takes of the rating of a result; None if its scene has no strengths or no [rating].
 
@@ -44,7 +39,7 @@ def rating_content(result: MeshCycle) -> dict[str, Any] | None:
     ----------
     result : MeshCycle
     """
-    if not is_rated(result):
+    if not is_rated(result.scene):
         return None
     try:
         rating = rating_of(result, warn=False)
@@ -67,7 +62,7 @@ def rating_content(result: MeshCycle) -> dict[str, Any] | None:
 def _safeties(rating: Rating) -> Table:
     """The least safeties of all cases of both gears beside those required, and the shortest lives."""
     wanted, rows = rating.scene.rating, []
-    assert wanted is not None  # as ``is_rated`` sees
+    assert wanted is not None  # rated
     lines = (("pitting", "flank", ""), ("tooth breakage", "root", ""))
     for words, kind, prefix in (*lines, *((f"{words}, local", kind, "local_") for words, kind, _ in lines)):
         if rating.has(f"{prefix}{kind}_safety"):

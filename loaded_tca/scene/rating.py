@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from loaded_tca.errors import InputError
 from loaded_tca.reference.iso6336_3_strength import mean_stress_sensitivities, slip_layer
@@ -22,6 +22,9 @@ from loaded_tca.reference.iso6336_5 import (
 from loaded_tca.reference.iso6336_6 import LONG_LIFE
 from loaded_tca.scene.keys import Choice, Either, Number, Whole, above_zero, key
 from loaded_tca.scene.section import Rule, Section, rule
+
+if TYPE_CHECKING:
+    from loaded_tca.scene.model import Scene
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
 
@@ -222,3 +225,8 @@ class RatingSection(Section):
             "transverse_load_factor = a number",
         ),
     )
+
+
+def is_rated(scene: Scene) -> bool:
+    """Whether a scene says what its gears withstand and what is required of them."""
+    return scene.pinion.strength is not None and scene.wheel.strength is not None and scene.rating is not None

@@ -25,13 +25,18 @@ from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import ConvergenceError, InputError, noted_accuracy_warnings, require
 from loaded_tca.plain import plain
+from loaded_tca.rating.inputs import FEWEST as FEWEST_RATED
+from loaded_tca.rating.utilisation import utilisation_of
 from loaded_tca.results.files import DESIGN, variables_of
+from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
+from loaded_tca.scene.rating import is_rated
 from loaded_tca.studies.design_figures import (
     FIGURES,
     SMOOTHING,
     FigureOfErrors,
+    FigureOfStrength,
     Limit,
     Objective,
     mean_pressure_norm,
@@ -92,7 +97,8 @@ def optimise(
     figure : str
         "span_um", "smooth_span_um" (which has derivatives everywhere), "mean_transmission_error_um", "pressure_MPa",
         "edge_pressure_norm_MPa", "face_load_factor", "loss_factor"; with ``analysis.root_stress`` also
-        "pinion_root_tension_norm_MPa" and "wheel_root_tension_norm_MPa".
+        "pinion_root_tension_norm_MPa" and "wheel_root_tension_norm_MPa". Scenes with strengths and [rating] have
+        "flank_utilisation", "pinion_root_utilisation" and "wheel_root_utilisation": limits of 1 keep required safeties.
     starts : int
         Designs to start from: that of the scene, then points of a scrambled Sobol sequence within the ranges.
     seed : int
@@ -367,7 +373,9 @@ def _analysed(scene: Scene) -> dict[str, Any]:
     for name, figure in FIGURES.items():
         if isinstance(figure, FigureOfErrors):
             figures[name] = np.array([figure.of(row, SMOOTHING)[0] for row in errors])
-    of_roots = [name for name, figure in FIGURES.items() if figure.is_of_roots]
+    of_roots = [
+        name for name, figure in FIGURES.items() if figure.is_of_roots and not isinstance(figure, FigureOfStrength)
+    ]
     for gear, name in enumerate(of_roots if scene.analysis.root_stress else ()):
         figures[name] = np.array([root_tension_norm(row) for row in result.root_tension[:, :-1, gear]])
     for name, at_edges in (("pressure_MPa", False), ("edge_pressure_norm_MPa", True)):
@@ -376,7 +384,20 @@ def _analysed(scene: Scene) -> dict[str, Any]:
         figures[name] = np.array([mean_pressure_norm(rows, module, at_edges=at_edges)[0] for rows in positions])
     if len(result.path) >= FIGURES["loss_factor"].fewest_positions:
         figures["loss_factor"] = tribology_of(result, warn=False).loss_factor
-    return figures
+    return figures | _utilisations(scene, result, figures)
+
+
+def _utilisations(scene: Scene, result: MeshCycle, figures: Mapping[str, Any]) -> dict[str, Array]:
+    """Utilisations of the strength by the analysis, where the scene has strengths, [rating] and enough positions."""
+    of_strength = {name: one for name, one in FIGURES.items() if isinstance(one, FigureOfStrength)}
+    if not is_rated(scene) or len(result.path) < FEWEST_RATED:
+        return {}
+    factors = [utilisation_of(scene, torque) for torque in result.torque.tolist()]
+    return {
+        name: figures[one.stress] * [one.factor(each) for each in factors]
+        for name, one in of_strength.items()
+        if one.stress in figures
+    }
 
 
 def _analysed_result(

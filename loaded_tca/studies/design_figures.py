@@ -19,6 +19,8 @@ from loaded_tca.errors import require
 from loaded_tca.loaded.held_contacts import HeldContacts
 from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.pairs.kinematics import surface_motions
+from loaded_tca.rating.inputs import FEWEST as FEWEST_RATED
+from loaded_tca.rating.utilisation import Utilisation
 from loaded_tca.results.face_slopes import face_load_factor_slopes
 from loaded_tca.results.figure_slopes import EXPONENT, pressure_norm
 from loaded_tca.results.load_factors import load_factors
@@ -241,7 +243,36 @@ class FigureOfForces:
     note: str = ""
 
 
-FIGURES: dict[str, FigureOfErrors | FigureOfForces] = {
+def _of_root(gear: int, utilisation: Utilisation) -> float:
+    return utilisation.roots[gear]
+
+
+@dataclass(frozen=True)
+class FigureOfStrength:
+    """A figure of stress over what the gears withstand at the safety that is required, of scenes with strengths.
+
+    Attributes
+    ----------
+    text : str
+        What it measures.
+    stress : str
+        Name of the figure of stress [MPa].
+    factor : callable
+        Of the utilisation per unit of stress of a scene under a torque: that of this stress [1/MPa].
+    is_of_roots : bool
+        Whether only scenes that ask for root stress have it.
+    """
+
+    text: str
+    stress: str
+    factor: Callable[[Utilisation], float]
+    is_of_roots: bool = False
+    unit = "1"
+    fewest_positions = FEWEST_RATED
+    note = "; 1: the required local safety"
+
+
+FIGURES: dict[str, FigureOfErrors | FigureOfForces | FigureOfStrength] = {
     "span_um": FigureOfErrors("um", "peak-to-peak loaded transmission error at the wheel's base circle", span),
     "smooth_span_um": FigureOfErrors(
         "um", "smooth peak-to-peak loaded transmission error at the wheel's base circle", smooth_span
@@ -266,6 +297,18 @@ FIGURES: dict[str, FigureOfErrors | FigureOfForces] = {
     **{
         f"{name}_root_tension_norm_MPa": FigureOfForces(
             "MPa", f"root tension of the {name}, smooth maximum", partial(root_tension, gear), is_of_roots=True
+        )
+        for gear, name in enumerate(GEARS)
+    },
+    "flank_utilisation": FigureOfStrength(
+        "pressure_MPa over the pitting strength at the required safety", "pressure_MPa", lambda each: each.flank
+    ),
+    **{
+        f"{name}_root_utilisation": FigureOfStrength(
+            f"root tension of the {name} over its strength at the required safety",
+            f"{name}_root_tension_norm_MPa",
+            partial(_of_root, gear),
+            is_of_roots=True,
         )
         for gear, name in enumerate(GEARS)
     },

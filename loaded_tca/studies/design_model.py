@@ -34,9 +34,11 @@ from loaded_tca.loaded.standing import GearsUnderTorques
 from loaded_tca.loaded.together import run_stacked
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.loaded.tooth_pairs import SharedLoad
+from loaded_tca.rating.utilisation import utilisation_of
 from loaded_tca.scene import Scene
+from loaded_tca.scene.rating import is_rated
 from loaded_tca.separation.pair_change import value_at
-from loaded_tca.studies.design_figures import FIGURES, SMOOTHING, FigureOfErrors
+from loaded_tca.studies.design_figures import FIGURES, SMOOTHING, FigureOfErrors, FigureOfStrength
 from loaded_tca.studies.study import (
     Distribution,
     deviations_of,
@@ -155,14 +157,18 @@ class DesignModel:
 
     @property
     def figures(self) -> tuple[str, ...]:
-        """Those of ``FIGURES`` that the scene has: root tension only with ``analysis.root_stress``."""
+        """Those of ``FIGURES`` that the scene has: of roots with ``analysis.root_stress``, of strength with it."""
         known = {name: one for name, one in FIGURES.items() if one.fewest_positions <= self.scene.analysis.positions}
+        if not is_rated(self.scene):
+            known = {name: one for name, one in known.items() if not isinstance(one, FigureOfStrength)}
         return tuple(name for name, one in known.items() if not one.is_of_roots or self.roots)
 
     def require_figure(self, argument: str, name: Any) -> None:
         """InputError, naming the argument, if the model does not have a figure."""
         figure, way = FIGURES.get(str(name)), ""
-        if figure is not None and figure.is_of_roots:
+        if isinstance(figure, FigureOfStrength) and not is_rated(self.scene):
+            way = "; utilisation needs strengths of both gears and [rating]"
+        elif figure is not None and figure.is_of_roots:
             way = "; root tension needs analysis.root_stress = true"
         elif figure is not None and figure.fewest_positions:
             way = f"; {name} needs analysis.positions from {figure.fewest_positions} on"
@@ -395,7 +401,10 @@ class Evaluation:
         """A figure, and its derivatives to the errors of the positions [um], or to the forces of all active cells."""
         if (name, s, t) not in self._found:
             figure = FIGURES[name]
-            if isinstance(figure, FigureOfErrors):
+            if isinstance(figure, FigureOfStrength):
+                (stress, by_force), factor = self._figure(figure.stress, s, t), self._factor(figure, s, t)
+                self._found[name, s, t] = factor * stress, factor * by_force
+            elif isinstance(figure, FigureOfErrors):
                 errors = self.model.micrometres * self.transmission_error[s, t]
                 self._found[name, s, t] = figure.of(errors, self.model.smoothing)
             else:
@@ -406,7 +415,13 @@ class Evaluation:
                 self._found[name, s, t] = value, np.concatenate(active)
         return self._found[name, s, t]
 
+    def _factor(self, figure: FigureOfStrength, s: int, t: int) -> float:
+        """Utilisation per unit of its stress."""
+        return figure.factor(utilisation_of(self.model.held[s][t].scene, float(self.model.torques[t])))
+
     def _gradient(self, name: str, s: int, t: int) -> Array:
+        if isinstance(figure := FIGURES[name], FigureOfStrength):
+            return self._factor(figure, s, t) * self._gradient(figure.stress, s, t)
         slopes = self._figure(name, s, t)[1]
         tangents, gaps = self._tangents_of(s, t)
         if isinstance(FIGURES[name], FigureOfErrors):

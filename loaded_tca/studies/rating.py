@@ -19,6 +19,7 @@ from loaded_tca.plain import plain
 from loaded_tca.rating import rating_of
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
+from loaded_tca.scene.rating import is_rated
 from loaded_tca.studies.stage import torque_name
 from loaded_tca.studies.study import MOST_VARIANTS, Study, is_whole
 
@@ -45,11 +46,6 @@ REQUIRED = {
 """Safety -> key of [rating] that has what is required."""
 CONFIDENCE = 0.95
 CLASS = "rating.tolerance_class"
-
-
-def is_rated(scene: Scene) -> bool:
-    """Whether a scene says what its gears withstand and what is required of them."""
-    return scene.pinion.strength is not None and scene.wheel.strength is not None and scene.rating is not None
 
 
 def rating_figures(result: MeshCycle) -> dict[str, Array]:
@@ -239,6 +235,6 @@ def shortfall_text(study: xarray.Dataset) -> Iterator[str]:
         yield (
             f"{FIGURES[row['figure']]} below the required {plain(row['required'])} under "
             f"{plain(row[torque_name(study)])} N m{group}: probability {100.0 * row['probability']:.3g} % "
-            f"({row['below']} of {row['samples']} samples; {100.0 * row['low']:.2g} to {100.0 * row['high']:.2g} % "
+            f"({row['below']} of {row['samples']} samples; {100.0 * row['low']:.1f} to {100.0 * row['high']:.1f} % "
             f"with {100.0 * CONFIDENCE:g} % confidence), median {plain(row['median'])}"
         )

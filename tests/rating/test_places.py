@@ -1,11 +1,13 @@
 """Which place decides: local safeties over flanks and roots, pictures of them, and sentences on them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
-from loaded_tca.plots import plot_flank_safety, plot_root_safety, safety_figures
+from loaded_tca.plots import plot_flank_safety, plot_root_safety, plot_safeties, safety_figures
 from loaded_tca.rating import flank_safeties, root_safeties
 from loaded_tca.rating.findings import findings, worst_of
 from loaded_tca.reports import write_html_report
@@ -109,6 +111,13 @@ def test_maps_of_both_gears_have_one_scale():
 
 def test_pictures_are_those_that_the_rating_has():
     assert [*safety_figures(solved(**{"analysis.root_stress": False}).rating())] == ["safeties", "flank_safety"]
+
+
+def test_safeties_that_the_standard_has_not_are_left_out():
+    rated = solved().rating()
+    unknown = rated.dataset.assign(root_safety=rated.dataset["root_safety"].where(rated.dataset["gear"] != "wheel"))
+    (axes,) = plot_safeties(replace(rated, dataset=unknown)).axes
+    assert len(axes.patches) == 7  # bars of both gears, but for the root of the wheel
 
 
 def test_report_has_factors_by_gear_and_case(monkeypatch):

@@ -22,6 +22,7 @@ from loaded_tca.studies import design as designs
 from loaded_tca.studies.design_figures import FIGURES, Limit, averaged, mean_pressure_norm, smooth_span
 from tests.interrupts import Signal, raise_signal
 from tests.refusals import refusals
+from tests.samples.rating import RATED
 from tests.samples.root_stress import coarsely
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
@@ -53,7 +54,7 @@ def beside():
     """A design, and those a step of 5e-4 um below and above it in each key: no cell enters or leaves between them."""
     with coarsely():
         one, x = (
-            model(scene=SCENE.with_changes({"analysis.root_stress": True}), tolerance=1e-11),
+            model(scene=SCENE.with_changes({"analysis.root_stress": True} | RATED), tolerance=1e-11),
             np.array([5.3, 2.1, 9.0]),
         )
     steps = 5e-4 * np.eye(3)

@@ -1,0 +1,115 @@
+"""Strength of gears and load spectra of REXS models."""
+
+import pytest
+
+from loaded_tca.errors import InputError
+from loaded_tca.exchange import import_stage, load_spectrum, read_rexs
+from loaded_tca.exchange.model import Attribute
+from loaded_tca.exchange.strength import KIND_OF_TYPE
+from loaded_tca.reference.iso6336_5 import KINDS
+from tests.samples.rexs import EXAMPLE, as_json, changed, part
+
+MM2, MUM = "N / mm^2", "mum"
+ROUGH = {
+    f"{gear}.arithmetic_average_roughness_{where}": (value, MUM)
+    for gear in ("21", "22")
+    for where, value in (("flank", 0.6), ("root", 3.0))
+}
+LIMITS = {"70.endurance_limit_flank": (1500.0, MM2), "70.endurance_limit_root": (430.0, MM2)}
+HARD = {"70.surface_hardness_vickers": (720.0, "HV"), "70.yield_strength": (850.0, MM2)}
+
+
+def strengths(attributes):
+    stage = import_stage(changed(attributes=attributes), "10")
+    return stage, stage.scene.pinion.strength, stage.scene.wheel.strength
+
+
+def test_steel_by_its_name_has_limits_of_the_file():
+    stage, pinion, wheel = strengths(ROUGH | LIMITS | HARD)
+    assert pinion == wheel
+    assert (pinion.material, pinion.limits, pinion.hardness_HV) == ("16MnCr5", (1500.0, 430.0), 720.0)
+    assert (pinion.flank_Rz_um, pinion.root_Rz_um) == pytest.approx((3.6, 18.0), rel=1e-12)  # 6 Ra
+    assert pinion.proof_stress_MPa is None  # of case-hardened teeth it does not count
+    assert any("Rz is 6 times the average roughness" in sentence for sentence in stage.read_as)
+    assert "[pinion.strength]" in stage.to_toml()
+
+
+def test_limits_of_gears_are_those_of_early_versions():
+    of_gears = {f"{gear}.{name.partition('.')[2]}": value for gear in ("21", "22") for name, value in LIMITS.items()}
+    _, pinion, _ = strengths(ROUGH | of_gears)
+    assert pinion.limits == (1500.0, 430.0)
+
+
+def test_stress_numbers_of_the_standard_go_before_endurance_limits():
+    numbers = {
+        "70.allowable_stress_number_contact_iso_6336_2016": (1400.0, MM2),
+        "70.nominal_stress_number_tooth_root_iso_6336_2016": (400.0, MM2),
+    }
+    assert strengths(ROUGH | LIMITS | numbers)[1].limits == (1400.0, 400.0)
+
+
+def test_kind_of_material_goes_before_a_name():
+    soft = {
+        "70.heat_treated_material_type_iso_6336_2006": ("through_hardened_wrought_steel", ""),
+        "70.surface_hardness_vickers": (300.0, "HV"),
+        "70.yield_strength": (700.0, MM2),
+    }
+    stage, pinion, _ = strengths(ROUGH | soft)
+    assert (pinion.kind, pinion.hardness_HV, pinion.proof_stress_MPa) == ("V alloy", 300.0, 700.0)
+    assert any("taken as alloyed" in sentence for sentence in stage.read_as)
+
+
+def test_kinds_are_those_of_the_standard():
+    assert {*KIND_OF_TYPE.values()} < {*KINDS}
+
+
+INCOMPLETE = [
+    (LIMITS, "a scene needs flank_Rz_um and root_Rz_um, too"),
+    (ROUGH | {"70.surface_hardness_vickers": (100.0, "HV")}, "its strength: hardness_HV: found 100 HV"),
+]
+
+
+@pytest.mark.parametrize(("attributes", "words"), INCOMPLETE)
+def test_incomplete_strength_is_not_taken(attributes, words):
+    stage, pinion, _ = strengths(attributes)
+    assert pinion is None
+    assert any(words in sentence for sentence in stage.not_taken)
+
+
+def test_name_alone_is_no_strength():
+    stage, pinion, wheel = strengths(ROUGH)
+    assert pinion is wheel is None
+    assert not any("its strength" in sentence for sentence in stage.not_taken)
+
+
+def spectrum(tmp_path, times):
+    """Model of a file whose load cases have times of the gear unit."""
+    model = changed(more=[part(99, "gear_unit")])
+    cases = []
+    for case, time in zip(model.load_cases, times, strict=True):
+        own = {name: Attribute(*value) for name, value in time.items()}
+        cases.append(type(case)(case.id, case.spectrum, {**case.components, "99": own}))
+    model = type(model)(model.version, model.components, model.relations, tuple(cases), model.source)
+    path = tmp_path / "model.rexsj"
+    path.write_bytes(as_json(model))
+    return read_rexs(path)
+
+
+def test_load_cases_have_torque_speed_and_time_of_the_pinion(tmp_path):
+    times = {"load_duration_fraction": (20.0, "%")}, {"load_duration_fraction": (0.8, "none")}
+    first, second = load_spectrum(spectrum(tmp_path, times), "10")
+    assert (first.torque, first.speed, first.share, first.reversed) == (150.0, 1500.0, 0.2, False)
+    assert (second.torque, second.speed, second.share, second.reversed) == (60.0, 3000.0, 0.8, True)
+    hours = {"operating_time": (90.0, "min")}, {"operating_time": (2.0, "h"), "load_duration": (5.0, "h")}
+    assert [one.hours for one in load_spectrum(spectrum(tmp_path, hours), "10")] == [1.5, 2.0]
+
+
+def test_torques_of_bins_are_those_of_import():
+    for one in load_spectrum(read_rexs(EXAMPLE), "11"):
+        scene = import_stage(read_rexs(EXAMPLE), "11", load_case=one.case).scene
+        assert (scene.load.pinion_torque_Nm, scene.operation.pinion_speed_rpm) == (one.torque, one.speed)
+
+
+def test_negative_time_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"load_duration: found -1; allowed from 0 on"):
+        load_spectrum(spectrum(tmp_path, ({"load_duration": (-1.0, "h")}, {})), "10")
