@@ -182,7 +182,7 @@ FAULTS = (
     Fault(
         "stages: mesh cycles of another stage are taken for those of a result",
         "stages/result.py",
-        "if replace(cycle.scene, analysis=scene.analysis) != scene:",
+        "if replace(cycle.scene, analysis=scene.analysis, **gears) != scene:",
         "if False:",
         "stages/test_bad_stages.py::test_files_that_are_no_stage_are_refused",
     ),

@@ -22,10 +22,19 @@ def contact_ratio_factor(recess: float, approach: float) -> float:
         X_\varepsilon = \frac{0.70 (\varepsilon_1^2 + \varepsilon_2^2) - 0.22\, \varepsilon_\alpha + 0.52
         - 0.60\, \varepsilon_1 \varepsilon_2}{2\, \varepsilon_\alpha \varepsilon_1}
 
+    and, with eps_1 of 1 and more,
+
+    .. math::
+        X_\varepsilon = \frac{0.18\, \varepsilon_1^2 + 0.70\, \varepsilon_2^2 + 0.82\, \varepsilon_1
+        - 0.52\, \varepsilon_2 - 0.30\, \varepsilon_1 \varepsilon_2}{2\, \varepsilon_\alpha \varepsilon_1},
+
+    with eps_2 of 1 and more the same numerator with eps_1 and eps_2 exchanged. The first formula was checked against a
+    printed number; the others pass into it where eps_1 or eps_2 is 1.
+
     Parameters
     ----------
     recess, approach : float
-        eps_1 and eps_2, both below 1, with a sum of at least 1: the case of the standard that was checked.
+        eps_1 and eps_2, at least one of them below 1, with a sum from 1 to below 2.
 
     Raises
     ------
@@ -43,15 +52,19 @@ def contact_ratio_factor(recess: float, approach: float) -> float:
     >>> round(contact_ratio_factor(0.852, 0.611), 3)
     0.263
     """
+    ratio, largest = recess + approach, max(recess, approach)
     require(
         *(
-            (0.0 < value < 1.0, f"{name}: {value}; allowed a number above 0, below 1")
+            (0.0 < value < 2.0, f"{name}: {value}; allowed a number above 0, below 2")
             for name, value in (("recess", recess), ("approach", approach))
         ),
-        (recess + approach >= 1.0, f"recess + approach: {recess + approach}; allowed 1 and more"),
+        (1.0 <= ratio < 2.0, f"recess + approach: {ratio}; allowed 1 and more, below 2"),
     )
-    ratio = recess + approach
-    mean = 0.70 * (recess**2 + approach**2) - 0.22 * ratio + 0.52 - 0.60 * recess * approach
+    if largest < 1.0:
+        mean = 0.70 * (recess**2 + approach**2) - 0.22 * ratio + 0.52 - 0.60 * recess * approach
+    else:
+        other = ratio - largest
+        mean = 0.18 * largest**2 + 0.70 * other**2 + 0.82 * largest - 0.52 * other - 0.30 * largest * other
     return mean / (2.0 * ratio * recess)
 
 

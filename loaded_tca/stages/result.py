@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 from loaded_tca.results import MeshCycle
@@ -356,6 +356,7 @@ class StageResult(AnalysisResult):
         places = [path.parent / name for name in MESH_FILES]
         cycles = [MeshCycle.load(place) for place in places]
         for place, cycle, scene in zip(places, cycles, (subject.sun_scene, subject.ring_scene), strict=True):
-            if replace(cycle.scene, analysis=scene.analysis) != scene:
+            gears = {gear: replace(getattr(cycle.scene, gear), strength=None) for gear in GEARS}  # of rating alone
+            if replace(cycle.scene, analysis=scene.analysis, **gears) != scene:
                 raise InputError(f"{place}: the mesh cycle of another stage than {STAGE_FILE} beside it")
         return dict(zip(("sun_mesh", "ring_mesh"), cycles, strict=True))

@@ -108,12 +108,21 @@ def test_scuffing_safety_of_a_cool_contact_has_no_limit():
     assert iso6336_20.scuffing_safety(400.0, 80.0, 80.0) == math.inf
 
 
+@pytest.mark.parametrize("other", [0.1, 0.5, 0.9])
+def test_contact_ratio_factor_passes_into_that_of_a_long_recess_or_approach(other):
+    for just in ((1.0, other), (other, 1.0)):
+        before = tuple(value - 1e-9 if value == 1.0 else value for value in just)
+        # slopes of order one over 1e-9
+        assert_allclose(iso6336_21.contact_ratio_factor(*just), iso6336_21.contact_ratio_factor(*before), rtol=1e-8)
+
+
 test_refusals = refused_calls(
     (lambda: iso6336_20.scuffing_temperature(15, 30.0), "load_stage: 15; allowed a number from 1 to 14"),
     (lambda: iso6336_20.scuffing_temperature(12, 0.0), "viscosity: 0.0 is not positive"),
     (lambda: iso6336_21.scuffing_integral_temperature(0, 220.0), "load_stage: 0; allowed a whole number"),
-    (lambda: iso6336_21.contact_ratio_factor(1.2, 0.5), "recess: 1.2; allowed a number above 0, below 1"),
-    (lambda: iso6336_21.contact_ratio_factor(0.3, 0.5), r"recess \+ approach: 0.8; allowed 1 and more"),
+    (lambda: iso6336_21.contact_ratio_factor(2.2, 0.5), "recess: 2.2; allowed a number above 0, below 2"),
+    (lambda: iso6336_21.contact_ratio_factor(0.3, 0.5), r"recess \+ approach: 0.8; allowed 1 and more, below 2"),
+    (lambda: iso6336_21.contact_ratio_factor(1.2, 1.1), r"recess \+ approach: 2.* allowed 1 and more, below 2"),
     (lambda: iso6336_21.integral_temperature(80.0, 10.0, 0.0), "supply_factor: 0.0 is not positive"),
     (lambda: iso6336_22.bulk_temperature(80.0, 1.0, 0.03, 0.1, 0.0, 30.0), "centre_distance: 0.0 is not positive"),
     (lambda: iso6336_22.load_loss_factor(0.8, 0.6, 0, 40), "teeth_1, teeth_2: 0, 40"),

@@ -12,10 +12,12 @@ from loaded_tca.errors import InputError
 from loaded_tca.output import write_rating
 from loaded_tca.rating.inputs import Duty, inputs_of
 from loaded_tca.rating.vibration import reduced_mass
+from loaded_tca.stages import analyse_stage
 from loaded_tca.stages.rating import _computed_ratios, relative_speed
 from tests.rating.test_rings import solved
 from tests.samples.rating import HARD, RATED
-from tests.samples.stages import analysed
+from tests.samples.root_stress import coarsely
+from tests.samples.stages import analysed, stage_of_few_cells
 
 SECTIONS = {
     **{f"{gear}.strength": HARD for gear in ("sun", "planet", "ring")},
@@ -148,3 +150,20 @@ def test_problems_of_a_mesh_have_the_names_of_the_stage():
     assert (rated(**changes).sun_mesh.K_v > 1.0).all()
     with pytest.raises(InputError, match=r"rating.mesh_load_factor: found 0.5"):
         rated(**{"rating.mesh_load_factor": 0.5})
+
+
+@pytest.mark.thorough
+@pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
+def test_roots_of_a_stage_are_rated_by_their_computed_stresses():
+    with coarsely():
+        result = analyse_stage(stage_of_few_cells().with_changes({"analysis.root_stress": True}))
+    rating = replace(result, stage=result.stage.with_changes(SECTIONS)).rating()
+    safeties = rating.local_root_safety[0]
+    assert_array_equal(
+        safeties[1], min(rating.sun_mesh.local_root_safety[0, 1], rating.ring_mesh.local_root_safety[0, 0])
+    )
+    for mesh, place in ((rating.sun_mesh, 1), (rating.ring_mesh, 0)):
+        assert -1.2 <= mesh.local_stress_ratio[0, place] < -0.5  # bent to and fro
+        assert mesh.local_stress_ratio[0, 1 - place] > -0.5
+        assert mesh.local_Y_M[0, place] < mesh.local_Y_M[0, 1 - place] <= 1.0
+    assert (safeties > 0.0).all()

@@ -1,5 +1,6 @@
 """Ratings after standards.
 
+- ``methods_part``: where the standard and the analysis part, and why; a page of the studies, no rows.
 - ``rings``: critical sections, nominal stresses and factors of planets and rings of two printed stages.
 - ``solved``: the whole way from a scene through its solved mesh to safeties that a report prints.
 - ``stages``: two whole planetary stages, from stage files to safeties that reports print.

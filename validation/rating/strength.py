@@ -195,7 +195,31 @@ def _stage_2_stiffness() -> list[Row]:
         compared.append(
             _row(SECOND, f"{name}: c' [N/(mm um)]", printed, stiffness, 0.015, "C_R, printed with three digits")
         )
-    return compared
+    return [*compared, *_stage_2_dynamics()]
+
+
+def _stage_2_dynamics() -> list[Row]:
+    """K_v of both meshes by method B, of printed stiffnesses, reduced masses, deviations and running in."""
+    rows, load, relief = [], 519.82 * APPLICATION * 1.10, {"Eh": 1500.0, "V alloy": 700.0}
+    for name, teeth, speed, stiffness, mass, ratio, deviations, kinds, printed in (
+        ("sun and planet", 18, 246.7, (12.240, 15.640), 0.1534, 1.370, (17.9, 23.0), ("Eh", "Eh"), (0.046, 1.02)),
+        ("planet and ring", 36, 123.4, (14.053, 20.563), 1.4684, 1.618, (20.7, 27.0), ("Eh", "V alloy"), (0.124, 1.06)),
+    ):
+        run_in = [
+            0.5 * sum(float(iso6336_1.running_in_allowance(kind, each, relief[kind], 4.88)) for kind in kinds)
+            for each in deviations
+        ]
+        resonance = speed / iso6336_1.resonance_speed(teeth, stiffness[1], mass)
+        factor = iso6336_1.dynamic_factor(
+            resonance, load, single_stiffness=stiffness[0], total_contact_ratio=ratio,
+            pitch_deviation=deviations[0] - run_in[0], profile_deviation=deviations[1] - run_in[1],
+            tip_relief=0.5 * sum(iso6336_1.running_in_relief(relief[kind]) for kind in kinds),
+        )  # fmt: skip
+        rows += [
+            _row(SECOND, f"{name}: resonance ratio N", printed[0], resonance, 1e-3),
+            _row(SECOND, f"{name}: dynamic factor K_v", printed[1], float(factor.K_v), 1e-2),
+        ]
+    return rows
 
 
 def _example_1() -> list[Row]:
