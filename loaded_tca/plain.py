@@ -34,6 +34,21 @@ def plain(value: float, digits: int = 4, sign: str = "") -> str:
     return f"{rounded:{sign}.{digits}g}"
 
 
+LONGEST_LIFE = 1e6
+"""Hours, or millions of revolutions, beyond which a life is one that the part does not see the end of."""
+
+
+def lasting(life: float) -> str:
+    """Life in sentences and tables, with four digits; a longer one as catalogues have it.
+
+    Examples
+    --------
+    >>> lasting(51234.0), lasting(3.21e11), lasting(math.inf)
+    ('51230', '>1e6', 'inf')
+    """
+    return ">1e6" if LONGEST_LIFE < life < math.inf else plain(life)
+
+
 def signed(number: int) -> str:
     """Return the number of a tooth pair as summaries and pictures show it: 0, +1, -1."""
     return f"{number:+d}" if number else "0"

@@ -125,8 +125,8 @@ STRIPS_ALIKE = Kind(
     "analyses on both sides, or a Monte Carlo study; not the spread to first order",
 )
 ANOTHER_POSITION = Kind(
-    "{figure}: its derivatives end within a tolerance: beyond a change by {change:+.2g} another position is the "
-    "highest or lowest, and they are others by {size:.0%} ({key}; {count} of {keys} keys)",
+    "{figure}: its derivatives end within a tolerance: beyond a change by {change:+.2g} {unit} another position is "
+    "the highest or lowest, and they are others by {size:.0%} ({key}; {count} of {keys} keys)",
     "the figure is that of one position, or of two, and follows another one beyond that change, by values and "
     "derivatives of all positions: it may grow to either side where the table has it fall",
     "read the change as far as that only; beyond it analyses, or a Monte Carlo study; not the spread to first order",

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from loaded_tca.plain import Sentence, plain
+from loaded_tca.results.summary import shown
 from loaded_tca.warning_kinds import ANOTHER_POSITION, ODD_INPUT
 
 
@@ -27,6 +28,14 @@ def test_number_is_that_of_the_general_format_without_an_exponent(value, digits,
     assert float(text) == float(f"{value:.{digits}g}")
 
 
+@pytest.mark.parametrize("name", ["pinion_bearing_life_Mrev", "wheel_root_life_h"])
+def test_lives_beyond_a_million_are_those_of_catalogues(name):
+    """Of L10 by the cube of the load a hundredth of the load has a million times the life: digits say nothing."""
+    texts = [shown(life, name) for life in (51234.0, 1e6, 3.21e11, math.inf)]
+    assert texts == ["51230", "1000000", ">1e6", "inf"]
+    assert shown(3.21e11, "normal_force_N") == "321000000000"
+
+
 def test_sentences_have_plain_numbers_signs_and_words():
     assert Sentence().format("{a:+.2g} {b:g} {c} {d:.0%}", a=120.0, b=1e6, c="um", d=0.25) == "+120 1000000 um 25%"
 
@@ -34,5 +43,5 @@ def test_sentences_have_plain_numbers_signs_and_words():
 def test_warnings_have_plain_numbers():
     odd = ODD_INPUT.sentence(key="k", value=2.06e8, unit="MPa", what="more than that of any material of gears")
     assert odd.startswith("k: 206000000 MPa is more")
-    kink = ANOTHER_POSITION.sentence(figure="peak to peak", change=130.0, size=0.5, key="k", count=1, keys=2)
-    assert "by +130 another position" in kink
+    kink = ANOTHER_POSITION.sentence(figure="peak to peak", change=130.0, unit="um", size=0.5, key="k", count=1, keys=2)
+    assert "by +130 um another position" in kink

@@ -11,10 +11,12 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import InputError, Revolution, analyse, analyse_revolution, load_result, read_scene
 from loaded_tca import warning_kinds as kinds
+from loaded_tca.plots.revolution import plot_revolution_error
 from loaded_tca.revolution import _Numbers, _sentences, expected_revolution_effort
 from loaded_tca.studies import Study, revolution_figures, run_study
 from loaded_tca.unloaded.tooth_cycle import REACH
 from tests.refusals import refused_calls
+from tests.samples.pictures import told
 from tests.samples.root_stress import coarsely
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
@@ -232,6 +234,9 @@ def test_revolution_that_is_not_closed_says_so():
     with pytest.warns(match="12 pitches are no whole turn of the wheel"):
         turn = revolution_of(helical(), 12, 1, **{"wheel.pitch.runout_um": 5.0, "analysis.torques_Nm": [0.0]})
     assert not turn.is_closed
+    labels = turn.labels()
+    assert labels["total_single_flank_deviation_um"] == "single flank deviation over 12 pitches [um]"
+    assert "span of 12 pitches, no whole turn: " in told(plot_revolution_error(turn))
 
 
 def test_progress_is_told_to_its_end():

@@ -10,7 +10,7 @@ import numpy as np
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
 from loaded_tca.output.result_files import csv_table, json_text, known
-from loaded_tca.plain import plain
+from loaded_tca.plain import lasting
 from loaded_tca.results.files import Buffer, FilePath, replace_together
 from loaded_tca.supports import RollingBearing
 from loaded_tca.tribology.quantities import COLUMNS
@@ -302,8 +302,8 @@ def bearings_text(lines: Sequence[ShaftLine]) -> str:
             text.append(f"  bearing {n} at {line.shaft.bearings[n].at:g} mm: force x | y | z {parts} N")
             if inside := rolling_figures(line, n):
                 largest, pressure, life = inside.values()
-                lasting = "no load" if math.isinf(life) else f"life {plain(life)} million revolutions"
-                text.append(f"    largest element force {largest:z.1f} N, pressure {pressure:z.0f} MPa, {lasting}")
+                words = "no load" if math.isinf(life) else f"life {lasting(life)} million revolutions"
+                text.append(f"    largest element force {largest:z.1f} N, pressure {pressure:z.0f} MPa, {words}")
         at = abs(line.places - line.middle).argmin()
         x, y, z, about_x, about_y, about_z = line.motions[at].tolist()
         text.append(f"  middle of the face: x | y | z {1e3 * x:z.2f} | {1e3 * y:z.2f} | {1e3 * z:z.2f} um")

@@ -12,7 +12,7 @@ from loaded_tca.arrays import GEARS
 from loaded_tca.effort import expected_run_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
-from loaded_tca.plain import plain
+from loaded_tca.plain import lasting, plain
 from loaded_tca.results.gear_warnings import questions, warn_of_gears
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
 from loaded_tca.results.root_stress import RIM_LABEL, rim_factor
@@ -128,7 +128,7 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
             inside = [rolling_figures(line, n) for line in lines]
             if any(inside):
                 yield "  largest element force [N]", *(f"{one['element_force_N']:z.1f}" for one in inside)
-                yield "  life [million revolutions]", *(plain(one["life_Mrev"]) for one in inside)
+                yield "  life [million revolutions]", *(lasting(one["life_Mrev"]) for one in inside)
 
 
 def torques_with_columns(torques: tuple[float, ...]) -> tuple[float, ...]:

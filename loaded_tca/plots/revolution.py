@@ -67,7 +67,8 @@ def plot_revolution_error(revolution: Revolution) -> Figure:
         one + two for one, two in zip(*(a.get_legend_handles_labels() for a in (rigid, loaded)), strict=True)
     )
     figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize="small")
-    spans = f"F_i' {plain(revolution.total_deviation(), 3)} µm rigid"
+    span = "F_i'" if revolution.is_closed else f"span of {revolution.pitches} pitches, no whole turn:"
+    spans = f"{span} {plain(revolution.total_deviation(), 3)} µm rigid"
     style.write_title(
         figure,
         revolution.scene.title,

@@ -253,7 +253,8 @@ def draw_orders(axes: Axes, curves: Sequence[tuple[str, str, Array]]) -> Array:
             f"no order is known: the first needs {LEAST_POSITIONS} positions, all of them in contact, and tooth pairs "
             "that share the load",
         )
-    axes.set_xlabel("order of the tooth mesh")
+    resolved = f", of which the positions resolve {known[-1]}" if known.size and known[-1] < MOST_ORDERS else ""
+    axes.set_xlabel(f"order of the tooth mesh{resolved}")
     axes.set_ylabel("amplitude at the wheel's base circle [µm]")
     style.widen(axes, SMALLEST_AMPLITUDE_UM)
     axes.grid(alpha=0.3, axis="y")

@@ -14,6 +14,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
+from loaded_tca.units import ending_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -83,7 +84,8 @@ def warn_of_positions(sensitivities: Sensitivities, tolerances: Mapping[str, flo
                     nearest, sizes = np.where(nearer, change, nearest), np.where(nearer, size, sizes)
         if sizes.any():
             first = int((np.abs(nearest) / within.clip(np.finfo(float).tiny)).argmin())
-            words = {"key": sensitivities.keys[first], "count": np.count_nonzero(sizes), "keys": within.size}
+            key = sensitivities.keys[first]
+            words = {"key": key, "unit": ending_of(key), "count": np.count_nonzero(sizes), "keys": within.size}
             told = {"figure": name, "change": nearest[first], "size": sizes[first], **words}
             give_accuracy_warning(kinds.ANOTHER_POSITION.sentence(**told), stacklevel=3)
 

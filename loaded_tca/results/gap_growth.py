@@ -198,7 +198,7 @@ def _growth(
     gaps = growth.gaps[:, active]
     for row, closed in zip(gaps, turns * levers[1] - turned * points.levers[1], strict=True):
         row += closed[tangents.grid]
-    lever_torques += _add_displaced(result, tangents, bending, followed, growth, gaps)
+    lever_torques += _add_displaced(result, tangents, bending, followed, growth, points.shifts, gaps)
     for path, torque in zip(gaps[count:], lever_torques[count:], strict=True):
         gaps[:count] += along[:, tangents.grid] * path
         lever_torques[:count] += along * torque
@@ -243,9 +243,12 @@ def _add_displaced(
     bending: BendingModel | None,
     changes: Sequence[PairChange],
     growth: MovedContacts,
+    shifts: Array,
     gaps: Array,
 ) -> Array:
     """Add to the gaps (keys, n) what the forces as they are displace more; what cells at the cap carry more has levers.
+
+    ``shifts`` (keys, grids, 2): of the contact points along x and y of the grids [mm per unit].
 
     Returns the growth of their torques (keys, grids) [N mm per unit].
     """
@@ -258,7 +261,7 @@ def _add_displaced(
     if pair.max_pressure is not None:
         _add_forces_at_cap(tangents, covers, gaps, lever_torques)
     free_edges = result.scene.analysis.free_edges
-    _add_moved_lines(pair, tangents, bending, changes, growth.motions, gaps, free_edges=free_edges)
+    _add_moved_lines(pair, tangents, bending, changes, growth, shifts, gaps, free_edges=free_edges)
     return lever_torques
 
 
@@ -319,7 +322,8 @@ def motion_growth(
     gaps = held.slopes.T[:2, np.concatenate([grid.active[grid.pressed] for grid in grids])].copy()
     steps = (PART_OF_CELL * np.min([one.spacing for one in separations], axis=0)).tolist()
     changes = [PairChange("mounting.grids", pair, pair, step) for step in steps]
-    lever_torques = _add_displaced(result, tangents, bending, changes, MovedContacts(gaps, covers, motions), gaps)
+    growth = MovedContacts(gaps, covers, motions)
+    lever_torques = _add_displaced(result, tangents, bending, changes, growth, motions[..., :2], gaps)
     if displaced is not None:
         gaps += [displaced(motion, step) for motion, step in zip(motions, steps, strict=True)]
     return MotionGrowth(gaps, lever_torques)
@@ -369,45 +373,66 @@ def _add_moved_lines(
     tangents: Tangents,
     bending: BendingModel | None,
     changes: Sequence[PairChange],
-    motions: Array,
+    growth: MovedContacts,
+    shifts: Array,
     gaps: Array,
     *,
     free_edges: bool,
 ) -> None:
-    """Add to the gaps (keys, n) what teeth bend more under the forces, as the lines of these move on them."""
-    grids = tangents.grids
+    """Add to the gaps (keys, n) what teeth bend more under the forces, as the lines of these move on them.
+
+    Free edges are those beside the lines through the contact points, which move by ``shifts`` (keys, grids, 2).
+    """
+    grids, motions = tangents.grids, growth.motions
     separations = [grid.separation for grid in grids]
     slices = np.concatenate([grid.active.nonzero()[1] for grid in grids])
     slices = (
         slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
     )
-    bends = free_edges or bending is not None
-    moving = [key for key, change in enumerate(changes) if bends and not change.holds_lines]
-    moved_grids = [
-        [
-            [moved(one, part * changes[key].difference * by) for one, by in zip(separations, motions[key], strict=True)]
-            for part in (-0.5, 0.5)
-        ]
-        for key in moving
-    ]
-    forces = np.concatenate([grid.slice_force for grid in grids])
-    if free_edges and moving:
-        steps = [
-            MovedSlices((changes[key].below, low), (changes[key].above, high), changes[key].difference)
-            for key, (low, high) in zip(moving, moved_grids, strict=True)
-        ]
-        gaps[moving] += edge_deflection_growth(pair, separations, forces, steps)[:, slices]
-    for key, sides in zip(moving, moved_grids, strict=True):
-        if bending is not None and not (change := changes[key]).of_modifications:
+    if free_edges:
+        lines = motions.copy()
+        lines[..., 0] = shifts[..., 0]
+        steps = {
+            key: _moved_slices(pair, change, separations, lines[key])
+            for key, change in enumerate(changes)
+            if not change.of_modifications or lines[key].any()
+        }
+        if steps:
+            forces = np.concatenate([grid.slice_force for grid in grids])
+            gaps[[*steps]] += edge_deflection_growth(pair, separations, forces, [*steps.values()])[:, slices]
+    for key, change in enumerate(changes):
+        if bending is not None and not change.of_modifications:
             low, high = (
                 _bent(tangents, bending.mounted(gears) if isinstance(bending, SumOfParts) else bending, there)
-                for gears, there in zip((change.below, change.above), sides, strict=True)
+                for gears, there in _on_both_sides(change, separations, motions[key])
             )
             gaps[key] += ((high - low) / change.difference)[slices]
     others = [key for key, change in enumerate(changes) if change.of_modifications]
     if tangents.by_shift is not None and others:
-        shifts = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
-        gaps[others] += (tangents.by_shift @ shifts.T).T[:, slices]
+        across = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
+        gaps[others] += (tangents.by_shift @ across.T).T[:, slices]
+
+
+def _on_both_sides(
+    change: PairChange, separations: Sequence[Separation], motions: Array
+) -> list[tuple[GearPair, list[Separation]]]:
+    """Pairs of gears that a key changes, and grids that it moves (grids, 6), below and above."""
+    return [
+        (gears, [moved(one, part * change.difference * by) for one, by in zip(separations, motions, strict=True)])
+        for gears, part in ((change.below, -0.5), (change.above, 0.5))
+    ]
+
+
+def _moved_slices(pair: GearPair, change: PairChange, separations: Sequence[Separation], motions: Array) -> MovedSlices:
+    """Slices of grids that a key moves (grids, 6), a step of it below and above.
+
+    Modifications move no edge, and contacts by much: by a step of theirs, by a small part of a cell.
+    """
+    if change.of_modifications:
+        width = min(min(one.spacing) for one in separations)
+        change = replace(change, below=pair, above=pair, difference=PART_OF_CELL * width / np.abs(motions).max())
+    low, high = _on_both_sides(change, separations, motions)
+    return MovedSlices(low, high, change.difference)
 
 
 def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation]) -> Array:

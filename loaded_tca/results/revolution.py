@@ -277,6 +277,14 @@ class Revolution(AnalysisResult):
                 return f"{name} {turns}"
         return ""
 
+    def labels(self) -> dict[str, str]:
+        """As of results; of part of a turn no deviation is the total one."""
+        labels = super().labels()
+        if self.is_closed:
+            return labels
+        part = f"single flank deviation over {self.pitches} pitches"
+        return {name: label.replace("total single flank deviation", part) for name, label in labels.items()}
+
     def total_deviation(self, torque: int | None = None) -> float:
         """Total single-flank composite deviation F_i' [um], at the base circle; without a torque of rigid teeth."""
         return float(np.ptp(self.error_um(torque)))

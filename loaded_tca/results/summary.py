@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from loaded_tca.plain import plain
+from loaded_tca.plain import lasting, plain
 from loaded_tca.results.figures import FIGURES, SUMMARY
 from loaded_tca.results.key_figures import WHERE_REASONS_ARE, reasons_beside
+from loaded_tca.units import without_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -126,6 +127,8 @@ def shown(value: float, name: str) -> str:
         return "-"
     if "residual" in name:
         return f"{value:.1e}"
+    if without_unit(name).endswith("_life"):
+        return lasting(value)
     if name in FIGURES and FIGURES[name].is_part:
         return plain(100.0 * value, 2)
     return f"{value:z.0f}" if abs(value) >= FOUR_DIGITS else plain(value)

@@ -165,6 +165,7 @@ def test_path_of_bevel_gears_has_no_table():
 def test_orders_of_the_tooth_mesh_are_whole_numbers():
     axes = plot_harmonics(result("mesh_cycle_spur", positions=7, torques=(40.0, 130.0))).axes[0]
     assert axes.get_xticks().tolist() == [1, 2]
+    assert axes.figure.axes[1].get_xlabel() == "order of the tooth mesh, of which the positions resolve 2"
 
 
 @pytest.mark.thorough

@@ -49,7 +49,7 @@ def test_beyond_the_change_another_value_is_the_largest():
 def test_peak_to_peak_that_turns_within_the_tolerance_is_told():
     """3, 2.9 and 0 um: the second is the highest from +0.01 on, where the peak to peak rises instead of falling."""
     (sentence,) = told([3.0, 2.9, 0.0], [-9.0, 1.0, 0.0], 0.02)
-    assert sentence.startswith("peak to peak: its derivatives end within a tolerance: beyond a change by +0.01 another")
+    assert sentence.startswith("peak to peak: its derivatives end within a tolerance: beyond a change by +0.01 mm ")
     assert f"({KEY}; 1 of 1 keys)" in sentence
     assert ANOTHER_POSITION.words in sentence
 
@@ -61,7 +61,7 @@ def test_derivatives_that_turn_by_a_twentieth_or_more_are_told():
 
 def test_the_lowest_position_counts_too():
     (sentence,) = told([3.0, 0.1, 0.0], [0.0, 10.0, 0.0], 0.02)
-    assert "by -0.01 another position" in sentence
+    assert "by -0.01 mm another position" in sentence
 
 
 def test_nothing_is_told_beyond_the_tolerance_nor_of_a_pitch_that_closes():

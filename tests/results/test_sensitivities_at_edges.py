@@ -2,6 +2,7 @@
 
 import re
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import analyse, read_scene
 from loaded_tca import warning_kinds as kinds
+from loaded_tca.edges.free import edge_compliance
 from loaded_tca.errors import AccuracyWarning, noted_accuracy_warnings
+from loaded_tca.results import gap_growth
 from loaded_tca.results.face_slopes import rival_strip, warn_of_edges
 from loaded_tca.results.load_factors import STRIPS, face_forces
 from loaded_tca.results.sensitivities import TORQUE
@@ -54,6 +57,30 @@ def test_helical_flanks_and_centre_distance_as_by_whole_analyses():
     assert_allclose(found.peak_to_peak[0, 0] * length, 1.180, rtol=0.02)
     assert_allclose(found.harmonics(1)[0, 0, 0] * length, 0.5758, rtol=0.02)
     assert_allclose(found.face_load_factor[0, 0], 0.323, rtol=0.02)  # 0.3255, over 0.08 mm 0.3207
+
+
+def test_lines_beside_free_edges_go_with_contacts_that_a_modification_moves(monkeypatch):
+    key, step = "pinion.modifications.profile_crowning_um", 1e-3
+    result, _ = solved("helical", 16, 3, **{"analysis.compliance": "contact"})
+    found = result.sensitivities([key])
+    monkeypatch.setattr(gap_growth, "_add_moved_lines", lambda *_, **__: None)
+    more = (found.growth.gaps - result.sensitivities([key]).growth.gaps)[0]
+    expected = []
+    for grid, shift in zip(found.tangents.grids, found.growth.shifts[0], strict=True):
+        low, high = (
+            edge_compliance(
+                result.gear_pair,
+                replace(
+                    grid.separation, origin=grid.separation.origin + part * step * shift[0] * grid.separation.axes[0]
+                ),
+            )
+            for part in (-0.5, 0.5)
+        )
+        deflections = ((high - low) @ grid.slice_force) / step
+        expected.append(deflections[grid.active.nonzero()[1]])
+    off = np.abs(more - np.concatenate(expected)).max() / np.abs(more).max()
+    # on its way under load the contact moves a little more
+    assert off < 0.02
 
 
 def test_ends_of_the_common_face_move_with_the_wheel():
