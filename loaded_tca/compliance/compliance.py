@@ -21,6 +21,8 @@ from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.threads import side_by_side
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from loaded_tca.arrays import Array
     from loaded_tca.pairs.gear import Gear
     from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
@@ -30,6 +32,9 @@ NEWTON_STEPS, NO_FURTHER = 2, 1e-3
 so much of the module is the last one, as of helical teeth, whose contact lines are straight."""
 EVEN_PLACES = 9
 """Forces across the face that stand for an even one."""
+
+TOGETHER = 2**13
+"""Pairs of slices that are worked on together: more do not fit the cache of a core."""
 
 _LINES: WeakKeyDictionary[ContactGrid, dict[int, tuple[FlankLine, FlankLine]]] = WeakKeyDictionary()
 """Lines of the grids, by the numbers of the tooth pairs, on pinion and wheel."""
@@ -87,14 +92,29 @@ class ToothCompliance:
         (m, n) array [mm/N]
             Symmetric where the slices are the same.
         """
-        there = grid if under is None else under
-        distance = np.hypot(grid.y[:, None] - there.y, grid.force_line[:, None] - there.force_line)
-        lines, forces = self.lines(number, grid), (None, None) if under is None else self.lines(number, under)
+        if under is None:
+            return self.within_each([(number, grid)])[0]
+        distance = np.hypot(grid.y[:, None] - under.y, grid.force_line[:, None] - under.force_line)
+        lines, forces = self.lines(number, grid), self.lines(number, under)
         on_pinion, on_wheel = (
             gear.within(line, distance, force)
             for gear, line, force in zip((self.pinion, self.wheel), lines, forces, strict=True)
         )
         return on_pinion + on_wheel
+
+    def within_each(self, contacts: Sequence[tuple[int, ContactGrid]]) -> list[Array]:
+        """Results of :meth:`within` for the numbers and grids of several contacts; none depends on the others."""
+        deflections: dict[int, Array] = {}
+        for some in stacks_of([len(grid.y) for _, grid in contacts]):
+            lines = self._lines([contacts[k] for k in some])
+            y, across = (np.stack([getattr(contacts[k][1], name) for k in some]) for name in ("y", "force_line"))
+            distance = np.hypot(y[..., None] - y[:, None], across[..., None] - across[:, None])
+            on_pinion, on_wheel = (
+                gear.within_each([both[side] for both in lines], distance)
+                for side, gear in enumerate((self.pinion, self.wheel))
+            )
+            deflections |= zip(some, on_pinion + on_wheel, strict=True)
+        return [deflections[k] for k in range(len(contacts))]
 
     def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact's grid per force on each slice of another's.
@@ -130,10 +150,23 @@ class ToothCompliance:
 
         Parameters are those of :meth:`within`. Normal forces of the slices at these lines load the roots of the teeth.
         """
-        known = _LINES.setdefault(grid, {})
-        if number not in known:
-            known[number] = flank_lines(self.pair, number, grid)
-        return known[number]
+        return self._lines([(number, grid)])[0]
+
+    def _lines(self, contacts: Sequence[tuple[int, ContactGrid]]) -> list[tuple[FlankLine, FlankLine]]:
+        """The same of several contacts with equally many slices."""
+        missing = [(number, grid) for number, grid in contacts if number not in _LINES.setdefault(grid, {})]
+        for (number, grid), lines in zip(missing, lines_of_each(self.pair, missing), strict=True):
+            _LINES[grid][number] = lines
+        return [_LINES[grid][number] for number, grid in contacts]
+
+
+def stacks_of(slices: Sequence[int]) -> list[list[int]]:
+    """Places of contacts that are worked on together: those with equally many slices, as many as fit the cache."""
+    stacks = []
+    for count in dict.fromkeys(slices):
+        alike, size = [k for k, own in enumerate(slices) if own == count], max(1, TOGETHER // count**2)
+        stacks += [alike[first : first + size] for first in range(0, len(alike), size)]
+    return stacks
 
 
 def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
@@ -149,37 +182,42 @@ def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLi
     grid : Separation or PressureMap
         In the angles of its own tooth: as if it were pair 0.
     """
-    points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
-    points = _on_flank(pair.pinion.nominal_flank, points, grid.axes[2], grid.origin, NO_FURTHER * pair.module)
-    radius, _, axial = pair.to_wheel(points)
-    tooth = pair.sense * number
-    on_pinion = FlankLine(-tooth, np.hypot(points[:, 0], points[:, 1]), points[:, 2])
-    return on_pinion, FlankLine(tooth, radius, axial)
+    return lines_of_each(pair, [(number, grid)])[0]
 
 
-def _section(points: Array) -> tuple[Array, Array]:
-    """Places (rho, z) of points (n, 3)."""
-    return np.hypot(points[:, 0], points[:, 1]), points[:, 2]
+def lines_of_each(pair: GearPair, contacts: Sequence[tuple[int, ContactGrid]]) -> list[tuple[FlankLine, FlankLine]]:
+    """Results of :func:`flank_lines` for the numbers and grids of contacts with equally many slices."""
+    if not contacts:
+        return []
+    names = "origin", "axes", "force_line", "y"
+    origin, axes, across, along = (np.stack([getattr(grid, name) for _, grid in contacts]) for name in names)
+    points = origin[:, None] + across[..., None] * axes[:, None, 0] + along[..., None] * axes[:, None, 1]
+    points = _on_flank(pair.pinion.nominal_flank, points, axes[:, 2], origin, NO_FURTHER * pair.module)
+    rho, radius, axial = np.hypot(points[..., 0], points[..., 1]), *pair.on_wheel(points)
+    return [
+        (FlankLine(-pair.sense * number, rho[k], points[k, :, 2]), FlankLine(pair.sense * number, radius[k], axial[k]))
+        for k, (number, _) in enumerate(contacts)
+    ]
 
 
 def _on_flank(flank: Flank, points: Array, normal: Array, origin: Array, enough: float) -> Array:
-    """Points (n, 3) moved along a normal onto a flank through an origin; where there is none they stay."""
-    turned = math.atan2(origin[1], origin[0]) - float(np.ravel(flank.theta(*_section(origin[None])).value)[0])
-    moved = points
+    """Points (k, n, 3) moved along normals (k, 3) onto a flank through origins (k, 3); where none is they stay."""
+    moved, left = points.copy(), np.arange(len(points))
+    turned = (
+        np.arctan2(origin[:, 1], origin[:, 0]) - flank.theta(np.hypot(origin[:, 0], origin[:, 1]), origin[:, 2]).value
+    )
     for _ in range(NEWTON_STEPS):
-        rho, z = _section(moved)
+        (x, y, z), (nx, ny, nz) = np.moveaxis(moved[left], -1, 0), normal[left].T[..., None]
+        rho = np.hypot(x, y)
         theta = flank.theta(rho, z)
-        off = np.arctan2(moved[:, 1], moved[:, 0]) - theta.value - turned
+        off = np.arctan2(y, x) - theta.value - turned[left, None]
         off = np.remainder(off + math.pi, 2.0 * math.pi) - math.pi
-        outwards = (moved[:, :2] @ normal[:2]) / rho
-        steep = (
-            (moved[:, 0] * normal[1] - moved[:, 1] * normal[0]) / rho**2 - theta.rho * outwards - theta.z * normal[2]
-        )
-        step = off / steep
-        moved = moved - step[:, None] * normal
-        if not (np.abs(step) > enough).any():
+        step = off / ((x * ny - y * nx) / rho**2 - theta.rho * ((x * nx + y * ny) / rho) - theta.z * nz)
+        moved[left] -= step[..., None] * normal[left, None]
+        left = left[(np.abs(step) > enough).any(axis=1)]
+        if not left.size:
             break
-    return np.where(np.isfinite(moved).all(axis=1, keepdims=True), moved, points)
+    return np.where(np.isfinite(moved).all(axis=-1, keepdims=True), moved, points)
 
 
 def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensity | None = None) -> ToothCompliance:

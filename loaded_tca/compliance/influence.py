@@ -22,6 +22,7 @@ strain).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from weakref import WeakKeyDictionary, ref
@@ -51,7 +52,7 @@ class FlankLine:
     tooth : int
         Tooth of the gear, counted in the sense of +theta.
     rho, z : (m,) array [mm]
-        In the gear's own frame; places beyond the flank count as its edge.
+        In the gear's own frame; places beyond the flank count as its edge. Of several lines (k, m).
     """
 
     tooth: int
@@ -131,36 +132,46 @@ class GearCompliance:
 
     def _displaced(self, away: int, at: _Places, under: _Places) -> Array:
         """Displacements at places of a tooth under forces at places of the one that stands so many pitches before."""
-        return np.asarray(at.shares @ self._mutual[self.neighbours + away] @ under.shares.T)
+        return np.asarray(at.shares @ self._mutual[self.neighbours + away] @ under.shares.mT)
 
     def within(self, line: FlankLine, distance: Array, under: FlankLine | None = None) -> Array:
         """Displacements (m, n) of places of one tooth per force at others [mm/N], on top of those of a half-space.
+
+        Of several lines (k, m, n).
 
         Parameters
         ----------
         line : FlankLine
             m places.
-        distance : (m, n) array [mm]
+        distance : (m, n) or (k, m, n) array [mm]
             Between them and those of the forces, along the line.
         under : FlankLine, optional
             n places of the forces; default: the same ones.
         """
         at, there = self._places(line), self._places(line if under is None else under)
         width, deviation, at_end = self._spread
-        from_start = width * (at.length[:, None] + there.length)
+        from_start = width * (at.length[..., None] + there.length[..., None, :])
         images = from_start, 2.0 * width - from_start  # beyond the ends of the face
         # Line density [1/mm], whose integral over the distances of a line is 1, and what free ends add.
         spread = _normal(deviation, distance, *images) + _normal(at_end, *images)
         displacements = self._local(at, spread, distance)
-        mutual = displacements.T if under is None else self._local(there, spread.T, distance.T).T
+        mutual = displacements.mT if under is None else self._local(there, spread.mT, distance.mT).mT
         return self._displaced(0, at, there) + 0.5 * (displacements + mutual)
 
     def _local(self, places: _Places, spread: Array, distance: Array) -> Array:
         """Local term (m, n) less what the half-space counts, by the depth below the m places."""
-        depth = (places.across @ self.table.depth * places.along).sum(axis=1)[:, None]
+        depth = (places.across @ self.table.depth * places.along).sum(axis=-1)[..., None]
         half_space = depth_displacement(depth, distance, self.frame.gear.material)
         local = np.interp(places.height, self.table.local_height, self.table.local_value)
-        return np.asarray(local[:, None] * spread - half_space)
+        return np.asarray(local[..., None] * spread - half_space)
+
+    def within_each(self, lines: Sequence[FlankLine], distance: Array) -> Array:
+        """Results (k, m, m) of :meth:`within` for k lines of m places each; none depends on the others."""
+        together = FlankLine(0, np.stack([line.rho for line in lines]), np.stack([line.z for line in lines]))
+        displacements, places = self.within(together, distance), self._places(together)
+        for k, line in enumerate(lines):
+            _KEPT[line] = ref(self), places.of_line(k)
+        return displacements
 
     @cached_property
     def _spread(self) -> tuple[float, float, float]:
@@ -182,7 +193,7 @@ class GearCompliance:
 
 
 def _normal(deviation: float, *distances: Array) -> Array:
-    """Sum of the densities [1/mm] of a normal distribution at distances (m, n) [mm]."""
+    """Sum of the densities [1/mm] of a normal distribution at distances (..., m, n) [mm]."""
     away = np.array(distances) / deviation
     return np.asarray(np.exp(-0.5 * away * away).sum(axis=0) / (math.sqrt(2.0 * math.pi) * deviation))
 
@@ -193,13 +204,17 @@ def lagrange_coefficients(nodes: Array) -> Array:
 
 
 def shares_of_grid(across: Array, along: Array) -> Array:
-    """Shares (m, a b) of the places of a grid in m others, from those of its heights (m, a) and lengths (m, b)."""
-    return np.asarray((across[:, :, None] * along[:, None, :]).reshape(len(across), -1))
+    """Shares (..., m, a b) of a grid's places in m others, from those of heights (m, a) and lengths (m, b)."""
+    shares = across[..., :, None] * along[..., None, :]
+    return shares.reshape(*shares.shape[:-2], -1)
 
 
 @dataclass(frozen=True, eq=False)
 class _Places:
-    """Parts (m,) of height and face width of the places of a line, and their Lagrange polynomials (m, a), (m, b)."""
+    """Parts (m,) of height and face width of the places of a line, and their Lagrange polynomials (m, a), (m, b).
+
+    Of several lines (k, m), (k, m, a), (k, m, b).
+    """
 
     height: Array
     length: Array
@@ -213,8 +228,12 @@ class _Places:
         across, along = gear.interpolation
         angle = np.arccos(2.0 * np.array([height, length]) - 1.0)
         polynomials = np.cos(angle[..., None] * np.arange(max(len(across), len(along))))  # of Chebyshev
-        across, along = polynomials[0, :, : len(across)] @ across, polynomials[1, :, : len(along)] @ along
+        across, along = polynomials[0, ..., : len(across)] @ across, polynomials[1, ..., : len(along)] @ along
         return cls(height, length, across, along)
+
+    def of_line(self, k: int) -> _Places:
+        """Those of one of several lines."""
+        return _Places(self.height[k], self.length[k], self.across[k], self.along[k])
 
     @cached_property
     def shares(self) -> Array:

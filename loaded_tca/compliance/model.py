@@ -7,7 +7,7 @@ part for a scene, and its name there: analyses, designs and the sensitivities of
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol, Self, TypeVar
 
@@ -44,6 +44,10 @@ class BendingModel(Protocol):
         On top of two half-spaces under the same pressures. ``under``: other slices of the contact, which carry the
         forces.
         """
+
+    def within_each(self, contacts: Sequence[tuple[int, ContactGrid]]) -> list[Array]:
+        """Results of :meth:`within` for the numbers and grids of several contacts; none depends on the others."""
+        return [self.within(number, grid) for number, grid in contacts]
 
     def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact under a unit force on each slice of another [mm/N].
@@ -87,6 +91,12 @@ class SumOfParts(BendingModel):
     def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:
         """Deflection of every slice under a unit force on each, or on each of ``under`` [mm/N]."""
         return _sum([part.within(number, grid, under) for part in self.parts])
+
+    def within_each(self, contacts: Sequence[tuple[int, ContactGrid]]) -> list[Array]:
+        """Results of :meth:`within` for the numbers and grids of several contacts."""
+        return [
+            _sum([*of_parts]) for of_parts in zip(*(part.within_each(contacts) for part in self.parts), strict=True)
+        ]
 
     def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact under a unit force on each slice of another [mm/N]."""

@@ -42,7 +42,7 @@ from loaded_tca.errors import ConvergenceError, InputError, named
 from loaded_tca.loaded.balance import balance
 from loaded_tca.loaded.first_guess import ExpectedLine, first_law
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.together import Gap, Line, Steps, Trace, run_alone, with_gears
+from loaded_tca.loaded.together import Bend, Gap, Line, Steps, Trace, run_alone, with_gears
 from loaded_tca.loaded.tooth_contact import FIRST_CELLS, Coupling, GridChoice, contact_under_load, expected_pressure
 from loaded_tca.loaded.tooth_pairs import Share, SharedLoad, ToothPair
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
@@ -266,7 +266,10 @@ class _Balance:
         if self.on_moved_gears:
             displaced = [self._displaced(line) for _, line in lines]
             self.mean_displacement = np.array([share @ moved for share, moved in zip(shares, displaced, strict=True)])
-        compliance = np.diag([share @ bending.within(*line) @ share for line, share in zip(lines, shares, strict=True)])
+        within = []
+        for slices, share in zip(lines, shares, strict=True):
+            within.append(share @ (yield Bend(bending, *slices)) @ share)
+        compliance = np.diag(within)
         for (i, slices), (j, other_slices) in combinations(enumerate(lines), 2):
             if self._coupled(i, j):
                 compliance[i, j] = compliance[j, i] = shares[i] @ bending.deflection(slices, other_slices, shares[j])
@@ -291,7 +294,7 @@ class _Balance:
                 least, most = (factor * before.solution.load for factor in same_box)
                 if least <= force <= most:
                     if self.bending is not None and not self.forces_on_grid_axis:
-                        before = before.with_bending_lines(self.bending, tooth_pair.pair, self.pair.module)
+                        before = yield from before.with_bending_lines(self.bending, tooth_pair.pair, self.pair.module)
                     loaded = yield from before.at_load(force, coupling(before.separation))
             if loaded is None or loaded.solution.reaches_border:
                 contact, number, gears = tooth_pair.contact, tooth_pair.pair, tooth_pair.gears or self.pair

@@ -16,7 +16,7 @@ from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.patch import values_at_ends, widths
 from loaded_tca.contact.solution import ContactSolution
 from loaded_tca.loaded.line_load import SliceLoads
-from loaded_tca.loaded.together import Steps, Task
+from loaded_tca.loaded.together import Bend, Steps, Task
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint
@@ -254,7 +254,7 @@ class LoadedContact:
             return deflection
         return float(deflection - self.coupling_deflection @ force / force.sum())
 
-    def with_bending_lines(self, bending: BendingModel, number: int, module: float) -> LoadedContact:
+    def with_bending_lines(self, bending: BendingModel, number: int, module: float) -> Steps[LoadedContact]:
         """Return the contact as it is, to be solved next with teeth that bend at the centres of its pressure.
 
         Where they moved by less than ``LINE_KEPT``, it is returned as it is.
@@ -262,7 +262,7 @@ class LoadedContact:
         separation = self._bending_lines(module)
         if self.bending is not None and self._moved(separation) <= LINE_KEPT * module:
             return self
-        return replace(self, separation=separation, bending=bending.within(number, separation))
+        return replace(self, separation=separation, bending=(yield Bend(bending, number, separation)))
 
     def line_error(self, module: float) -> float:
         """How far the forces that bend the teeth are from the centres of the pressure, the mean over the force [mm]."""

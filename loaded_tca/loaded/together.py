@@ -1,8 +1,8 @@
 """Work on many contacts at once: each asks for gaps and pressures, and what all ask for is found together.
 
 A contact, or the tooth pairs of a position that share a torque, is a generator. It yields what it needs next, a
-:class:`Trace`, :class:`Gap`, :class:`Line`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its
-result. So it reads as if it were alone, and its numbers do not depend on what stands beside it.
+:class:`Trace`, :class:`Gap`, :class:`Line`, :class:`Ends`, :class:`Bend` or a :class:`Task`, is sent the answer, and
+returns its result. So it reads as if it were alone, and its numbers do not depend on what stands beside it.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ from itertools import islice
 from typing import Any, NamedTuple, TypeVar
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import ContactProblem
 from loaded_tca.contact.solution import ContactSolution, ContactStatus
 from loaded_tca.contact.solver import solve_problems
 from loaded_tca.edges.free import edge_compliances
 from loaded_tca.errors import LoadedTCAError
 from loaded_tca.loaded.first_guess import ExpectedLine, expected_lines
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.separation.box import Box
 from loaded_tca.separation.polynomials import GapPolynomials
@@ -84,7 +85,15 @@ class Ends(NamedTuple):
     gears: GearPair | None = None
 
 
-Request = Trace | Gap | Line | Ends | Task
+class Bend(NamedTuple):
+    """Deflection of the slices of a grid by a bending model; see :meth:`BendingModel.within`."""
+
+    bending: BendingModel
+    number: int
+    grid: ContactGrid
+
+
+Request = Trace | Gap | Line | Ends | Bend | Task
 Steps = Generator[Request, Any, Result]
 
 
@@ -93,8 +102,8 @@ def run_stacked(
 ) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
 
-    In a round what most ask for is found: all contacts elsewhere, or all gaps, or all lines, or all free edges, or all
-    problems on one grid.
+    In a round what most ask for is found: all contacts elsewhere, or all gaps, or all lines, or all free edges, or the
+    bending of all slices, or all problems on one grid.
     Whenever one returns, another one begins: so many are under way that stacks are full, and no more, so that memory
     stays bounded and progress steady.
 
@@ -147,17 +156,17 @@ def run_alone(pair: GearPair, steps: Steps[Result]) -> Result:
 def _answers(
     pair: GearPair, asked: dict[int, Request]
 ) -> dict[int, list[ContactPoint] | Separation | ExpectedLine | Array | ContactSolution | LoadedTCAError | None]:
-    """Answer what most ask for, contacts, gaps, lines, free edges or problems on one grid; errors are answers."""
+    """Answer what most ask for: contacts, gaps, lines, free edges, bending, or problems on one grid; or with errors."""
     kinds = {
         index: request.problem.cells if isinstance(request, Task) else type(request) for index, request in asked.items()
     }
     (most, _), *_ = Counter(kinds.values()).most_common(1)
     chosen: Any = {index: asked[index] for index, kind in kinds.items() if kind == most}
-    if most in (Trace, Gap, Line, Ends):
-        by_gears: dict[int, dict[int, Any]] = {}
+    if most in (Trace, Gap, Line, Ends, Bend):
+        alike: dict[int, dict[int, Any]] = {}
         for index, request in chosen.items():
-            by_gears.setdefault(id(request.gears), {})[index] = request
-        return {index: answer for some in by_gears.values() for index, answer in _of_flanks(pair, some).items()}
+            alike.setdefault(id(request.bending if most is Bend else request.gears), {})[index] = request
+        return {index: answer for some in alike.values() for index, answer in _of_flanks(pair, some).items()}
     solutions = solve_problems(*zip(*chosen.values(), strict=True), on_failure="return")
     return {
         index: solution.not_converged(task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution
@@ -168,8 +177,11 @@ def _answers(
 def _of_flanks(
     pair: GearPair, asked: dict[int, Any]
 ) -> dict[int, list[ContactPoint] | Separation | ExpectedLine | Array | LoadedTCAError | None]:
-    """Answer requests for contacts, for gaps, for lines, or for free edges, of the same gears."""
+    """Answer requests for contacts, for gaps, for lines, or for free edges, of the same gears, or for one bending."""
     requests = list(asked.values())
+    if isinstance(requests[0], Bend):
+        bent = requests[0].bending.within_each([(request.number, request.grid) for request in requests])
+        return dict(zip(asked, bent, strict=True))
     gears = requests[0].gears or pair
     if isinstance(requests[0], Trace):
         near = [contact for request in requests for contact in request.contacts]
@@ -201,6 +213,6 @@ def with_gears(gears: GearPair | None, steps: Steps[Result]) -> Steps[Result]:
             return end.value
         failure = None
         try:
-            answer = yield (request if isinstance(request, Task) else request._replace(gears=gears))
+            answer = yield (request if isinstance(request, Task | Bend) else request._replace(gears=gears))
         except LoadedTCAError as error:
             failure = error

@@ -22,7 +22,7 @@ from loaded_tca.edges.places import arcs_at, has_relief_starts, relief_start_dis
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.together import Ends, Gap, Steps, Task, run_alone
+from loaded_tca.loaded.together import Bend, Ends, Gap, Steps, Task, run_alone
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.plain import plain
 from loaded_tca.separation import Separation
@@ -194,7 +194,7 @@ class _InBox:
             return loaded
         if solved_again and self.grid.cells is None:
             return replace(loaded, judged=(float(loaded.solution.pressure.max()), self.load))
-        bent = loaded.with_bending_lines(self.bending, self.number, self.pair.module)
+        bent = yield from loaded.with_bending_lines(self.bending, self.number, self.pair.module)
         coupling = None if self.coupling is None else self.coupling(bent.separation)
         bent = yield from bent.at_load(self.load, coupling)
         judged = loaded if self.grid.cells is None else bent  # the first lines on given cells are the axis of the grid
@@ -237,7 +237,7 @@ class _InBox:
             separation = separation.loaded_by(start, self.pair.module)
         self.separation = separation
         self.displaced = None if self.coupling is None else self.coupling(separation)
-        self.bent = None if self.bending is None else self.bending.within(self.number, separation)
+        self.bent = None if self.bending is None else (yield Bend(self.bending, self.number, separation))
         self.ends = (yield Ends(separation)) if self.grid.free_edges else None
         problem = contact_problem(self.pair, separation, self.load, self.bent, self.ends, self.displaced)
         solution: ContactSolution = yield Task(problem, tolerance, start)

@@ -289,6 +289,10 @@ class SupportCompliance:
         """Deflection of every slice under a unit force on each, or on each of ``under`` [mm/N]."""
         return self._between(grid, grid if under is None else under)
 
+    def within_each(self, contacts: Sequence[tuple[int, ContactGrid]]) -> list[Array]:
+        """Results of :meth:`within` for the numbers and grids of several contacts."""
+        return [self._between(grid, grid) for _, grid in contacts]
+
     def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact under a unit force on each slice of another [mm/N]."""
         return self._between(at[1], under[1])

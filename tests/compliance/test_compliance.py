@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import root_scalar
 
 from loaded_tca.compliance import MeshDensity, default_density, flank_lines, tooth_compliance
@@ -248,3 +248,17 @@ def test_mirrored_gears_have_the_same_layers():
         for pair in (scene.pair(), mirrored.pair())
     ]
     assert layers[0] == layers[1]
+
+
+@pytest.mark.quick_cases("bevel")
+@FAMILIES
+def test_compliance_of_a_contact_does_not_depend_on_those_beside_it(make):
+    """To the last bit, with other slices and on other teeth; lines that were found before are taken as they are."""
+    compliance = make()
+    first, second = grids(compliance, 0.4, -0.4, length=4.0)
+    (coarse,) = grids(compliance, 0.1, cells=(8, 16), length=4.0)
+    contacts = [(0, first), (1, coarse), (1, second), (0, second)]
+    together = compliance.within_each(contacts)
+    for (number, grid), matrix in zip(contacts, together, strict=True):
+        assert_array_equal(compliance.within(number, replace(grid)), matrix)
+        assert_array_equal(compliance.within(number, grid), matrix)

@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, InputError, trace_contact
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact.patch import widths
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.line_load import SliceLoads, loaded_length, loaded_length_slopes
@@ -280,7 +281,7 @@ def test_edge_contact_has_its_peak_at_the_edge():
     assert_allclose(loaded.peak_place[1], 12.5, atol=2.0 * loaded.separation.spacing[1])
 
 
-class Arm:
+class Arm(BendingModel):
     """Teeth that are softer the farther across the contact a force acts, as they are towards their tips."""
 
     softness, arm = 1e-6, 2.0
@@ -352,7 +353,7 @@ def test_pressure_on_fine_slices_does_not_scatter_as_its_own_forces_bend_the_tee
     loaded = solve_under_load(pair, contact, 650.0, GridChoice(cells=(16, 256)), bending)
     peaks = [float(loaded.solution.pressure.max())]
     for _ in range(3):
-        loaded = run_alone(pair, loaded.with_bending_lines(bending, 0, MODULE).at_load(650.0))
+        loaded = run_alone(pair, run_alone(pair, loaded.with_bending_lines(bending, 0, MODULE)).at_load(650.0))
         peaks.append(float(loaded.solution.pressure.max()))
     assert np.abs(np.diff(peaks)[1:]).max() < SETTLED * peaks[0], (
         "33 %, and more from time to time, on lines that scatter"
