@@ -33,6 +33,7 @@ JOBS = "LOADED_TCA_JOBS"
 """Environment variable: how many works a process does at once."""
 
 _alone = ContextVar("one_thread", default=False)
+_helps = ContextVar("is_helper", default=False)
 _asked: ContextVar[int | None] = ContextVar("jobs", default=None)
 
 
@@ -112,6 +113,11 @@ def _jobs_of_environment() -> int | None:
     if count < 1:
         raise InputError(f"{JOBS}: {text!r:.60}: {ALLOWED_JOBS}")
     return count
+
+
+def is_helper() -> bool:
+    """Return whether the calling thread helps another one with what :func:`side_by_side` does at once."""
+    return _helps.get()
 
 
 def allowed_threads(wanted: int) -> int:
@@ -336,6 +342,7 @@ class _Works:
             self.helping.discard(turn)
             return  # too late: nobody waits for it
         _under_way.change(1)
+        _helps.set(True)
         try:
             with one_thread():
                 self.drain()

@@ -2278,6 +2278,13 @@ FAULTS = (
         "results/test_sensitivities_at_edges.py::"
         "test_lines_beside_free_edges_go_with_contacts_that_a_modification_moves",
     ),
+    Fault(
+        "Checking a generated flank loads SciPy for one turn",
+        "pairs/bevel.py",
+        "        normal, sine, cosine = frame",
+        "        import scipy.spatial\n\n        normal, sine, cosine = frame",
+        "test_public_names.py::test_check_and_the_imports_of_run_load_no_heavy_library",
+    ),
 )
 
 

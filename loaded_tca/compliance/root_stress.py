@@ -27,6 +27,7 @@ import numpy as np
 import scipy
 from numpy.polynomial.chebyshev import chebpts2, chebvander
 
+from loaded_tca.apart import apart
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.body import FlankPlaces, ToothFrame, gear_body, gear_nodes
@@ -333,7 +334,7 @@ def _model(
     gear = Gear.of(teeth, side, material, bore_diameter)
     frame = ToothFrame(gear, gear_nodes(gear, density, OUTLINE))
     key = key_of(frame, _loaded_places(frame, False)[-1], "root stress ")
-    return RootStress(frame, kept(key, RootInfluence, lambda: root_influence(frame)))
+    return RootStress(frame, kept(key, RootInfluence, lambda: apart(root_influence, frame)))
 
 
 def _loaded_places(frame: ToothFrame, beside: bool) -> tuple[int, int, FlankPlaces]:

@@ -29,7 +29,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
@@ -204,7 +203,9 @@ def with_tooth_angle(gear: FaceMilledGear, angle: float) -> FaceMilledGear:
         return float(tooth_angle_of(wider(by), np.array([rho]), np.array([z]))[0]) - angle
 
     try:
-        return wider(float(scipy.optimize.newton(miss, 0.0, x1=1e-3 * rho, tol=1e-12 * rho)))
+        from scipy.optimize import newton  # not of every scene
+
+        return wider(float(newton(miss, 0.0, x1=1e-3 * rho, tol=1e-12 * rho)))
     except (RuntimeError, InputError):
         raise GeometryError(f"{gear.name}: no point width leaves a tooth as thick as asked for") from None
 
@@ -324,9 +325,9 @@ def _solve(pinion: FaceMilledGear, asked: _Asked, names: tuple[str, ...]) -> Fac
     start = np.zeros(len(names))
     solution = _newton(equations, start, nearest=True)
     if solution is None and len(names) == len(SCALES):
-        reached = scipy.optimize.least_squares(
-            equations.misses, start, xtol=NEAR, ftol=NEAR, gtol=NEAR, max_nfev=MOST_TRIALS
-        )
+        from scipy.optimize import least_squares
+
+        reached = least_squares(equations.misses, start, xtol=NEAR, ftol=NEAR, gtol=NEAR, max_nfev=MOST_TRIALS)
         solution = _newton(equations, reached.x, nearest=False)
     return None if solution is None else equations.gear(solution)
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import partial
 from importlib.metadata import version
 from itertools import zip_longest
 from typing import Any
@@ -14,8 +15,10 @@ import numpy as np
 import scipy
 
 from loaded_tca.analysis import analyse
+from loaded_tca.apart import apart
 from loaded_tca.arrays import Array
-from loaded_tca.effort import Effort, expected_effort
+from loaded_tca.contact.checks import machine_memory
+from loaded_tca.effort import MOST_OF_MEMORY, Effort, expected_effort
 from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings, require
 from loaded_tca.results import MeshCycle
 from loaded_tca.scene import Scene
@@ -24,6 +27,7 @@ from loaded_tca.stages.kinematics import mesh_phases
 from loaded_tca.stages.result import EDGES, StageResult
 from loaded_tca.stages.sections import PLACE, RING_MESH, SUN_MESH, Stage, in_words_of
 from loaded_tca.stages.warnings import MeshWarnings
+from loaded_tca.threads import is_helper, jobs, side_by_side
 
 PARTS = 0.15, 0.5, 1.6
 """Forces of the mesh cycles over an even share, beside it and the whole force: where planets may come to."""
@@ -64,11 +68,14 @@ def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult
     base_radius = sun_mesh.pinion.base_radius
     forces = _forces(torques / base_radius, planets)
     count = len(forces) * stage.analysis.positions
-    of_sun_mesh, of_ring_mesh = scenes_of(stage)
-    with in_words_of(SUN_MESH), noted_accuracy_warnings(given=False, alone=True) as of_sun_warned:
-        of_sun = analyse(of_sun_mesh, _part_of(progress, 0, 2 * count))
-    with in_words_of(RING_MESH), noted_accuracy_warnings(given=False, alone=True) as of_ring_warned:
-        of_ring = analyse(of_ring_mesh, _part_of(progress, count, 2 * count))
+    scenes, shown = scenes_of(stage), _Progress(progress, count)
+    works = [
+        partial(_of_mesh, words, scene, shown, mesh)
+        for mesh, (words, scene) in enumerate(zip((SUN_MESH, RING_MESH), scenes, strict=True))
+    ]
+    at_once = _at_once(*map(expected_effort, scenes))
+    (of_sun, of_sun_warned), (of_ring, of_ring_warned) = side_by_side(*works) if at_once else [do() for do in works]
+    shown.end()
     arrays = _shared(stage, torques, forces, (of_sun, of_ring))
     warned = MeshWarnings.of(of_sun_warned, of_ring_warned)
     sentences = warned.under(forces, *_largest_loads(stage, arrays))
@@ -136,8 +143,38 @@ def rebalanced(result: StageResult, changes: Mapping[str, Any]) -> StageResult:
     return replace(result, stage=stage, dataset=StageResult.dataset_of(arrays, **about))
 
 
-def _part_of(progress: Progress | None, begin: int, total: int) -> Progress | None:
-    return None if progress is None else lambda done, _: progress(begin + done, total)
+def _of_mesh(words: Mapping[str, str], scene: Scene, shown: _Progress, mesh: int) -> tuple[MeshCycle, list[str]]:
+    """Mesh cycle of a mesh with its accuracy warnings: in a process of its own beside the other one."""
+    with in_words_of(words):
+        analysed = apart(_analysed, scene) if is_helper() else _analysed(scene, partial(shown, mesh))
+    shown.done[mesh] = shown.states
+    return analysed
+
+
+def _analysed(scene: Scene, progress: Progress | None = None) -> tuple[MeshCycle, list[str]]:
+    with noted_accuracy_warnings(given=False, alone=True) as sentences:
+        return analyse(scene, progress), sentences
+
+
+class _Progress:
+    """States of both meshes that are done, of as many in each."""
+
+    def __init__(self, progress: Progress | None, states: int) -> None:
+        self.progress, self.states, self.done, self.told = progress, states, [0, 0], 0
+
+    def __call__(self, mesh: int, done: int, _: int) -> None:
+        self.done[mesh] = done
+        self._tell()
+
+    def end(self) -> None:
+        """All is done; a mesh that was analysed elsewhere has not said so."""
+        if self.told < 2 * self.states:
+            self._tell()
+
+    def _tell(self) -> None:
+        self.told = sum(self.done)
+        if self.progress is not None:
+            self.progress(self.told, 2 * self.states)
 
 
 def scenes_of(stage: Stage) -> tuple[Scene, Scene]:
@@ -154,12 +191,21 @@ def states_of(stage: Stage) -> int:
     return sum(len(scene.torques) * scene.analysis.positions for scene in scenes_of(stage))
 
 
+def _at_once(first: Effort, second: Effort) -> bool:
+    """Whether both meshes are analysed at once: by two jobs, unless that took too much of the memory."""
+    return jobs() > 1 and first.memory + second.memory <= MOST_OF_MEMORY * machine_memory()
+
+
 def expected_stage_effort(stage: Stage) -> Effort:
     """Estimate of what an analysis takes, as of :func:`loaded_tca.effort.expected_effort`: that of both meshes."""
     first, second = map(expected_effort, scenes_of(stage))
+    contacts = first.contacts + second.contacts
+    if _at_once(first, second):
+        longer = max((replace(effort, jobs=1) for effort in (first, second)), key=lambda effort: effort.seconds)
+        return replace(longer, contacts=contacts, memory=first.memory + second.memory)
     return replace(
         first,
-        contacts=first.contacts + second.contacts,
+        contacts=contacts,
         states=first.states + second.states,
         teeth=tuple(map(sum, zip_longest(first.teeth, second.teeth, fillvalue=0.0))),
         roots=tuple(map(sum, zip_longest(first.roots, second.roots, fillvalue=0.0))),

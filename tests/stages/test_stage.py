@@ -1,19 +1,21 @@
 """Stages: files and their refusals, shares and orders, saved and read again."""
 
 import math
+import os
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears.internal_mesh import internal_interferences
 from loaded_tca.results.summary import shown
 from loaded_tca.scene import InternalScene
 from loaded_tca.stages import StageResult, analyse_stage, parse_stage, read_stage, rebalanced
-from loaded_tca.stages.analyse import _largest_loads, deflections_of
+from loaded_tca.stages.analyse import _largest_loads, deflections_of, states_of
+from loaded_tca.threads import with_jobs
 from tests.refusals import refused_calls
 from tests.samples.declared import assert_comes_back, assert_declared, with_more_numbers
 from tests.samples.root_stress import coarsely
@@ -39,6 +41,22 @@ def stage():
 @pytest.fixture(scope="module")
 def result(stage):
     return analyse_stage(stage)
+
+
+@pytest.mark.thorough
+def test_result_is_the_same_by_two_jobs_of_which_one_has_a_process_of_its_own(monkeypatch, stage, result):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1}, raising=False)
+    shown = []
+    with with_jobs(2):
+        other = analyse_stage(stage, lambda *states: shown.append(states))
+    for name in ("sun_mesh", "ring_mesh"):
+        for number, values in getattr(result, name).dataset.items():
+            assert_array_equal(getattr(other, name).dataset[number], values)  # exact: the same operations
+    assert_array_equal(other.dataset["planet_share"], result.dataset["planet_share"])
+    assert other.dataset.attrs["warnings"] == result.dataset.attrs["warnings"]
+    states = states_of(stage)
+    assert shown == sorted(shown)
+    assert shown[-1] == (states, states)
 
 
 def changed(**keys):
