@@ -21,7 +21,7 @@ from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.threads import side_by_side
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from loaded_tca.arrays import Array
     from loaded_tca.pairs.gear import Gear

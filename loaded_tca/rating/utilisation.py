@@ -63,7 +63,7 @@ def utilisation_of(scene: Scene, torque: float) -> Utilisation:
     flank = wanted.required_flank_safety * load**0.5 / float(np.min(strength_of_flanks(inputs).strength))
     pulsating = np.zeros(1)
     pinion, wheel = (
-        wanted.required_root_safety * load / float(local_root_factors(inputs, gear, pulsating)[1].strength[0])
+        wanted.required_root_safety * load / float(local_root_factors(inputs, gear, pulsating, 0)[1].strength[0])
         for gear in range(len(GEARS))
     )
     return Utilisation(flank, (pinion, wheel))
