@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import cos, inf, nan, pi, radians, sin, tan
 
 import numpy as np
@@ -7,7 +8,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError
-from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.gears import CylindricalGear, CylindricalMesh, PinionCutter, RingGear
 from loaded_tca.gears.involute import involute
 from loaded_tca.reference.iso6336_3 import (
     cut_root_radius,
@@ -69,6 +70,26 @@ def test_rings_have_the_digits_that_kisssoft_prints(stage):
     digits = 5e-4, 1e-3, 5e-4, 5e-3  # half a last digit; a whole one where the contact ratio, of four digits, counts
     assert (np.abs(np.subtract(obtained, printed[:4])) <= digits).all()
     assert_allclose([section.form_factor, section.stress_correction_factor], printed[4:], atol=5e-3)
+
+
+def test_fillet_that_the_cutter_of_a_ring_cuts_is_sharper_than_that_of_its_rack():
+    """Where its tangent, found by itself, has 60 degrees to the middle of the tooth: Y_F Y_S is 2.89, not 2.79."""
+    values, cutter, printed = RINGS["stage 2"]
+    sizes = {"tip_diameter": values[2], "root_diameter": 2000.581 / 21.0, "cutter": PinionCutter(cutter)}
+    ring = RingGear(-93, 1.0, 10.0, profile_shift=values[1], **sizes)
+    radius, angle = ring.root_fillet(20001)
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    slope = np.arctan2(np.diff(y), np.diff(x))
+    place = int(np.abs(slope - radians(60.0)).argmin())
+    length = np.hypot(np.diff(x), np.diff(y))
+    bend = float(length[place] / (slope[place + 1] - slope[place]))
+    rack = root_section(*values, root_radius_coefficient=cut_root_radius(0.3, 1.25, cutter))
+    moved = 2.0 * float(y[place])
+    lever = float(x[place]) - ring.base_radius / cos(rack.load_angle)
+    section = replace(rack, thickness=moved, radius=bend, lever=lever)
+    assert 1.0 < moved / printed[0] < 1.02
+    assert 0.8 < bend / printed[2] < 0.95
+    assert_allclose(section.form_factor * section.stress_correction_factor, 2.89, atol=5e-3)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
