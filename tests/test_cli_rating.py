@@ -43,6 +43,16 @@ def test_command_writes_what_the_call_finds(run, out):
     assert list(rows[0]) == list(expected.figures)
 
 
+def test_run_of_a_rated_scene_names_the_command(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("loaded_tca.analysis.analyse", lambda *_, **__: solved())
+    monkeypatch.setattr("loaded_tca.plots.plot_all", lambda *_: ())
+    (tmp_path / "rated.toml").write_text(solved().scene.to_toml(), encoding="utf-8")
+    code, text, errors = run("run", "rated.toml", "--out", "out")
+    assert code == 0, errors
+    assert "Safeties and lives: 'loaded-tca rating out'" in text
+
+
 REFUSED = [
     (("--set", "pinion.teeth=21"), "--set pinion.teeth: an analysis depends on it"),
     (("--set", "rating.life_hours=-1"), "rating.life_hours: found -1"),

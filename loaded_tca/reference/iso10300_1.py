@@ -318,6 +318,7 @@ def scope_notes(pair: VirtualPair, face_width: float) -> tuple[str, ...]:
     return tuple(f"scope: {words}" for holds, words in cases if holds)
 
 
+@checked
 def load_share(specific_load: ArrayLike) -> Array:
     """C_F, by which both stiffnesses fall below 100 N/mm of F_vmt K_A/b_v,eff (12, 13)."""
     load = np.asarray(specific_load, dtype=float)

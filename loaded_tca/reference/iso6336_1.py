@@ -356,6 +356,7 @@ class DynamicFactor:
     notes: tuple[str, ...]
 
 
+@checked
 def dynamic_coefficients(total_contact_ratio: float) -> tuple[float, ...]:
     """C_v1 to C_v7 of eps_gamma (table 8), of bevel gears too (ISO 10300-1, table 3)."""
     ratio = total_contact_ratio

@@ -241,6 +241,7 @@ def root_section(
     return RootSection(thickness, lever, radius, load_angle, pressure_angle)
 
 
+@checked
 def fillet_section(gap: float, depth: float, radius: float, teeth: float) -> tuple[float, float, float, float]:
     """Where tangents of 30 degrees, of rings 60, touch the fillets that a rack cuts, in normal modules.
 
