@@ -2285,6 +2285,21 @@ FAULTS = (
         "        import scipy.spatial\n\n        normal, sine, cosine = frame",
         "test_public_names.py::test_check_and_the_imports_of_run_load_no_heavy_library",
     ),
+    Fault(
+        "derivatives: on supports peak pressures by modifications are those of contacts that stay",
+        "results/sensitivities.py",
+        "[*map(is_of_modifications, self.keys)]",
+        "[change is not None and change.of_modifications for change in self.changes]",
+        "results/test_sensitivities.py::"
+        "test_peak_pressures_follow_contacts_that_a_profile_crowning_moves_over_their_grids",
+    ),
+    Fault(
+        "revolution: the span of part of a turn is called the total deviation",
+        "results/revolution.py",
+        "        if self.is_closed:\n            return labels",
+        "        if self.pitches:\n            return labels",
+        "test_revolution.py::test_revolution_that_is_not_closed_says_so",
+    ),
 )
 
 

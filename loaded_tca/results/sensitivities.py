@@ -37,6 +37,7 @@ from loaded_tca.results.figure_slopes import (
 from loaded_tca.results.gap_growth import GapGrowth, MotionGrowth, curvature_growth
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, rough_peaks
 from loaded_tca.results.warnings import warn_of_contacts
+from loaded_tca.separation.pair_change import is_of_modifications
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.units import UNITS
 from loaded_tca.unloaded.teeth import harmonic_coefficients
@@ -296,7 +297,7 @@ class Sensitivities:
         contact over a grid that stays, that is no change of the peak: what the motion of the contact point over the
         grid adds is taken off, by the changes with the motions of all grids, which are nothing else.
         """
-        modified = [change is not None and change.of_modifications for change in self.changes]
+        modified = [*map(is_of_modifications, self.keys)]  # on supports their changes move gears, too
         smooth = [peak is None for peak in self._rough_peaks]
         left = self.growth.shifts - self.growth.motions[..., :2]
         left[np.logical_not(modified)] = left[:, np.logical_not(smooth)] = 0.0

@@ -52,6 +52,11 @@ SECTIONS = ("modifications", "machine", "cutter")
 """Of a gear, whose keys shape its flanks and, to first order, nothing else."""
 
 
+def is_of_modifications(key: str) -> bool:
+    """Whether a key of a scene is one of the modifications of a gear."""
+    return key.split(".")[1] == "modifications"
+
+
 @dataclass(frozen=True, eq=False)
 class PairChange:
     """Two pairs of gears that differ in one key of their scene.
@@ -77,7 +82,7 @@ class PairChange:
     @property
     def of_modifications(self) -> bool:
         """Whether the pairs differ in modifications alone."""
-        return self.key.split(".")[1] == "modifications"
+        return is_of_modifications(self.key)
 
     @property
     def holds_edges(self) -> bool:

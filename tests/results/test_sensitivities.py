@@ -142,6 +142,10 @@ def test_peak_pressures_follow_contacts_that_a_profile_crowning_moves_over_their
     assert_allclose(
         middle.sensitivities([key]).peak_pressure[..., 0], slope, rtol=0.0, atol=REAL_PAIRS * np.nanmax(np.abs(slope))
     )
+    # on supports that hardly give way they are those of rigid ones
+    supported = analyse(middle.scene.with_changes({"pinion.support.compliance": (1e-12 * np.eye(6)).tolist()}))
+    peaks = [one.sensitivities([key]).peak_pressure[..., 0] for one in (supported, middle)]
+    assert_allclose(*peaks, rtol=1e-3)
 
 
 def test_load_shares_of_all_pairs_change_by_nothing_together():
