@@ -36,7 +36,9 @@ def peak_pressure(pressure: Array) -> float:
     if largest == 0.0:
         return 0.0
     part = pressure / largest
-    return largest * float(np.sqrt((peak_weights(part) * part**2).sum()))
+    if (quadratic := _quadratic_of(part)) is not None:
+        return largest * math.sqrt(quadratic[0])
+    return largest * math.sqrt((_weights_of_parabolas(part**2) * part**2).sum())
 
 
 def peak_weights(pressure: Array) -> Array:
@@ -47,8 +49,12 @@ def peak_weights(pressure: Array) -> Array:
     """
     largest = float(pressure.max())
     part = pressure / largest if largest > 0.0 else pressure
-    weights = _weights_of_quadratic(part)
-    return _weights_of_parabolas(part**2) if weights is None else weights
+    if (quadratic := _quadratic_of(part)) is None:
+        return _weights_of_parabolas(part**2)
+    weights = np.zeros(part.shape)
+    _, of_cells, cells = quadratic
+    weights[cells] = of_cells
+    return weights
 
 
 def top_weights(values: Array) -> Array:
@@ -95,8 +101,11 @@ def _weights_of_parabolas(square: Array) -> Array:
     return weights
 
 
-def _weights_of_quadratic(pressure: Array) -> Array | None:
-    """Weights (nx, ny) of a quadratic through the squares of pressures, the largest of them 1; None if none fits."""
+def _quadratic_of(pressure: Array) -> tuple[float, Array, tuple[Indices, Indices]] | None:
+    """Top of a quadratic through the squares of pressures (nx, ny), the largest of them 1; None if none fits.
+
+    Also returns the weights (n,) of the cells of the fit in it, and these cells.
+    """
     square, x, y, cells = _upper_part(pressure)
     if square.size < FEWEST:
         return None
@@ -106,17 +115,16 @@ def _weights_of_quadratic(pressure: Array) -> Array | None:
     if scales[0] <= RANK * scales[-1]:
         return None
     fitted = modes @ (modes.T @ np.einsum("ik,k->i", terms, square) / scales)
-    misfit = float(np.sqrt(np.mean((np.einsum("i,ik->k", fitted, terms) - square) ** 2)))
-    hessian = np.array([[fitted[3], fitted[4]], [fitted[4], fitted[5]]])
-    if misfit > GOOD_FIT or np.linalg.eigvalsh(hessian)[1] >= 0.0:
+    misfit = np.einsum("i,ik->k", fitted, terms) - square
+    _, by_x, by_y, xx, xy, yy = fitted.tolist()
+    bend = xx * yy - xy * xy
+    if misfit @ misfit > GOOD_FIT**2 * square.size or xx >= 0.0 or bend <= 0.0:
         return None
-    x_top, y_top = -np.linalg.solve(hessian, fitted[1:3])
+    x_top, y_top = (xy * by_y - yy * by_x) / bend, (xy * by_x - xx * by_y) / bend
     if max(abs(x_top), abs(y_top)) > 1.0:
         return None
     at_top = np.array([1.0, x_top, y_top, 0.5 * x_top**2, x_top * y_top, 0.5 * y_top**2])
-    weights = np.zeros(pressure.shape)
-    weights[cells] = np.einsum("i,ik->k", modes @ (modes.T @ at_top / scales), terms)
-    return weights
+    return float(at_top @ fitted), np.einsum("i,ik->k", modes @ (modes.T @ at_top / scales), terms), cells
 
 
 def area_and_semi_axes(pressure: Array, spacing: tuple[float, float], cover: Array) -> tuple[float, float, float]:
@@ -156,7 +164,7 @@ def _centred(index: NDArray[np.intp]) -> Array:
 
 def reaches_border(pressure: Array) -> bool:
     """Whether the outermost cells of the grid carry pressure."""
-    return any(bool(border.any()) for border in (pressure[0], pressure[-1], pressure[:, 0], pressure[:, -1]))
+    return bool(pressure[[0, -1]].any() or pressure[:, [0, -1]].any())
 
 
 def ends_at_material(pressure: Array, void: Mask) -> bool:

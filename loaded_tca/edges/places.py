@@ -38,7 +38,8 @@ def _distances(pair: GearPair, points: Array, lines: Literal["edges", "relief_st
 
 def has_relief_starts(pair: GearPair) -> bool:
     """Whether any flank has a linear relief."""
-    return any(gear.flank.relief_starts(np.zeros(0), np.zeros(0)) for gear in (pair.pinion, pair.wheel))
+    nowhere = np.zeros(0)
+    return bool(pair.pinion.flank.relief_starts(nowhere, nowhere) or pair.wheel.flank.relief_starts(nowhere, nowhere))
 
 
 def arcs_of(pair: GearPair) -> dict[int, tuple[Gear, Arc]]:

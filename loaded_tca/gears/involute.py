@@ -104,12 +104,12 @@ class InvoluteGear:
         """Transverse base pitch p_et = pi m_t cos(alpha_t) [mm]."""
         return pi * self.transverse_module * cos(self.transverse_pressure_angle)
 
-    @property
+    @cached_property
     def reference_radius(self) -> float:
         """Reference radius abs(r) = abs(d)/2 = abs(z) m_t/2 [mm]."""
         return 0.5 * self.tooth_count * self.transverse_module
 
-    @property
+    @cached_property
     def base_radius(self) -> float:
         """abs(r_b) = abs(r) cos(alpha_t) [mm]."""
         return self.reference_radius * cos(self.transverse_pressure_angle)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg.lapack import dgesv
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError
@@ -119,10 +120,10 @@ def balance(
         raise ConvergenceError(f"load sharing: no rotation gives a torque of {plain(torque, 6)} N mm", last=levers)
     lever, turning = levers.tolist()
     apart = (turning * (separations - separations.min())).tolist()
-    pairs = [_Pair(*parts) for parts in zip(laws, apart, lever, turning, compliance.tolist(), strict=True)]
+    pairs = [_Pair(*parts) for parts in zip(laws, apart, lever, turning, strict=True)]
     forces, change = [torque / sum(lever)] * len(pairs) if start is None else start.tolist(), math.inf
     for _ in range(MOST_STEPS):
-        target = _newton_step(pairs, torque, forces)
+        target = _newton_step(pairs, torque, forces, compliance)
         before, change = change, max(abs(new - old) for new, old in zip(target, forces, strict=True)) / max(target)
         forces = target
         if change <= STEP_TOLERANCE or before <= change <= STALLED:
@@ -132,16 +133,15 @@ def balance(
 
 
 class _Pair(NamedTuple):
-    """What the balance knows of a tooth pair: numbers and lists, in which a few pairs take less time than in arrays."""
+    """What the balance knows of a tooth pair: numbers, in which a few pairs take less time than in arrays."""
 
     law: PowerLaw
     separation: float  # along its line of action [mm]
     lever: float
     wheel_lever: float
-    compliance: list[float]
 
 
-def _newton_step(pairs: Sequence[_Pair], torque: float, forces: Sequence[float]) -> list[float]:
+def _newton_step(pairs: Sequence[_Pair], torque: float, forces: Sequence[float], compliance: Array) -> list[float]:
     """Forces (k,) after one step for the pairs under load, and those that come under load or part.
 
     No force falls below a tenth at once. The deformation grows without end over a force that vanishes (or not at all),
@@ -149,29 +149,31 @@ def _newton_step(pairs: Sequence[_Pair], torque: float, forces: Sequence[float])
     does not close it: that of the step counts on forces below zero.
     """
     loaded = [n for n, force in enumerate(forces) if force > 0.0]
-    tangent = [[pairs[n].compliance[m] for m in loaded] for n in loaded]
+    tangent, bent = compliance[loaded][:, loaded], (compliance @ forces).tolist()
     sides = []
     for row, n in enumerate(loaded):
         pair, force = pairs[n], forces[n]
         pressed = pair.law.deformation_under(force)
-        others = sum(part * forces[m] for part, m in zip(tangent[row], loaded, strict=True))
-        sides.append((pair.wheel_lever, -pressed - others - pair.separation))
-        tangent[row][row] += pair.law.exponent * pressed / force
-    solved = np.linalg.solve(tangent, sides).tolist()
-    given = sum(pairs[n].lever * (forces[n] + rest) for n, (_, rest) in zip(loaded, solved, strict=True))
-    rotation = (torque - given) / sum(pairs[n].lever * turned for n, (turned, _) in zip(loaded, solved, strict=True))
-    target = [*forces]
+        sides.append((pair.wheel_lever, -pressed - bent[n] - pair.separation))
+        tangent[row, row] += pair.law.exponent * pressed / force
+    _, _, moved, singular = dgesv(tangent, sides)  # what solves for a few pairs in a fourth of NumPy's time
+    if singular:
+        raise ConvergenceError(
+            "load sharing: forces of the tooth pairs are not determined by one rotation", last=forces
+        )
+    solved, carried, rate = moved.tolist(), 0.0, 0.0
+    for n, (turned, rest) in zip(loaded, solved, strict=True):
+        carried += pairs[n].lever * (forces[n] + rest)
+        rate += pairs[n].lever * turned
+    target, rotation = [*forces], (torque - carried) / rate
     for n, (turned, rest) in zip(loaded, solved, strict=True):
         wanted = forces[n] + rotation * turned + rest
         target[n] = min(max(wanted, LARGEST_FALL * forces[n]), torque / pairs[n].lever)
     most = max(target)
-    by_others = [
-        sum(part * force for m, (part, force) in enumerate(zip(pair.compliance, target, strict=True)) if m != n)
-        for n, pair in enumerate(pairs)
-    ]
+    by_others = ((compliance - np.diag(compliance.diagonal())) @ target).tolist()
     heaviest = target.index(most)
-    pair = pairs[heaviest]
-    asked = pair.separation + pair.law.deformation_under(most) + pair.compliance[heaviest] * most + by_others[heaviest]
+    pair, own = pairs[heaviest], float(compliance[heaviest, heaviest])
+    asked = pair.separation + pair.law.deformation_under(most) + own * most + by_others[heaviest]
     asked /= pair.wheel_lever
     for n, pair in enumerate(pairs):
         if target[n] < LITTLE * most and pair.wheel_lever * asked - pair.separation <= by_others[n]:

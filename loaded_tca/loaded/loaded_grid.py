@@ -92,35 +92,36 @@ def grouped_by_shape(grids: Sequence[LoadedGrid], ends: Indices) -> list[list[tu
 class Block:
     """K of grids of one shape on their active cells: half-spaces, cut cells, own slices.
 
-    ``cells``: their places in the row.
+    ``cells``: their places in the row; ``dtype``: precision of K.
     """
 
-    def __init__(self, grids: Sequence[LoadedGrid], cells: Indices) -> None:
+    def __init__(self, grids: Sequence[LoadedGrid], cells: Indices, dtype: str) -> None:
         problems = [grid.problem for grid in grids]
         stack, active = Grids.of(problems), np.stack([grid.active for grid in grids])
         self.cells, self.grids = cells, grids
         self._at, self._shape = np.flatnonzero(active), active.shape
         unit = np.array([one.spacing[1] * one.contact_modulus for one in problems])  # N to the lengths of a stack
         self._of_grids, self._unit = unit[:, None, None], np.repeat(unit, active.sum(axis=(1, 2)))
-        self._operator, self._inverse = stack.operator(threads=1), Preconditioner(stack.shape, stack.aspects, 1)
+        self._operator, self._dtype = stack.operator(dtype=dtype, threads=1), dtype
+        self._inverse = Preconditioner(stack.shape, stack.aspects, 1)
         self._root = 1.0 if stack.cover is None else np.sqrt(stack.cover[active])
 
     @classmethod
-    def of(cls, group: Sequence[tuple[LoadedGrid, Indices]]) -> Block:
+    def of(cls, group: Sequence[tuple[LoadedGrid, Indices]], dtype: str) -> Block:
         """That of a group of :func:`grouped_by_shape`."""
         grids, cells = zip(*group, strict=True)
-        return cls(grids, np.concatenate(cells))
+        return cls(grids, np.concatenate(cells), dtype)
 
     def displaced(self, forces: Array) -> Array:
         """Displacement of the cells [mm] under forces [N] on them."""
-        pressure = np.zeros(self._shape)
+        pressure = np.zeros(self._shape, self._dtype)
         pressure.ravel()[self._at] = forces / self._unit
-        return np.asarray(self._operator(pressure, np.empty(self._shape)).ravel()[self._at])
+        return np.asarray(self._operator(pressure, np.empty_like(pressure)).ravel()[self._at])
 
     def displaced_by(self, forces: Sequence[Array]) -> Array:
         """The same under forces [N] on any cells (nx, ny) of each grid."""
-        pressure = np.stack(forces) / self._of_grids
-        return np.asarray(self._operator(pressure, np.empty(self._shape)).ravel()[self._at])
+        pressure = (np.stack(forces) / self._of_grids).astype(self._dtype, copy=False)
+        return np.asarray(self._operator(pressure, np.empty_like(pressure)).ravel()[self._at])
 
     def preconditioned(self, residual: Array) -> Array:
         """Forces [N] that move the cells by nearly these displacements [mm]."""

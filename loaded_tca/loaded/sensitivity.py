@@ -46,6 +46,8 @@ TOLERANCE = 1e-10
 """Of the linear systems, relative: the derivatives are exact to 1e-8."""
 RATE_TOLERANCE = 1e-4
 """The same where c alone is wanted, whose error falls with its square: 1e-6 at the most."""
+SINGLE_PRECISION = 1e-6
+"""Tolerance above which K is in single precision, whose rounding leaves 1e-7 of it."""
 MOST_ITERATIONS = 500
 MOST_STEPS = 100
 """The same where force lines follow the forces: all steps are kept. A dozen or two are the rule."""
@@ -109,7 +111,8 @@ class Tangents:
         slices = [grid.active.shape[1] for grid in self.grids]
         columns = np.concatenate([grid.active.nonzero()[1] for grid in self.grids])
         self._slice, self._slices = columns + (np.cumsum(slices) - slices)[self.grid], sum(slices)
-        self._blocks = [Block.of(group) for group in grouped_by_shape(self.grids, self.ends)]
+        dtype = "float32" if tolerance > SINGLE_PRECISION else "float64"
+        self._blocks = [Block.of(group, dtype) for group in grouped_by_shape(self.grids, self.ends)]
         self._coupling = None if bending is None else _coupling(states, bending)
         levers = [(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in self.grids]
         self.pinion_levers, self.wheel_levers = np.array(levers).reshape(-1, 2).T[:, self.grid]

@@ -125,7 +125,7 @@ class GearPair:
         """d T1/d phi2 = 1e3 r_b1 r_b2 b [N mm/rad] where the mesh stiffness is 1 N/(mm um)."""
         return 1e3 * self.base_radii[0] * self.base_radii[1] * self.face_width
 
-    @property
+    @cached_property
     def contact_modulus(self) -> float:
         """E* of the two materials [MPa]."""
         return contact_modulus(self.pinion.material, self.wheel.material)

@@ -147,8 +147,9 @@ def numbers_and_maps(
         maps[place] = one
         of_contact = _numbers(pair, loaded, one, peaks.get(place)) | _at_edge(pair, loaded, one, at_edges[place])
         for name, number in of_contact.items():
-            missing = math.nan if isinstance(number, float) else type(number)()
-            numbers.setdefault(name, np.full(shape, missing))[place] = number
+            if name not in numbers:
+                numbers[name] = np.full(shape, math.nan if isinstance(number, float) else type(number)())
+            numbers[name][place] = number
     return numbers, maps
 
 
@@ -203,8 +204,9 @@ def _at_edge(
     """Pressure of a loaded contact at an edge: that of a sharp one only where no rounded one can have a larger one."""
     peak = rounded or NOT_REACHED
     pressure, place, error = peak.pressure, peak.place, peak.error
-    of_material, at_arc = replace(one, pressure=loaded.solution.pressure_on_material), loaded.at_arc
+    at_arc = loaded.at_arc
     if loaded.at_edge:
+        of_material = replace(one, pressure=loaded.solution.pressure_on_material)
         across, along = sharp_edge_cell(pair, of_material)
         cell = float(of_material.pressure[across, along])
         if not at_arc or cell > (1.0 + EQUAL) * peak.bound:  # both are equal at the cap

@@ -58,15 +58,22 @@ class SlicePeak:
     resolution : float [mm]
         Length along the contact by which the place is known.
     slices : SliceLoads
-    slopes : (ny,) array [1/mm^2]
-        Derivative of the pressure by the forces of the slices; zero at the cap.
+    curvature : (n,) array or None [1/mm]
+        Across the contact, at the places of ``slices``; None where the pressure is at the cap, or there is none.
     """
 
     pressure: float
     place: tuple[float, float]
     resolution: float
     slices: SliceLoads
-    slopes: Array
+    curvature: Array | None
+
+    @property
+    def slopes(self) -> Array:
+        """Derivative (ny,) of the pressure by the forces of the slices [1/mm^2]; zero at the cap."""
+        if self.curvature is None:
+            return np.zeros(self.slices.force.size)
+        return 0.5 * self.pressure * _relative_slopes(self.slices, self.place[1], self.curvature)
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,12 +171,9 @@ def largest_slice_pressures(pair: GearPair, contacts: Sequence[UnderPressure]) -
     cap = math.inf if pair.max_pressure is None else pair.max_pressure
     peaks = []
     for k, top in enumerate(pressure.argmax(axis=1).tolist()):
-        highest, slopes = float(pressure[k, top]), np.zeros(slices[k].force.size)
-        x, y, _ = slices[k].at(finest[k, top])
-        if 0.0 < highest < cap:
-            slopes = 0.5 * highest * _relative_slopes(slices[k], float(y), bends[k])
-        resolution = float(np.diff(finest[k]).max())
-        peaks.append(SlicePeak(min(highest, cap), (float(x), float(y)), resolution, slices[k], slopes))
+        highest, (x, y, _) = float(pressure[k, top]), slices[k].at(finest[k, top])
+        curvature, resolution = bends[k] if 0.0 < highest < cap else None, float(np.diff(finest[k]).max())
+        peaks.append(SlicePeak(min(highest, cap), (float(x), float(y)), resolution, slices[k], curvature))
     return peaks
 
 
