@@ -2122,6 +2122,20 @@ FAULTS = (
         "        import scipy.spatial\n\n        normal, sine, cosine = frame",
         "test_public_names.py::test_check_and_the_imports_of_run_load_no_heavy_library",
     ),
+    Fault(
+        "Helping threads do long works themselves and wait for the interpreter",
+        "apart.py",
+        "if is_helper() else None",
+        "if False else None",
+        "test_apart.py::test_helper_has_a_work_done_by_another_process_on_one_thread",
+    ),
+    Fault(
+        "Processes that helpers start take as many threads as cores",
+        "apart.py",
+        "with one_thread():",
+        "if True:",
+        "test_apart.py::test_helper_has_a_work_done_by_another_process_on_one_thread",
+    ),
 )
 
 
