@@ -34,6 +34,8 @@ TEETH_SECONDS, TEETH_EXPONENT, TEETH_BYTES = 7.5e-3, 1.5, 400e6
 """Of the finite element models of both gears: the time for the layers of elements across both faces."""
 IMPORT_SECONDS, FILES_SECONDS, PICTURE_SECONDS = 1.6, 0.15, 0.18
 """Of the command: what it imports, result and tables, and each picture."""
+APART_SECONDS = 0.3
+"""Of a helper, before each model of root stress: a process is started and imports what it needs."""
 ROOT_SECONDS, ROOT_BYTES = 0.12, 39e6
 """Of a model of root stress for each layer of elements across the face, of which wide faces have more; measured with 6
 to 24 layers: the memory is within a quarter of what the model itself tells, the time within a factor of two."""
@@ -84,13 +86,16 @@ class Effort:
 
     @property
     def seconds(self) -> float:
-        """Time [s] on this machine: of what is done at once that which ends last, as ``side_by_side`` shares it."""
+        """Time [s] on idle cores of this machine: of what is done at once that which ends last.
+
+        As ``side_by_side`` shares it; where other programmes have the cores it takes as much longer as they leave less.
+        """
         speed, helpers = machine_speed(), max(0, min(self.jobs, 1 + len(self.roots)) - 1)
         teeth = max(self.teeth, default=0.0) if self.jobs > 1 and not helpers else sum(self.teeth)
         ends = [float(speed.states) * self.states + float(speed.models) * teeth, *([0.0] * helpers)]
         for model in self.roots:
             first = ends.index(min(ends))
-            ends[first] += float(speed.models) * model
+            ends[first] += float(speed.models) * model + (float(speed.states) * APART_SECONDS if first else 0.0)
         return max(ends) + float(speed.states) * self.around
 
     @property
@@ -110,7 +115,8 @@ class Effort:
 
     def __str__(self) -> str:
         contacts = f"{self.contacts} contact" + "s" * (self.contacts > 1)
-        text = f"{contacts} of {self.cells} cells: roughly {plain(self.seconds, 2)} s, {plain(self.gibibytes, 2)} GiB"
+        text = f"{contacts} of {self.cells} cells: roughly {plain(self.seconds, 2)} s on idle cores, "
+        text += f"{plain(self.gibibytes, 2)} GiB"
         return text if self.fits else f"{text}; the machine has {plain(machine_memory() / 2**30, 2)} GiB"
 
 

@@ -2300,6 +2300,20 @@ FAULTS = (
         "        if self.pitches:\n            return labels",
         "test_revolution.py::test_revolution_that_is_not_closed_says_so",
     ),
+    Fault(
+        "Helping threads do long works themselves and wait for the interpreter",
+        "apart.py",
+        "if is_helper() else None",
+        "if False else None",
+        "test_apart.py::test_helper_has_a_work_done_by_another_process_on_one_thread",
+    ),
+    Fault(
+        "Processes that helpers start take as many threads as cores",
+        "apart.py",
+        "with one_thread():",
+        "if True:",
+        "test_apart.py::test_helper_has_a_work_done_by_another_process_on_one_thread",
+    ),
 )
 
 

@@ -10,7 +10,7 @@ import pytest
 from loaded_tca import apart as module
 from loaded_tca.apart import apart
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.threads import NotWantedError, _helps, jobs
+from loaded_tca.threads import JOBS, NotWantedError, _helps, jobs
 
 
 @contextmanager
@@ -46,7 +46,8 @@ def sleep(path):
     time.sleep(600.0)
 
 
-def test_helper_has_a_work_done_by_another_process_on_one_thread():
+def test_helper_has_a_work_done_by_another_process_on_one_thread(monkeypatch):
+    monkeypatch.delenv(JOBS)
     assert apart(place_of, 7)[0] == os.getpid()
     with helping():
         process, threads, number = apart(place_of, 7)

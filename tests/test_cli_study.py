@@ -68,9 +68,8 @@ def test_long_study_says_beforehand_what_its_variants_take(study, capsys, monkey
     monkeypatch.setattr("loaded_tca.cli.terminal.WORTH_TELLING", 0.0)
     assert cli.main(["study", study([2.0, 4.0]), "--out", "out"]) == 0
     (line,) = [line for line in capsys.readouterr().err.splitlines() if "variants" in line]
-    each, whole = map(
-        float, re.fullmatch(r"loaded-tca: 2 variants, roughly (\S+) s each, (\S+) s together", line).groups()
-    )
+    sentence = r"loaded-tca: 2 variants, roughly (\S+) s each on idle cores, (\S+) s together"
+    each, whole = map(float, re.fullmatch(sentence, line).groups())
     assert whole == pytest.approx(2.0 * each, rel=0.05)  # two digits each
 
 

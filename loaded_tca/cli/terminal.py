@@ -93,13 +93,15 @@ def say_cost(study: Study, workers: int = 1) -> None:
     from loaded_tca.plain import plain
     from loaded_tca.scene import Scene
     from loaded_tca.studies.stage import expected_seconds as of_stage
+    from loaded_tca.threads import with_jobs
 
-    each = expected_effort(study.scene).seconds if isinstance(study.scene, Scene) else of_stage(study) / len(study)
+    with with_jobs(1):  # of each variant
+        each = expected_effort(study.scene).seconds if isinstance(study.scene, Scene) else of_stage(study) / len(study)
     whole = len(study) * each / max(1, min(workers, len(study)))
     if sys.stderr is not None and (sys.stderr.isatty() or whole > WORTH_TELLING):
         minutes = f"{plain(whole / 60.0, 2)} min" if whole > 100.0 else f"{plain(whole, 2)} s"
         by = f" by {workers} processes" if workers > 1 else ""
-        say(f"loaded-tca: {len(study)} variants, roughly {plain(each, 2)} s each, {minutes} together{by}")
+        say(f"loaded-tca: {len(study)} variants, roughly {plain(each, 2)} s each on idle cores, {minutes} together{by}")
 
 
 @contextmanager

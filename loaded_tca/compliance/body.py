@@ -21,12 +21,13 @@ import scipy
 
 from loaded_tca.compliance.dissection import Factorisation, factorise
 from loaded_tca.compliance.finite_elements import Discretisation, discretise, node_offsets
-from loaded_tca.compliance.geometry import BodyNodes, body_nodes, cuts_at_bore, rim_growth
+from loaded_tca.compliance.geometry import ROUNDING, BodyNodes, body_nodes, cuts_at_bore, rim_growth
 from loaded_tca.compliance.layout import MeshDensity, RingLayout
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.material import Material
 from loaded_tca.reference.weber_banaschek import ring_torsion
+from loaded_tca.roots import find_roots
 from loaded_tca.tooth.surface import Resolution, build_tooth
 
 if TYPE_CHECKING:
@@ -38,6 +39,8 @@ FIRST_CHORD = 0.25
 """First guess of the distance from a flank to the middle of the tooth, over the height of the flank."""
 TOGETHER = 512
 """Elements whose forces are found at a time."""
+MOST_DOUBLINGS = 5
+"""Of that guess."""
 CORE = 2
 """Layers of a solid gear below the diameter of its journals."""
 
@@ -188,8 +191,6 @@ class ToothFrame:
 
     def _depth(self, point: Array, normal: Array, scale: float) -> Array:
         """Distances (m,) along the normals to the middle of the tooth [mm]."""
-        from scipy.optimize.elementwise import bracket_root, find_root
-
         rows = self._flank_rows()
         middle = self.nodes.angle[self._column(0.5), (rows.start + rows.stop) // 2]  # half way up the flank
 
@@ -198,9 +199,15 @@ class ToothFrame:
             where = self.nodes.sections.coordinate(np.hypot(x, y), z)
             return self.side * (np.arctan2(y, x) - np.interp(where, self.nodes.coordinate, middle))
 
-        every = (np.arange(len(point)),)
-        bracket = bracket_root(beyond, np.zeros(len(point)), FIRST_CHORD * scale, xmin=0.0, args=every)
-        return np.asarray(find_root(beyond, bracket.bracket, args=every).x)
+        ends, every = np.array([[0.0], [FIRST_CHORD * scale]]) * np.ones(len(point)), np.arange(len(point))
+        values = np.array([beyond(end, every) for end in ends])
+        for _ in range(MOST_DOUBLINGS):
+            short = np.flatnonzero(values[0] * values[1] > 0.0)
+            if not short.size:
+                break
+            ends[1, short] *= 2.0
+            values[1, short] = beyond(ends[1, short], short)
+        return find_roots(beyond, ends, values, ROUNDING * scale)
 
     def on_flank(self, places: FlankPlaces, number: Indices, tooth: int = 0) -> SurfacePlaces:
         """Places among the nodes (columns, rows, layers) numbered ``number``, on the flank in contact of a tooth."""

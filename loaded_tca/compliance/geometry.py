@@ -16,8 +16,12 @@ import scipy
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.layout import MeshDensity, RingLayout, SectorLayout
 from loaded_tca.errors import InputError
+from loaded_tca.roots import find_roots
 from loaded_tca.tooth.fillet import Sections, in_space, lengths_along, polar
 from loaded_tca.tooth.surface import ToothSurface
+
+ROUNDING = 1e-15
+"""Of lengths that are roots, over the size of a gear or a tooth."""
 
 FILLET_SHARE = 0.5
 """Part of the fillet that belongs to the tooth; the rest to the columns of the space."""
@@ -138,8 +142,6 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
     InputError
         If the sections are not those of the layout.
     """
-    from scipy.optimize.elementwise import find_root
-
     outline = tooth.outline
     wanted = 2 * layout.density.lengthwise + 1
     if outline.shape[1] != wanted:
@@ -149,11 +151,14 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
     images = sections.radius(rho, z), np.unwrap(np.arctan2(outline[..., 1], outline[..., 0]), axis=0)
     lowest = images[0].min(axis=0)
 
-    def beyond_bore(image: Array, section: Array, rho: Array) -> Array:
-        return sections.point(image, section)[0] - rho
+    circles = np.broadcast_to(bore_radius, lowest.shape)
 
-    circles = coordinate, np.broadcast_to(bore_radius, lowest.shape)
-    bore = find_root(beyond_bore, (0.0 * lowest, lowest), args=circles).x
+    def beyond_bore(image: Array, section: Indices) -> Array:
+        return sections.point(image, coordinate[section])[0] - circles[section]
+
+    ends, every = np.array([0.0 * lowest, lowest]), np.arange(len(lowest))
+    values = np.array([beyond_bore(end, every) for end in ends])
+    bore = find_roots(beyond_bore, ends, values, ROUNDING * float(lowest.max()))
     radius, angle = np.full((2, *layout.shape, len(coordinate)), np.nan)
     unlike = {sector.density: sector for sector in layout.sectors}
     blocks = {}

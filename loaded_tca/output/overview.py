@@ -47,7 +47,7 @@ def describe_scene(scene: Scene) -> str:
         for sentence in questions(scene):
             give_accuracy_warning(sentence)
     effort = expected_run_effort(scene)
-    spent = ("analysis, roughly: time [s], memory [GiB]", plain(effort.seconds, 2), plain(effort.gibibytes, 2))
+    spent = ("analysis on idle cores, about: [s], [GiB]", plain(effort.seconds, 2), plain(effort.gibibytes, 2))
     rows = [*chain.from_iterable(sections.values()), spent]
     lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
     beside = [f"ISO 6336: {reason}" for reason in reasons_beside(iso_figures(scene, max(scene.torques)))]

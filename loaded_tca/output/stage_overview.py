@@ -39,7 +39,12 @@ def describe_stage(stage: Stage) -> str:
     for name, rows, sentences in geometry_of_meshes(stage):
         lines += ["", name, *(_line(*row) for row in rows)]
         warned += [f"warning: {name}: {sentence}" for sentence in sentences]
-    lines += ["", _line("analysis, roughly: time [s]", plain(expected_stage_effort(stage).seconds, 2)), HELD, *warned]
+    lines += [
+        "",
+        _line("analysis on idle cores, about [s]", plain(expected_stage_effort(stage).seconds, 2)),
+        HELD,
+        *warned,
+    ]
     return "\n".join(lines)
 
 

@@ -24,7 +24,11 @@ LINE = 13.0
 BESIDE = {"left": 31.0, "right": 31.0, "bottom": 19.0, "top": 19.0}
 """Room for ticks and their labels [pt]."""
 MEASURED_AGAIN = "_update_ticks", "_get_ticklabel_bboxes"
-"""Methods by which Matplotlib places the ticks of an axis and measures their labels, for each text and line beside."""
+"""Methods by which Matplotlib places the ticks of an axis and measures their labels, for each text and line beside.
+
+They are its own: of public ones ``get_tightbbox`` covers layouts, but not drawing and the places of titles and labels
+of axes, which ask for ticks by these two. A later Matplotlib that has none of that name measures as it does by itself.
+"""
 COLORBAR = "<colorbar>"
 """What Matplotlib labels the panels of colour bars, which it measures twice in a pass."""
 

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
-import scipy
 from matplotlib import colormaps, rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -165,7 +164,7 @@ def from_zero(axes: Axes, part: float = 1.0) -> None:
 def over_a_stretch(values: Array) -> Array:
     """Values (n,) that stand in a row of three or more, of fewer positions all of them; others NaN."""
     known = np.isfinite(values)
-    rows, _ = scipy.ndimage.label(known)
+    rows = np.cumsum(np.diff(known, prepend=False) & known) * known  # number of the stretch, from one on
     long = np.bincount(rows) >= min(SHORTEST_STRETCH, len(values))
     return np.where(known & long[rows], values, np.nan)
 

@@ -10,6 +10,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
+import loaded_tca.roots as roots
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require_positive
 
@@ -323,6 +324,4 @@ def _axis_ratio(curvature_ratio: float) -> float:
 
     # The ratio of curvatures is never below a/b, so -log(ratio) bounds log(b/a) from below.
     lower = -logarithm - 1e-6
-    return (
-        math.exp(float(scipy.optimize.brentq(excess, lower, 0.0, xtol=1e-15, rtol=1e-15))) if logarithm > 0.0 else 1.0
-    )
+    return math.exp(roots.find_root(excess, lower, 0.0)) if logarithm > 0.0 else 1.0

@@ -9,7 +9,6 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array, Mask
@@ -267,6 +266,15 @@ def reached_edges(result: CycleNumbers) -> NDArray[np.bool_]:
     return reached
 
 
+def _with_neighbours(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Cells (n, m), and those that share a side with one of them."""
+    wider = cells.copy()
+    for part, beside in ((cells, wider), (cells.T, wider.T)):
+        beside[1:] |= part[:-1]
+        beside[:-1] |= part[1:]
+    return wider
+
+
 def edges_of_contact(result: CycleNumbers, torque: int, position: int, column: int) -> NDArray[np.bool_]:
     """Edges (8,) that one contact of a result reaches, given by its indices; see :func:`reached_edges`."""
     result, torque = gears_under_torque(result, torque)
@@ -275,7 +283,7 @@ def edges_of_contact(result: CycleNumbers, torque: int, position: int, column: i
     one = result.maps[torque][position][column]
     if one is None or not result.on_edge[torque, position, column]:
         return np.asarray(reached)
-    row, across = np.nonzero(scipy.ndimage.binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
+    row, across = np.nonzero(_with_neighbours(one.pressure > 0.0) & np.isinf(one.gap))
     points = one.origin + one.x[row, None] * one.axes[0] + one.y[across, None] * one.axes[1]
     reached = reached | (edge_distances(pair, points) < 0.0).any(axis=0)
     if pair.sharp is not pair:

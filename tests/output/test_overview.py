@@ -48,7 +48,7 @@ def test_no_single_contact_where_two_pairs_touch_always():
 
 @pytest.mark.thorough
 def test_estimate_is_shown_and_noted_where_it_exceeds_the_memory(monkeypatch):
-    label = "analysis, roughly: time [s], memory [GiB]"
+    label = "analysis on idle cores, about: [s], [GiB]"
     few, many = (described(analysis__compliance="contact", analysis__positions=count) for count in (20, 2000))
     start = 0.4  # s, of the first analysis of a process
     states = [float(cells(text, label)[0]) - start for text in (few, many)]

@@ -7,25 +7,38 @@ kept; the processor time is that of ``loaded_tca.analyse`` alone, and so is the 
 Eight jobs of all commands stand before them: files of ``examples`` as they are, each in such a process.
 
 Run from the root of the repository: ``python -m validation.loaded.user_scenes``; it writes
-``docs/studies/how_long.md``.
+``docs/studies/how_long.md``. With ``--constants`` it writes nothing, but prints what the constants of
+``loaded_tca.effort`` are on this machine, over its speed: for an idle one.
 """
 
 from __future__ import annotations
 
 import cProfile
+import io
 import json
 import math
 import os
+import resource
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import redirect_stdout
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
-from loaded_tca import analyse, analyse_revolution, parse_scene, read_scene
+import loaded_tca.effort as effort
+from loaded_tca import analyse, analyse_revolution, load_result, parse_scene, read_scene
+from loaded_tca.cli import main
+from loaded_tca.compliance import root_stress_model, tooth_compliance
+from loaded_tca.compliance.influence import forget
+from loaded_tca.compliance.teeth import layers_across
 from loaded_tca.effort import expected_effort
+from loaded_tca.machine_speed import measured_speed
+from loaded_tca.plots import plot_all
 from loaded_tca.stages import analyse_stage, read_stage
 from validation.page import ROOT, SCENES, Page, machine, table, write_page
 
@@ -263,6 +276,72 @@ def _parts(profile: cProfile.Profile) -> dict[str, float]:
     return dict(sorted(((n, part) for n, part in parts.items() if part > 0.02), key=lambda one: -one[1]))
 
 
+FITTED = ("helical", "ev_stage", "spiral_bevel")
+"""Files of the scenes that the constants of the estimate are measured with."""
+
+
+def constants_alone() -> None:
+    """Print as JSON what parts of ``run`` take for the scene that the command line of this process holds.
+
+    Its flanks alone are run twice: the second run has all imported.
+    """
+    started = time.process_time()
+    scene = read_scene(json.loads(sys.argv[1])[0]).with_changes({"analysis.compliance": "contact"})
+    with TemporaryDirectory() as folder:
+        file, out = Path(folder) / "scene.toml", Path(folder) / "out"
+        file.write_text(scene.to_toml(), encoding="utf-8")
+        whole = [_processor_time(partial(_run_command, file, out)) for _ in range(2)]
+        pair, result = scene.pair(), load_result(out / "result.nc")
+        tooth_compliance(pair)  # imports of finite elements are of the first analysis
+        models = [partial(tooth_compliance, pair), *(partial(root_stress_model, g) for g in (pair.pinion, pair.wheel))]
+        forget()
+        teeth, *roots = (_processor_time(model) for model in models)
+        pictures = _processor_time(partial(plot_all, result, out)) / len(list(out.glob("*.png")))
+        apart = _processor_time(partial(_in_a_process, "nothing", [], "start"), of=resource.RUSAGE_CHILDREN)
+    speed, layers = measured_speed(), [layers_across(gear) for gear in (pair.pinion, pair.wheel)]
+    states, factor = float(speed.states), float(speed.models)
+    parts = {
+        "TEETH_SECONDS": teeth / sum(layers) ** effort.TEETH_EXPONENT / factor,
+        "ROOT_SECONDS": sum(roots) / sum(layers) / factor,
+        "IMPORT_SECONDS": (started + whole[0] - whole[1]) / states - effort.START_SECONDS,
+        "PICTURE_SECONDS": pictures / states,
+        "APART_SECONDS": apart / states,
+    }
+    print(json.dumps({**parts, "states": states, "models": factor}))
+
+
+def nothing() -> None:
+    """Start a process that makes a model of root stress, but make none."""
+    import skfem.quadrature  # noqa: F401
+
+    print("0")
+
+
+def _run_command(scene: Path, out: Path) -> None:
+    with redirect_stdout(io.StringIO()):
+        if main(["run", str(scene), "--out", str(out)]):
+            raise RuntimeError(f"{scene}: cannot be run")
+
+
+def _processor_time(work: Callable[[], object], of: int = resource.RUSAGE_SELF) -> float:
+    before = resource.getrusage(of)
+    work()
+    after = resource.getrusage(of)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def constants() -> str:
+    """What the constants of the estimate are on this machine, the geometric mean of some scenes, and as they are."""
+    parts = [_in_a_process("constants_alone", [str(UserScene("", file).path)], file) for file in FITTED]
+    lines = [f"load average {os.getloadavg()[0]:.1f}; {machine()}"]
+    for name in parts[0]:
+        values = [part[name] for part in parts]
+        mean = math.exp(sum(map(math.log, values)) / len(values))
+        now = f", now {getattr(effort, name):.3g}" if name.isupper() else ""
+        lines.append(f"{name} {mean:.3g}{now}: " + ", ".join(f"{value:.3g}" for value in values))
+    return "\n".join(lines)
+
+
 def page() -> Page:
     """Table of all scenes."""
     lines = []
@@ -300,10 +379,12 @@ Results, warnings and errors do not depend on it, to the last bit. Variants of s
 process and in workers. Models of root stress made at once take their memory at once: they are made one by one where
 the analysis would need more than half of the machine's.
 
-Of the electric drive with root stress on two idle cores a helper makes the models of the roots while the other thread
-solves the states: the analysis takes 0.77 to 0.80 of the time of one job (26 and 30 s for 33 and 38 s), by a quarter
-more processor time, since both threads need one interpreter. What does not gain: states in halves, two threads
-of which wait for the interpreter a quarter of their time; other thresholds of the allocator.
+Helpers have models of root stress, and one mesh of a planetary stage, made by processes of their own: threads waited
+for the interpreter with each other, which took a quarter more processor time. Of the electric drive with root stress
+by two jobs, by processor time: 21 s in the process of the analysis, of which 19 s are states with models of the teeth,
+and 22 s in those of both models of roots, for 45 s by one job; so two idle cores need about 0.55 of the time of one.
+These are of a machine with a load of 11, which makes all of them longer. What does not gain: states in halves, two
+threads of which wait for the interpreter a quarter of their time; other thresholds of the allocator.
 
 ## Scenes by defaults
 
@@ -330,4 +411,7 @@ validation.loaded.user_scenes`.
 
 
 if __name__ == "__main__":
-    write_page(__doc__, page)
+    if "--constants" in sys.argv:
+        print(constants())
+    else:
+        write_page(__doc__, page)
