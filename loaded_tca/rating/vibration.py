@@ -33,8 +33,8 @@ def full_second_moment(gear: CylindricalGear) -> float:
     >>> from loaded_tca.gears import CylindricalGear
     >>> gear = CylindricalGear(teeth=40, normal_module=3.0, face_width=25.0)
     >>> disc = pi / 32.0 * (gear.tip_radius + gear.root_radius) ** 4
-    >>> round(full_second_moment(gear) / disc, 2)
-    1.0
+    >>> round(full_second_moment(gear) / disc, 2)  # teeth have more of their material outside the mean diameter
+    1.02
     """
     outline = np.concatenate([*half_tooth(gear, POINTS).values()])
     x, y = outline.T

@@ -23,7 +23,7 @@ def test_tooth_that_cannot_be_built_is_refused_with_the_way_out(monkeypatch):
     def build(*_):
         raise GeometryError("the undercut of both sides cuts off the tooth")
 
-    monkeypatch.setattr("loaded_tca.compliance.compliance.build_tooth", build)
+    monkeypatch.setattr("loaded_tca.compliance.teeth.build_tooth", build)
     other = SPUR.with_changes({"pinion.bore_diameter_mm": 41.0})  # teeth that are known are not built again
     with pytest.raises(GeometryError, match=f"^pinion: the undercut of both sides cuts off the tooth{WAY_OUT}"):
         require_teeth(other.pair())
