@@ -150,12 +150,7 @@ def repr_of(value):
 )
 def test_numbers_that_are_none_are_refused_by_every_closed_form(bad):
     wrong = {one for one in unnamed(("float",), bad) if one.split("(")[0] in CLOSED_FORMS}
-    optional = {
-        "slip_layer(strength)",
-        "static_notch_factor(strength)",
-        "named_material(hardness)",
-        "tip_section(effective_pressure_angle)",
-    }
+    optional = {"slip_layer(strength)", "static_notch_factor(strength)", "named_material(hardness)"}
     assert wrong == (optional if bad is None else set())
 
 
