@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import cos, pi
 from typing import TYPE_CHECKING, Any
 
@@ -11,12 +12,16 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalMesh
+from loaded_tca.rating.cases import Cases, cases_of, problems_of_cases
+from loaded_tca.rating.solved import SolvedLoads, solved_loads
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.rating import RatingSection, StrengthSection
+from loaded_tca.scene.sections import Operation
 
 if TYPE_CHECKING:
     from loaded_tca.results.numbers import CycleNumbers
-    from loaded_tca.scene.sections import LubricantSection, Operation
+    from loaded_tca.scene.sections import LubricantSection
+    from loaded_tca.scene.standards import ContactStandard
 
 FEWEST = 5
 """Positions over a pitch: of fewer the largest pressure and K_Hbeta miss much of the mesh."""
@@ -37,6 +42,11 @@ class RatingInputs:
     rating : RatingSection
     operation : Operation
     lubricant : LubricantSection
+    cases : Cases
+    solved : SolvedLoads
+        Under the torques of the result.
+    standard : ContactStandard
+        Contact factors and stiffnesses of the standard.
     """
 
     result: CycleNumbers
@@ -46,33 +56,41 @@ class RatingInputs:
     rating: RatingSection
     operation: Operation
     lubricant: LubricantSection
+    cases: Cases
+    solved: SolvedLoads
+    standard: ContactStandard
+
+    @cached_property
+    def loads(self) -> SolvedLoads:
+        """Under the torques of the cases."""
+        return self.solved.at(self.cases.factor_torque)
 
     @property
     def torque(self) -> Array:
-        """Pinion torques (t,) [N mm]."""
-        return self.result.torque
+        """Pinion torques (c,) [N mm]."""
+        return self.cases.torque
 
     @property
     def load(self) -> Array:
-        """F_t K_A/b (t,) [N/mm], at the reference circle."""
-        force = self.torque / self.mesh.pinion.reference_radius
+        """F_t K_A/b (c,) [N/mm], at the reference circle, for load factors."""
+        force = self.cases.factor_torque / self.mesh.pinion.reference_radius
         return np.asarray(force * self.operation.application_factor / self.mesh.common_face_width)
 
     @property
-    def velocity(self) -> float:
-        """Velocity at the reference circle [m/s]."""
-        return 2e-3 * pi * self.mesh.pinion.reference_radius * self.operation.pinion_speed_rpm / 60.0
+    def velocity(self) -> Array:
+        """Velocity at the reference circle (c,) [m/s]."""
+        return np.asarray(2e-3 * pi * self.mesh.pinion.reference_radius * self.cases.speed / 60.0)
 
     @property
     def cycles_per_hour(self) -> Array:
-        """Load cycles of pinion and wheel in an hour (2,)."""
+        """Load cycles of pinion and wheel in an hour of each case (c, 2)."""
         ratio = self.mesh.pinion.teeth / self.mesh.wheel.teeth
-        return 60.0 * self.operation.pinion_speed_rpm * np.array([1.0, ratio])
+        return 60.0 * self.cases.speed[:, None] * np.array([1.0, ratio])
 
     @property
     def cycles(self) -> Array:
-        """Load cycles N_L of pinion and wheel in the life that is asked for (2,)."""
-        return self.cycles_per_hour * self.rating.life_hours
+        """Load cycles N_L of pinion and wheel under each case in the life that is required (c, 2)."""
+        return self.cycles_per_hour * self.cases.hours[:, None]
 
     @property
     def virtual_contact_ratio(self) -> float:
@@ -98,7 +116,6 @@ def inputs_of(result: CycleNumbers) -> RatingInputs:
         "pinion.strength": (scene.pinion.strength, no_limits),
         "wheel.strength": (scene.wheel.strength, no_limits),
         "rating": (scene.rating, "missing; it has the required safeties and the hours"),
-        "operation": (scene.operation, "missing; strength, cycles and K_v depend on pinion_speed_rpm"),
         "lubricant": (scene.lubricant, "missing; the strength of flanks depends on viscosity_40_mm2_s"),
     }
     problems = [f"{name}: {words}" for name, (section, words) in needed.items() if section is None]
@@ -109,14 +126,20 @@ def inputs_of(result: CycleNumbers) -> RatingInputs:
         problems.append(f"analysis.positions: {len(result.path)}; a rating takes {FEWEST} or more: run the scene again")
     if not (torques > 0.0).all():
         problems.append("pinion torque: 0 N m; a rating takes torques above 0")
+    problems += problems_of_cases(scene, float(torques.max()))
     problems += [
         f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
     ]
     if problems:
         raise InputError(problems)
     sections: Any = tuple(section for section, _ in needed.values())
-    pinion, wheel, *others = sections
-    return RatingInputs(result, scene, scene.mesh(), (pinion, wheel), *others)
+    pinion, wheel, rating, lubricant = sections
+    cases = cases_of(scene, torques)
+    operation = scene.operation or Operation(pinion_speed_rpm=float(cases.speed.max()))
+    loads, standard = solved_loads(result), scene.contact_standard
+    return RatingInputs(
+        result, scene, scene.mesh(), (pinion, wheel), rating, operation, lubricant, cases, loads, standard
+    )
 
 
 def _outside(scene: CylindricalScene) -> list[tuple[str, str, bool, str]]:

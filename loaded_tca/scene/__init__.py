@@ -20,7 +20,8 @@ from loaded_tca.scene.flank_form import FlankForm, Measurement
 from loaded_tca.scene.model import Scene
 from loaded_tca.scene.parse import scene_from_table
 from loaded_tca.scene.parse import parse_scene, read_scene
-from loaded_tca.scene.sections import Analysis, ElasticMaterial, Load, Modifications
+from loaded_tca.scene.load import Load, LoadCase
+from loaded_tca.scene.sections import Analysis, ElasticMaterial, Modifications
 
 __all__ = [
     "Analysis",
@@ -32,6 +33,7 @@ __all__ = [
     "FlankForm",
     "InternalScene",
     "Load",
+    "LoadCase",
     "Measurement",
     "Modifications",
     "Scene",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar, Literal
 
 import loaded_tca.warning_kinds as kinds
@@ -156,6 +157,11 @@ class CylindricalScene(BlankScene):
 
     def mesh(self) -> CylindricalMesh:
         """Return the macro geometry: diameters, contact ratios, path of contact."""
+        return self._mesh
+
+    @cached_property
+    def _mesh(self) -> CylindricalMesh:
+        """The macro geometry, which every number of the standards asks for again."""
 
         def gear(own: GearSection, sign: int, name: str, shift: float | None) -> CylindricalGear:
             values = parameters_of(CylindricalGear, self.geometry, own)
@@ -291,7 +297,7 @@ class CylindricalScene(BlankScene):
         )
         return pinion, wheel
 
-    @property
+    @cached_property
     def root_sections(self) -> tuple[iso6336_3.RootSection | None, iso6336_3.RootSection | None]:
         """Critical sections of the teeth of both gears after ISO 6336-3; None where it has none."""
         mesh = self.mesh()

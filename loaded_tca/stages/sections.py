@@ -19,9 +19,10 @@ from loaded_tca.scene.blank import OTHER
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.internal import InternalScene, RingSection
 from loaded_tca.scene.keys import Choice, Key, Line, List, Number, Whole, above_zero, key
+from loaded_tca.scene.load import Load, TORQUE_Nm
 from loaded_tca.scene.parse import toml_lines
 from loaded_tca.scene.section import Rule, Section, as_table, check, contents, key_at, made, replaced_by, subsection
-from loaded_tca.scene.sections import Analysis, DIAMETER_mm, ElasticMaterial, Load, TORQUE_Nm
+from loaded_tca.scene.sections import Analysis, DIAMETER_mm, ElasticMaterial
 from loaded_tca.stages.kinematics import spacing_problems
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
