@@ -71,12 +71,13 @@ files in DIR:
 {tribology_pictures}
 Friction of the teeth alone; docs/guide/efficiency_and_scuffing.md says more."""
 RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubricant] of the scene say what the gears
-are made of, what is required and how they run; --set gives or changes them. External cylindrical pairs, one operating
-point under each torque.
+are made of, what is required and how they run; --set gives or changes them, and the load spectrum: load.spectrum=FILE,
+with torques up to the largest that was solved. Without one each torque stands for itself. External cylindrical pairs.
 
 files in DIR:
-  rating.json               safeties, lives and every factor under each torque
-  rating.csv                the same, one row per torque
+  rating.json               safeties, damage, lives and every factor of each torque or bin, and of all bins together
+  rating.csv                the same, one row per torque or bin
+{rating_pictures}
 docs/guide/strong_enough.md says more."""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
@@ -379,6 +380,8 @@ class _Parser(argparse.ArgumentParser):
             self.epilog = FILES.format(pictures=_list_of_pictures())
         if self.epilog == TRIBOLOGY:
             self.epilog = TRIBOLOGY.format(tribology_pictures=_list_of_tribology())
+        if self.epilog == RATING:
+            self.epilog = RATING.format(rating_pictures=_list_of_rating())
         return super().format_help()
 
     def error(self, message: str) -> NoReturn:
@@ -410,6 +413,12 @@ def _list_of_tribology() -> str:
     from loaded_tca.plots import TRIBOLOGY_PICTURES
 
     return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in TRIBOLOGY_PICTURES.items())
+
+
+def _list_of_rating() -> str:
+    from loaded_tca.plots import RATING_PICTURES
+
+    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in RATING_PICTURES.items())
 
 
 class _Version(argparse.Action):

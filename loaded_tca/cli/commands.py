@@ -32,6 +32,7 @@ from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_s
 from loaded_tca.errors import InputError, require
 
 if TYPE_CHECKING:
+    from loaded_tca.rating import Rating
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
 
@@ -103,7 +104,9 @@ def _run_scene(scene: Scene, directory: Path) -> None:
         again = f"'loaded-tca plot {directory}' draws them"
         error.add_note(f"{directory}: the numbers are new, all pictures are missing: {again}")
         raise
-    print_summary(result.summary(), [*report, *pictures])
+    files, rating_text = _rated(result, directory)
+    summary = "\n\n".join(filter(None, (result.summary(), rating_text)))
+    print_summary(summary, [*report, *pictures, *files])
 
 
 def revolution(options: argparse.Namespace) -> None:
@@ -138,12 +141,30 @@ def tribology(options: argparse.Namespace) -> None:
 
 
 def rating(options: argparse.Namespace) -> None:
-    """Write safeties and lives of a result with all factors, and show the table."""
-    from loaded_tca.output.other_results import write_rating
-
+    """Write safeties and lives of a result with all factors and pictures, and show the table."""
     result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
     rated = result.rating()
-    print_summary(rated.summary(), write_rating(rated, directory))
+    print_summary(rated.summary(), _rating_files(rated, directory))
+
+
+def _rating_files(rated: Rating, directory: Path) -> tuple[Path, ...]:
+    """Write a rating with its pictures."""
+    from loaded_tca.output.other_results import write_rating
+    from loaded_tca.plots import png_of, rating_figures
+
+    pictures = {f"{name}.png": png_of(figure) for name, figure in rating_figures(rated).items()}
+    return write_rating(rated, directory, pictures)
+
+
+def _rated(result: MeshCycle, directory: Path) -> tuple[list[Path], str]:
+    """Files of the rating of a result whose scene has [rating], and its summary, or why it cannot be rated."""
+    if result.scene.rating is None:
+        return [], ""
+    try:
+        rated = result.rating()
+    except InputError as error:
+        return [], "\n".join(f"no rating: {problem}" for problem in error.problems)
+    return [*_rating_files(rated, directory)], rated.summary()
 
 
 def _changed_result(
@@ -171,14 +192,15 @@ def _changed_result(
 
 OF_RATING = (
     "an analysis depends on it; allowed keys of [pinion.strength], [wheel.strength], [rating], [operation] and "
-    "[lubricant]"
+    "[lubricant], and a load spectrum: load.spectrum, load.case"
 )
 
 
 def _is_of_rating(key: str) -> bool:
     """Whether a key of a scene concerns rating alone, so that a result stays valid."""
     section = key.rpartition(".")[0]
-    return section in ("pinion.strength", "wheel.strength", "rating", "operation", "lubricant")
+    of_spectrum = key.startswith(("load.spectrum", "load.case"))
+    return of_spectrum or section in ("pinion.strength", "wheel.strength", "rating", "operation", "lubricant")
 
 
 ROUGHNESS, THERMAL = "roughness_Ra_um", ("conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK")

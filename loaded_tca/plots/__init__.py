@@ -24,6 +24,7 @@ from loaded_tca.plots.pressure_map import (
     plot_stress_below,
     plot_subsurface,
 )
+from loaded_tca.plots.rating import RATING_PICTURES, plot_damage, plot_sn_curves, rating_figures
 from loaded_tca.plots.revolution import (
     REVOLUTION_PICTURES,
     plot_revolution_error,
@@ -87,6 +88,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 __all__ = [
     "MORE_PICTURES",
     "PICTURES",
+    "RATING_PICTURES",
     "REVOLUTION_PICTURES",
     "STAGE_CAPTIONS",
     "STAGE_PICTURES",
@@ -101,6 +103,7 @@ __all__ = [
     "plot_contact_path",
     "plot_contact_patterns",
     "plot_contact_temperature",
+    "plot_damage",
     "plot_ease_off",
     "plot_efficiency",
     "plot_face_load",
@@ -134,6 +137,7 @@ __all__ = [
     "plot_sensitivity_curves",
     "plot_shafts",
     "plot_sliding_velocities",
+    "plot_sn_curves",
     "plot_solution",
     "plot_stage_error",
     "plot_stage_load_factor",
@@ -156,6 +160,7 @@ __all__ = [
     "plot_transmission_error_band",
     "plot_vh_check",
     "png_of",
+    "rating_figures",
     "result_figures",
     "save_figure",
     "show_teeth",

@@ -60,7 +60,8 @@ def _interpolation_error(inputs: RatingInputs, damage: Array) -> Array:
         return np.full(damage.shape[1:], nan)
     coarse = replace(inputs, solved=solved.every_second())
     _, endurances, _ = evaluated(coarse)
-    return change_of_damage(damage, damages_of(endurances)) + SCATTER
+    change = change_of_damage(damage, damages_of(endurances))
+    return np.where(damage.sum(axis=0) > 0.0, change + SCATTER, change)
 
 
 def _notes(inputs: RatingInputs, arrays: dict[str, Array], error: Array) -> Iterator[str]:
