@@ -17,7 +17,7 @@ from tests.stages.test_stage_rating import SECTIONS
 def out(tmp_path, monkeypatch):
     """The directory of a result."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("loaded_tca.plots.safety_figures", lambda rated: {"safeties": plot_safeties(rated)})  # quick
+    monkeypatch.setattr("loaded_tca.plots.rating_figures", lambda rated: {"safeties": plot_safeties(rated)})  # quick
     os.mkdir("out")
     solved().save("out/result.nc")
     return "out"
@@ -41,6 +41,24 @@ def test_command_writes_what_the_call_finds(run, out):
     assert [row["pinion_torque_Nm"] for row in rows] == ["100", "200"]
     assert [row["pinion_root_life_h"] for row in rows] == ["0", "0"]  # above the static strength
     assert list(rows[0]) == list(expected.figures)
+
+
+def test_command_rates_a_result_again_under_a_spectrum(run, out):
+    with open("bins.csv", "w", encoding="utf-8") as file:
+        file.write("pinion_torque_Nm,hours\n120,3\n200,1\n")
+    code, text, _ = run("rating", out, "--set", "load.spectrum=bins.csv", "--set", "rating.required_root_safety=5")
+    assert code == 0
+    cases = [{"pinion_torque_Nm": 120.0, "hours": 3.0}, {"pinion_torque_Nm": 200.0, "hours": 1.0}]
+    expected = solved(**{"load.case": cases, "rating.required_root_safety": 5.0}).rating()
+    assert all(line in text for line in expected.summary().splitlines())
+    with open(f"{out}/rating.json", encoding="utf-8") as file:
+        written = json.load(file)
+    assert written["spectrum"]["pinion_root"]["life_h"] == expected.life_hours[0, 1]
+    assert written["spectrum"]["bins"] == 2
+    assert len(written["torques"]) == 2
+    with open(f"{out}/rating.csv", encoding="utf-8", newline="") as file:
+        damage = [float(row["wheel_root_damage"]) for row in csv.DictReader(file)]
+    assert damage == pytest.approx(expected.damage[:, 1, 1].tolist(), rel=1e-8)  # nine digits
 
 
 REFUSED = [

@@ -192,7 +192,12 @@ class RatingSection(Section):
 
     required_flank_safety: float = key(above_zero(100.0), "required safety against pitting S_Hmin")
     required_root_safety: float = key(above_zero(100.0), "required safety against tooth breakage S_Fmin")
-    life_hours: float = key(above_zero(1e8), "hours under each torque for which safeties are told")
+    life_hours: float | None = key(
+        above_zero(1e8),
+        "life that is required: hours under each torque alone, or of a load spectrum, whose bins repeat in it",
+        None,
+        "the hours of the load cases together",
+    )
     dynamic_factor: str = key(
         Choice((METHOD_B, GIVEN)), "dynamic factor K_v of ISO 6336-1, or operation.dynamic_factor", METHOD_B
     )
