@@ -41,6 +41,7 @@ CASES = (
     "tribology.published",
     "rating.strength",
     "rating.solved",
+    "rating.spectra",
     "bevel.iso_23509_sample",
     "face_milled.settings",
     "face_milled.swept_cutter",
