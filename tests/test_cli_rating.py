@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from loaded_tca.cli.commands import _rated
 from loaded_tca.plots import plot_safeties
 from tests.samples.rating import solved
 from tests.samples.stages import analysed
@@ -59,6 +60,13 @@ def test_command_rates_a_result_again_under_a_spectrum(run, out):
     with open(f"{out}/rating.csv", encoding="utf-8", newline="") as file:
         damage = [float(row["wheel_root_damage"]) for row in csv.DictReader(file)]
     assert damage == pytest.approx(expected.damage[:, 1, 1].tolist(), rel=1e-8)  # nine digits
+
+
+def test_run_says_why_a_scene_is_not_rated(tmp_path):
+    assert _rated(solved(rating=None), tmp_path) == ([], "")
+    files, text = _rated(solved(lubricant=None), tmp_path)
+    assert files == []
+    assert text.startswith("no rating: lubricant: missing")
 
 
 REFUSED = [

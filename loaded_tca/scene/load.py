@@ -101,13 +101,16 @@ class Load(Section):
     )
     case: tuple[LoadCase, ...] | None = key(
         Tables(LoadCase, 1, MOST_BINS),
-        "or the bins of a load spectrum, `[[load.case]]`, of which up to a dozen torques are solved",
+        "or the bins of a load spectrum, each a table `[[load.case]]` of `pinion_torque_Nm`, `hours` or `share` (of "
+        "the time; all shares add up to 1), `pinion_speed_rpm`, by default that of [operation], and `reversed = false` "
+        "(true: the torque acts the other way, and the other flanks carry it); of more than twelve torques, twelve in "
+        "equal steps are solved",
         None,
         "no spectrum",
     )
     spectrum: str | None = key(
         Line(1000),
-        "or a CSV file, relative to the folder of the scene, a line for each bin, with the keys of a bin as columns: "
+        "or a CSV file, relative to the folder of the scene, a line for each bin, its keys as columns: "
         "`pinion_torque_Nm`, `hours` or `share`, and where wanted `pinion_speed_rpm` and `reversed` (true, false)",
         None,
         "as `case`",

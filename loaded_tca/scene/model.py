@@ -193,7 +193,8 @@ class Scene(WithStandards, ABC):
     def coast_side(self) -> Scene:
         """Return the scene with the other gear driving in the same sense of rotation: the other flanks carry the load.
 
-        Torques of the pinion are the same; the flanks in contact have the same modifications.
+        Torques of the pinion are the same; the flanks in contact have the same modifications. Of a load spectrum with
+        reversed bins the others are reversed then: flanks keep the loads that they carry.
 
         Raises
         ------
@@ -216,6 +217,9 @@ class Scene(WithStandards, ABC):
         changes["pair.sense"] = self.sense
         if hasattr(self.geometry, "pinion_flank"):
             changes["pair.pinion_flank"] = None
+        bins = self.load.case or ()
+        if any(case.reversed for case in bins):
+            changes["load.case"] = tuple(replace(case, reversed=not case.reversed) for case in bins)
         return self.with_changes(changes)
 
     def on_rigid_supports(self) -> Scene:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, ClassVar
 
 from loaded_tca.errors import InputError
@@ -164,7 +164,7 @@ class StrengthSection(Section):
         """Kind of ISO 6336-5, given or of the named material."""
         return _kind(self.material, self.kind)
 
-    @property
+    @cached_property
     def limits(self) -> tuple[float, float]:
         """sigma_H_lim and sigma_F_lim, given or of ISO 6336-5 [MPa]."""
         if self.sigma_H_lim_MPa is not None and self.sigma_F_lim_MPa is not None:

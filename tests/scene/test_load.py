@@ -79,6 +79,13 @@ def test_another_load_takes_the_place_of_a_spectrum():
     assert one.with_changes({"load.case.0.share": 1.0}).load.case[0].hours is None
 
 
+def test_coast_side_has_the_bins_that_load_it():
+    both = scene(**{"load.case": [*bins([20.0]), {"pinion_torque_Nm": 10.0, "hours": 1.0, "reversed": True}]})
+    assert [case.reversed for case in both.coast_side().load.case] == [True, False]
+    assert both.coast_side().coast_side().load == both.load
+    assert [case.reversed for case in scene(**{"load.case": bins([20.0])}).coast_side().load.case] == [False]
+
+
 test_bins_refuse = refusals(
     lambda cases: scene(**{"load.case": cases}),
     ([], r"load.case: found \[\]; allowed a list of 1 to 5000 tables of pinion_torque_Nm, "),
