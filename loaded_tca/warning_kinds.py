@@ -326,6 +326,13 @@ RATED_AT_EDGE = Kind(
     "it is that of a line contact with the mean load over a quarter module, and rises towards a sharp edge: indicative",
     "tip or end relief, or an edge with a radius; safeties after ISO 6336 do not depend on it",
 )
+SPECTRUM_BETWEEN = Kind(
+    "rating: the damage of the spectrum may be wrong by {change:.1%}, since stresses are interpolated between {count} "
+    "torques that were solved",
+    "damage grows with a high power of the stress, which bends over the torque where contacts come to edges, reliefs "
+    "and further tooth pairs; the error is told by leaving out every second torque",
+    "more torques, `analysis.torques_Nm`, up to the largest of the spectrum",
+)
 PITCH_DEVIATIONS = Kind(
     "the gears have runout or teeth that differ, which an analysis of one pitch leaves out: all teeth count as alike",
     "pitch deviations, flanks of single teeth and eccentricity repeat with a turn of their gear, not with every pitch",

@@ -2210,8 +2210,8 @@ FAULTS = (
     Fault(
         "rating of bevels: K_v counts with the effective face width",
         "rating/bevel.py",
-        "load = inputs.virtual_force * application / whole",
-        "load = inputs.virtual_force * application / effective",
+        "load = inputs.factor_force * application / whole",
+        "load = inputs.factor_force * application / effective",
         "rating/test_bevel.py::test_the_scene_of_sample_1_has_its_printed_factors",
     ),
     Fault(
@@ -2313,6 +2313,41 @@ FAULTS = (
         "with one_thread():",
         "if True:",
         "test_apart.py::test_helper_has_a_work_done_by_another_process_on_one_thread",
+    ),
+    Fault(
+        "spectra: reversed bins wear the flanks that are analysed",
+        "rating/evaluate.py",
+        "np.where(idle.reshape(-1, *[1] * (stress.ndim - 1)), 0.0, stress)",
+        "stress",
+        "rating/test_spectrum.py::test_reversed_bins_load_the_other_flanks_and_bend_roots_both_ways",
+    ),
+    Fault(
+        "spectra: hours of bins are those of the whole life, however long they are together",
+        "rating/cases.py",
+        "life * parts / parts.sum(),",
+        "parts,",
+        "rating/test_spectrum.py::test_damage_of_two_bins_adds_up_by_hours",
+    ),
+    Fault(
+        "spectra: every bin turns as fast as the first",
+        "rating/inputs.py",
+        "60.0 * self.cases.speed[:, None]",
+        "60.0 * self.cases.speed[0]",
+        "rating/test_spectrum.py::test_speed_of_a_bin_counts_its_load_cycles_beside_quicker_ones",
+    ),
+    Fault(
+        "spectra: torques between those that are solved stand in equal ratios",
+        "scene/load.py",
+        "np.linspace(smallest, largest, SOLVED)",
+        "np.geomspace(smallest, largest, SOLVED)",
+        "scene/test_load.py::test_many_torques_are_a_dozen_in_equal_steps_up_to_the_largest",
+    ),
+    Fault(
+        "spectra: below the smallest torque solved stresses grow as at it",
+        "rating/solved.py",
+        "logarithms + slope * (wanted - inside).reshape(shape)",
+        "logarithms",
+        "rating/test_spectrum.py::test_powers_of_the_torque_are_interpolated_without_error",
     ),
 )
 

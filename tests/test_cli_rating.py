@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from loaded_tca.cli.commands import _rated
 from loaded_tca.plots import plot_safeties
 from tests.samples.rating import solved
 from tests.samples.stages import analysed
@@ -17,7 +18,7 @@ from tests.stages.test_stage_rating import SECTIONS
 def out(tmp_path, monkeypatch):
     """The directory of a result."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("loaded_tca.plots.safety_figures", lambda rated: {"safeties": plot_safeties(rated)})  # quick
+    monkeypatch.setattr("loaded_tca.plots.rating_figures", lambda rated: {"safeties": plot_safeties(rated)})  # quick
     os.mkdir("out")
     solved().save("out/result.nc")
     return "out"
@@ -43,14 +44,29 @@ def test_command_writes_what_the_call_finds(run, out):
     assert list(rows[0]) == list(expected.figures)
 
 
-def test_run_of_a_rated_scene_names_the_command(run, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("loaded_tca.analysis.analyse", lambda *_, **__: solved())
-    monkeypatch.setattr("loaded_tca.plots.plot_all", lambda *_: ())
-    (tmp_path / "rated.toml").write_text(solved().scene.to_toml(), encoding="utf-8")
-    code, text, errors = run("run", "rated.toml", "--out", "out")
-    assert code == 0, errors
-    assert "Safeties and lives: 'loaded-tca rating out'" in text
+def test_command_rates_a_result_again_under_a_spectrum(run, out):
+    with open("bins.csv", "w", encoding="utf-8") as file:
+        file.write("pinion_torque_Nm,hours\n120,3\n200,1\n")
+    code, text, _ = run("rating", out, "--set", "load.spectrum=bins.csv", "--set", "rating.required_root_safety=5")
+    assert code == 0
+    cases = [{"pinion_torque_Nm": 120.0, "hours": 3.0}, {"pinion_torque_Nm": 200.0, "hours": 1.0}]
+    expected = solved(**{"load.case": cases, "rating.required_root_safety": 5.0}).rating()
+    assert all(line in text for line in expected.summary().splitlines())
+    with open(f"{out}/rating.json", encoding="utf-8") as file:
+        written = json.load(file)
+    assert written["spectrum"]["pinion_root"]["life_h"] == expected.life_hours[0, 1]
+    assert written["spectrum"]["bins"] == 2
+    assert len(written["torques"]) == 2
+    with open(f"{out}/rating.csv", encoding="utf-8", newline="") as file:
+        damage = [float(row["wheel_root_damage"]) for row in csv.DictReader(file)]
+    assert damage == pytest.approx(expected.damage[:, 1, 1].tolist(), rel=1e-8)  # nine digits
+
+
+def test_run_says_why_a_scene_is_not_rated(tmp_path):
+    assert _rated(solved(rating=None), tmp_path) == ([], "")
+    files, text = _rated(solved(lubricant=None), tmp_path)
+    assert files == []
+    assert text.startswith("no rating: lubricant: missing")
 
 
 REFUSED = [

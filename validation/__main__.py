@@ -45,6 +45,7 @@ CASES = (
     "rating.solved",
     "rating.iso_tr_10300_30",
     "rating.bevel_solved",
+    "rating.spectra",
     "bevel.iso_23509_sample",
     "face_milled.settings",
     "face_milled.swept_cutter",

@@ -72,12 +72,13 @@ files in DIR:
 Friction of the teeth alone; docs/guide/efficiency_and_scuffing.md says more."""
 RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubricant] of the scene say what the gears
 are made of, what is required and how they run, of a stage [sun.strength], [planet.strength] and [ring.strength]; --set
-gives or changes them. Cylindrical pairs and planetary stages, one operating point under each torque.
+gives or changes them, and the load spectrum of a pair: load.spectrum=FILE, with torques up to the largest that was
+solved. Without one each torque stands for itself.
 
 files in DIR:
-  rating.json               safeties, lives and every factor under each torque
-  rating.csv                the same, one row per torque
-{safety_pictures}
+  rating.json               safeties, damage, lives and every factor of each torque or bin, and of all bins together
+  rating.csv                the same, one row per torque or bin
+{rating_pictures}
 docs/guide/strong_enough.md says more."""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
@@ -387,7 +388,7 @@ class _Parser(argparse.ArgumentParser):
         if self.epilog == TRIBOLOGY:
             self.epilog = TRIBOLOGY.format(tribology_pictures=_list_of_tribology())
         if self.epilog == RATING:
-            self.epilog = RATING.format(safety_pictures=_list_of_safeties())
+            self.epilog = RATING.format(rating_pictures=_list_of_rating())
         return super().format_help()
 
     def error(self, message: str) -> NoReturn:
@@ -421,10 +422,10 @@ def _list_of_tribology() -> str:
     return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in TRIBOLOGY_PICTURES.items())
 
 
-def _list_of_safeties() -> str:
-    from loaded_tca.plots import SAFETY_PICTURES
+def _list_of_rating() -> str:
+    from loaded_tca.plots import RATING_PICTURES
 
-    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in SAFETY_PICTURES.items())
+    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in RATING_PICTURES.items())
 
 
 class _Version(argparse.Action):

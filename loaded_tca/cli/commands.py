@@ -32,6 +32,7 @@ from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_s
 from loaded_tca.errors import InputError, require
 
 if TYPE_CHECKING:
+    from loaded_tca.rating import Rating
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
     from loaded_tca.stages import StageResult
@@ -104,9 +105,9 @@ def _run_scene(scene: Scene, directory: Path) -> None:
         again = f"'loaded-tca plot {directory}' draws them"
         error.add_note(f"{directory}: the numbers are new, all pictures are missing: {again}")
         raise
-    print_summary(result.summary(), [*report, *pictures])
-    if scene.rating is not None:
-        print(f"Safeties and lives: 'loaded-tca rating {directory}'")
+    files, rating_text = _rated(result, directory)
+    summary = "\n\n".join(filter(None, (result.summary(), rating_text)))
+    print_summary(summary, [*report, *pictures, *files])
 
 
 def revolution(options: argparse.Namespace) -> None:
@@ -143,7 +144,6 @@ def tribology(options: argparse.Namespace) -> None:
 def rating(options: argparse.Namespace) -> None:
     """Write safeties and lives of a result with all factors and pictures, and show the table."""
     from loaded_tca.output.other_results import write_rating
-    from loaded_tca.plots import png_of, safety_figures
     from loaded_tca.stages.result import STAGE_FILE
 
     if result_file(options.result).name == STAGE_FILE:
@@ -153,8 +153,7 @@ def rating(options: argparse.Namespace) -> None:
         return
     result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
     rated = result.rating()
-    pictures = {f"{name}.png": png_of(figure) for name, figure in safety_figures(rated).items()}
-    print_summary(rated.summary(), write_rating(rated, directory, pictures))
+    print_summary(rated.summary(), _rating_files(rated, directory))
 
 
 def _changed_stage(options: argparse.Namespace) -> tuple[StageResult, Path]:
@@ -168,6 +167,26 @@ def _changed_stage(options: argparse.Namespace) -> tuple[StageResult, Path]:
     changes = changes_of(options)
     require(*((_is_of_rating(key, STAGE_STRENGTHS), f"--set {key}: {OF_STAGE_RATING}") for key in changes))
     return replace(result, stage=result.stage.with_changes(changes)) if changes else result, directory
+
+
+def _rating_files(rated: Rating, directory: Path) -> tuple[Path, ...]:
+    """Write a rating with its pictures."""
+    from loaded_tca.output.other_results import write_rating
+    from loaded_tca.plots import png_of, rating_figures
+
+    pictures = {f"{name}.png": png_of(figure) for name, figure in rating_figures(rated).items()}
+    return write_rating(rated, directory, pictures)
+
+
+def _rated(result: MeshCycle, directory: Path) -> tuple[list[Path], str]:
+    """Files of the rating of a result whose scene has [rating], and its summary, or why it cannot be rated."""
+    if result.scene.rating is None:
+        return [], ""
+    try:
+        rated = result.rating()
+    except InputError as error:
+        return [], "\n".join(f"no rating: {problem}" for problem in error.problems)
+    return [*_rating_files(rated, directory)], rated.summary()
 
 
 def _changed_result(
@@ -195,16 +214,21 @@ def _changed_result(
 
 STRENGTHS = "pinion.strength", "wheel.strength"
 STAGE_STRENGTHS = "sun.strength", "planet.strength", "ring.strength"
+SPECTRUM = "load.spectrum", "load.case"
 OF_RATING, OF_STAGE_RATING = (
     f"an analysis depends on it; allowed keys of {', '.join(f'[{name}]' for name in sections)}, [rating], [operation] "
-    "and [lubricant]"
-    for sections in (STRENGTHS, STAGE_STRENGTHS)
+    f"and [lubricant]{more}"
+    for sections, more in (
+        (STRENGTHS, f", and a load spectrum: {', '.join(SPECTRUM)}"),
+        (STAGE_STRENGTHS, ""),
+    )
 )
 
 
 def _is_of_rating(key: str, strengths: Sequence[str] = STRENGTHS) -> bool:
     """Whether a key of a scene or stage concerns rating alone, so that a result stays valid."""
-    return key.rpartition(".")[0] in (*strengths, "rating", "operation", "lubricant")
+    of_spectrum = strengths == STRENGTHS and key.startswith(SPECTRUM)
+    return of_spectrum or key.rpartition(".")[0] in (*strengths, "rating", "operation", "lubricant")
 
 
 ROUGHNESS, THERMAL = "roughness_Ra_um", ("conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK")

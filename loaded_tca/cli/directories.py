@@ -57,13 +57,13 @@ def names_of_result() -> set[str]:
         STRESS_TABLE,
         tables_at,
     )
-    from loaded_tca.plots import MORE_PICTURES, PICTURES, SAFETY_PICTURES
+    from loaded_tca.plots import MORE_PICTURES, PICTURES, RATING_PICTURES
     from loaded_tca.plots.sensitivities import SENSITIVITY_PICTURES
     from loaded_tca.plots.tribology import TRIBOLOGY_PICTURES
     from loaded_tca.results.subsurface import NAMES
 
     tables = *(path.name for path in tables_at(Path(DYNAMICS))), SENSITIVITY_DATA, SENSITIVITIES
-    pictures = *PICTURES, *MORE_PICTURES, *SENSITIVITY_PICTURES, *TRIBOLOGY_PICTURES, *SAFETY_PICTURES
+    pictures = *PICTURES, *MORE_PICTURES, *SENSITIVITY_PICTURES, *TRIBOLOGY_PICTURES, *RATING_PICTURES
     pictures += "teeth", *(f"subsurface_{quantity}" for quantity in NAMES)
     others = "at_a_glance.pdf", REPORT, STRESS_FIELDS, STRESS_TABLE
     return {*tables, *TRIBOLOGY_FILES, *RATING_FILES, *TEETH_FILES, *others, *(f"{name}.png" for name in pictures)}

@@ -163,7 +163,11 @@ def _strength_rows(scene: Scene) -> Iterator[Row]:
     wanted = scene.rating
     if wanted is not None:
         required = wanted.required_flank_safety, wanted.required_root_safety
-        yield "rating: required S_H, S_F, life [h]", *(plain(one) for one in required), plain(wanted.life_hours, 9)
+        yield (
+            "rating: required S_H, S_F, life [h]",
+            *(plain(one) for one in required),
+            plain(wanted.life_hours or scene.load.hours or 0.0, 9),
+        )
 
 
 def _departures(scene: Scene) -> Iterator[Row]:

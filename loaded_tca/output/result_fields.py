@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from loaded_tca.rating.quantities import NUMBERS as RATING_NUMBERS
+from loaded_tca.rating.quantities import SPECTRUM_NUMBERS
 from loaded_tca.results.declared import PAIRS, Number
 from loaded_tca.results.quantities import (
     CYCLE_NUMBERS,
@@ -45,6 +46,10 @@ def describe_results() -> str:
         "Planetary stages": _numbers(StageResult.NUMBERS),
         "Tribology; of several speeds most with an axis `speed`": _numbers(NUMBERS, of_torques=True),
         "Rating": _numbers(RATING_NUMBERS, of_torques=True),
+        "Rating under a load spectrum, beside or in the place of these": _numbers(
+            {name: number for name, number in SPECTRUM_NUMBERS.items() if RATING_NUMBERS.get(name) is not number},
+            of_torques=True,
+        ),
         "Rating of planetary stages: gears are sun, planet and ring": _numbers(STAGE_RATING_NUMBERS, of_torques=True),
     }
     return "\n".join("\n".join([f"### {title}", "", *lines, ""]) for title, lines in sections.items())

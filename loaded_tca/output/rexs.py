@@ -203,10 +203,14 @@ def _of_rating(result: MeshCycle, gearbox: Gearbox, stage: Stage, torque: int) -
     if gearbox.reading.model.version < RATED_SINCE or not is_rated(result.scene):
         return {}
     rating = result.rating()
-    results: Results = {stage.id: _attributes({name: rating.values(name)[torque] for name in OF_STAGE}, OF_STAGE)}
+    cases = np.flatnonzero((rating.torque == result.torque[torque]) & ~rating.inputs.cases.reversed)
+    if not cases.size:  # no bin of a load spectrum has that torque
+        return {}
+    case = int(cases[0])
+    results: Results = {stage.id: _attributes({name: rating.values(name)[case] for name in OF_STAGE}, OF_STAGE)}
     for gear, data in enumerate(gear_data(gearbox.reading, stage)):
         if data is not None:
-            results[data.id] = _attributes({name: rating.values(name)[torque, gear] for name in OF_GEARS}, OF_GEARS)
+            results[data.id] = _attributes({name: rating.values(name)[case, gear] for name in OF_GEARS}, OF_GEARS)
     return results
 
 

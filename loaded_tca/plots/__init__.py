@@ -24,6 +24,7 @@ from loaded_tca.plots.pressure_map import (
     plot_stress_below,
     plot_subsurface,
 )
+from loaded_tca.plots.rating import RATING_PICTURES, plot_damage, plot_sn_curves, rating_figures
 from loaded_tca.plots.revolution import (
     REVOLUTION_PICTURES,
     plot_revolution_error,
@@ -32,13 +33,7 @@ from loaded_tca.plots.revolution import (
     plot_revolution_waterfall,
 )
 from loaded_tca.plots.root_stress import plot_root_stress, plot_root_stress_cycle, plot_root_stress_over_torque
-from loaded_tca.plots.safety import (
-    SAFETY_PICTURES,
-    plot_flank_safety,
-    plot_root_safety,
-    plot_safeties,
-    safety_figures,
-)
+from loaded_tca.plots.safety import plot_flank_safety, plot_root_safety, plot_safeties
 from loaded_tca.plots.sensitivities import (
     plot_removal_weights,
     plot_sensitivity_curves,
@@ -94,8 +89,8 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 __all__ = [
     "MORE_PICTURES",
     "PICTURES",
+    "RATING_PICTURES",
     "REVOLUTION_PICTURES",
-    "SAFETY_PICTURES",
     "STAGE_CAPTIONS",
     "STAGE_PICTURES",
     "TRIBOLOGY_PICTURES",
@@ -109,6 +104,7 @@ __all__ = [
     "plot_contact_path",
     "plot_contact_patterns",
     "plot_contact_temperature",
+    "plot_damage",
     "plot_ease_off",
     "plot_efficiency",
     "plot_face_load",
@@ -145,6 +141,7 @@ __all__ = [
     "plot_sensitivity_curves",
     "plot_shafts",
     "plot_sliding_velocities",
+    "plot_sn_curves",
     "plot_solution",
     "plot_stage_error",
     "plot_stage_load_factor",
@@ -167,8 +164,8 @@ __all__ = [
     "plot_transmission_error_band",
     "plot_vh_check",
     "png_of",
+    "rating_figures",
     "result_figures",
-    "safety_figures",
     "save_figure",
     "show_teeth",
     "stage_figures",

@@ -23,7 +23,7 @@ from loaded_tca.plots.flanks import ToPicture, both_flanks
 from loaded_tca.plots.pressure_map import FIELDS, POINTS_OF_A_FIELD
 from loaded_tca.plots.root_stress import GEAR_COLOURS
 from loaded_tca.plots.style import ACCENT, COLOURS, load
-from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties, root_safeties
+from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties, root_safeties, worst_case
 
 if TYPE_CHECKING:
     from loaded_tca.rating import Rating
@@ -46,7 +46,7 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
     ----------
     rating : Rating
     case : int, optional
-        Index of the case; default: that of the smallest local safety.
+        Index of the case; default: that of the smallest local safety among torques that were solved.
 
     Returns
     -------
@@ -55,9 +55,9 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
     Raises
     ------
     InputError
-        If the rating has no such case.
+        If the rating has no such case, or the case no places.
     """
-    case = int(rating.local_flank_safety.min(axis=1).argmin()) if case is None else case
+    case = worst_case(rating, "local_flank_safety") if case is None else case
     places, required = flank_safeties(rating, case), _required(rating, "flank")
     scale, colours = _scale(places.safety, required)
     gears = iter(range(len(GEARS)))  # panels come in this order
@@ -83,7 +83,7 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
     rating : Rating
         Of a result with root stress.
     case : int, optional
-        Index of the case; default: that of the smallest local safety.
+        Index of the case; default: that of the smallest local safety among torques that were solved.
 
     Returns
     -------
@@ -92,11 +92,11 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
     Raises
     ------
     InputError
-        If the rating has no such case.
+        If the rating has no such case, or the case no places.
     NotAskedError
         If the scene does not ask for root stress.
     """
-    case = int(rating.local_root_safety.min(axis=1).argmin()) if case is None else case
+    case = worst_case(rating, "local_root_safety") if case is None else case
     both, required = [root_safeties(rating, case, gear) for gear in range(len(GEARS))], _required(rating, "root")
     scale, colours = _scale(np.concatenate([one.safety.ravel() for one in both]), required)
     figure = Figure(figsize=(11.0, 7.5), layout="constrained")
@@ -150,7 +150,8 @@ def plot_safeties(rating: Rating) -> Figure:
     axes.set_yticks(range(len(names)), [SAFETIES[name] for name in names])
     axes.invert_yaxis()
     axes.set_xlabel("safety, the least of all cases; strokes: each case")
-    axes.set_xlim(0.0, 1.15 * max(float(np.nanmax(rating.values(name))) for name in names))
+    every = np.concatenate([rating.values(name).ravel() for name in names])
+    axes.set_xlim(0.0, 1.15 * float(every[np.isfinite(every)].max()))
     axes.grid(axis="x", alpha=0.3)
     axes.set_axisbelow(True)
     return style.finished(figure, axes, rating.result, "safeties beside those required", rating.scope)
@@ -282,18 +283,3 @@ SAFETY_PICTURES = {
     ),
 }
 """Name -> picture of safeties that the command draws."""
-
-
-def safety_figures(rating: Rating) -> dict[str, Figure]:
-    """Draw every picture of the safeties that a rating has.
-
-    Parameters
-    ----------
-    rating : Rating
-
-    Returns
-    -------
-    dict of str to matplotlib.figure.Figure
-        By the names of ``SAFETY_PICTURES``.
-    """
-    return {name: picture.draw(rating) for name, picture in SAFETY_PICTURES.items() if rating.has(picture.needs)}

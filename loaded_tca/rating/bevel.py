@@ -11,17 +11,28 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import GeometryError, InputError, named
 from loaded_tca.rating.bevel_sheet import BevelSheet, bevel_sheet
-from loaded_tca.rating.evaluate import both, lives, local_flanks, local_root
-from loaded_tca.rating.inputs import CommonInputs, sections_of
-from loaded_tca.rating.roots import root_of
-from loaded_tca.rating.vibration import excitation
-from loaded_tca.reference import iso6336, iso6336_1, iso6336_3, iso10300_1, iso10300_2, iso10300_3
+from loaded_tca.rating.evaluate import (
+    Evaluated,
+    OfRoot,
+    both,
+    endurances_of_flanks,
+    in_order,
+    local_flanks,
+    of_both_roots,
+    of_flanks,
+    of_root,
+    on_drive,
+)
+from loaded_tca.rating.inputs import CommonInputs, common_inputs
+from loaded_tca.rating.vibration import errors_of
+from loaded_tca.reference import iso6336, iso6336_1, iso10300_1, iso10300_2, iso10300_3
 from loaded_tca.reference.iso6336_2 import FlankFactors, FlankStrength
 from loaded_tca.reference.iso17485 import single_pitch_tolerance
 from loaded_tca.scene.rating import ANALYSIS, METHOD_B
 from loaded_tca.scene.spiral import SpiralScene
 
 if TYPE_CHECKING:
+    from loaded_tca.rating.lives import Endurance
     from loaded_tca.reference.iso6336_3 import RootSection
     from loaded_tca.results.numbers import CycleNumbers
 
@@ -54,19 +65,27 @@ class BevelInputs(CommonInputs):
 
     @property
     def mean_force(self) -> Array:
-        """F_mt1, tangential at the mean point of the pinion (t,) [N]."""
+        """F_mt1, tangential at the mean point of the pinion (c,) [N]."""
         return self.torque / (0.5 * self.sheet.mean_diameters[0])
 
     @property
     def virtual_force(self) -> Array:
-        """F_vmt, of the virtual gears (t,) [N]."""
-        pair = self.sheet.pair
-        return self.mean_force * (cos(pair.spiral_angle) / cos(pair.spiral_angles[0]))
+        """F_vmt, of the virtual gears (c,) [N]."""
+        return self._virtual(self.torque)
 
     @property
-    def velocity(self) -> float:
-        """v_mt2, of the wheel at its mean point [m/s]."""
-        teeth, speed = self.sheet.teeth, self.operation.pinion_speed_rpm
+    def factor_force(self) -> Array:
+        """F_vmt for load factors (c,) [N]."""
+        return self._virtual(self.cases.factor_torque)
+
+    def _virtual(self, torque: Array) -> Array:
+        pair = self.sheet.pair
+        return torque / (0.5 * self.sheet.mean_diameters[0]) * (cos(pair.spiral_angle) / cos(pair.spiral_angles[0]))
+
+    @property
+    def velocity(self) -> Array:
+        """v_mt2, of the wheel at its mean point (c,) [m/s]."""
+        teeth, speed = self.sheet.teeth, self.cases.speed
         return 1e-3 * pi * self.sheet.mean_diameters[1] * speed * teeth[0] / teeth[1] / 60.0
 
 
@@ -80,7 +99,7 @@ def bevel_inputs_of(result: CycleNumbers) -> BevelInputs:
     """
     scene = result.scene
     assert isinstance(scene, SpiralScene)
-    sections, problems = sections_of(result)
+    problems: list[str] = []
     rating = scene.rating
     if rating is not None and rating.transverse_load_factor == ANALYSIS:
         problems.append(
@@ -95,39 +114,29 @@ def bevel_inputs_of(result: CycleNumbers) -> BevelInputs:
         problems += error.problems
     except GeometryError as error:
         problems.append(f"pair: ISO 10300-3 has no root stress of this pair: {error}")
-    if problems:
-        raise InputError(problems)
-    return BevelInputs(result, scene, **sections, sheet=sheet)
+    common = common_inputs(result, problems)
+    return BevelInputs(result, scene, **common, sheet=sheet)
 
 
-def bevel_evaluated(inputs: BevelInputs) -> tuple[Arrays, tuple[str, ...], bool]:
-    """Arrays of ``NUMBERS`` by their names, notes, and whether the largest pressure of a torque lies at an edge."""
+def bevel_evaluated(inputs: BevelInputs) -> Evaluated:
+    """Numbers after ISO 10300, and by the local stresses."""
     loads, notes = _load_factors(inputs)
     share = iso10300_2.load_sharing_factor(inputs.sheet.pair, inputs.rating.profile_crowning)
     stresses, hypoid, held = _contact_stresses(inputs, loads, share)
     flanks = _flank_factors(inputs, hypoid)
-    required = inputs.rating.required_flank_safety
-    rated = {
-        name: both(inputs, values)
-        for name, values in {
-            "sigma_H_lim": flanks.limit_stresses, "Z_NT": flanks.Z_NT, "Z_L": flanks.Z_L, "Z_v": flanks.Z_v,
-            "Z_R": flanks.Z_R, "Z_W_reference": flanks.Z_W, "Z_W_static": flanks.Z_W_static, "Z_X": flanks.Z_X,
-            "sigma_HG": flanks.strength,
-        }.items()
-    }  # fmt: skip
-    rated["flank_safety"] = rated["sigma_HG"] / stresses["sigma_H"]
-    rated["flank_life"] = lives(inputs, flanks.curves, required * stresses["sigma_H"])
-    roots, root_notes = _of_roots(inputs, loads, share**2)
-    local, at_edge = local_flanks(inputs, loads, flanks.strength, flanks.curves)
-    arrays = {"torque": np.asarray(inputs.torque), "cycles": both(inputs, inputs.cycles)}
-    arrays |= loads | excitation(inputs.result) | stresses | rated | roots | local
+    rated = of_flanks(inputs, flanks, stresses["sigma_H"])
+    roots, endurances, root_notes = _of_roots(inputs, loads, share**2)
+    local = local_flanks(inputs, loads, flanks.strength)
+    arrays = {"torque": np.asarray(inputs.torque), "cycles": inputs.cycles}
+    arrays |= loads | errors_of(inputs.loads.excitation) | stresses | rated | roots | local
+    endurances |= endurances_of_flanks(inputs, flanks.curves, arrays)
     scope = iso10300_1.scope_notes(inputs.sheet.pair, inputs.sheet.face_width)
-    told = (*scope, *notes, *inputs.sheet.notes, *held, *flanks.notes, *root_notes)
-    return arrays, tuple(dict.fromkeys(told)), at_edge
+    remarks = (*scope, *notes, *inputs.sheet.notes, *held, *flanks.notes, *root_notes)
+    return arrays, in_order(endurances), tuple(dict.fromkeys(remarks))
 
 
-def _pitch_deviation(inputs: BevelInputs) -> float:
-    """f_pt of the gear with more teeth after running in [um]."""
+def _pitch_deviation(inputs: BevelInputs) -> Array:
+    """f_pt of the gear with more teeth after running in (c,) [um]."""
     sheet, grade = inputs.sheet, inputs.rating.tolerance_class
     assert grade is not None
     gear = sheet.wheel
@@ -135,25 +144,25 @@ def _pitch_deviation(inputs: BevelInputs) -> float:
         deviation = single_pitch_tolerance(
             sheet.teeth[gear], sheet.pair.mean_normal_module, sheet.tolerance_diameter(gear), grade
         )
-    allowances = [
-        float(iso6336_1.running_in_allowance(strength.kind_of_material, deviation, strength.limits[0], inputs.velocity))
+    pinion, wheel = (
+        iso6336_1.running_in_allowance(strength.kind_of_material, deviation, strength.limits[0], inputs.velocity)
         for strength in inputs.strengths
-    ]
-    return deviation - 0.5 * sum(allowances)
+    )
+    return deviation - 0.5 * (pinion + wheel)
 
 
 def _load_factors(inputs: BevelInputs) -> tuple[Arrays, tuple[str, ...]]:
-    """K_A, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (t,) by their names, and notes."""
+    """K_A, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (c,) by their names, and notes."""
     wanted, sheet, ones = inputs.rating, inputs.sheet, np.ones(len(inputs.torque))
     application = inputs.operation.application_factor
     effective, whole = sheet.pair.widths
-    softer = iso10300_1.load_share(inputs.virtual_force * application / effective)
-    load = inputs.virtual_force * application / whole
+    softer = iso10300_1.load_share(inputs.factor_force * application / effective)
+    load = inputs.factor_force * application / whole
     dynamic, notes = ones * inputs.operation.dynamic_factor, _stiffness_notes(inputs)
     if wanted.dynamic_factor == METHOD_B:
         dynamic, more = _dynamic_factor(inputs, load, softer)
         notes += more
-    face = ones * (inputs.result.face_load_factor if wanted.face_load_factor == ANALYSIS else wanted.face_load_factor)
+    face = ones * (inputs.loads.face_load_factor if wanted.face_load_factor == ANALYSIS else wanted.face_load_factor)
     face = np.maximum(face, 1.0)
     transverse = ones
     if wanted.transverse_load_factor == METHOD_B:
@@ -187,16 +196,14 @@ def _stiffness_notes(inputs: BevelInputs) -> tuple[str, ...]:
 
 
 def _dynamic_factor(inputs: BevelInputs, load: Array, softer: Array) -> tuple[Array, tuple[str, ...]]:
-    """K_v (t,) by method B, and notes."""
+    """K_v (c,) by method B, and notes."""
     sheet, (first, second) = inputs.sheet, inputs.scene.materials
     mass = iso10300_1.reduced_mass(
         sheet.mean_diameters, sheet.mean_pressure_angle, (first.density_kg_m3, second.density_kg_m3)
     )
-    speeds = [
-        iso6336_1.resonance_speed(sheet.teeth[0], iso10300_1.MESH_STIFFNESS * float(each), mass) for each in softer
-    ]
+    speeds = iso6336_1.resonance_speed(sheet.teeth[0], iso10300_1.MESH_STIFFNESS, mass) * np.sqrt(softer)
     return iso10300_1.dynamic_factor(
-        inputs.operation.pinion_speed_rpm / np.array(speeds),
+        inputs.cases.speed / speeds,
         load,
         pitch_deviation=_pitch_deviation(inputs),
         total_contact_ratio=sheet.pair.total_contact_ratio,
@@ -217,7 +224,8 @@ def _contact_stresses(inputs: BevelInputs, loads: Arrays, share: float) -> tuple
     product = loads["K_A"] * loads["K_v"] * loads["K_Hbeta"] * loads["K_Halpha"]
     arrays = {
         "Z_MB": zone * ones, "Z_LS": share * ones, "Z_E": elastic * ones, "Z_KP": iso10300_2.BEVEL_FACTOR * ones,
-        "Z_Hyp": hypoid * ones, "sigma_H0": nominal, "sigma_H": both(inputs, (nominal * np.sqrt(product))[:, None]),
+        "Z_Hyp": hypoid * ones, "sigma_H0": nominal,
+        "sigma_H": on_drive(inputs, both(inputs, np.stack([nominal * np.sqrt(product)] * len(GEARS)))),
     }  # fmt: skip
     return arrays, hypoid, ("Z_Hyp: counts as 0.6, the least of the standard",) if bounded else ()
 
@@ -236,52 +244,36 @@ def _flank_factors(inputs: BevelInputs, hypoid: float) -> FlankFactors:
             relative_radius=inputs.sheet.pair.relative_radius,
             velocity=inputs.velocity,
             viscosity_40=inputs.lubricant.viscosity_40_mm2_s,
-            cycles=inputs.cycles,
+            cycles=inputs.cycles.T,
             gear_ratio=inputs.sheet.gear_ratio,
             limited_pitting=inputs.rating.limited_pitting,
             long_life_factor=inputs.rating.long_life_factor,
         )
 
 
-def _of_roots(inputs: BevelInputs, loads: Arrays, share: float) -> tuple[Arrays, tuple[str, ...]]:
-    """Root stress, strength, safety and life of both gears after ISO 10300-3, and by the computed root tension."""
+def _of_roots(
+    inputs: BevelInputs, loads: Arrays, share: float
+) -> tuple[Arrays, dict[str, tuple[Endurance, Endurance]], tuple[str, ...]]:
+    """Root stress, strength and safety of both gears after ISO 10300-3, and by the computed root tension."""
     pair, ones = inputs.sheet.pair, np.ones(len(inputs.torque))
     ratio = iso10300_3.contact_ratio_factor(pair)
     spiral = iso10300_3.bevel_spiral_angle_factor(pair, inputs.sheet.whole_depths)
     nominal = inputs.virtual_force * (ratio * spiral * share / (pair.widths[1] * pair.mean_normal_module))
-    columns, notes = [], [] if pair.spiral_angle else ["Y_BS: 1; the standard has not validated it for straight teeth"]
-    for place, gear in enumerate(GEARS):
-        values, remarks = _of_root(inputs, loads, nominal, place)
-        columns.append(values)
-        notes += [f"{gear}: {remark}" for remark in remarks]
-    arrays = {
-        name: np.stack([np.broadcast_to(values[name], ones.shape) for values in columns], axis=-1)
-        for name in columns[0]
-    }
-    return arrays | {"Y_eps": ratio * ones, "Y_BS": spiral * ones, "Y_LS": share * ones}, tuple(notes)
+    straight = () if pair.spiral_angle else ("Y_BS: 1; the standard has not validated it for straight teeth",)
+    arrays, endurances, notes = of_both_roots(inputs, lambda place: _of_root(inputs, loads, nominal, place))
+    return (
+        arrays | {"Y_eps": ratio * ones, "Y_BS": spiral * ones, "Y_LS": share * ones},
+        endurances,
+        (*straight, *notes),
+    )
 
 
-def _of_root(inputs: BevelInputs, loads: Arrays, nominal: Array, place: int) -> tuple[Arrays, tuple[str, ...]]:
-    """Numbers of the root of one gear (t,), and notes; ``nominal`` lacks Y_Fa Y_Sa."""
-    strength, section = inputs.strengths[place], inputs.root_section(place)
+def _of_root(inputs: BevelInputs, loads: Arrays, nominal: Array, place: int) -> OfRoot:
+    """Root of one gear; ``nominal`` lacks Y_Fa Y_Sa."""
+    section = inputs.root_section(place)
     nominal = nominal * section.form_factor * section.stress_correction_factor
     stress = nominal * loads["K_A"] * loads["K_v"] * loads["K_Fbeta"] * loads["K_Falpha"]
-    made_of, common = root_of(inputs, place)
-    factors = iso6336_3.root_factors(made_of, stress_ratio=strength.root_stress_ratio, **common)
-    required, per_hour = inputs.rating.required_root_safety, inputs.cycles_per_hour[place]
-    arrays: Arrays = {
-        name: np.asarray(value, dtype=float)
-        for name, value in {
-            "Y_Fa": section.form_factor, "Y_Sa": section.stress_correction_factor, "sigma_F0": nominal,
-            "sigma_F": stress, "sigma_F_lim": strength.limits[1], "Y_ST": factors.Y_ST, "Y_NT": factors.Y_NT,
-            "Y_delta_relT": factors.Y_delta_relT, "Y_delta_relT_static": factors.Y_delta_relT_static,
-            "Y_R_relT": factors.Y_R_relT, "Y_X": factors.Y_X, "Y_M": factors.Y_M, "sigma_FG": factors.strength,
-            "root_safety": factors.strength / stress,
-            "root_life": factors.curve.life(required * stress) / per_hour,
-        }.items()
-    }  # fmt: skip
-    notes = (*inputs.sheet.edge_notes(place), *factors.notes)
-    if not inputs.scene.analysis.root_stress:
-        return arrays, notes
-    local, more = local_root(inputs, loads, place)
-    return arrays | local, (*notes, *more)
+    standard, endurances, notes = of_root(inputs, loads, place, stress)
+    factors = {"Y_Fa": section.form_factor, "Y_Sa": section.stress_correction_factor, "sigma_F0": nominal}
+    arrays = {name: np.asarray(value, dtype=float) for name, value in factors.items()} | standard
+    return arrays, endurances, (*inputs.sheet.edge_notes(place), *notes)

@@ -2,37 +2,41 @@
 
 from __future__ import annotations
 
-from math import copysign, nan
+from collections.abc import Callable
+from math import copysign
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import named
+from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurance, Endurances
 from loaded_tca.rating.loads import load_factors
-from loaded_tca.rating.roots import deciding_places, local_root_factors, root_of
+from loaded_tca.rating.roots import asked_ratio, local_root_factors, root_of
+from loaded_tca.rating.solved import OF_FLANK, OF_ROOT
 from loaded_tca.rating.vibration import vibration
 from loaded_tca.reference import iso6336, iso6336_1, iso6336_2, iso6336_3
 from loaded_tca.results.root_stress import rim_factor
-from loaded_tca.tribology.slices import slices_of
 
 if TYPE_CHECKING:
     from loaded_tca.rating.inputs import CommonInputs, RatingInputs
     from loaded_tca.reference.iso6336_6 import SNCurve
 
 Arrays = dict[str, Array]
+Evaluated = tuple[Arrays, Endurances, tuple[str, ...]]
+"""Arrays of ``NUMBERS`` by their names but for damage and lives, what these follow from, and notes."""
+OfRoot = tuple[Arrays, dict[str, Endurance], tuple[str, ...]]
+"""The same of the root of one gear."""
 
 
-def evaluated(inputs: RatingInputs) -> tuple[Arrays, tuple[str, ...], bool]:
-    """Arrays of ``NUMBERS`` by their names, notes, and whether the largest pressure of a torque lies at an edge."""
+def evaluated(inputs: RatingInputs) -> Evaluated:
+    """Numbers after ISO 6336, and by the local stresses."""
     loads, notes = load_factors(inputs)
     stresses = _contact_stresses(inputs, loads)
     flanks = strength_of_flanks(inputs)
-    rated, curves = _of_flanks(inputs, stresses, flanks)
-    roots, root_notes = _of_roots(inputs, loads)
-    local, at_edge = local_flanks(inputs, loads, flanks.strength, curves)
-    arrays = {"torque": np.asarray(inputs.torque), "cycles": both(inputs, inputs.cycles)}
-    arrays |= loads | vibration(inputs) | stresses | rated | roots | local
+    rated = of_flanks(inputs, flanks, stresses["sigma_H"])
+    roots, endurances, root_notes = of_both_roots(inputs, lambda place: _of_root(inputs, loads, place))
+    local = local_flanks(inputs, loads, flanks.strength)
     mesh, ring = inputs.mesh, inputs.mesh.wheel.teeth < 0
     scope = iso6336_1.scope_notes(
         pressure_angle=mesh.pinion.pressure_angle,
@@ -40,17 +44,37 @@ def evaluated(inputs: RatingInputs) -> tuple[Arrays, tuple[str, ...], bool]:
         transverse_contact_ratio=mesh.transverse_contact_ratio,
         profile_shifts=(0.0, 0.0) if ring else (mesh.pinion.profile_shift, mesh.wheel.profile_shift),
     )
-    return arrays, tuple(dict.fromkeys((*scope, *notes, *flanks.notes, *root_notes))), at_edge
+    arrays = {"torque": np.asarray(inputs.torque), "cycles": inputs.cycles}
+    arrays |= loads | vibration(inputs) | stresses | rated | roots | local
+    endurances |= endurances_of_flanks(inputs, flanks.curves, arrays)
+    return arrays, in_order(endurances), tuple(dict.fromkeys((*scope, *notes, *flanks.notes, *root_notes)))
+
+
+def in_order(endurances: dict[str, tuple[Endurance, Endurance]]) -> Endurances:
+    """Kinds of failure in the order of ``MODES``."""
+    return {mode: endurances[mode] for mode in MODES if mode in endurances}
 
 
 def both(inputs: CommonInputs, values: object) -> Array:
-    """Values of both gears, or one of both, for each torque (t, 2)."""
-    return np.array(np.broadcast_to(np.asarray(values, dtype=float), (len(inputs.torque), 2)))
+    """Values of both gears (2, ...), or one of both, for each case (c, 2)."""
+    return np.array(np.broadcast_to(np.asarray(values, dtype=float).T, (len(inputs.torque), 2)))
+
+
+def on_drive(inputs: CommonInputs, stress: Array) -> Array:
+    """Stress (c, ...) of the flanks that are analysed: 0 where a case loads the others."""
+    idle = inputs.cases.reversed
+    return np.where(idle.reshape(-1, *[1] * (stress.ndim - 1)), 0.0, stress)
+
+
+def _safety(strength: Array, stress: Array) -> Array:
+    """Strength over stress; inf without stress."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(strength / stress)
 
 
 def _contact_stresses(inputs: RatingInputs, loads: Arrays) -> Arrays:
     """Contact stress of the standard and its factors."""
-    mesh, standard, gear = inputs.mesh, inputs.scene.contact_standard, inputs.mesh.pinion
+    mesh, standard, gear = inputs.mesh, inputs.standard, inputs.mesh.pinion
     ones = np.ones(len(inputs.torque))
     nominal = standard.stress_per_root_torque * np.sqrt(inputs.torque)
     product = loads["K_A"] * loads["K_gamma"] * loads["K_v"] * loads["K_Hbeta"] * loads["K_Halpha"]
@@ -63,7 +87,7 @@ def _contact_stresses(inputs: RatingInputs, loads: Arrays) -> Arrays:
         "Z_beta": ones * standard.helix_angle,
         "Z_BD": both(inputs, standard.single_contact),
         "sigma_H0": nominal,
-        "sigma_H": np.stack(stresses, axis=-1),
+        "sigma_H": on_drive(inputs, np.stack(stresses, axis=-1)),
     }
 
 
@@ -82,59 +106,65 @@ def strength_of_flanks(inputs: RatingInputs) -> iso6336_2.FlankFactors:
             relative_radius=iso6336_2.relative_radius(bases, mesh.working_pressure_angle),
             velocity=inputs.velocity,
             viscosity_40=inputs.lubricant.viscosity_40_mm2_s,
-            cycles=inputs.cycles,
+            cycles=inputs.cycles.T,
             gear_ratio=max(mesh.gear_ratio, 1.0 / mesh.gear_ratio),
             limited_pitting=wanted.limited_pitting,
             long_life_factor=wanted.long_life_factor,
         )
 
 
-def _of_flanks(
-    inputs: RatingInputs, stresses: Arrays, factors: iso6336_2.FlankFactors
-) -> tuple[Arrays, tuple[SNCurve, SNCurve]]:
-    """Strength, safety and life of flanks after ISO 6336-2, and their curves."""
-    required = inputs.rating.required_flank_safety
+def of_flanks(inputs: CommonInputs, factors: iso6336_2.FlankFactors, stress: Array) -> Arrays:
+    """Factors of strength and safety of flanks (c, 2); ``stress`` is sigma_H."""
     arrays = {
         "sigma_H_lim": factors.limit_stresses,
         "Z_NT": factors.Z_NT,
         "Z_L": factors.Z_L,
-        "Z_v": factors.Z_v,
+        "Z_v": np.stack([factors.Z_v, factors.Z_v]),
         "Z_R": factors.Z_R,
-        "Z_W_reference": factors.Z_W,
+        "Z_W_reference": np.broadcast_to(np.reshape(factors.Z_W, (2, -1)), (2, len(inputs.torque))),
         "Z_W_static": factors.Z_W_static,
         "Z_X": factors.Z_X,
         "sigma_HG": factors.strength,
     }
     whole = {name: both(inputs, values) for name, values in arrays.items()}
-    whole["flank_safety"] = whole["sigma_HG"] / stresses["sigma_H"]
-    whole["flank_life"] = lives(inputs, factors.curves, required * stresses["sigma_H"])
-    return whole, factors.curves
+    whole["flank_safety"] = _safety(whole["sigma_HG"], stress)
+    return whole
 
 
-def lives(inputs: CommonInputs, curves: tuple[SNCurve, ...], stresses: Array) -> Array:
-    """Hours (t, 2) that stresses (t, 2) are borne."""
-    columns = [curve.life(stress) for curve, stress in zip(curves, stresses.T, strict=True)]
-    return np.stack(columns, axis=-1) / inputs.cycles_per_hour
+def endurances_of_flanks(
+    inputs: CommonInputs, curves: tuple[SNCurve, SNCurve], arrays: Arrays
+) -> dict[str, tuple[Endurance, Endurance]]:
+    """What damage of the flanks of both gears follows from, by sigma_H and by the local stress."""
+    required = inputs.rating.required_flank_safety
+
+    def of(stresses: Array) -> tuple[Endurance, Endurance]:
+        pinion, wheel = (
+            Endurance(curve, stresses[:, place], inputs.cycles[:, place], required, OF_FLANK)
+            for place, curve in enumerate(curves)
+        )
+        return pinion, wheel
+
+    local = both(inputs, np.stack([arrays["local_flank_stress"]] * len(GEARS)))
+    return {FLANK: of(arrays["sigma_H"]), LOCAL_FLANK: of(local)}
 
 
-def _of_roots(inputs: RatingInputs, loads: Arrays) -> tuple[Arrays, tuple[str, ...]]:
-    """Root stress, strength, safety and life of both gears after ISO 6336-3, and by the computed root tension."""
-    columns: list[Arrays] = []
-    notes: list[str] = []
-    for place in range(len(GEARS)):
-        values, remarks = _of_root(inputs, loads, place)
-        columns.append(values)
-        notes += [f"{GEARS[place]}: {remark}" for remark in remarks]
+def of_both_roots(
+    inputs: CommonInputs, of_root: Callable[[int], OfRoot]
+) -> tuple[Arrays, dict[str, tuple[Endurance, Endurance]], tuple[str, ...]]:
+    """Numbers (c, 2), endurances and notes of both roots, from those of the pinion, 0, and the wheel, 1."""
+    columns, endurances, remarks = zip(*(of_root(place) for place in range(len(GEARS))), strict=True)
     count = (len(inputs.torque),)
     arrays = {
         name: np.stack([np.broadcast_to(values[name], count) for values in columns], axis=-1) for name in columns[0]
     }
-    return arrays, tuple(notes)
+    pinion, wheel = endurances
+    notes = tuple(f"{gear}: {note}" for gear, some in zip(GEARS, remarks, strict=True) for note in some)
+    return arrays, {mode: (pinion[mode], wheel[mode]) for mode in pinion}, notes
 
 
-def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, tuple[str, ...]]:
-    """Numbers of the root of one gear (t,), and notes."""
-    scene, strength = inputs.scene, inputs.strengths[place]
+def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> OfRoot:
+    """Root of one gear after ISO 6336-3, and by the computed root tension."""
+    scene = inputs.scene
     gear = (inputs.result.gear_pair.pinion, inputs.result.gear_pair.wheel)[place]
     of_class = inputs.rating.tolerance_class
     rim = rim_factor(gear, inputs.mesh.pinion.normal_module)
@@ -142,66 +172,78 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> tuple[Arrays, t
     form, correction, helix = scene.root_factors[place]
     nominal = scene.nominal_root_stress[place] * inputs.torque * rim * deep
     stress = nominal * loads["K_A"] * loads["K_gamma"] * loads["K_v"] * loads["K_Fbeta"] * loads["K_Falpha"]
+    standard, endurances, notes = of_root(inputs, loads, place, stress)
+    factors = {"Y_F": form, "Y_S": correction, "Y_beta": helix, "Y_B": rim, "Y_DT": deep, "sigma_F0": nominal}
+    if not np.isfinite(stress).all():
+        notes = (*notes, "Y_B: the rim is thinner than the standard allows")
+    return {name: np.asarray(value, dtype=float) for name, value in factors.items()} | standard, endurances, notes
+
+
+def of_root(inputs: CommonInputs, loads: Arrays, place: int, stress: Array) -> OfRoot:
+    """Strength and safety of the root of one gear (c,) with sigma_F, and by the computed root tension."""
     made_of, common = root_of(inputs, place)
-    factors = iso6336_3.root_factors(made_of, stress_ratio=strength.root_stress_ratio, **common)
-    required, per_hour = inputs.rating.required_root_safety, inputs.cycles_per_hour[place]
-    arrays: Arrays = {
+    cycles, ratio = inputs.cycles[:, place], asked_ratio(inputs, place)
+    factors = iso6336_3.root_factors(made_of, cycles=cycles, stress_ratio=ratio, **common)
+    arrays = {
         name: np.asarray(value, dtype=float)
         for name, value in {
-            "Y_F": form, "Y_S": correction, "Y_beta": helix, "Y_B": rim, "Y_DT": deep, "sigma_F0": nominal,
-            "sigma_F": stress, "sigma_F_lim": strength.limits[1], "Y_ST": factors.Y_ST, "Y_NT": factors.Y_NT,
+            "sigma_F": stress, "sigma_F_lim": made_of.limit_stress, "Y_ST": factors.Y_ST, "Y_NT": factors.Y_NT,
             "Y_delta_relT": factors.Y_delta_relT, "Y_delta_relT_static": factors.Y_delta_relT_static,
             "Y_R_relT": factors.Y_R_relT, "Y_X": factors.Y_X, "Y_M": factors.Y_M, "sigma_FG": factors.strength,
-            "root_safety": factors.strength / stress,
+            "root_safety": _safety(factors.strength, stress),
         }.items()
     }  # fmt: skip
-    rated = np.isfinite(stress)
-    arrays["root_life"] = np.where(rated, factors.curve.life(np.where(rated, required * stress, 0.0)) / per_hour, nan)
-    notes = factors.notes if rated.all() else (*factors.notes, "Y_B: the rim is thinner than the standard allows")
-    if not scene.analysis.root_stress:
-        return arrays, notes
-    local, more = local_root(inputs, loads, place)
-    return arrays | local, (*notes, *more)
+    endurances = {ROOT: _endurance_of_root(inputs, place, factors, stress)}
+    if not inputs.scene.analysis.root_stress:
+        return arrays, endurances, factors.notes
+    local, endurances[LOCAL_ROOT], more = _local_root(inputs, loads, place)
+    return arrays | local, endurances, (*factors.notes, *more)
 
 
-def local_root(inputs: CommonInputs, loads: Arrays, place: int) -> tuple[Arrays, tuple[str, ...]]:
-    """Safety and life of the root of one gear at the place with the smallest safety (t,), and notes."""
-    worst = deciding_places(inputs, place)
-    tension = worst.tension * loads["K_A"] * loads["K_gamma"] * loads["K_v"]
-    ratio, factors, notes = local_root_factors(inputs, place, worst.ratio, np.arange(len(tension)))
-    required, per_hour = inputs.rating.required_root_safety, inputs.cycles_per_hour[place]
-    return {
-        "local_root_stress": tension,
-        "local_root_angle": worst.tangent_angle,
-        "local_root_axial": worst.axial,
-        "local_stress_ratio": ratio,
-        "local_Y_M": factors.Y_M,
-        "local_sigma_FG": factors.strength,
-        "local_root_safety": factors.strength / tension,
-        "local_root_life": factors.curve.life(required * tension) / per_hour,
-    }, notes
+def _endurance_of_root(inputs: CommonInputs, place: int, factors: iso6336_3.RootFactors, stress: Array) -> Endurance:
+    """What damage of the root of one gear follows from."""
+    required = inputs.rating.required_root_safety
+    return Endurance(factors.curve, stress, inputs.cycles[:, place], required, OF_ROOT)
 
 
-def local_flanks(
-    inputs: CommonInputs, loads: Arrays, strength: Array, curves: tuple[SNCurve, SNCurve]
-) -> tuple[Arrays, bool]:
-    """Largest contact pressure of slices, its place, safety and life of both gears; whether one lies at an edge."""
-    sweep, count = slices_of(inputs.result), len(inputs.torque)
-    pressure, places, at_edge = np.full(count, nan), np.full((2, count, 2), nan), False
-    for torque in range(count):
-        some = sweep.of_torque(torque)
-        some = some[np.isfinite(sweep.pressure[some])]
-        worst = int(some[sweep.pressure[some].argmax()])
-        pressure[torque] = sweep.pressure[worst]
-        places[0, torque] = sweep.radius[worst], sweep.wheel_radius[worst]
-        places[1, torque] = sweep.axial[worst], sweep.wheel_axial[worst]
-        at_edge = at_edge or bool(sweep.on_edge[worst])
+def _local_root(inputs: CommonInputs, loads: Arrays, place: int) -> tuple[Arrays, Endurance, tuple[str, ...]]:
+    """Safety of the root of one gear at the place that decides (c,), what its damage follows from, and notes.
+
+    Where a case is reversed, every place has the same stress ratio, and that of the largest tension decides.
+    """
+    solved, cases = inputs.loads, inputs.cases
+    assert solved.root_tension is not None  # asked before
+    assert solved.largest_root_tension is not None
+    assert solved.root_stress_ratio is not None
+    assert solved.root_places is not None
+    tension = np.where(cases.reversed, solved.largest_root_tension[:, place], solved.root_tension[:, place])
+    tension = np.where(inputs.torque > 0.0, tension, 0.0) * loads["K_A"] * loads["K_gamma"] * loads["K_v"]
+    every = np.arange(len(tension))
+    ratio, factors, notes = local_root_factors(inputs, place, solved.root_stress_ratio[:, place], every)
+    angle, axial = solved.root_places[..., place]
+    return (
+        {
+            "local_root_stress": tension,
+            "local_root_angle": angle,
+            "local_root_axial": axial,
+            "local_stress_ratio": ratio,
+            "local_Y_M": factors.Y_M,
+            "local_sigma_FG": factors.strength,
+            "local_root_safety": _safety(factors.strength, tension),
+        },
+        _endurance_of_root(inputs, place, factors, tension),
+        notes,
+    )
+
+
+def local_flanks(inputs: CommonInputs, loads: Arrays, strength: Array) -> Arrays:
+    """Largest contact pressure of slices with its place, and safety of both gears; ``strength``: sigma_HG (2, ...)."""
+    pressure = on_drive(inputs, np.where(inputs.torque > 0.0, inputs.loads.pressure, 0.0))
     stress = pressure * np.sqrt(loads["K_A"] * loads["K_gamma"] * loads["K_v"])
-    required = inputs.rating.required_flank_safety
+    radius, axial = inputs.loads.places
     return {
         "local_flank_stress": stress,
-        "local_flank_radius": places[0],
-        "local_flank_axial": places[1],
-        "local_flank_safety": strength / stress[:, None],
-        "local_flank_life": lives(inputs, curves, required * np.stack([stress, stress], axis=-1)),
-    }, at_edge
+        "local_flank_radius": radius,
+        "local_flank_axial": axial,
+        "local_flank_safety": _safety(both(inputs, strength), stress[:, None]),
+    }

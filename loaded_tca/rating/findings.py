@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -47,6 +48,8 @@ def worst_of(rating: Rating, prefix: str = "") -> Worst:
 
 def findings(rating: Rating) -> tuple[str, ...]:
     """Sentences on what decides, and on what the local rating has that the standard does not."""
+    if rating.inputs.cases.is_spectrum:
+        return tuple(_of_all_bins(rating))
     local = worst_of(rating, "local_")
     of_local = f"by local stresses what decides is {local.words(rating)}, at {_place(rating, local)}"
     sentences = [
@@ -57,6 +60,34 @@ def findings(rating: Rating) -> tuple[str, ...]:
     if rating.has("local_root_safety"):
         sentences.append(_tensions(rating))
     return tuple(sentences)
+
+
+def _of_all_bins(rating: Rating) -> Iterator[str]:
+    """What decides under a spectrum, after the standard and by local stresses, and the bin that does most of it."""
+    safeties = rating.safeties_and_lives()[0][0]
+    required = np.array([getattr(rating.scene.rating, f"required_{_kind(mode)}_safety") for mode in rating.modes])
+    for words, local in ((f"after {rating.standard}", False), ("by local stresses", True)):
+        of = [n for n, mode in enumerate(rating.modes) if mode.startswith("local_") == local]
+        part = (safeties / required)[:, of]
+        if not np.isfinite(part).any():
+            continue
+        gear, place = (int(n) for n in np.unravel_index(np.nanargmin(part), part.shape))
+        n = of[place]
+        damage = rating.values("damage")[:, gear, n]
+        sentence = (
+            f"{words} what decides is {FAILURES[_kind(rating.modes[n])]} of the {GEARS[gear]}: safety "
+            f"{plain(safeties[gear, n])} in {plain(rating.life_required)} h, required {plain(required[n])}"
+        )
+        if np.isfinite(damage).all() and damage.sum() > 0.0:
+            case = int(damage.argmax())
+            torque, most = plain(1e-3 * float(rating.torque[case])), damage[case] / damage.sum()
+            sentence += f"; bin {case + 1}, {torque} N m, does {100.0 * most:.0f} % of the damage"
+        yield sentence
+
+
+def _kind(mode: str) -> str:
+    """Flank or root of a kind of failure."""
+    return mode.removeprefix("local_")
 
 
 def _place(rating: Rating, worst: Worst) -> str:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import cos, pi
 from typing import TYPE_CHECKING, Any
 
@@ -12,14 +14,18 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalMesh, InternalMesh
+from loaded_tca.rating.cases import Cases, cases_of, problems_of_cases
+from loaded_tca.rating.solved import SolvedLoads, solved_factors
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.rating import RatingSection, StrengthSection
+from loaded_tca.scene.sections import Operation
 
 if TYPE_CHECKING:
     from loaded_tca.reference.iso6336_3 import RootSection
     from loaded_tca.results.numbers import CycleNumbers
     from loaded_tca.scene import Scene
-    from loaded_tca.scene.sections import LubricantSection, Operation
+    from loaded_tca.scene.sections import LubricantSection
+    from loaded_tca.scene.standards import ContactStandard
 
 FEWEST = 5
 """Positions over a pitch: of fewer the largest pressure and K_Hbeta miss much of the mesh."""
@@ -31,7 +37,7 @@ class Duty:
 
     Attributes
     ----------
-    mesh_load_factor : array (t,) or float
+    mesh_load_factor : array (c,) or float
         K_gamma.
     meshes : (int, int)
         Mates that pinion and wheel have at once, each of which loads every tooth once in a turn against the carrier.
@@ -39,7 +45,7 @@ class Duty:
         Whether the wheel does not swing, as a ring in a housing.
     mean_stress_factors : (float or None, float or None)
         Y_M of pinion and wheel, where it does not follow from a stress ratio.
-    stress_ratios : (array (t,) or None, array (t,) or None)
+    stress_ratios : (array (c,) or None, array (c,) or None)
         Smallest over largest computed root stress of a turn, where other mates add to those of the mesh.
     """
 
@@ -63,6 +69,9 @@ class CommonInputs(ABC):
     rating : RatingSection
     operation : Operation
     lubricant : LubricantSection
+    cases : Cases
+    solved : SolvedLoads
+        Under the torques of the result.
     duty : Duty
     """
 
@@ -72,12 +81,19 @@ class CommonInputs(ABC):
     rating: RatingSection
     operation: Operation
     lubricant: LubricantSection
+    cases: Cases
+    solved: SolvedLoads
     duty: Duty = field(default=Duty(), kw_only=True)
+
+    @cached_property
+    def loads(self) -> SolvedLoads:
+        """Under the torques of the cases."""
+        return self.solved.at(self.cases.factor_torque)
 
     @property
     def torque(self) -> Array:
-        """Pinion torques (t,) [N mm]."""
-        return self.result.torque
+        """Pinion torques (c,) [N mm]."""
+        return self.cases.torque
 
     @property
     @abstractmethod
@@ -90,14 +106,14 @@ class CommonInputs(ABC):
 
     @property
     def cycles_per_hour(self) -> Array:
-        """Load cycles of pinion and wheel in an hour (2,)."""
+        """Load cycles of pinion and wheel in an hour of each case (c, 2)."""
         ratio = abs(self.scene.pinion.teeth / self.scene.wheel.teeth)
-        return 60.0 * self.operation.pinion_speed_rpm * np.array([1.0, ratio]) * self.duty.meshes
+        return 60.0 * self.cases.speed[:, None] * np.array([1.0, ratio]) * self.duty.meshes
 
     @property
     def cycles(self) -> Array:
-        """Load cycles N_L of pinion and wheel in the life that is asked for (2,)."""
-        return self.cycles_per_hour * self.rating.life_hours
+        """Load cycles N_L of pinion and wheel under each case in the life that is required (c, 2)."""
+        return self.cycles_per_hour * self.cases.hours[:, None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,16 +139,21 @@ class RatingInputs(CommonInputs):
         assert section is not None  # refused before
         return section
 
+    @cached_property
+    def standard(self) -> ContactStandard:
+        """Contact factors and stiffnesses of the standard."""
+        return self.scene.contact_standard
+
     @property
     def load(self) -> Array:
-        """F_t K_A K_gamma/b (t,) [N/mm], at the reference circle."""
-        force = self.duty.mesh_load_factor * self.torque / self.mesh.pinion.reference_radius
+        """F_t K_A K_gamma/b (c,) [N/mm], at the reference circle, for load factors."""
+        force = self.duty.mesh_load_factor * self.cases.factor_torque / self.mesh.pinion.reference_radius
         return np.asarray(force * self.operation.application_factor / self.mesh.common_face_width)
 
     @property
-    def velocity(self) -> float:
-        """Velocity at the reference circle [m/s]."""
-        return 2e-3 * pi * self.mesh.pinion.reference_radius * self.operation.pinion_speed_rpm / 60.0
+    def velocity(self) -> Array:
+        """Velocity at the reference circle (c,) [m/s]."""
+        return np.asarray(2e-3 * pi * self.mesh.pinion.reference_radius * self.cases.speed / 60.0)
 
     @property
     def virtual_contact_ratio(self) -> float:
@@ -141,7 +162,7 @@ class RatingInputs(CommonInputs):
 
 
 def inputs_of(result: CycleNumbers, duty: Duty = Duty()) -> RatingInputs:
-    """Sections of the scene of a result that a rating needs.
+    """Sections of the scene of a result that a rating needs, with the load factors of the analysis.
 
     Raises
     ------
@@ -151,24 +172,26 @@ def inputs_of(result: CycleNumbers, duty: Duty = Duty()) -> RatingInputs:
     scene = result.scene
     if not isinstance(scene, CylindricalScene):
         raise InputError(f'pair.type: "{scene.geometry.type}"; ISO 6336 is for cylindrical pairs')
-    sections, problems = sections_of(result)
-    problems += [
+    outside = [
         f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
     ]
-    if problems:
-        raise InputError(problems)
-    return RatingInputs(result, scene, **sections, mesh=scene.mesh(), duty=duty)
+    return RatingInputs(result, scene, **common_inputs(result, outside), mesh=scene.mesh(), duty=duty)
 
 
-def sections_of(result: CycleNumbers) -> tuple[dict[str, Any], list[str]]:
-    """Strengths of both gears and the other sections that every rating takes, and what is wrong with a result."""
+def common_inputs(result: CycleNumbers, outside: Sequence[str] = ()) -> dict[str, Any]:
+    """What every rating takes of a result and the sections of its scene: fields of ``CommonInputs`` but the first two.
+
+    Raises
+    ------
+    InputError
+        With everything that is missing or wrong, and what lies ``outside`` the standard.
+    """
     scene = result.scene
     no_limits = "missing; nothing is rated without allowable stresses: give material, or kind with its stresses"
     needed = {
         "pinion.strength": (scene.pinion.strength, no_limits),
         "wheel.strength": (scene.wheel.strength, no_limits),
         "rating": (scene.rating, "missing; it has the required safeties and the hours"),
-        "operation": (scene.operation, "missing; strength, cycles and K_v depend on pinion_speed_rpm"),
         "lubricant": (scene.lubricant, "missing; the strength of flanks depends on viscosity_40_mm2_s"),
     }
     problems = [f"{name}: {words}" for name, (section, words) in needed.items() if section is None]
@@ -179,9 +202,18 @@ def sections_of(result: CycleNumbers) -> tuple[dict[str, Any], list[str]]:
         problems.append(f"analysis.positions: {len(result.path)}; a rating takes {FEWEST} or more: run the scene again")
     if not (torques > 0.0).all():
         problems.append("pinion torque: 0 N m; a rating takes torques above 0")
-    pinion, wheel, *_ = (section for section, _ in needed.values())
-    others = {name: section for name, (section, _) in needed.items() if "." not in name}
-    return {"strengths": (pinion, wheel), **others}, problems
+    problems += problems_of_cases(scene, float(torques.max()))
+    if problems := [*problems, *outside]:
+        raise InputError(problems)
+    cases = cases_of(scene, torques)
+    return {
+        "strengths": (scene.pinion.strength, scene.wheel.strength),
+        "rating": scene.rating,
+        "operation": scene.operation or Operation(pinion_speed_rpm=float(cases.speed.max())),
+        "lubricant": scene.lubricant,
+        "cases": cases,
+        "solved": solved_factors(result),
+    }
 
 
 def _outside(scene: CylindricalScene) -> list[tuple[str, str, bool, str]]:

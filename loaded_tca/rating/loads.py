@@ -20,18 +20,19 @@ if TYPE_CHECKING:
 
 
 def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """K_A, K_gamma, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (t,) by their names, and notes.
+    """K_A, K_gamma, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (c,) by their names, and notes.
 
     K_Hbeta of the analysis counts from 1 on; K_Halpha and K_Falpha of the analysis are held within the bounds of the
     standard.
     """
-    wanted, result = inputs.rating, inputs.result
+    wanted = inputs.rating
     ones = np.ones(len(inputs.torque))
     dynamic = ones * inputs.operation.dynamic_factor
     notes: tuple[str, ...] = ()
     if wanted.dynamic_factor == METHOD_B:
         dynamic, notes = _dynamic_factor(inputs)
-    face = ones * (result.face_load_factor if wanted.face_load_factor == ANALYSIS else float(wanted.face_load_factor))
+    of_analysis = wanted.face_load_factor == ANALYSIS
+    face = ones * (inputs.loads.face_load_factor if of_analysis else float(wanted.face_load_factor))
     face = np.maximum(face, 1.0)
     flank, root = _transverse_factors(inputs, dynamic * face)
     height = inputs.scene.tooth_height_over_width
@@ -41,7 +42,7 @@ def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...
         "K_v": dynamic,
         "K_Hbeta": face,
         "K_Halpha": ones * flank,
-        "K_Fbeta": np.array([face_load_factor(float(factor), height) for factor in face]),
+        "K_Fbeta": face_load_factor(face, height),
         "K_Falpha": ones * root,
     }
     return factors, notes
@@ -61,13 +62,13 @@ def _deviations(inputs: RatingInputs) -> tuple[float, float]:
     return max(pitches), max(profiles)
 
 
-def _run_in(inputs: RatingInputs, deviation: float) -> float:
-    """Running-in allowance for a deviation, the mean of both gears [um]."""
-    allowances = [
-        float(iso6336_1.running_in_allowance(strength.kind_of_material, deviation, strength.limits[0], inputs.velocity))
+def _run_in(inputs: RatingInputs, deviation: float) -> Array:
+    """Running-in allowance for a deviation (c,), the mean of both gears [um]."""
+    pinion, wheel = (
+        iso6336_1.running_in_allowance(strength.kind_of_material, deviation, strength.limits[0], inputs.velocity)
         for strength in inputs.strengths
-    ]
-    return 0.5 * sum(allowances)
+    )
+    return 0.5 * (pinion + wheel)
 
 
 def _tip_relief(inputs: RatingInputs) -> float:
@@ -82,8 +83,8 @@ def _tip_relief(inputs: RatingInputs) -> float:
 
 
 def _dynamic_factor(inputs: RatingInputs) -> tuple[Array, tuple[str, ...]]:
-    """K_v (t,) by method B, and notes."""
-    standard, mesh = inputs.scene.contact_standard, inputs.mesh
+    """K_v (c,) by method B, and notes."""
+    standard, mesh = inputs.standard, inputs.mesh
     shares = iso6336.share_of_stiffness(inputs.load)
     pitch, profile = _deviations(inputs)
     ratio = mesh.gear_ratio
@@ -101,10 +102,10 @@ def _dynamic_factor(inputs: RatingInputs) -> tuple[Array, tuple[str, ...]]:
 
 
 def _transverse_factors(inputs: RatingInputs, load_factor: Array) -> tuple[Array, Array]:
-    """K_Halpha and K_Falpha (t,); ``load_factor`` is K_v K_Hbeta."""
-    wanted, mesh, standard = inputs.rating.transverse_load_factor, inputs.mesh, inputs.scene.contact_standard
+    """K_Halpha and K_Falpha (c,); ``load_factor`` is K_v K_Hbeta."""
+    wanted, mesh, standard = inputs.rating.transverse_load_factor, inputs.mesh, inputs.standard
     if wanted == ANALYSIS:
-        of_analysis = inputs.result.transverse_load_factor
+        of_analysis = inputs.loads.transverse_load_factor
         ratios = mesh.transverse_contact_ratio, mesh.overlap_ratio, inputs.virtual_contact_ratio
         bounds = standard.largest_transverse_load_factor, iso6336_1.largest_root_load_factor(*ratios)
         flank, root = (np.clip(of_analysis, 1.0, max(1.0, bound)) for bound in bounds)
@@ -112,16 +113,11 @@ def _transverse_factors(inputs: RatingInputs, load_factor: Array) -> tuple[Array
     if wanted != METHOD_B:
         return np.asarray(float(wanted)), np.asarray(float(wanted))
     pitch, profile = _deviations(inputs)
-    factors = [
-        iso6336_1.transverse_load_factors(
-            load,
-            mesh_stiffness=standard.mesh_stiffness * float(share),
-            deviation=max(pitch, profile) - _run_in(inputs, pitch),
-            transverse_contact_ratio=mesh.transverse_contact_ratio,
-            overlap_ratio=mesh.overlap_ratio,
-            virtual_contact_ratio=inputs.virtual_contact_ratio,
-        )
-        for load, share in zip(inputs.load * load_factor, iso6336.share_of_stiffness(inputs.load), strict=True)
-    ]
-    flank, root = np.array(factors, dtype=float).T
-    return flank, root
+    return iso6336_1.transverse_load_factors(
+        inputs.load * load_factor,
+        mesh_stiffness=standard.mesh_stiffness * iso6336.share_of_stiffness(inputs.load),
+        deviation=max(pitch, profile) - _run_in(inputs, pitch),
+        transverse_contact_ratio=mesh.transverse_contact_ratio,
+        overlap_ratio=mesh.overlap_ratio,
+        virtual_contact_ratio=inputs.virtual_contact_ratio,
+    )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import GEARS, Array, index_checks
+from loaded_tca.arrays import GEARS, Array, Mask, index_checks
 from loaded_tca.errors import require
 from loaded_tca.rating.roots import local_root_factors, stress_ratio
 from loaded_tca.tribology.slices import slices_of
@@ -93,7 +93,7 @@ def flank_safeties(rating: Rating, case: int) -> FlankSafeties:
     Raises
     ------
     InputError
-        If the rating has no such case.
+        If the rating has no such case, or the case no places: a bin that is reversed, or whose torque was not solved.
     """
     require(*index_checks(case=(case, len(rating.torque))))
     sweep = slices_of(rating.result)
@@ -133,7 +133,7 @@ def root_safeties(rating: Rating, case: int, gear: int) -> RootSafeties:
     Raises
     ------
     InputError
-        If the rating has no such case or gear.
+        If the rating has no such case or gear, or the case no places.
     NotAskedError
         If the scene does not ask for root stress.
     """
@@ -148,6 +148,21 @@ def root_safeties(rating: Rating, case: int, gear: int) -> RootSafeties:
     return RootSafeties(np.where(np.isnan(largest), np.nan, safety), stress.tangent_angle, stress.point[..., 2])
 
 
+def is_shown(rating: Rating) -> Mask:
+    """Whether the torque of each case (c,) was solved and loads the flanks that are analysed: others have no places."""
+    solved = np.isin(rating.torque, rating.result.torque)
+    return np.asarray(solved & ~rating.inputs.cases.reversed)
+
+
+def worst_case(rating: Rating, name: str) -> int:
+    """Index of the case of the smallest safety of a name among those that have places."""
+    safety = np.where(is_shown(rating), rating.values(name).min(axis=1), np.inf)
+    return int(safety.argmin())
+
+
 def _torque_of(rating: Rating, case: int) -> int:
     """Index of the torque of a case in its result."""
+    torque = 1e-3 * float(rating.torque[case])
+    words = "is reversed" if rating.inputs.cases.reversed[case] else "was not solved; analysis.torques_Nm has what is"
+    require((bool(is_shown(rating)[case]), f"case: {case}, {torque:g} N m, {words}"))
     return int(np.abs(rating.result.torque - rating.torque[case]).argmin())

@@ -8,6 +8,8 @@ from loaded_tca.scene.cylindrical import CylindricalScene
 
 CASE = ("case",)
 OF_GEARS = ("case", "gear")
+OF_MODES = ("case", "gear", "mode")
+OF_SPECTRUM = ("gear", "mode")
 OF_ROOTS = Asked(
     lambda scene, _: scene.analysis.root_stress,
     "needs root stress; set analysis.root_stress = true and run the scene",
@@ -77,7 +79,6 @@ NUMBERS: dict[str, Number] = {
     **_numbers(CASE, "1", {"Z_KP": "bevel gear factor Z_KP", "Z_Hyp": "hypoid factor Z_Hyp"}, OF_BEVEL),
     **_numbers(OF_GEARS, "MPa", {"sigma_HG": "pitting strength sigma_HG"}),
     **_numbers(OF_GEARS, "1", {"flank_safety": "safety against pitting S_H"}),
-    **_numbers(OF_GEARS, "h", {"flank_life": "life of flanks at the required safety"}),
     **_numbers(
         OF_GEARS,
         "1",
@@ -126,7 +127,6 @@ NUMBERS: dict[str, Number] = {
     ),
     **_numbers(OF_GEARS, "MPa", {"sigma_FG": "root strength sigma_FG"}),
     **_numbers(OF_GEARS, "1", {"root_safety": "safety against tooth breakage S_F"}),
-    **_numbers(OF_GEARS, "h", {"root_life": "life of roots at the required safety"}),
     **_numbers(CASE, "MPa", {"local_flank_stress": "local: largest contact pressure with K_A K_gamma K_v"}),
     **_numbers(
         OF_GEARS,
@@ -134,7 +134,6 @@ NUMBERS: dict[str, Number] = {
         {"local_flank_radius": "local: radius of its place", "local_flank_axial": "local: axial place"},
     ),
     **_numbers(OF_GEARS, "1", {"local_flank_safety": "local: safety against pitting"}),
-    **_numbers(OF_GEARS, "h", {"local_flank_life": "local: life of flanks at the required safety"}),
     **_numbers(
         OF_GEARS, "MPa", {"local_root_stress": "local: root tension with K_A K_gamma K_v where it decides"}, OF_ROOTS
     ),
@@ -144,6 +143,20 @@ NUMBERS: dict[str, Number] = {
     **_numbers(OF_GEARS, "1", {"local_Y_M": "local: mean stress influence factor Y_M"}, OF_ROOTS),
     **_numbers(OF_GEARS, "MPa", {"local_sigma_FG": "local: root strength sigma_FG"}, OF_ROOTS),
     **_numbers(OF_GEARS, "1", {"local_root_safety": "local: safety against tooth breakage"}, OF_ROOTS),
-    **_numbers(OF_GEARS, "h", {"local_root_life": "local: life of roots at the required safety"}, OF_ROOTS),
+    "damage": Number(OF_MODES, "1", "damage in the required life at the required safety"),
+    "life_hours": Number(OF_MODES, "h", "life at the required safety, of the load case alone", column="life_h"),
 }
 """Names in ``Rating.dataset``, and what each is, in the order of the summary."""
+SPECTRUM_NUMBERS: dict[str, Number] = {
+    "torque": NUMBERS["torque"],
+    "pinion_speed": Number(CASE, "rpm", "pinion speed", label="pinion speed"),
+    "hours": Number(CASE, "h", "hours in the required life", column="hours", label="hours in the required life"),
+    "reversed": Number(CASE, "1", "whether the torque is reversed", label="reversed: 1"),
+    **{name: number for name, number in NUMBERS.items() if name not in ("torque", "life_hours")},
+    "miner_sum": Number(OF_SPECTRUM, "1", "damage of all bins in the required life at the required safety"),
+    "life_hours": Number(OF_SPECTRUM, "h", "life under the spectrum at the required safety", column="life_h"),
+    "spectrum_safety": Number(OF_SPECTRUM, "1", "safety in the required life"),
+    "equivalent_torque": Number(OF_SPECTRUM, "N mm", "equivalent pinion torque"),
+    "interpolation_error": Number(OF_SPECTRUM, "1", "told error of the damage, by interpolation between torques"),
+}
+"""The same of a load spectrum, whose bins are the cases."""

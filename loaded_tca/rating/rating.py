@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-import loaded_tca.warning_kinds as kinds
-from loaded_tca.arguments import checked
+import numpy as np
+
 from loaded_tca.arrays import GEARS, Array
-from loaded_tca.errors import give_accuracy_warning
-from loaded_tca.rating.bevel import BevelInputs, bevel_evaluated, bevel_inputs_of
-from loaded_tca.rating.evaluate import evaluated
 from loaded_tca.rating.findings import findings
-from loaded_tca.rating.inputs import CommonInputs, Duty, inputs_of
-from loaded_tca.rating.quantities import NUMBERS, OF_GEARS
+from loaded_tca.rating.inputs import CommonInputs
+from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurances
+from loaded_tca.rating.quantities import CASE, NUMBERS, OF_GEARS, OF_MODES, OF_SPECTRUM
 from loaded_tca.results.figure import Figure, Figures, labelled
 from loaded_tca.results.files import RATING
 from loaded_tca.results.numbers import CycleNumbers
@@ -28,43 +26,61 @@ if TYPE_CHECKING:
 
     from loaded_tca.results.declared import Number, Row
     from loaded_tca.scene import Scene
+    from loaded_tca.scene.rating import RatingSection
 
 NOT_COUNTED = "pitch deviations and load paths beside K_A K_gamma K_v are not in local safeties; Z_X is 1"
+WORDS = {FLANK: "flank", ROOT: "root", LOCAL_FLANK: "local: flank", LOCAL_ROOT: "local: root"}
+"""Kinds of failure in words."""
 
 
-def _of_gear(name: str, factor: float, place: int, row: Row) -> float:
-    return factor * float(getattr(row, name)[place])
+def _of_column(head: str, row: Row) -> float:
+    return float(row.result.figure_arrays()[head][row.row])
 
 
 def _figures(name: str, number: Number) -> dict[str, Figure]:
-    """Key figures of a number by their names: of a torque, or of both gears."""
-    if number.dims != OF_GEARS:
+    """Key figures of a number by their names: of a torque, of both gears, or of their kinds of failure."""
+    if number.dims == CASE:
         return figures_of({name: number})
-    head = number.head(name)
+    if number.dims == OF_GEARS:
+        labels = {_head(number.head(name), gear): (f"{number.text}, {gear}", name) for gear in GEARS}
+    else:
+        labels = {
+            _head(number.head(name), gear, mode): (f"{WORDS[mode]}: {number.text}, {gear}", f"{mode}_safety")
+            for mode in MODES
+            for gear in GEARS
+        }
     return {
-        f"{gear}_{head}": Figure(
-            of=partial(_of_gear, name, number.factor(head), place), label=f"{number.text}, {gear}", needs=name
-        )
-        for place, gear in enumerate(GEARS)
+        head: Figure(of=partial(_of_column, head), label=label, needs=needs) for head, (label, needs) in labels.items()
     }
 
 
-FIGURES = {name: figure for each, number in NUMBERS.items() for name, figure in _figures(each, number).items()}
-"""Key figures under each torque, in the order of the summary."""
+def _head(head: str, gear: str, mode: str = "") -> str:
+    """Name of a key figure of a gear, and of one of its kinds of failure."""
+    return "_".join(filter(None, (gear, mode, head)))
+
+
+def all_figures(numbers: Mapping[str, Number]) -> dict[str, Figure]:
+    """Key figures under each torque, in the order of the summary."""
+    return {name: figure for each, number in numbers.items() for name, figure in _figures(each, number).items()}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Rating(Result):
     """Safeties and lives of a result with all factors; every name of ``NUMBERS`` is an attribute.
 
+    Without a load spectrum each torque of the result is a load case for itself, which lasts the whole life that is
+    required: damage and lives are those of the gears under that torque alone.
+
     Attributes
     ----------
     result : MeshCycle
     dataset : xarray.Dataset
-        All numbers with their units, over ``case``, each of a ``torque``, and ``gear``. A life is inf where the stress
-        is borne for ever.
+        All numbers with their units, over ``case``, each of a ``torque``, ``gear``, and ``mode``, the kind of failure.
+        A life is inf where the stress is borne for ever, and 0 above the static strength.
     inputs : CommonInputs
         What it took of the result and its scene.
+    endurances : mapping
+        What damage and lives follow from, of pinion and wheel, by the kind of failure.
     remarks : tuple of str
         What lies outside the ranges of the standard.
     """
@@ -73,17 +89,18 @@ class Rating(Result):
     WHAT: ClassVar = "a rating"
     TITLE: ClassVar = "Rating"
     NUMBERS: ClassVar = NUMBERS
-    FIGURES: ClassVar = FIGURES
+    FIGURES: ClassVar = all_figures(NUMBERS)
     COORDINATES: ClassVar = ("torque",)
 
     result: CycleNumbers
     dataset: xarray.Dataset
     inputs: CommonInputs
+    endurances: Endurances
     remarks: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         flank, root = self.flank_safety.min(), self.root_safety.min()
-        return f"Rating({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
+        return f"{type(self).__name__}({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
 
     @property
     def scene(self) -> Scene:
@@ -91,34 +108,72 @@ class Rating(Result):
         return self.result.scene
 
     @property
+    def required(self) -> RatingSection:
+        """What the scene requires."""
+        wanted = self.scene.rating
+        assert wanted is not None  # refused before
+        return wanted
+
+    @property
+    def life_required(self) -> float:
+        """The life that is required [h]."""
+        return float(self.required.life_hours or self.scene.load.hours or 0.0)
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """Kinds of failure that are rated."""
+        return tuple(self.endurances)
+
+    @property
+    def scope(self) -> str:
+        """Speed, hours and what is required, in words."""
+        return f"{self._standards}, pinion at {self._speed} for {self.life_required:g} h; {self._safeties}"
+
+    @property
     def standard(self) -> str:
         """The standard whose factors these are."""
         return "ISO 10300" if isinstance(self.scene, SpiralScene) else "ISO 6336"
 
     @property
-    def scope(self) -> str:
-        """Speed, hours and what is required, in words."""
-        wanted, operation = self.scene.rating, self.scene.operation
-        assert wanted is not None  # refused before
-        assert operation is not None
+    def _standards(self) -> str:
         of_bevel = isinstance(self.scene, SpiralScene)
-        standard = "ISO 10300-2 and -3:2023, method B1" if of_bevel else "ISO 6336-2:2019 and -3:2006"
-        return (
-            f"{standard}, pinion at {operation.pinion_speed_rpm:g} rpm for {wanted.life_hours:g} h; "
-            f"required S_H {wanted.required_flank_safety:g}, S_F {wanted.required_root_safety:g}; pinion | wheel"
-        )
+        return "ISO 10300-2 and -3:2023, method B1" if of_bevel else "ISO 6336-2:2019 and -3:2006"
+
+    @property
+    def _speed(self) -> str:
+        operation = self.scene.operation
+        assert operation is not None  # refused before
+        return f"{operation.pinion_speed_rpm:g} rpm"
+
+    @property
+    def _safeties(self) -> str:
+        wanted = self.required
+        return f"required S_H {wanted.required_flank_safety:g}, S_F {wanted.required_root_safety:g}; pinion | wheel"
+
+    def safeties_and_lives(self) -> tuple[Array, Array]:
+        """Safety, and life at the required safety [h], of each load case (c, gear, mode)."""
+        safeties = [self.values(f"{mode}_safety") for mode in self.modes]
+        return np.stack(safeties, axis=-1), self.values("life_hours")
 
     def rows(self, figures: Sequence[Figures]) -> list[tuple[str, ...]]:
         """Lines of the summary: label with unit, and a cell for each torque, of both gears where they differ."""
         rows = []
         for name, number in self.NUMBERS.items():
-            if not self.has(name):
+            if not self.has(name) or number.dims == OF_SPECTRUM:
                 continue
             head = number.head(name)
-            names = [f"{gear}_{head}" for gear in GEARS] if number.dims == OF_GEARS else [head]
-            cells = (" | ".join(shown(row[one], one) for one in names) for row in figures)
-            rows.append((labelled(names[0], number.label or number.text), *cells))
+            if number.dims != OF_MODES:
+                names = [_head(head, gear) for gear in GEARS] if number.dims == OF_GEARS else [head]
+                rows.append((labelled(names[0], number.label or number.text), *self._cells(figures, names)))
+                continue
+            for mode in self.modes:
+                names = [_head(head, gear, mode) for gear in GEARS]
+                rows.append((labelled(names[0], f"{WORDS[mode]}: {number.text}"), *self._cells(figures, names)))
         return rows
+
+    @staticmethod
+    def _cells(figures: Sequence[Figures], names: Sequence[str]) -> Iterator[str]:
+        return (" | ".join(shown(row[name], name) for name in names) for row in figures)
 
     def notes(self) -> tuple[str, ...]:
         """What lies outside the ranges of the standard, what decides, which safeties are too small, what lacks."""
@@ -126,8 +181,7 @@ class Rating(Result):
 
     def _short(self) -> list[str]:
         """Sentences on safeties below those required."""
-        wanted = self.scene.rating
-        assert wanted is not None  # refused before
+        wanted = self.required
         required = {"flank": wanted.required_flank_safety, "root": wanted.required_root_safety}
         sentences = []
         for kind, least in required.items():
@@ -160,7 +214,7 @@ class Rating(Result):
         Raises
         ------
         InputError
-            As :meth:`loaded_tca.MeshCycle.sensitivities`, and of bevel and hypoid pairs.
+            As :meth:`loaded_tca.MeshCycle.sensitivities`, of bevel and hypoid pairs, and of load spectra.
 
         Warns
         -----
@@ -171,37 +225,34 @@ class Rating(Result):
 
         return rating_slopes(self, keys)
 
+    def figure_arrays(self) -> dict[str, Array]:
+        """Return the key figures as arrays (case,) by their names; of what all bins do together the same for each."""
+        columns, count = {}, len(self.torque)
+        for name, number in self.NUMBERS.items():
+            if not self.has(name):
+                continue
+            head = number.head(name)
+            values = number.factor(head) * self.values(name)
+            if number.dims == CASE:
+                columns[head] = values
+            elif number.dims == OF_GEARS:
+                columns |= {_head(head, gear): values[:, place] for place, gear in enumerate(GEARS)}
+            else:
+                whole = np.broadcast_to(values, (count, len(GEARS), len(self.modes)))
+                for n, mode in enumerate(self.modes):
+                    columns |= {_head(head, gear, mode): whole[:, place, n] for place, gear in enumerate(GEARS)}
+        return {head: np.asarray(values, dtype=float) for head, values in columns.items()}
+
+    def key_figures(self) -> tuple[dict[str, float], ...]:
+        """Return the figures of each load case, by names that end in their unit; NaN: not known."""
+        columns = self.figure_arrays()
+        rows = zip(*(values.tolist() for values in columns.values()), strict=True)
+        return tuple(dict(zip(columns, row, strict=True)) for row in rows)
+
     def to_table(self) -> dict[str, Array]:
-        """Return all numbers as columns, a row for each torque, by names that end in their unit."""
+        """Return all numbers as columns, a row for each load case, by names that end in their unit."""
         return self.figure_arrays()
 
     def stored(self) -> xarray.Dataset:
-        """The dataset as files have it: gears are 0, the pinion, and 1, the wheel."""
-        return self.dataset.drop_vars("gear")
-
-
-@checked
-def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -> Rating:
-    """Rating of a result; see :meth:`loaded_tca.MeshCycle.rating`.
-
-    Parameters
-    ----------
-    result : MeshCycle
-    duty : Duty
-        How gears are loaded by other mates, as those of a planetary stage.
-    warn : bool
-        Whether accuracy warnings are given.
-
-    Returns
-    -------
-    Rating
-    """
-    of_bevel = isinstance(result.scene, SpiralScene)
-    inputs = bevel_inputs_of(result) if of_bevel else inputs_of(result, duty)
-    arrays, notes, at_edge = bevel_evaluated(inputs) if isinstance(inputs, BevelInputs) else evaluated(inputs)
-    sentences = [kinds.RATED_AT_EDGE.sentence()] if at_edge else []
-    about: dict[str, Any] = {"version": result.version, "warnings": "\n".join(sentences)}
-    dataset = Rating.dataset_of(arrays, **about).assign_coords(gear=[*GEARS])
-    for sentence in sentences if warn else ():
-        give_accuracy_warning(sentence, stacklevel=3)
-    return Rating(result, dataset, inputs, notes)
+        """The dataset as files have it: gears are 0, the pinion, and 1, the wheel; kinds of failure likewise."""
+        return self.dataset.drop_vars(["gear", "mode"]).assign_attrs(modes=" ".join(self.modes))

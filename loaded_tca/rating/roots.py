@@ -14,8 +14,12 @@ if TYPE_CHECKING:
     from loaded_tca.rating.inputs import CommonInputs
 
 
+REVERSED = -1.2
+"""Smallest over largest root stress where both flanks of a tooth carry the same load (ISO 6336-3, annex B)."""
+
+
 def root_of(inputs: CommonInputs, place: int) -> tuple[iso6336_3.RootStrength, dict[str, Any]]:
-    """Material of the root of a gear, and what else the factors of its strength take whatever the stress ratio."""
+    """Material of the root of a gear, and what else the factors of its strength take in any load case."""
     strength, section = inputs.strengths[place], inputs.root_section(place)
     made_of = iso6336_3.RootStrength(
         strength.limits[1], strength.kind_of_material, strength.root_Rz_um, strength.proof_stress_MPa
@@ -24,28 +28,32 @@ def root_of(inputs: CommonInputs, place: int) -> tuple[iso6336_3.RootStrength, d
         "notch_parameter": section.notch_parameter,
         "stress_correction_factor": section.stress_correction_factor,
         "normal_module": inputs.normal_module,
-        "cycles": float(inputs.cycles[place]),
         "long_life_factor": inputs.rating.long_life_factor,
         "mean_stress_factor": inputs.duty.mean_stress_factors[place],
     }
 
 
 def local_root_factors(
-    inputs: CommonInputs, place: int, ratio: Array, torque: Indices | int
+    inputs: CommonInputs, place: int, ratio: Array, case: Indices | int
 ) -> tuple[Array, iso6336_3.RootFactors, tuple[str, ...]]:
     """Stress ratio R that counts of computed ones, factors of root strength with it, and notes.
 
-    ``torque`` is the index of the torque of each ratio, or of all: other mates press a root more than the mesh does.
+    ``case`` is the index of the load case of each ratio, or of all: other mates press a root more than the mesh does.
     """
     made_of, common = root_of(inputs, place)
-    of_mates = inputs.duty.stress_ratios[place]
-    highest = inputs.strengths[place].root_stress_ratio if of_mates is None else of_mates[torque]
-    ratio = np.clip(np.minimum(ratio, highest), -1.2, 0.0)
+    cycles, of_mates = inputs.cycles[case, place], inputs.duty.stress_ratios[place]
+    highest = asked_ratio(inputs, place) if of_mates is None else of_mates
+    ratio = np.clip(np.minimum(ratio, highest[case]), REVERSED, 0.0)
     try:
-        return ratio, iso6336_3.root_factors(made_of, stress_ratio=ratio, **common), ()
+        return ratio, iso6336_3.root_factors(made_of, cycles=cycles, stress_ratio=ratio, **common), ()
     except InputError:  # cast irons, of which the standard has no sensitivity
         note = "local Y_M: the standard has no mean stress sensitivity of this material; 1 counts"
-        return ratio, iso6336_3.root_factors(made_of, **common), (note,)
+        return ratio, iso6336_3.root_factors(made_of, cycles=cycles, **common), (note,)
+
+
+def asked_ratio(inputs: CommonInputs, place: int) -> Array:
+    """Stress ratio R of the root of a gear that the scene asks for (c,): of reversed bins that of both flanks."""
+    return np.where(inputs.cases.reversed, REVERSED, inputs.strengths[place].root_stress_ratio)
 
 
 LEAST_MEAN_STRESS_FACTOR = 0.45

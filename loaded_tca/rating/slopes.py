@@ -17,7 +17,6 @@ the root's place and stress ratio, and K_Halpha of the analysis.
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +25,7 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError
 from loaded_tca.rating.inputs import RatingInputs
 from loaded_tca.rating.loads import load_factors
+from loaded_tca.rating.solved import SolvedLoads
 from loaded_tca.results.derivatives import JoinedSensitivities
 from loaded_tca.results.gap_growth import curvature_growth
 from loaded_tca.results.sensitivities import NEWTON_MILLIMETRES, TORQUE, Sensitivities
@@ -53,6 +53,10 @@ def rating_slopes(rating: Rating, keys: Sequence[str]) -> xarray.Dataset:
     inputs = rating.inputs
     if not isinstance(inputs, RatingInputs):
         raise InputError(f'pair.type: "{rating.scene.geometry.type}"; derivatives of safeties are of cylindrical pairs')
+    if inputs.cases.is_spectrum:
+        raise InputError(
+            "load.case: a load spectrum; derivatives of safeties are under torques that stand for themselves"
+        )
     sensitivities = rating.result.sensitivities(keys)
     factors = _factor_slopes(inputs, sensitivities)
     torque = np.array([NEWTON_MILLIMETRES * (key == TORQUE) for key in keys]) / rating.torque[:, None]
@@ -97,13 +101,12 @@ def _factors_at(inputs: RatingInputs, key: str, sign: float, face: Array) -> tup
             scene = scene.with_changes({key: value + step})
         except InputError:  # the end of its range: the difference is that to the other side
             step = 0.0
-    moved: Any = SimpleNamespace(
-        torque=inputs.torque + torque,
-        face_load_factor=result.face_load_factor + step * face,
-        transverse_load_factor=result.transverse_load_factor,
-        face_width=result.face_width,
+    torques = inputs.torque + torque
+    solved = SolvedLoads.of_factors(
+        torques, result.face_load_factor + step * face, np.asarray(result.transverse_load_factor)
     )
-    factors, _ = load_factors(replace(inputs, result=moved, scene=scene, mesh=scene.mesh()))
+    cases = replace(inputs.cases, torque=torques)
+    factors, _ = load_factors(replace(inputs, cases=cases, solved=solved, scene=scene, mesh=scene.mesh()))
     return factors, step
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.arrays import GEARS
+from loaded_tca.errors import InputError
 from loaded_tca.rating.evaluate import strength_of_flanks
 from loaded_tca.rating.inputs import inputs_of
 from loaded_tca.rating.loads import load_factors
@@ -47,8 +48,12 @@ def utilisation_of(scene: Scene, torque: float) -> Utilisation:
     Raises
     ------
     InputError
-        As :meth:`loaded_tca.MeshCycle.rating`.
+        As :meth:`loaded_tca.MeshCycle.rating`, and of load spectra.
     """
+    if scene.load.case is not None:
+        raise InputError(
+            "load.case: a load spectrum; give load.pinion_torque_Nm, under which a design uses its strength"
+        )
     one = np.ones(1)
     result: Any = SimpleNamespace(
         scene=scene,

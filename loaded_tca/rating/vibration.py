@@ -11,12 +11,10 @@ from loaded_tca.arrays import Array
 from loaded_tca.gears import RingGear
 from loaded_tca.gears.cylindrical import half_tooth
 from loaded_tca.reference import iso6336, iso6336_1
-from loaded_tca.results.key_figures import mean_over_a_pitch, span_of
 
 if TYPE_CHECKING:
     from loaded_tca.gears import CylindricalGear
     from loaded_tca.rating.inputs import RatingInputs
-    from loaded_tca.results.numbers import CycleNumbers
     from loaded_tca.scene.shafts import ShaftSection
 
 POINTS = 40
@@ -84,37 +82,29 @@ def reduced_mass(inputs: RatingInputs) -> float:
 
 
 def resonance_ratio(inputs: RatingInputs, stiffness: Array) -> Array:
-    """N (t,): speed of the pinion over that at which the mesh resonates with a stiffness (t,) [N/(mm um)]."""
-    mass, teeth, speed = reduced_mass(inputs), inputs.mesh.pinion.teeth, inputs.operation.pinion_speed_rpm
-    known = [each > 0.0 for each in stiffness.tolist()]  # NaN: not known
-    return np.array(
-        [
-            speed / iso6336_1.resonance_speed(teeth, each, mass) if is_known else nan
-            for each, is_known in zip(stiffness.tolist(), known, strict=True)
-        ]
-    )
+    """N (c,): speed of the pinion over that at which the mesh resonates with a stiffness (c,) [N/(mm um)]."""
+    mass, teeth = reduced_mass(inputs), inputs.mesh.pinion.teeth
+    known = stiffness > 0.0  # NaN: not known
+    at_unit = iso6336_1.resonance_speed(teeth, 1.0, mass)
+    return np.where(known, inputs.cases.speed / (at_unit * np.sqrt(np.where(known, stiffness, 1.0))), nan)
 
 
 def standard_stiffness(inputs: RatingInputs) -> Array:
-    """c_gamma_alpha of the standard (t,), NaN where it has none [N/(mm um)]."""
-    return np.asarray(inputs.scene.contact_standard.mesh_stiffness * iso6336.share_of_stiffness(inputs.load))
+    """c_gamma_alpha of the standard (c,), NaN where it has none [N/(mm um)]."""
+    return np.asarray(inputs.standard.mesh_stiffness * iso6336.share_of_stiffness(inputs.load))
 
 
 def vibration(inputs: RatingInputs) -> dict[str, Array]:
-    """Reduced mass, resonance ratios and what excites the mesh (t,), by their names."""
-    stiffness = np.array([mean_over_a_pitch(each) for each in inputs.result.mesh_stiffness])
+    """Reduced mass, resonance ratios and what excites the mesh (c,), by their names."""
+    excitation = inputs.loads.excitation
     return {
         "reduced_mass": np.full(len(inputs.torque), reduced_mass(inputs)),
         "resonance_ratio": resonance_ratio(inputs, standard_stiffness(inputs)),
-        "resonance_ratio_of_analysis": resonance_ratio(inputs, stiffness),
-        **excitation(inputs.result),
+        "resonance_ratio_of_analysis": resonance_ratio(inputs, excitation["mesh_stiffness"]),
+        **errors_of(excitation),
     }
 
 
-def excitation(result: CycleNumbers) -> dict[str, Array]:
-    """Transmission error of the analysis (t,), peak to peak and its first order, by their names [um]."""
-    spans = [span_of(error, result.places_of_mesh) for error in result.transmission_error]
-    return {
-        "transmission_error_span": result.um_per_rad * np.array(spans),
-        "transmission_error_order_1": result.um_per_rad * result.harmonics(1)[:, 0],
-    }
+def errors_of(excitation: dict[str, Array]) -> dict[str, Array]:
+    """Those of the excitation that a rating has: transmission error of the analysis, peak to peak and order 1 [um]."""
+    return {name: excitation[name] for name in ("transmission_error_span", "transmission_error_order_1")}

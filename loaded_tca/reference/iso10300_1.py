@@ -373,7 +373,7 @@ def dynamic_factor(
     resonance_ratio: ArrayLike,
     specific_load: ArrayLike,
     *,
-    pitch_deviation: float,
+    pitch_deviation: ArrayLike,
     total_contact_ratio: float,
     single_stiffness: ArrayLike = SINGLE_STIFFNESS,
 ) -> BevelDynamicFactor:
@@ -394,7 +394,7 @@ def dynamic_factor(
         N = n_1/n_E1, with :func:`loaded_tca.reference.iso6336_1.resonance_speed`.
     specific_load : array [N/mm]
         F_vmt K_A/b_v.
-    pitch_deviation : float [um]
+    pitch_deviation : array [um]
         f_p,eff, of the wheel after running in.
     total_contact_ratio : float
         eps_v_gamma.
@@ -419,15 +419,17 @@ def dynamic_factor(
     >>> round(float(factor.K_v), 3)
     1.02
     """
-    ratio, load = np.asarray(resonance_ratio, dtype=float), np.asarray(specific_load, dtype=float)
+    ratio, load, deviation = (
+        np.asarray(each, dtype=float) for each in (resonance_ratio, specific_load, pitch_deviation)
+    )
     require(
         interval_check("resonance_ratio", ratio, "[0, inf)"),
         interval_check("specific_load", load, "(0, inf)", "N/mm"),
-        (0.0 <= pitch_deviation < inf, f"pitch_deviation: {pitch_deviation} um is negative or not finite"),
+        interval_check("pitch_deviation", deviation, "[0, inf)", "um"),
         (1.0 < total_contact_ratio < inf, f"total_contact_ratio: {total_contact_ratio} is not above 1 and finite"),
     )
     first, second, third, fourth, fifth, sixth, seventh = dynamic_coefficients(total_contact_ratio)
-    pitch = np.asarray(single_stiffness, dtype=float) * pitch_deviation / load
+    pitch = np.asarray(single_stiffness, dtype=float) * deviation / load
     below = 1.0 + ratio * ((first + second) * pitch + third)
     main = 1.0 + (first + second) * pitch + fourth
     above = (fifth + sixth) * pitch + seventh
@@ -567,7 +569,7 @@ def transverse_load_factor(
     specific_load: ArrayLike,
     *,
     mesh_stiffness: ArrayLike,
-    pitch_deviation: float,
+    pitch_deviation: ArrayLike,
     total_contact_ratio: float,
     relative_offset: float = 0.0,
 ) -> Array:
@@ -587,7 +589,7 @@ def transverse_load_factor(
         F_mtH/b_v = F_vmt K_A K_v K_Hbeta/b_v.
     mesh_stiffness : array [N/(mm um)]
         c_gamma.
-    pitch_deviation : float [um]
+    pitch_deviation : array [um]
         f_pt - y_alpha, of the wheel.
     total_contact_ratio : float
         eps_v_gamma.
@@ -612,15 +614,17 @@ def transverse_load_factor(
     >>> round(float(factor(20995.2 / 23.507, 23.125, 2.036)), 3)
     1.109
     """
-    load, stiffness = np.asarray(specific_load, dtype=float), np.asarray(mesh_stiffness, dtype=float)
+    load, stiffness, deviation = (
+        np.asarray(each, dtype=float) for each in (specific_load, mesh_stiffness, pitch_deviation)
+    )
     require(
         interval_check("specific_load", load, "(0, inf)", "N/mm"),
         interval_check("mesh_stiffness", stiffness, "(0, inf)", "N/(mm um)"),
-        (0.0 <= pitch_deviation < inf, f"pitch_deviation: {pitch_deviation} um is negative or not finite"),
+        interval_check("pitch_deviation", deviation, "[0, inf)", "um"),
         (1.0 < total_contact_ratio < inf, f"total_contact_ratio: {total_contact_ratio} is not above 1 and finite"),
         (0.0 <= relative_offset < inf, f"relative_offset: {relative_offset} is negative or not finite"),
     )
     ratio = total_contact_ratio
     weight = 0.5 * ratio if ratio <= 2.0 else sqrt(2.0 * (ratio - 1.0) / ratio)
-    without = 0.9 + 0.4 * weight * stiffness * pitch_deviation / load
+    without = 0.9 + 0.4 * weight * stiffness * deviation / load
     return np.maximum(1.0, without - (without - 1.0) * min(relative_offset, 0.1) / 0.1)

@@ -516,7 +516,7 @@ def largest_root_load_factor(
 def transverse_load_factors(
     specific_load: ArrayLike,
     *,
-    mesh_stiffness: float,
+    mesh_stiffness: ArrayLike,
     deviation: ArrayLike,
     transverse_contact_ratio: float,
     overlap_ratio: float,
@@ -538,7 +538,7 @@ def transverse_load_factors(
     ----------
     specific_load : array [N/mm]
         F_tH/b = F_t K_A K_gamma K_v K_Hbeta/b.
-    mesh_stiffness : float [N/(mm um)]
+    mesh_stiffness : array [N/(mm um)]
         c_gamma_alpha.
     deviation : array [um]
         f_pb - y_alpha, of the larger base pitch deviation, or that of the profile f_f_alpha if it is larger.
@@ -562,15 +562,16 @@ def transverse_load_factors(
     >>> [round(float(factor), 3) for factor in factors]
     [1.069, 1.069]
     """
-    load, error = np.asarray(specific_load, dtype=float), np.asarray(deviation, dtype=float)
+    load, stiffness, error = (np.asarray(each, dtype=float) for each in (specific_load, mesh_stiffness, deviation))
     largest = largest_transverse_load_factor(transverse_contact_ratio, overlap_ratio)
-    require_positive(mesh_stiffness=mesh_stiffness, virtual_contact_ratio=virtual_contact_ratio)
+    require_positive(virtual_contact_ratio=virtual_contact_ratio)
     require(
         interval_check("specific_load", load, "(0, inf)", "N/mm"),
+        interval_check("mesh_stiffness", stiffness, "(0, inf)", "N/(mm um)"),
         interval_check("deviation", error, "[0, inf)", "um"),
     )
     total = transverse_contact_ratio + overlap_ratio
-    part = 0.4 * mesh_stiffness * error / load
+    part = 0.4 * stiffness * error / load
     factor = 0.5 * total * (0.9 + part) if total <= 2.0 else 0.9 + (2.0 * (total - 1.0) / total) ** 0.5 * part
     of_roots = largest_root_load_factor(transverse_contact_ratio, overlap_ratio, virtual_contact_ratio)
     flank, root = (np.maximum(1.0, np.minimum(factor, bound)) for bound in (largest, of_roots))

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 from math import acos, copysign, cos, degrees, hypot, inf, log, pi, radians, sin, sqrt, tan
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 import loaded_tca.roots as roots
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import Array, Indices, interval_check
 from loaded_tca.errors import GeometryError, require, require_positive
 from loaded_tca.reference.iso6336 import virtual_teeth
 from loaded_tca.reference.iso6336_3_strength import RootFactors, RootStrength, root_factors
@@ -509,7 +510,7 @@ def nominal_root_stress(tangential_force: float, face_width: float, normal_modul
 
 
 @checked
-def face_load_factor(contact_face_load_factor: float, height_over_width: float) -> float:
+def face_load_factor(contact_face_load_factor: ArrayLike, height_over_width: float) -> Array:
     r"""Face load factor of root stress K_Fbeta.
 
     .. math:: K_{F\beta} = K_{H\beta}^{N_F},\qquad N_F = \frac{1}{1 + h/b + (h/b)^2}
@@ -518,7 +519,7 @@ def face_load_factor(contact_face_load_factor: float, height_over_width: float) 
 
     Parameters
     ----------
-    contact_face_load_factor : float
+    contact_face_load_factor : array
         K_Hbeta, at least 1.
     height_over_width : float
         Height of the tooth over the face width h/b, of the narrower gear.
@@ -529,10 +530,11 @@ def face_load_factor(contact_face_load_factor: float, height_over_width: float) 
 
     Examples
     --------
-    >>> round(face_load_factor(1.5, 0.2), 4)
+    >>> round(float(face_load_factor(1.5, 0.2)), 4)
     1.3868
     """
     require_positive(height_over_width=height_over_width)
-    require((1.0 <= contact_face_load_factor < inf, f"contact_face_load_factor: {contact_face_load_factor} is below 1"))
+    factor = np.asarray(contact_face_load_factor, dtype=float)
+    require(interval_check("contact_face_load_factor", factor, "[1, inf)"))
     ratio = min(height_over_width, _LARGEST_HEIGHT_OVER_WIDTH)
-    return contact_face_load_factor ** (1.0 / (1.0 + ratio + ratio**2))
+    return np.asarray(factor ** (1.0 / (1.0 + ratio + ratio**2)))

@@ -204,16 +204,18 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         )
 
     def rating(self) -> Rating:
-        """Return safeties and lives of flanks and roots under each torque, after a standard and by the local stresses.
+        """Return safeties and lives of flanks and roots, after a standard and by the local stresses.
 
         The standard is ISO 6336, of bevel and hypoid pairs ISO 10300, method B1.
 
         Materials, required safeties, speed and oil are those of the scene: [pinion.strength], [wheel.strength],
-        [rating], [operation], [lubricant].
+        [rating], [operation], [lubricant]. Each torque is a load case for itself; under a load spectrum of the scene,
+        ``load.case``, the cases are its bins, and their damage adds up.
 
         Returns
         -------
         loaded_tca.rating.Rating
+            Under a load spectrum a :class:`loaded_tca.rating.SpectrumRating`.
 
         Raises
         ------
@@ -224,7 +226,8 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         Warns
         -----
         AccuracyWarning
-            Where the largest pressure lies at an edge of a flank.
+            Where the largest pressure lies at an edge of a flank, or stresses between the torques that were solved may
+            make the damage of a spectrum wrong by more than 1 %.
 
         Examples
         --------

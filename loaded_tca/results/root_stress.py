@@ -261,7 +261,7 @@ def root_figures(result: CycleNumbers, torque: int) -> dict[str, float]:
     figures: dict[str, float] = {}
     nominal = [float(result.torque[torque]) * per_torque for per_torque in result.scene.nominal_root_stress]
     ratio, factor = result.scene.tooth_height_over_width, float(result.face_load_factor[torque])
-    of_roots = math.nan if math.isnan(ratio + factor) else face_load_factor(max(1.0, factor), ratio)
+    of_roots = math.nan if math.isnan(ratio + factor) else float(face_load_factor(max(1.0, factor), ratio))
     gears = result.gear_pair.pinion, result.gear_pair.wheel
     for gear, name in enumerate(GEARS):
         rim = math.nan if math.isnan(ratio) else rim_factor(gears[gear], result.gear_pair.module)

@@ -157,6 +157,11 @@ class CylindricalScene(BlankScene):
 
     def mesh(self) -> CylindricalMesh:
         """Return the macro geometry: diameters, contact ratios, path of contact."""
+        return self._mesh
+
+    @cached_property
+    def _mesh(self) -> CylindricalMesh:
+        """The macro geometry, which every number of the standards asks for again."""
 
         def gear(own: GearSection, sign: int, name: str, shift: float | None) -> CylindricalGear:
             values = parameters_of(CylindricalGear, self.geometry, own)

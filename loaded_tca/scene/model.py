@@ -25,6 +25,7 @@ from loaded_tca.scene.build import (
     modifications_by_keys,
 )
 from loaded_tca.scene.keys import Line, key
+from loaded_tca.scene.load import Load, life_is_given, within_solved
 from loaded_tca.scene.parse import scene_from_table, toml_lines
 from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.rating import RatingSection
@@ -41,7 +42,6 @@ from loaded_tca.scene.sections import (
     Analysis,
     ElasticMaterial,
     GearSection,
-    Load,
     LubricantSection,
     Operation,
     Pair,
@@ -145,6 +145,8 @@ class Scene(WithStandards, ABC):
             )
             for place in ("material", "pinion.material", "wheel.material")
         ),
+        Rule(("load", "analysis.torques_Nm"), within_solved),
+        Rule(("rating.life_hours", "load"), life_is_given),
         *REVOLUTION_RULES,
     )
 
@@ -191,7 +193,8 @@ class Scene(WithStandards, ABC):
     def coast_side(self) -> Scene:
         """Return the scene with the other gear driving in the same sense of rotation: the other flanks carry the load.
 
-        Torques of the pinion are the same; the flanks in contact have the same modifications.
+        Torques of the pinion are the same; the flanks in contact have the same modifications. Of a load spectrum with
+        reversed bins the others are reversed then: flanks keep the loads that they carry.
 
         Raises
         ------
@@ -214,6 +217,9 @@ class Scene(WithStandards, ABC):
         changes["pair.sense"] = self.sense
         if hasattr(self.geometry, "pinion_flank"):
             changes["pair.pinion_flank"] = None
+        bins = self.load.case or ()
+        if any(case.reversed for case in bins):
+            changes["load.case"] = tuple(replace(case, reversed=not case.reversed) for case in bins)
         return self.with_changes(changes)
 
     def on_rigid_supports(self) -> Scene:
@@ -417,9 +423,9 @@ class Scene(WithStandards, ABC):
 
     @property
     def torques(self) -> tuple[float, ...]:
-        """Every pinion torque to analyse [N mm]."""
+        """Every pinion torque to analyse [N mm]; of a load spectrum of many bins a dozen."""
         several = in_base_units(self.analysis).get("torques")
-        return several or (in_base_units(self.load)["pinion_torque"],)
+        return several or self.load.torques
 
     def with_changes(self, changes: Mapping[str, Any]) -> Scene:
         """Return a scene with other values, all checked.

@@ -29,6 +29,9 @@ LARGEST_FILE = 2**21
 LEVELS_WITH_FILES = 4
 """Parts of the longest key that names a file."""
 
+SPECTRUM = "load", "spectrum"
+"""Key that names a file, beside those called file."""
+
 MOST_DOTS = 2000
 """Dots in one line: reading a key of tens of thousands of dotted parts takes minutes."""
 
@@ -113,7 +116,7 @@ def literal_value(text: str) -> Any:
 
 
 def with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[str, ...] = ()) -> dict[str, Any]:
-    """The table, in which the keys of the upper levels that are called file name it from the current folder.
+    """The table, in which the keys of the upper levels that name a file name it from the current folder.
 
     Who opens the scene of somebody else lets it read nothing but what lies beside it.
     """
@@ -129,7 +132,7 @@ def with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[s
                 with_files[name] = inner if tables else inner[0]
             except InputError as error:
                 problems += error.problems
-        elif name == "file" and isinstance(value, str):
+        elif (name == "file" or key == SPECTRUM) and isinstance(value, str):
             if folder is not None and _lies_in(folder, value):
                 with_files[name] = str(folder / value)
             else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, ClassVar
 
 from loaded_tca.errors import InputError
@@ -164,7 +164,7 @@ class StrengthSection(Section):
         """Kind of ISO 6336-5, given or of the named material."""
         return _kind(self.material, self.kind)
 
-    @property
+    @cached_property
     def limits(self) -> tuple[float, float]:
         """sigma_H_lim and sigma_F_lim, given or of ISO 6336-5 [MPa]."""
         if self.sigma_H_lim_MPa is not None and self.sigma_F_lim_MPa is not None:
@@ -192,7 +192,12 @@ class RatingSection(Section):
 
     required_flank_safety: float = key(above_zero(100.0), "required safety against pitting S_Hmin")
     required_root_safety: float = key(above_zero(100.0), "required safety against tooth breakage S_Fmin")
-    life_hours: float = key(above_zero(1e8), "hours under each torque for which safeties are told")
+    life_hours: float | None = key(
+        above_zero(1e8),
+        "life that is required: hours under each torque alone, or of a load spectrum, whose bins repeat in it",
+        None,
+        "the hours of the load cases together",
+    )
     dynamic_factor: str = key(
         Choice((METHOD_B, GIVEN)), "dynamic factor K_v of ISO 6336-1, or operation.dynamic_factor", METHOD_B
     )

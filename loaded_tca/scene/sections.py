@@ -16,6 +16,7 @@ from loaded_tca.flanks.rounding import LEAST_RADIUS
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, SOFTEST
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Either, Line, List, Number, Whole, ZeroOr, above_zero, key
+from loaded_tca.scene.load import TORQUE_Nm
 from loaded_tca.scene.pitch import Pitch
 from loaded_tca.scene.rating import StrengthSection
 from loaded_tca.scene.section import Rule, Section, Tables, subsection
@@ -33,7 +34,6 @@ START_mm = Number(0.0, 100000.0)
 END_mm = above_zero(10000.0)
 ERROR_deg = Number(-10.0, 10.0)
 ERROR_mm = Number(-1000.0, 1000.0)
-TORQUE_Nm = Number(0.0, 1e9)
 ROUNDING_mm = ZeroOr(Number(LEAST_RADIUS, 1000.0))
 DRIVING = Choice(GEARS)
 SENSE = Choice(("positive", "negative"))
@@ -266,13 +266,6 @@ class GearSection(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Load(Section):
-    """[load]: torque on the pinion."""
-
-    pinion_torque_Nm: float = key(TORQUE_Nm, "magnitude of the torque on the pinion")
-
-
-@dataclass(frozen=True, kw_only=True)
 class Analysis(Section):
     """[analysis]: positions, grids and models."""
 
@@ -317,9 +310,9 @@ class Analysis(Section):
     )
     torques_Nm: tuple[float, ...] | None = key(
         List(TORQUE_Nm, 1, 1000),
-        "several pinion torques, all analysed instead of that of [load]",
+        "several pinion torques, all analysed instead of that of [load], or of those that are chosen for its spectrum",
         None,
-        "the one of [load]",
+        "the one of [load], or those of its spectrum",
     )
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -11,10 +11,12 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, give_accuracy_warning, noted_accuracy_warnings
-from loaded_tca.rating import Rating
+from loaded_tca.rating import Rating, rating_of
 from loaded_tca.rating.inputs import Duty
-from loaded_tca.rating.quantities import CASE, NUMBERS, OF_GEARS
-from loaded_tca.rating.rating import NOT_COUNTED, rating_of
+from loaded_tca.rating.lives import MODES
+from loaded_tca.rating.quantities import CASE, NUMBERS, OF_MODES
+from loaded_tca.rating.rating import NOT_COUNTED, WORDS
+from loaded_tca.rating.roots import REVERSED
 from loaded_tca.reference.iso6336_3_strength import mean_stress_sensitivities
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.declared import Number, Row
@@ -36,29 +38,36 @@ if TYPE_CHECKING:
 MEMBERS = "sun", "planet", "ring"
 MESHES = {"sun_mesh": SUN_MESH, "ring_mesh": RING_MESH}
 """Attribute of each mesh -> the gears that its pinion and wheel are."""
-REVERSED = -1.2
-"""Smallest over largest root stress of a planet whose flanks carry the same load for each mm, ISO 6336-3, annex B."""
 BENT_TO_AND_FRO = 0.7
 """Y_M of planets of materials without a mean stress sensitivity: allowable stresses of ISO 6336-5 times 0.7."""
 
 _LEAST = "flank_safety", "root_safety", "local_flank_safety", "local_root_safety"
-_LIVES = "flank_life", "root_life", "local_flank_life", "local_root_life"
 _LOADS = "K_A", "K_gamma"
 STAGE_RATING_NUMBERS: dict[str, Number] = {
     "torque": Number(CASE, "N mm", "torque of the sun", column="sun_torque_Nm", label="sun torque"),
     **{name: NUMBERS[name] for name in (*_LOADS, "cycles")},
-    **{name: NUMBERS[name] for pair in zip(_LEAST, _LIVES, strict=True) for name in pair},
+    **{name: NUMBERS[name] for name in (*_LEAST, "damage", "life_hours")},
 }
-"""Names in ``StageRating.dataset``: of a planet the smaller one of both meshes counts."""
+"""Names in ``StageRating.dataset``: of a planet the worse one of both meshes counts."""
 
 
-def _of_member(name: str, factor: float, place: int, row: Row) -> float:
+def _of_member(name: str, factor: float, place: int | tuple[int, int], row: Row) -> float:
     return factor * float(getattr(row, name)[place])
 
 
 def _figures(name: str, number: Number) -> dict[str, Figure]:
-    """Key figures of a number of the three gears by their names."""
+    """Key figures of a number of the three gears by their names, and by their kinds of failure."""
     head = number.head(name)
+    if number.dims == OF_MODES:
+        return {
+            f"{gear}_{mode}_{head}": Figure(
+                of=partial(_of_member, name, number.factor(head), (place, n)),
+                label=f"{WORDS[mode]}: {number.text}, {gear}",
+                needs=f"{mode}_safety",
+            )
+            for n, mode in enumerate(MODES)
+            for place, gear in enumerate(MEMBERS)
+        }
     return {
         f"{gear}_{head}": Figure(
             of=partial(_of_member, name, number.factor(head), place), label=f"{number.text}, {gear}", needs=name
@@ -88,7 +97,7 @@ class StageRating(Result):
     FIGURES: ClassVar = {
         name: figure
         for each, number in STAGE_RATING_NUMBERS.items()
-        if number.dims == OF_GEARS
+        if number.dims != CASE
         for name, figure in _figures(each, number).items()
     }
     COORDINATES: ClassVar = ("torque",)
@@ -134,9 +143,13 @@ class StageRating(Result):
             if not self.has(name):
                 continue
             head = number.head(name)
-            names = [f"{gear}_{head}" for gear in MEMBERS] if number.dims == OF_GEARS else [head]
-            cells = (" | ".join(shown(row[one], one) for one in names) for row in figures)
-            rows.append((labelled(names[0], number.label or number.text), *cells))
+            kinds = self.sun_mesh.modes if number.dims == OF_MODES else [""]
+            for kind in kinds:
+                of_gears = [f"{gear}_{kind}_{head}" if kind else f"{gear}_{head}" for gear in MEMBERS]
+                names = [head] if number.dims == CASE else of_gears
+                cells = (" | ".join(shown(row[one], one) for one in names) for row in figures)
+                label = f"{WORDS[kind]}: {number.text}" if kind else number.label or number.text
+                rows.append((labelled(names[0], label), *cells))
         for mesh, gears in MESHES.items():
             rating: Rating = getattr(self, mesh)
             rows.append((f"{gears['pinion']} and {gears['wheel']}", *("" for _ in figures)))
@@ -158,8 +171,8 @@ class StageRating(Result):
         return self.figure_arrays()
 
     def stored(self) -> xarray.Dataset:
-        """The dataset as files have it: gears are 0, the sun, 1, a planet, and 2, the ring."""
-        return self.dataset.drop_vars("gear")
+        """The dataset as files have it: gears are 0, the sun, 1, a planet, 2, the ring; kinds of failure likewise."""
+        return self.dataset.drop_vars(["gear", "mode"]).assign_attrs(modes=" ".join(self.sun_mesh.modes))
 
 
 def _renamed(name: str, gears: dict[str, str]) -> str:
@@ -200,7 +213,7 @@ def stage_rating_of(result: StageResult, *, warn: bool = True) -> StageRating:
         give_accuracy_warning(sentence, stacklevel=3)
     arrays = _of_gears(*ratings) | {"torque": np.asarray(result.torque)}
     about: dict[str, Any] = {"version": ratings[0].version, "warnings": "\n".join(sentences)}
-    dataset = StageRating.dataset_of(arrays, **about).assign_coords(gear=[*MEMBERS])
+    dataset = StageRating.dataset_of(arrays, **about).assign_coords(gear=[*MEMBERS], mode=[*ratings[0].modes])
     return StageRating(result, *ratings, dataset)
 
 
@@ -307,11 +320,11 @@ def _under_even_shares(
 
 
 def _of_gears(of_sun: Rating, of_ring: Rating) -> dict[str, Array]:
-    """Numbers of sun, planet and ring (t, 3); of the planet the smaller one of both meshes."""
-    names = [name for name in (*_LEAST, *_LIVES) if of_sun.has(name)]
+    """Numbers of sun, planet and ring (t, 3, ...); of the planet the worse one of both meshes."""
 
-    def joined(name: str) -> Array:
+    def joined(name: str, worse: Callable[[Array, Array], Array] = np.minimum) -> Array:
         first, second = of_sun.values(name), of_ring.values(name)
-        return np.stack([first[:, 0], np.minimum(first[:, 1], second[:, 0]), second[:, 1]], axis=-1)
+        return np.stack([first[:, 0], worse(first[:, 1], second[:, 0]), second[:, 1]], axis=1)
 
-    return {name: joined(name) for name in (*names, "cycles")} | {name: of_sun.values(name) for name in _LOADS}
+    least = {name: joined(name) for name in (*_LEAST, "life_hours", "cycles") if of_sun.has(name)}
+    return least | {"damage": joined("damage", np.maximum)} | {name: of_sun.values(name) for name in _LOADS}

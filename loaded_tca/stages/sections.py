@@ -19,18 +19,11 @@ from loaded_tca.scene.blank import OTHER
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.internal import InternalScene, RingSection
 from loaded_tca.scene.keys import Choice, Either, Key, Line, List, Number, Whole, above_zero, key
+from loaded_tca.scene.load import Load, TORQUE_Nm
 from loaded_tca.scene.parse import toml_lines
 from loaded_tca.scene.rating import ANALYSIS, LOAD_FACTOR, RatingSection
 from loaded_tca.scene.section import Rule, Section, as_table, check, contents, key_at, made, replaced_by, subsection
-from loaded_tca.scene.sections import (
-    FACTOR,
-    Analysis,
-    DIAMETER_mm,
-    ElasticMaterial,
-    Load,
-    LubricantSection,
-    TORQUE_Nm,
-)
+from loaded_tca.scene.sections import FACTOR, Analysis, DIAMETER_mm, ElasticMaterial, LubricantSection
 from loaded_tca.stages.kinematics import spacing_problems
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
@@ -254,6 +247,12 @@ class Stage(Section):
         Rule(
             ("analysis.torques_Nm",),
             lambda several: None if all(several or (1.0,)) else "found 0; allowed above 0: a stage shares a torque",
+        ),
+        Rule(
+            ("rating.life_hours",),
+            lambda hours: (
+                None if hours is not None else "missing; a stage has no load cases whose hours could be meant"
+            ),
         ),
         Rule(
             ("analysis.load_sharing",),

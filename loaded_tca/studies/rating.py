@@ -62,7 +62,8 @@ def rating_figures(result: MeshCycle) -> dict[str, Array]:
     -------
     dict of str to (torques,) array
         ``S_H``, ``S_F``, ``S_H_local``, ``S_F_local``, ``life_h`` and ``life_local_h`` (the shorter of flanks and
-        roots, inf: without end). NaN: not known, as the local ones of roots without root stress.
+        roots, inf: without end). NaN: not known, as the local ones of roots without root stress. Of a load spectrum
+        those of all bins together, under each torque the same.
 
     Raises
     ------
@@ -71,17 +72,17 @@ def rating_figures(result: MeshCycle) -> dict[str, Array]:
     """
     if not is_rated(result.scene):
         return {}
-    rating, unknown = rating_of(result, warn=False), np.full((len(result.torque), 2), np.nan)
-    of_gears = {
-        name: rating.values(name) if rating.has(name) else unknown
-        for place in ("", "local_")
-        for kind in ("flank", "root")
-        for name in (f"{place}{kind}_safety", f"{place}{kind}_life")
-    }
-    least = {name: values.min(axis=1) for name, values in of_gears.items()}
-    lives = [np.fmin(least[f"{place}flank_life"], least[f"{place}root_life"]) for place in ("", "local_")]
-    safeties = [least[f"{place}{kind}_safety"] for place in ("", "local_") for kind in ("flank", "root")]
-    return dict(zip(FIGURES, (*safeties, *lives), strict=True))
+    rating, count = rating_of(result, warn=False), len(result.torque)
+    unknown = np.full(count, np.nan)
+    safeties, lives = (
+        {mode: np.broadcast_to(values[..., n].min(axis=1), count) for n, mode in enumerate(rating.modes)}
+        for values in rating.safeties_and_lives()
+    )
+    shorter = [
+        np.fmin(*(lives.get(f"{place}{kind}", unknown) for kind in ("flank", "root"))) for place in ("", "local_")
+    ]
+    of_modes = [safeties.get(f"{place}{kind}", unknown) for place in ("", "local_") for kind in ("flank", "root")]
+    return dict(zip(FIGURES, (*of_modes, *shorter), strict=True))
 
 
 @checked

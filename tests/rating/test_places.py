@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
-from loaded_tca.plots import plot_flank_safety, plot_root_safety, plot_safeties, safety_figures
+from loaded_tca.plots import plot_flank_safety, plot_root_safety, plot_safeties, rating_figures
 from loaded_tca.rating import flank_safeties, root_safeties
 from loaded_tca.rating.findings import findings, worst_of
 from loaded_tca.reports import write_html_report
@@ -110,7 +110,9 @@ def test_maps_of_both_gears_have_one_scale():
 
 
 def test_pictures_are_those_that_the_rating_has():
-    assert [*safety_figures(solved(**{"analysis.root_stress": False}).rating())] == ["safeties", "flank_safety"]
+    assert [*rating_figures(solved(**{"analysis.root_stress": False}).rating())] == [
+        "safeties", "flank_safety", "rating_sn_curves", "rating_damage",
+    ]  # fmt: skip
 
 
 def test_safeties_that_the_standard_has_not_are_left_out():
@@ -121,10 +123,11 @@ def test_safeties_that_the_standard_has_not_are_left_out():
 
 
 def test_report_has_factors_by_gear_and_case(monkeypatch):
-    monkeypatch.setattr("loaded_tca.reports.rating_page.safety_figures", lambda _: {})  # seconds, and tested above
+    monkeypatch.setattr("loaded_tca.reports.rating_page.rating_figures", lambda _: {})  # seconds, and tested above
     content = rating_content(solved())
     assert [table.caption for table in content["tables"]] == [
         "Loads and load factors", "Flanks, ISO 6336-2", "Roots, ISO 6336-3", "Local",
+        "Damage and lives",
     ]  # fmt: skip
     assert content["tables"][0].head == ("", "100 N m, pinion", "100 N m, wheel", "200 N m, pinion", "200 N m, wheel")
     assert {len(row) for table in content["tables"] for row in table.rows} == {5}
@@ -141,7 +144,7 @@ REFUSED = "<li>lubricant: missing; the strength of flanks depends on viscosity_4
     [({}, "after ISO 6336 what decides is"), pytest.param({"lubricant": None}, REFUSED, marks=pytest.mark.thorough)],
 )
 def test_report_has_a_rating_or_says_why_not(tmp_path, monkeypatch, changes, words):
-    for name in ("result_page.result_figures", "result_page.tribology_figures", "rating_page.safety_figures"):
+    for name in ("result_page.result_figures", "result_page.tribology_figures", "rating_page.rating_figures"):
         monkeypatch.setattr(f"loaded_tca.reports.{name}", lambda *_, **__: {})  # seconds, and tested by themselves
     text = write_html_report(solved(**changes), tmp_path / "report.html").read_text(encoding="utf-8")
     assert "<h2>Rating</h2>" in text

@@ -52,8 +52,9 @@ def test_life_at_a_required_safety_is_that_whose_safety_it_is():
         flank, root = float(rated.flank_safety[1, place]), float(rated.root_safety[1, place])
         changed = solved(**{"rating.required_flank_safety": flank, "rating.required_root_safety": root}).rating()
         # exponents of the lines between knees multiply rounding of a stress by up to 33
-        assert_allclose(changed.flank_life[1, place], 20000.0, rtol=1e-9)
-        assert_allclose(changed.root_life[1, place], 20000.0, rtol=1e-9)
+        lives = changed.dataset.life_hours[1, place]
+        assert_allclose(lives.sel(mode="flank"), 20000.0, rtol=1e-9)
+        assert_allclose(lives.sel(mode="root"), 20000.0, rtol=1e-9)
 
 
 def test_load_cycles_count_turns_of_each_gear():
@@ -65,15 +66,15 @@ def test_load_cycles_count_turns_of_each_gear():
 
 def test_no_tooth_lives_above_its_static_strength():
     rated = solved(**{"rating.required_flank_safety": 90.0, "rating.required_root_safety": 90.0}).rating()
-    for name in ("flank_life", "root_life", "local_flank_life", "local_root_life"):
-        assert_array_equal(rated.values(name), 0.0)
+    assert rated.modes == ("flank", "root", "local_flank", "local_root")
+    assert_array_equal(rated.life_hours, np.zeros((2, 2, 4)))
     assert any("below the required 90 under 100, 200 N m" in note for note in rated.notes())
 
 
 def test_lower_stress_than_the_end_of_the_curve_is_borne_for_ever():
     rated = solved(**{"rating.required_flank_safety": 1e-3, "rating.required_root_safety": 1e-3}).rating()
-    assert np.isinf(rated.flank_life).all()
-    assert np.isinf(rated.local_root_life).all()
+    assert_array_equal(rated.life_hours, np.full((2, 2, 4), np.inf))
+    assert_array_equal(rated.damage, 0.0)
 
 
 def test_local_stresses_are_those_of_the_contact_and_the_roots():
@@ -150,7 +151,7 @@ def test_summary_and_figures_have_both_gears():
     figures = rated.key_figures()
     assert figures[1]["pinion_torque_Nm"] == 200.0
     assert figures[1]["wheel_flank_safety"] == rated.flank_safety[1, 1]
-    assert figures[0]["pinion_flank_life_h"] == rated.flank_life[0, 0]
+    assert figures[0]["pinion_flank_life_h"] == rated.life_hours[0, 0, 0]
     line = next(line for line in rated.summary().splitlines() if line.startswith("safety against pitting S_H"))
     assert line.count("|") == 2
     assert "required S_H 1, S_F 1.4" in rated.summary()
@@ -159,7 +160,7 @@ def test_summary_and_figures_have_both_gears():
 def test_pressure_at_an_edge_is_told(monkeypatch):
     slices = slices_of(solved())
     at_edge = replace(slices, on_edge=np.ones_like(slices.on_edge))
-    monkeypatch.setattr("loaded_tca.rating.evaluate.slices_of", lambda _: at_edge)
+    monkeypatch.setattr("loaded_tca.rating.solved.slices_of", lambda _: at_edge)
     with pytest.warns(AccuracyWarning, match="rating: the largest pressure"):
         solved().rating()
 

@@ -285,9 +285,8 @@ def test_file_of_a_scene_that_does_not_know_the_key_is_read(tmp_path):
         def to_toml(self):
             return older
 
-    replace(cycle, scene=Older(**{each.name: getattr(cycle.scene, each.name) for each in fields(cycle.scene)})).save(
-        tmp_path / "result.nc"
-    )
+    values = {each.name: getattr(cycle.scene, each.name) for each in fields(cycle.scene)}
+    replace(cycle, scene=Older(**values)).save(tmp_path / "result.nc")
     assert load_result(tmp_path / "result.nc").scene == cycle.scene
 
 

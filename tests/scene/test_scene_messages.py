@@ -23,7 +23,10 @@ ONE_PROBLEM = [
     ({"pair.normal_module_mm": None}, "pair.normal_module_mm: missing; allowed a number above 0, up to 1000"),
     ({"pair.type": None}, f"pair.type: missing; allowed {TYPES}"),
     ({"pinion.teeth": None}, "pinion.teeth: missing; allowed a whole number from 3 to 10000"),
-    ({"load": None}, "load.pinion_torque_Nm: missing; allowed a number from 0 to 1e+09"),
+    (
+        {"load": None},
+        "load.pinion_torque_Nm: missing; give a torque, or the bins of a spectrum: [[load.case]], or load.spectrum",
+    ),
     (
         {"material": None},
         "material: missing; give [material] for both gears, or [pinion.material] and [wheel.material]",
@@ -37,8 +40,8 @@ ONE_PROBLEM = [
         'pinion.tip_relief_um: unknown key; did you mean "pinion.modifications.tip_relief_um"?',
     ),
     ({"Teeth": 3}, 'Teeth: unknown key; did you mean "pinion.teeth"?'),
-    ({"load.colour": "red"}, "load.colour: unknown key; allowed pinion_torque_Nm"),
-    ({"load.two words\n": 1}, r'load."two words\n": unknown key; allowed pinion_torque_Nm'),
+    ({"load.colour": "red"}, "load.colour: unknown key; allowed pinion_torque_Nm, case, spectrum"),
+    ({"load.two words\n": 1}, r'load."two words\n": unknown key; allowed pinion_torque_Nm, case, spectrum'),
     # wrong type
     ({"pinion.teeth": 34.0}, "pinion.teeth: found 34.0; allowed a whole number from 3 to 10000"),
     ({"pinion.teeth": True}, "pinion.teeth: found true; allowed a whole number from 3 to 10000"),

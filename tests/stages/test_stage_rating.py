@@ -95,11 +95,13 @@ def test_fillet_of_a_planet_is_drawn_by_one_mesh_and_pressed_by_the_other():
 
 def test_smaller_safety_of_both_meshes_counts_for_planets():
     rating = rated()
-    for name in ("flank_safety", "root_safety", "local_flank_safety", "root_life"):
+    for name in ("flank_safety", "root_safety", "local_flank_safety", "life_hours"):
         sun, ring = rating.sun_mesh.values(name), rating.ring_mesh.values(name)
-        expected = [[sun[0, 0], min(sun[0, 1], ring[0, 0]), ring[0, 1]]]
+        expected = [[sun[0, 0], np.minimum(sun[0, 1], ring[0, 0]), ring[0, 1]]]
         assert_array_equal(rating.values(name), expected)
+    assert_array_equal(rating.damage[0, 1], np.maximum(rating.sun_mesh.damage[0, 1], rating.ring_mesh.damage[0, 0]))
     assert rating.dataset["flank_safety"].dims == ("case", "gear")
+    assert rating.dataset["life_hours"].dims == ("case", "gear", "mode")
     assert rating.dataset["gear"].values.tolist() == ["sun", "planet", "ring"]
 
 

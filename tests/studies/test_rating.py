@@ -42,8 +42,9 @@ def test_figures_are_the_least_of_both_gears():
     assert {*figures} == {*FIGURES}
     for name, of in {"S_H": "flank_safety", "S_F_local": "local_root_safety"}.items():
         assert_allclose(figures[name], rated.values(of).min(axis=1), rtol=0.0)
-    lives = np.concatenate([rated.flank_life, rated.root_life], axis=1)
-    assert_allclose(figures["life_h"], lives.min(axis=1), rtol=0.0)
+    lives = rated.dataset["life_hours"].sel(mode=["flank", "root"])
+    assert_allclose(figures["life_h"], lives.min(["gear", "mode"]), rtol=0.0)
+    assert_allclose(figures["life_local_h"], rated.life_hours[..., 2:].min(axis=(1, 2)), rtol=0.0)
 
 
 def test_scenes_without_strengths_have_none():

@@ -36,6 +36,7 @@ short_rows = cache(partial(run_case, short=True))
 
 
 DEAR = {
+    "rating.spectra",
     "loaded.error_estimates",
     "unloaded.convergence_from_random_starts",
     "unloaded.involute_pairs",

@@ -80,7 +80,7 @@ class Uneven:
     def iso_factor(self) -> float:
         """K_Fbeta."""
         height = 2.25 * 3.0  # of the tooth, h_aP + h_fP modules
-        return iso6336_3.face_load_factor(self.contact_factor, height / FACE_WIDTH)
+        return float(iso6336_3.face_load_factor(self.contact_factor, height / FACE_WIDTH))
 
 
 def under_line(roots: RootStress, line: FlankLine, forces: Array, ends: Array) -> Uneven:

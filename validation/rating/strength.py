@@ -135,7 +135,7 @@ def _roots(mesh: CylindricalMesh, ratio: float, dynamic: float, transverse: floa
             iso6336_3.RootStrength(430.0, "Eh", 20.0), notch_parameter=section.notch_parameter,
             stress_correction_factor=section.stress_correction_factor, normal_module=14.0, cycles=cycles[place],
         )  # fmt: skip
-        face = iso6336_3.face_load_factor(FACE_LOAD, 30.562 / 360.0)
+        face = float(iso6336_3.face_load_factor(FACE_LOAD, 30.562 / 360.0))
         safety = strength.safety(nominal * APPLICATION * dynamic * face * transverse)
         name, (stress, limit, safe) = ("pinion", "wheel")[place], printed[place]
         compared += [

@@ -1,0 +1,179 @@
+"""Ratings: S-N curves with the load cases on them, and the damage that each of these does."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from loaded_tca.arrays import GEARS, Array
+from loaded_tca.plain import plain
+from loaded_tca.plots import style
+from loaded_tca.plots.safety import SAFETY_PICTURES, RatingPicture
+from loaded_tca.plots.style import DISTINCT_COLOURS, NO_MATERIAL
+from loaded_tca.rating import Rating, SpectrumRating
+from loaded_tca.rating.lives import Endurance
+from loaded_tca.rating.rating import WORDS
+
+SHOWN_CYCLES = 1e2, 1e11
+"""Of the axis of load cycles, at least."""
+MOST_BARS = 40
+"""Of a panel of damage: bins of more torques are put together in equal steps of torque."""
+FEWEST_CYCLES = 1.0
+GEAR_STYLES = {"pinion": (DISTINCT_COLOURS[0], "o", "-"), "wheel": (DISTINCT_COLOURS[1], "s", "--")}
+"""Colour, marker and line of each gear."""
+PANEL = 3.6
+"""Height [inch]."""
+
+
+def plot_sn_curves(rating: Rating) -> Figure:
+    """S-N curves of both gears with the load cases at their load cycles and stresses times the required safety.
+
+    Curves that differ from case to case, by the velocity factor, are those of the case of the largest damage.
+
+    Parameters
+    ----------
+    rating : Rating
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure, panels = _panels(rating)
+    for (mode, both), axes in zip(rating.endurances.items(), panels, strict=True):
+        for gear, endurance in zip(GEARS, both, strict=True):
+            _draw_curve(axes, endurance, gear)
+        axes.set(xscale="log", yscale="log", ylabel="stress · required safety [MPa]", xlabel="load cycles [-]")
+        _finish(axes, WORDS[mode])
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(lambda value, _: plain(value))
+        axes.yaxis.set_minor_formatter(NullFormatter())
+    kind = "bins" if isinstance(rating, SpectrumRating) else "torques"
+    return _finished(figure, panels, rating, f"S-N curves with {len(rating.torque)} {kind}")
+
+
+def plot_damage(rating: Rating) -> Figure:
+    """Damage of the load cases over their torques, of both gears, a panel for each kind of failure.
+
+    Parameters
+    ----------
+    rating : Rating
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Of a spectrum of more than 40 torques, bins stand together in 40 equal steps of torque.
+    """
+    figure, panels = _panels(rating)
+    for n, (mode, axes) in enumerate(zip(rating.modes, panels, strict=True)):
+        places, width, damage = _bars(rating, rating.damage[:, :, n])
+        for k, gear in enumerate(GEARS):
+            colour = GEAR_STYLES[gear][0]
+            hatch = "///" if k else ""
+            shown = np.where(np.isfinite(damage[:, k]), damage[:, k], 0.0)
+            offset = (k - 0.5) * 0.45 * width
+            axes.bar(places + offset, shown, 0.42 * width, color=colour, label=gear, hatch=hatch, edgecolor="white")
+            broken = places[np.isinf(damage[:, k])] + offset
+            if broken.size:
+                top = axes.get_xaxis_transform()
+                label = f"{gear}: above the static strength"
+                axes.plot(broken, np.full(broken.size, 0.97), "v", color=colour, transform=top, label=label)
+        axes.set(xlabel="pinion torque [N m]", ylabel=f"damage in {rating.life_required:g} h [-]")
+        axes.set_ylim(bottom=0.0)
+        if not (damage > 0.0).any():
+            style.tell(axes, "no damage: stresses below the end of the curve")
+        _finish(axes, WORDS[mode])
+    several = isinstance(rating, SpectrumRating)
+    what = f"damage of {len(rating.torque)} bins" if several else "damage under each torque alone"
+    return _finished(figure, panels, rating, what)
+
+
+def _panels(rating: Rating) -> tuple[Figure, list[Axes]]:
+    """A figure with a panel for each kind of failure."""
+    count = len(rating.modes)
+    rows = -(-count // 2)
+    figure = Figure(figsize=(9.6, PANEL * rows), layout="constrained")
+    panels = np.ravel(figure.subplots(rows, 2)).tolist()
+    for axes in panels[count:]:
+        axes.set_visible(False)
+    return figure, panels[:count]
+
+
+def _draw_curve(axes: Axes, endurance: Endurance, gear: str) -> None:
+    """The curve of a gear, and its load cases."""
+    colour, marker, line = GEAR_STYLES[gear]
+    curve = endurance.worst_curve()
+    ends = min(SHOWN_CYCLES[0], curve.cycles[0]), max(SHOWN_CYCLES[1], curve.cycles[-1])
+    cycles = np.array([ends[0], *curve.cycles, ends[1]])
+    axes.plot(cycles, curve.strength(cycles), line, color=colour, label=gear)
+    loading = (endurance.stress > 0.0) & (endurance.cycles >= FEWEST_CYCLES)
+    stress = endurance.required * endurance.stress[loading]
+    size = 5.0 if loading.sum() <= MOST_BARS else 2.5
+    axes.plot(
+        endurance.cycles[loading], stress, marker, color=colour, markersize=size, alpha=0.7, label=f"{gear}: load"
+    )
+
+
+def _bars(rating: Rating, damage: Array) -> tuple[Array, float, Array]:
+    """Places and width [N m] of bars, and the damage (bar, gear) of the cases (c, gear) that each of them has."""
+    torque = 1e-3 * rating.torque
+    distinct, which = np.unique(torque, return_inverse=True)
+    if len(distinct) <= MOST_BARS:
+        places, width = distinct, float(np.diff(distinct).min()) if len(distinct) > 1 else max(1.0, 0.1 * distinct[0])
+    else:
+        edges = np.linspace(0.0, torque.max(), MOST_BARS + 1)
+        places, width = 0.5 * (edges[1:] + edges[:-1]), float(edges[1])
+        which = np.clip(np.searchsorted(edges, torque, "left") - 1, 0, MOST_BARS - 1)
+    together = np.zeros((len(places), damage.shape[1]))
+    np.add.at(together, which, np.nan_to_num(damage, nan=0.0, posinf=np.inf))
+    return places, width, together
+
+
+def _finish(axes: Axes, title: str) -> None:
+    axes.set_title(title, fontsize="medium")
+    axes.grid(color=NO_MATERIAL, linewidth=0.5)
+    axes.set_axisbelow(True)
+
+
+def _finished(figure: Figure, panels: list[Axes], rating: Rating, what: str) -> Figure:
+    """Return the figure with one legend of all panels, and its title."""
+    keys = {label: key for axes in panels for key, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    figure.legend(keys.values(), keys.keys(), loc="outside lower center", ncols=4, fontsize="small")
+    style.set_title(figure, rating.result, what, rating.scope.partition("; pinion |")[0])
+    return figure
+
+
+RATING_PICTURES = {
+    **SAFETY_PICTURES,
+    "rating_sn_curves": RatingPicture(
+        "S-N curves with the load cases on them, a panel for each kind of failure",
+        "S-N curves after ISO 6336-6 of both gears, with each load case at its load cycles in the required life and at "
+        "its stress times the required safety: points above their curve use up more than the life.",
+        "damage",
+        plot_sn_curves,
+    ),
+    "rating_damage": RatingPicture(
+        "damage of the load cases over their torques",
+        "Damage of each load case in the required life at the required safeties. Of a load spectrum they add up, and "
+        "1 is the end of the life; without one, each torque stands for itself.",
+        "damage",
+        plot_damage,
+    ),
+}
+"""Pictures of the command, by the names of their files."""
+
+
+def rating_figures(rating: Rating) -> dict[str, Figure]:
+    """Draw every picture that a rating has.
+
+    Parameters
+    ----------
+    rating : Rating
+
+    Returns
+    -------
+    dict of str to matplotlib.figure.Figure
+        By the names of ``RATING_PICTURES``.
+    """
+    return {name: picture.draw(rating) for name, picture in RATING_PICTURES.items() if rating.has(picture.needs)}

@@ -1,0 +1,64 @@
+"""The rating of a result: inputs, stresses, lives, and what its warnings say."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import loaded_tca.warning_kinds as kinds
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import GEARS
+from loaded_tca.errors import give_accuracy_warning
+from loaded_tca.rating.bevel import BevelInputs, bevel_evaluated, bevel_inputs_of
+from loaded_tca.rating.evaluate import Evaluated, evaluated
+from loaded_tca.rating.inputs import CommonInputs, Duty, RatingInputs, inputs_of
+from loaded_tca.rating.lives import lives_of
+from loaded_tca.rating.rating import Rating
+from loaded_tca.rating.solved import solved_loads
+from loaded_tca.rating.spectrum import SpectrumRating, of_spectrum
+from loaded_tca.scene.spiral import SpiralScene
+
+if TYPE_CHECKING:
+    from loaded_tca.results.numbers import CycleNumbers
+
+
+@checked
+def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -> Rating:
+    """Rating of a result; see :meth:`loaded_tca.MeshCycle.rating`.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    duty : Duty
+        How gears are loaded by other mates, as those of a planetary stage.
+    warn : bool
+        Whether accuracy warnings are given.
+
+    Returns
+    -------
+    Rating
+    """
+    with_factors = bevel_inputs_of(result) if isinstance(result.scene, SpiralScene) else inputs_of(result, duty)
+    inputs = replace(with_factors, solved=solved_loads(with_factors))
+    cases = inputs.cases
+    arrays, endurances, notes = _evaluated(inputs)
+    arrays |= lives_of(cases, endurances, inputs.cycles_per_hour)
+    sentences = [kinds.RATED_AT_EDGE.sentence()] if inputs.loads.at_edge.any() else []
+    kind: type[Rating] = Rating
+    if cases.is_spectrum:
+        kind = SpectrumRating
+        more, remarks, told = of_spectrum(inputs, arrays, _evaluated)
+        arrays, notes, sentences = arrays | more, (*notes, *remarks), [*sentences, *told]
+    about: dict[str, Any] = {"version": result.version, "warnings": "\n".join(sentences)}
+    dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*GEARS], mode=[*endurances])
+    for sentence in sentences if warn else ():
+        give_accuracy_warning(sentence, stacklevel=3)
+    return kind(result, dataset, inputs, endurances, notes)
+
+
+def _evaluated(inputs: CommonInputs) -> Evaluated:
+    """Numbers, endurances and notes after the standard of the gears."""
+    if isinstance(inputs, BevelInputs):
+        return bevel_evaluated(inputs)
+    assert isinstance(inputs, RatingInputs)
+    return evaluated(inputs)

@@ -1,0 +1,196 @@
+"""What a rating takes of a solved mesh, under its torques and between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields, replace
+from math import nan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loaded_tca.arrays import GEARS, Array, Indices, Mask
+from loaded_tca.rating.roots import deciding_places
+from loaded_tca.results.key_figures import mean_over_a_pitch, span_of
+from loaded_tca.tribology.slices import slices_of
+
+if TYPE_CHECKING:
+    from loaded_tca.rating.inputs import CommonInputs
+    from loaded_tca.results.numbers import CycleNumbers
+
+OF_ROOT = 1.0
+OF_FLANK = 0.5
+"""Powers of the torque that root tension and pressure of a line contact grow with: what is left is interpolated."""
+OVER_GEARS = "places", "root_places"
+"""Arrays whose torques are the second axis."""
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedLoads:
+    """Load factors and largest local stresses under some torques (c,).
+
+    Attributes
+    ----------
+    torque : (c,) array [N mm]
+        Ascending, of those that were solved.
+    face_load_factor, transverse_load_factor : (c,) array
+    pressure : (c,) array [MPa]
+        Largest pressure of a line contact over all slices of all contacts.
+    places : (2, c, 2) array [mm]
+        Radius and axial coordinate of its place, on pinion and wheel; between torques that of the nearest.
+    at_edge : (c,) array of bool
+        Whether that slice lies at an edge of a flank; likewise.
+    root_tension, root_stress_ratio : (c, 2) array, or None
+        Largest tension of a turn [MPa] where the roots of both gears decide, smallest over largest stress there.
+    largest_root_tension : (c, 2) array, or None
+        Of all places [MPa]: what decides where stress is reversed everywhere alike.
+    root_places : (2, c, 2) array, or None
+        Tangent angle [rad] and axial coordinate [mm] of the place that decides, of both gears; that of the nearest.
+    excitation : mapping of str to (c,) array
+        Mean mesh stiffness [N/(mm um)], span and first order of the transmission error [um].
+    """
+
+    torque: Array
+    face_load_factor: Array
+    transverse_load_factor: Array
+    pressure: Array
+    places: Array
+    at_edge: Mask
+    root_tension: Array | None = None
+    root_stress_ratio: Array | None = None
+    largest_root_tension: Array | None = None
+    root_places: Array | None = None
+    excitation: dict[str, Array] = field(default_factory=dict)
+
+    @classmethod
+    def of_factors(cls, torque: Array, face_load_factor: Array, transverse_load_factor: Array) -> SolvedLoads:
+        """Load factors alone, with stresses that are not known."""
+        unknown = np.full(len(torque), nan)
+        places = np.full((2, len(torque), 2), nan)
+        return cls(torque, face_load_factor, transverse_load_factor, unknown, places, np.zeros(len(torque), dtype=bool))
+
+    def at(self, torques: Array) -> SolvedLoads:
+        """The same under other torques, none above the largest: as solved, or interpolated.
+
+        Factors, and stresses over the power of the torque that they grow with, are monotone cubics (PCHIP) between
+        their solved values, logarithms over the logarithm of the torque; below the smallest torque they go on straight.
+        """
+        nearest = self._nearest(torques)
+        exact = self._of(nearest)
+        if np.array_equal(exact.torque, torques):
+            return exact
+        roots: dict[str, Array] = {}
+        if self.root_tension is not None and self.root_stress_ratio is not None:
+            assert self.largest_root_tension is not None
+            roots = {
+                "root_tension": self._between(self.root_tension, torques, OF_ROOT),
+                "largest_root_tension": self._between(self.largest_root_tension, torques, OF_ROOT),
+                "root_stress_ratio": self._straight(self.root_stress_ratio, torques),
+            }
+        return replace(
+            exact,
+            torque=torques,
+            face_load_factor=self._between(self.face_load_factor, torques),
+            transverse_load_factor=self._between(self.transverse_load_factor, torques),
+            pressure=self._between(self.pressure, torques, OF_FLANK),
+            excitation={
+                name: self._straight(values[:, None], torques)[:, 0] for name, values in self.excitation.items()
+            },
+            **roots,
+        )
+
+    def every_second(self) -> SolvedLoads:
+        """The same with every second torque left out, but for the first and the last."""
+        places = np.unique([*range(0, len(self.torque), 2), len(self.torque) - 1])
+        return self._of(places)
+
+    def _nearest(self, torques: Array) -> Indices:
+        """Index of the solved torque next to each."""
+        return np.abs(self.torque[:, None] - torques).argmin(axis=0)
+
+    def _of(self, some: Indices) -> SolvedLoads:
+        """As solved under some of the torques, by index."""
+        values: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
+        excitation = {name: numbers[some] for name, numbers in values.pop("excitation").items()}
+        chosen: dict[str, Any] = {
+            name: None if numbers is None else numbers[:, some] if name in OVER_GEARS else numbers[some]
+            for name, numbers in values.items()
+        }
+        return SolvedLoads(**chosen, excitation=excitation)
+
+    def _between(self, values: Array, torques: Array, power: float = 0.0) -> Array:
+        """Positive values (n, ...) that grow about as a power of the torque, under others (c, ...); NaN if any is."""
+        if not np.isfinite(values).all():
+            return np.full((len(torques), *values.shape[1:]), nan)
+        shape = -1, *[1] * (values.ndim - 1)
+        nodes, wanted = np.log(self.torque), np.log(torques)
+        rest = np.log(values) - power * nodes.reshape(shape)
+        inside = np.maximum(wanted, nodes[0])
+        if len(nodes) == 1:
+            logarithms = np.broadcast_to(rest, (len(torques), *values.shape[1:]))
+        else:
+            from scipy.interpolate import PchipInterpolator
+
+            logarithms = PchipInterpolator(nodes, rest)(inside)
+            slope = (rest[1] - rest[0]) / (nodes[1] - nodes[0])
+            logarithms = logarithms + slope * (wanted - inside).reshape(shape)
+        return np.asarray(np.exp(logarithms + power * wanted.reshape(shape)))
+
+    def _straight(self, values: Array, torques: Array) -> Array:
+        """Values (n, gear) of any sign, straight over the logarithm of the torque."""
+        nodes, wanted = np.log(self.torque), np.log(torques)
+        return np.stack([np.interp(wanted, nodes, column) for column in values.T], axis=-1)
+
+
+def solved_factors(result: CycleNumbers) -> SolvedLoads:
+    """Load factors of a result under its torques."""
+    return SolvedLoads.of_factors(
+        np.asarray(result.torque), np.asarray(result.face_load_factor), np.asarray(result.transverse_load_factor)
+    )
+
+
+def solved_loads(inputs: CommonInputs) -> SolvedLoads:
+    """Loads of a result under the torques that it was solved for, each once, ascending."""
+    result = inputs.result
+    _, order = np.unique(np.asarray(result.torque), return_index=True)
+    pressure, places, at_edge = _largest_pressures(result)
+    whole = replace(
+        solved_factors(result), pressure=pressure, places=places, at_edge=at_edge, excitation=_excitation(result)
+    )
+    if inputs.scene.analysis.root_stress:
+        alone = replace(inputs, cases=inputs.cases.alone(np.asarray(result.torque)))
+        pinion, wheel = (deciding_places(alone, gear) for gear in range(len(GEARS)))
+        whole = replace(
+            whole,
+            root_tension=np.stack([pinion.tension, wheel.tension], axis=-1),
+            root_stress_ratio=np.stack([pinion.ratio, wheel.ratio], axis=-1),
+            largest_root_tension=np.nanmax(result.root_tension, axis=1),
+            root_places=np.array([[pinion.tangent_angle, wheel.tangent_angle], [pinion.axial, wheel.axial]]).swapaxes(
+                1, 2
+            ),
+        )
+    return whole._of(order)
+
+
+def _excitation(result: CycleNumbers) -> dict[str, Array]:
+    """Mean mesh stiffness [N/(mm um)], span and first order of the transmission error [um] (t,), by their names."""
+    spans = [span_of(error, result.places_of_mesh) for error in result.transmission_error]
+    return {
+        "mesh_stiffness": np.array([mean_over_a_pitch(each) for each in result.mesh_stiffness]),
+        "transmission_error_span": result.um_per_rad * np.array(spans),
+        "transmission_error_order_1": result.um_per_rad * result.harmonics(1)[:, 0],
+    }
+
+
+def _largest_pressures(result: CycleNumbers) -> tuple[Array, Array, Mask]:
+    """Largest contact pressure of slices under each torque (t,), its places (2, t, 2), whether they lie at an edge."""
+    sweep, count = slices_of(result), len(result.torque)
+    pressure, places, at_edge = np.full(count, np.nan), np.full((2, count, 2), np.nan), np.zeros(count, dtype=bool)
+    for torque in range(count):
+        some = sweep.of_torque(torque)
+        some = some[np.isfinite(sweep.pressure[some])]
+        worst = int(some[sweep.pressure[some].argmax()])
+        pressure[torque] = sweep.pressure[worst]
+        places[0, torque] = sweep.radius[worst], sweep.wheel_radius[worst]
+        places[1, torque] = sweep.axial[worst], sweep.wheel_axial[worst]
+        at_edge[torque] = sweep.on_edge[worst]
+    return pressure, places, at_edge

@@ -1,0 +1,178 @@
+"""A rating under a load spectrum: damage of its bins, lives and safeties of all together, and how far to trust them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from math import nan
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+import loaded_tca.warning_kinds as kinds
+from loaded_tca.arrays import GEARS, Array
+from loaded_tca.rating.evaluate import Evaluated
+from loaded_tca.rating.findings import findings
+from loaded_tca.rating.lives import ROOT, change_of_damage, damages_of
+from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS
+from loaded_tca.rating.rating import NOT_COUNTED, WORDS, Rating, all_figures
+from loaded_tca.rating.roots import REVERSED
+from loaded_tca.results.figure import labelled
+from loaded_tca.results.summary import shown, summary_of
+
+if TYPE_CHECKING:
+    from loaded_tca.rating.inputs import CommonInputs
+
+ROUNDING = 1e-9
+"""Of hours that are the same."""
+MOST_SHOWN = 8
+"""Bins that the summary has in full: those of the largest damage."""
+FEWEST_SOLVED = 4
+"""Torques, of fewer of which leaving out every second one says nothing of the interpolation."""
+TOLD = 0.01
+"""Told error of the damage from which on a warning is given."""
+SCATTER = 0.005
+"""Of the damage, by what solved torques scatter about a smooth curve, which leaving out every second one may not show:
+K_Hbeta of an electric drive by 0.06 %, damage by 0.3 % (``validation/rating/spectra.py``)."""
+
+
+Evaluate = Callable[["CommonInputs"], Evaluated]
+"""What gives the numbers of inputs after the standard of the gears."""
+
+
+def of_spectrum(
+    inputs: CommonInputs, arrays: dict[str, Array], evaluate: Evaluate
+) -> tuple[dict[str, Array], list[str], list[str]]:
+    """What a rating of a spectrum has beside: arrays, notes, and sentences of warnings."""
+    cases, solved = inputs.cases, inputs.solved
+    error = _interpolation_error(inputs, arrays["damage"], evaluate)
+    more = {
+        "pinion_speed": cases.speed,
+        "hours": cases.hours,
+        "reversed": cases.reversed.astype(int),
+        "interpolation_error": error,
+    }
+    sentences = []
+    largest = float(np.nanmax(error)) if np.isfinite(error).any() else nan
+    if largest > TOLD:
+        sentences.append(kinds.SPECTRUM_BETWEEN.sentence(change=largest, count=len(solved.torque)))
+    return more, [*_notes(inputs, arrays, error)], sentences
+
+
+def _interpolation_error(inputs: CommonInputs, damage: Array, evaluate: Evaluate) -> Array:
+    """By which part the damage (gear, mode) of bins (c, gear, mode) may be wrong; 0 where all torques were solved."""
+    wanted, solved = inputs.cases.factor_torque, inputs.solved
+    if np.isin(wanted, solved.torque).all():
+        return np.zeros(damage.shape[1:])
+    if len(solved.torque) < FEWEST_SOLVED:
+        return np.full(damage.shape[1:], nan)
+    coarse = replace(inputs, solved=solved.every_second())
+    _, endurances, _ = evaluate(coarse)
+    change = change_of_damage(damage, damages_of(endurances))
+    return np.where(damage.sum(axis=0) > 0.0, change + SCATTER, change)
+
+
+def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array) -> Iterator[str]:
+    """What of a spectrum is assumed or left out."""
+    cases, solved, sums = inputs.cases, inputs.solved, arrays["miner_sum"]
+    between, below = ~np.isin(cases.factor_torque, solved.torque), cases.factor_torque < solved.torque[0]
+    if between.any():
+        known = error[np.isfinite(error)]
+        told = f"damage is right within {float(known.max()):.1%}" if known.size else "there is no estimate of the error"
+        yield (
+            f"stresses under {between.sum()} of {len(between)} bins are interpolated between {len(solved.torque)} "
+            f"torques that were solved: {told}"
+        )
+    if below.any():
+        parts = arrays["damage"][below].sum(axis=0)[sums > 0.0] / sums[sums > 0.0]
+        largest = float(parts[np.isfinite(parts)].max(initial=0.0))
+        part = f"their damage is {largest:.1g} of all"
+        yield f"{below.sum()} bins lie below {1e-3 * solved.torque[0]:.4g} N m, the smallest torque solved; {part}"
+    if cases.reversed.any():
+        bins = f"{cases.reversed.sum()} reversed bins"
+        yield f"{bins} load the other flanks, which are not analysed: no damage of these is counted"
+        yield (
+            f"{bins} stress roots as the same torques do the other way, with Y_M of R = {REVERSED:g}; the others have "
+            "Y_M by root_stress_ratio"
+        )
+    if abs(cases.repeated - 1.0) > ROUNDING:
+        together = f"{cases.life_hours / cases.repeated:g} h"
+        yield f"the hours of the bins, {together}, follow each other {cases.repeated:.4g} times"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SpectrumRating(Rating):
+    """Safeties and lives under a load spectrum: cases are its bins.
+
+    ``damage`` of each bin, in the required life at the required safeties, adds up to ``miner_sum``; ``life_hours`` is
+    the required life over that sum, ``spectrum_safety`` the safety on stress at which it is 1, ``equivalent_torque``
+    that of the same damage over the same load cycles by the first line of the S-N curve, ``interpolation_error`` by
+    which part the sum may be wrong: all over gears and kinds of failure. Safeties over cases are those of a bin alone
+    in its own load cycles.
+    """
+
+    NUMBERS: ClassVar = SPECTRUM_NUMBERS
+    FIGURES: ClassVar = all_figures(SPECTRUM_NUMBERS)
+
+    @property
+    def _standards(self) -> str:
+        return f"{super()._standards}, ISO 6336-6:2019 with {len(self.torque)} bins"
+
+    @property
+    def _speed(self) -> str:
+        least, most = self.pinion_speed.min(), self.pinion_speed.max()
+        return f"{least:g} rpm" if least == most else f"{least:g} to {most:g} rpm"
+
+    def safeties_and_lives(self) -> tuple[Array, Array]:
+        """Safety in the required life, and life at the required safety [h], of all bins together (1, gear, mode)."""
+        return self.values("spectrum_safety")[None], self.values("life_hours")[None]
+
+    def spectrum_rows(self) -> list[tuple[str, ...]]:
+        """Lines on all bins together: label with unit, and a cell for each gear."""
+        rows: list[tuple[str, ...]] = [("spectrum", *GEARS)]
+        for n, mode in enumerate(self.modes):
+            for name, number in self.NUMBERS.items():
+                if number.dims == OF_SPECTRUM:
+                    head = number.head(name)
+                    cells = (shown(number.factor(head) * value, head) for value in self.values(name)[:, n])
+                    rows.append((labelled(head, f"{WORDS[mode]}: {number.text}"), *cells))
+        return rows
+
+    def most_damaging(self, count: int = MOST_SHOWN) -> list[int]:
+        """Indices of the bins that have the largest parts of the damage of any kind, in their order."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            parts = np.nan_to_num(self.damage / self.miner_sum, nan=0.0).max(axis=(1, 2))
+        heaviest = np.lexsort((-self.torque, -parts))[:count]
+        return sorted(heaviest.tolist())
+
+    def summary(self) -> str:
+        """Return what all bins do together, those of the largest damage with all factors, notes and warnings."""
+        some, figures = self.most_damaging(), self.key_figures()
+        together = summary_of(self.title or self.TITLE, self.scope, self.spectrum_rows(), {})
+        sentences = {"note": self.notes(), "warning": self.warnings or ()}
+        which = "bins" if len(some) == len(figures) else f"{len(some)} of {len(figures)} bins, of the largest damage"
+        numbered = [("bin", *(f"{place + 1}" for place in some)), *self.rows([figures[place] for place in some])]
+        *_, table = summary_of("", which, numbered, sentences).split("\n", 1)
+        return f"{together}\n\n{table}"
+
+    def notes(self) -> tuple[str, ...]:
+        """What lies outside the ranges of the standard, what decides, what is too short or too weak, what lacks."""
+        return (*self.remarks, *findings(self), *self._short(), NOT_COUNTED)
+
+    def _short(self) -> list[str]:
+        sentences = []
+        for place, gear in enumerate(GEARS):
+            for n, mode in enumerate(self.modes):
+                life, safety = float(self.life_hours[place, n]), float(self.spectrum_safety[place, n])
+                least = self.required.required_root_safety if ROOT in mode else self.required.required_flank_safety
+                if life == 0.0:
+                    sentences.append(
+                        f"{gear}: {WORDS[mode]}: life 0 at the required safety {least:g}: a bin lies above the static "
+                        f"strength; has a safety of {safety:.3g} in {self.life_required:g} h"
+                    )
+                elif life < self.life_required:
+                    sentences.append(
+                        f"{gear}: {WORDS[mode]}: life {life:.4g} h of {self.life_required:g} h at the required safety "
+                        f"{least:g}; has a safety of {safety:.3g} in these"
+                    )
+        return sentences

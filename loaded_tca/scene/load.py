@@ -1,0 +1,255 @@
+"""What a pair carries: one torque on the pinion, or a load spectrum whose bins may stand in a file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError, named, require
+from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
+from loaded_tca.scene.keys import Choice, Line, Number, above_zero, did_you_mean, key, nearest, shown
+from loaded_tca.scene.section import Rule, Section, Tables, check, entries, made
+
+# ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
+
+TORQUE_Nm = Number(0.0, 1e9)
+LARGEST_FILE = 2**21
+"""Bytes of a file of a load spectrum; five thousand bins have a tenth of that."""
+MOST_BINS = 5000
+MOST_PROBLEMS = 20
+"""Lines of a file whose problems are told one by one."""
+SUM_OF_SHARES = 1e-3
+"""By how much shares may miss 1: they are written with a few digits, and count as parts of their sum."""
+SOLVED = 12
+"""Torques of a spectrum that are solved; between them a rating interpolates."""
+LEAST_EXPONENT, NEGLIGIBLE = 4.0, 1e-4
+"""Damage of the flattest S-N curves grows with this power of the torque and more; bins that together do less than this
+part of it do not matter: torques below them are not solved."""
+DIGITS = 5
+"""Of torques that are solved between those of bins."""
+
+
+def _one_duration(hours: float | None, share: float | None) -> str | None:
+    if (hours is None) != (share is None):
+        return None
+    return "missing; give hours, or share" if hours is None else f"found {hours:g} beside share = {share:g}; give one"
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadCase(Section):
+    """[[load.case]]: a bin of a load spectrum; the analysis takes its torque, a rating the rest."""
+
+    pinion_torque_Nm: float = key(
+        Number(0.0, 1e9, advice="reversed = true is the other direction"), "magnitude of the torque on the pinion"
+    )
+    pinion_speed_rpm: float | None = key(above_zero(1e6), "speed of the pinion", None, "`operation.pinion_speed_rpm`")
+    hours: float | None = key(Number(0.0, 1e8), "how long the bin lasts", None, "`share` is given")
+    share: float | None = key(
+        Number(0.0, 1.0), "or its part of the time; all shares add up to 1", None, "`hours` are given"
+    )
+    reversed: bool = key(
+        Choice((False, True)), "whether the torque acts the other way, so that the other flanks carry it", False
+    )
+
+    alternatives: ClassVar[tuple[str, ...]] = ("hours", "share")
+    rules: ClassVar[tuple[Rule, ...]] = (Rule(("hours", "share"), _one_duration),)
+
+
+COLUMNS = {name: entry for name, (_, entry) in entries(LoadCase).items()}
+"""Of a file of a load spectrum: the keys of a bin."""
+
+
+def _one_load(torque: float | None, cases: object, spectrum: str | None) -> str | None:
+    given = [name for name, one in zip(Load.alternatives, (torque, cases, spectrum), strict=True) if one is not None]
+    if not given:
+        return "missing; give a torque, or the bins of a spectrum: [[load.case]], or load.spectrum"
+    return f"found {' beside '.join(given)}; give one of them" if len(given) > 1 else None
+
+
+def _spectrum_problem(cases: Sequence[LoadCase] | None) -> str | None:
+    """What is wrong with bins that are sound one by one."""
+    if cases is None:
+        return None
+    hours, shares = ([getattr(case, name) for case in cases] for name in ("hours", "share"))
+    of_hours = sum(each is not None for each in hours)
+    if 0 < of_hours < len(cases):
+        return f"hours of {of_hours} bins and shares of {len(cases) - of_hours}; give the same of all"
+    if of_hours and not sum(hours) > 0.0:
+        return "the hours sum to 0; allowed above 0"
+    if not of_hours and abs(sum(shares) - 1.0) > SUM_OF_SHARES:
+        return f"the shares sum to {sum(shares):.6g}; allowed 1"
+    if not any(case.pinion_torque_Nm > 0.0 for case in cases):
+        return "no bin has a pinion_torque_Nm above 0"
+    if all(case.reversed for case in cases):
+        return "all bins are reversed; change pair.driving or pair.sense, and leave reversed out"
+    return None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Load(Section):
+    """[load]: torque on the pinion, or the bins of a load spectrum.
+
+    A file of a spectrum is read when the section is made, and its bins take its place.
+    """
+
+    pinion_torque_Nm: float | None = key(
+        TORQUE_Nm, "magnitude of the torque on the pinion", None, "those of `case` or `spectrum`"
+    )
+    case: tuple[LoadCase, ...] | None = key(
+        Tables(LoadCase, 1, MOST_BINS),
+        "or the bins of a load spectrum, each a table `[[load.case]]` of `pinion_torque_Nm`, `hours` or `share` (of "
+        "the time; all shares add up to 1), `pinion_speed_rpm`, by default that of [operation], and `reversed = false` "
+        "(true: the torque acts the other way, and the other flanks carry it); of more than twelve torques, twelve in "
+        "equal steps are solved",
+        None,
+        "no spectrum",
+    )
+    spectrum: str | None = key(
+        Line(1000),
+        "or a CSV file, relative to the folder of the scene, a line for each bin, its keys as columns: "
+        "`pinion_torque_Nm`, `hours` or `share`, and where wanted `pinion_speed_rpm` and `reversed` (true, false)",
+        None,
+        "as `case`",
+    )
+
+    alternatives: ClassVar[tuple[str, ...]] = ("pinion_torque_Nm", "case", "spectrum")
+    rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(alternatives, _one_load),
+        Rule(("case",), _spectrum_problem),
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.spectrum is not None:
+            with named("spectrum"):
+                cases = read_spectrum(self.spectrum)
+                complaint = _spectrum_problem(cases)
+                require((complaint is None, f"{self.spectrum}: {complaint}"))
+            object.__setattr__(self, "case", cases)
+            object.__setattr__(self, "spectrum", None)
+
+    @property
+    def hours(self) -> float | None:
+        """Hours of all bins together; None of shares, and without a spectrum."""
+        hours = [case.hours for case in self.case or () if case.hours is not None]
+        return sum(hours) if hours else None
+
+    @property
+    def torques(self) -> tuple[float, ...]:
+        """Pinion torques to solve [N mm]: that of the pair, all of a spectrum, or of many bins a dozen."""
+        if self.case is None:
+            assert self.pinion_torque_Nm is not None  # by the rules of the section
+            return (1e3 * self.pinion_torque_Nm,)
+        return tuple(1e3 * torque for torque in _solved_torques(self.case))
+
+
+def _solved_torques(cases: Sequence[LoadCase]) -> list[float]:
+    """Torques [N m] of bins; of more than a dozen a dozen in equal steps, from the smallest that matters on.
+
+    Steps are equal since damage is done by the largest: in equal ratios the damage of flanks of an electric drive under
+    500 bins was wrong by up to 7 %, in equal steps by 0.2 % (``validation/rating/spectra.py``).
+    """
+    loaded = [case for case in cases if case.pinion_torque_Nm > 0.0]
+    torques = np.array([case.pinion_torque_Nm for case in loaded])
+    distinct = np.unique(torques)
+    if len(distinct) <= SOLVED:
+        return [float(torque) for torque in distinct]
+    largest, smallest = float(distinct[-1]), _smallest_that_matters(loaded, torques)
+    between = np.linspace(smallest, largest, SOLVED)[1:-1]
+    return [smallest, *(float(f"{torque:.{DIGITS}g}") for torque in between), largest]
+
+
+def _smallest_that_matters(cases: Sequence[LoadCase], torques: Array) -> float:
+    """Torque [N m] below which bins do next to no damage on the flattest S-N curve."""
+    weights = np.array([case.hours if case.share is None else case.share for case in cases], dtype=float)
+    if all(case.pinion_speed_rpm is not None for case in cases):
+        weights *= [case.pinion_speed_rpm for case in cases]
+    order = np.argsort(torques, kind="stable")
+    damage = np.cumsum(weights[order] * (torques[order] / torques.max()) ** LEAST_EXPONENT)
+    return float(torques[order][np.searchsorted(damage, NEGLIGIBLE * damage[-1])])
+
+
+def life_is_given(life_hours: float | None, load: Load) -> str | None:
+    """What is wrong where neither a rating nor its load cases say how long the gears are to last."""
+    if life_hours is not None or load.hours is not None:
+        return None
+    return "missing; needed but for load cases with hours, which are the life that is asked for then"
+
+
+def within_solved(load: Load | None, torques: Sequence[float] | None) -> str | None:
+    """What is wrong with torques [N m] that are solved in the place of those of a spectrum."""
+    if load is None or load.case is None or torques is None:
+        return None
+    largest = max(case.pinion_torque_Nm for case in load.case)
+    if largest <= max(torques):
+        return None
+    return f"a bin has {largest:g} N m; allowed up to {max(torques):g}, the largest of analysis.torques_Nm"
+
+
+def read_spectrum(file: str) -> tuple[LoadCase, ...]:
+    """Return the bins of a CSV file of a load spectrum.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or with the problems of its columns and lines.
+    """
+    text = read_table(file, LARGEST_FILE, "file of a load spectrum")
+    with named(file):
+        table = table_in(text)
+        require(*((False, problem) for problem in _column_problems(table.names)))
+        require_decimal_points(table)
+        count = len(table.rows)
+        require((0 < count <= MOST_BINS, f"{count} lines of bins; allowed 1 to {MOST_BINS}"))
+        return _bins(table)
+
+
+def _column_problems(names: Sequence[str]) -> list[str]:
+    """What is wrong with the names of columns."""
+    allowed = ", ".join(COLUMNS)
+    problems = [
+        f"unknown column {shown(name)}{did_you_mean(nearest(name, COLUMNS)) or f'; allowed {allowed}'}"
+        for name in names
+        if name not in COLUMNS
+    ]
+    problems += [f"column {name} found twice" for name in dict.fromkeys(names) if names.count(name) > 1]
+    if "pinion_torque_Nm" not in names:
+        problems.append(f"no column pinion_torque_Nm; found {', '.join(names) or 'no columns'}")
+    if ("hours" in names) == ("share" in names):
+        problems.append(f"found {'both' if 'hours' in names else 'none'} of the columns hours and share; give one")
+    return problems
+
+
+def _bins(table: Table) -> tuple[LoadCase, ...]:
+    """The bins of a table whose columns are sound; InputError with every line that is not."""
+    cases: list[LoadCase] = []
+    problems: list[str] = []
+    for number, cells in table.rows:
+        line = f"line {number}"
+        if len(cells) > len(table.names):
+            problems.append(f"{line}: more values than the header has columns")
+            continue
+        row = {name: _value(name, cell) for name, cell in zip(table.names, cells, strict=False) if cell}
+        values, wrong = check(LoadCase, row)
+        problems += [f"{line}: {problem}" for problem in wrong]
+        if not wrong:
+            cases.append(made(LoadCase, values))
+    if len(problems) > MOST_PROBLEMS:
+        problems[MOST_PROBLEMS:] = [f"{len(problems) - MOST_PROBLEMS} more problems"]
+    if problems:
+        raise InputError(problems)
+    return tuple(cases)
+
+
+def _value(name: str, cell: str) -> Any:
+    """Value of a cell as a scene file would have it; text that is none stays, to be refused by its key."""
+    if name == "reversed":
+        return {"true": True, "1": True, "false": False, "0": False}.get(cell.lower(), cell)
+    try:
+        return number_in(cell)
+    except ValueError:
+        return cell

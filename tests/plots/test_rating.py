@@ -1,0 +1,40 @@
+"""Pictures of ratings show the load cases and the damage that they name."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.plots import plot_damage, plot_sn_curves
+from tests.samples.rating import solved
+
+SLOPES = {"operation.application_factor": 1.6, "rating.required_flank_safety": 1.9, "rating.required_root_safety": 5.0}
+
+
+def rated(torques=(), **changes):
+    cases = [{"pinion_torque_Nm": float(torque), "hours": 1.0} for torque in torques]
+    return solved(**SLOPES | ({"load.case": cases} if cases else {}) | changes).rating()
+
+
+def test_curves_have_every_load_case_at_its_load_cycles():
+    one = rated()
+    figure = plot_sn_curves(one)
+    assert [axes.get_title() for axes in figure.axes] == ["flank", "root", "local: flank", "local: root"]
+    curve, load = figure.axes[1].lines[:2]
+    assert_allclose(load.get_xdata(), one.cycles[:, 0])
+    assert_allclose(load.get_ydata(), 5.0 * one.sigma_F[:, 0])
+    assert_allclose(np.interp(one.cycles[0, 0], curve.get_xdata(), curve.get_ydata()), one.sigma_FG[0, 0], rtol=0.2)
+
+
+@pytest.mark.parametrize("torques", [(), np.linspace(100.0, 200.0, 45)])
+def test_bars_add_up_to_the_damage(torques):
+    one = rated(torques)
+    axes = plot_damage(one).axes[1]
+    heights = [bar.get_height() for bar in axes.patches]
+    assert len(heights) == 2 * (40 if len(torques) else 2)
+    assert sum(heights) == pytest.approx(one.damage[:, :, 1].sum(), rel=1e-9)  # rounding of sums
+    assert axes.get_ylabel() == "damage in 20000 h [-]"
+
+
+def test_torques_above_the_static_strength_have_a_mark():
+    axes = plot_damage(rated(**{"rating.required_root_safety": 20.0})).axes[1]
+    assert "pinion: above the static strength" in axes.get_legend_handles_labels()[1]

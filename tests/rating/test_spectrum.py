@@ -1,0 +1,219 @@
+"""Ratings under load spectra: closed forms of bins, reversed and idle ones, what is told and refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.rating.cases import cases_of
+from loaded_tca.rating.solved import SolvedLoads
+from tests.refusals import refusals
+from tests.samples.rating import HARD, solved
+
+ROUNDING = 1e-9  # exponents of S-N curves, up to 33, multiply rounding of stresses
+GIVEN = {"rating.dynamic_factor": "given", "rating.transverse_load_factor": 1.0, "rating.face_load_factor": 1.0}
+SLOPES = {"operation.application_factor": 1.6, "rating.required_flank_safety": 1.9, "rating.required_root_safety": 5.0}
+"""With these all stresses lie on slopes of their curves."""
+
+
+def bins(*rows, **more):
+    """Bins of (torque, hours), and keys that all of them have."""
+    return [{"pinion_torque_Nm": torque, "hours": hours} | more for torque, hours in rows]
+
+
+def under(cases, **changes):
+    """The spur pair solved under 100 and 200 N m, rated under bins."""
+    spectrum = {"analysis.torques_Nm": (100.0, 200.0), "load.case": cases}
+    return solved(**GIVEN | SLOPES | spectrum | changes).rating()
+
+
+def alone(**changes):
+    """The same under both torques, each for itself."""
+    return solved(**GIVEN | SLOPES | changes).rating()
+
+
+def test_one_bin_lasts_as_long_as_its_torque_alone():
+    one, single = under(bins((200.0, 50.0))), alone()
+    assert one.life_hours.shape == (2, 4)
+    assert_allclose(one.life_hours, single.life_hours[1], rtol=ROUNDING)
+    assert_allclose(one.damage[0], single.damage[1], rtol=ROUNDING)
+    assert_allclose(one.flank_safety[0], single.flank_safety[1], rtol=ROUNDING)
+
+
+def test_one_bin_at_the_knee_has_the_life_of_the_knee():
+    curve, stress = alone().endurances["flank"][0].curve, float(alone().sigma_H[1, 0])
+    # Z_NT = 1 at 5e7 load cycles of case-hardened flanks, ISO 6336-2; sigma_H times the safety is that strength
+    safety = float(np.ravel(curve.stresses[1])[0]) / stress
+    one = under(bins((200.0, 1.0)), **{"rating.required_flank_safety": safety})
+    assert_allclose(one.dataset.life_hours.sel(gear="pinion", mode="flank"), 5e7 / (60.0 * 1500.0), rtol=1e-6)
+
+
+def test_damage_of_two_bins_adds_up_by_hours():
+    rows, single = ((100.0, 30.0), (200.0, 10.0)), alone()
+    two = under(bins(*rows))
+    expected = 20000.0 * (0.75 / single.life_hours[0] + 0.25 / single.life_hours[1])
+    assert_allclose(two.miner_sum, expected, rtol=ROUNDING)
+    assert_allclose(two.life_hours, 20000.0 / expected, rtol=ROUNDING)
+    assert_allclose(two.damage.sum(axis=0), two.miner_sum, rtol=ROUNDING)
+    assert (two.miner_sum[:, 0] > 0.0).all()
+    assert any("40 h, follow each other 500 times" in note for note in two.notes())
+
+
+def test_hours_and_shares_say_the_same():
+    by_hours = under(bins((100.0, 15000.0), (200.0, 5000.0)), **{"rating.life_hours": None})
+    shares = [{"pinion_torque_Nm": 100.0, "share": 0.75}, {"pinion_torque_Nm": 200.0, "share": 0.25}]
+    assert_allclose(under(shares).damage, by_hours.damage, rtol=ROUNDING)
+    assert_allclose(by_hours.hours, [15000.0, 5000.0], rtol=ROUNDING)
+
+
+def test_safety_of_a_spectrum_is_that_at_which_its_life_is_the_required_one():
+    rated = under(bins((100.0, 30.0), (200.0, 10.0)))
+    for place in range(2):
+        flank, root = rated.spectrum_safety[place, :2]
+        changes = {"rating.required_flank_safety": float(flank), "rating.required_root_safety": float(root)}
+        lives = under(bins((100.0, 30.0), (200.0, 10.0)), **changes).life_hours[place, :2]
+        assert_allclose(lives, 20000.0, rtol=1e-6)  # safeties are iterated to 1e-12, exponents are up to 33
+
+
+def test_equivalent_torque_of_equal_bins_is_theirs_and_lies_between_unequal_ones():
+    equal = under(bins((200.0, 1.0), (200.0, 3.0)))
+    assert_allclose(equal.equivalent_torque, 200e3, rtol=ROUNDING)
+    unequal = under(bins((100.0, 1.0), (200.0, 1.0)))
+    # from 1.6 sigma_H_lim at 1e5 load cycles to sigma_H_lim Z_L Z_v Z_R at 5e7, ISO 6336-2; stress is a root of torque
+    reference = float(unequal.Z_L[0, 0] * unequal.Z_v[0, 0] * unequal.Z_R[0, 0])
+    exponent = 0.5 * np.log(500.0) / np.log(1.6 / reference)
+    expected = 1e3 * (0.5 * (100.0**exponent + 200.0**exponent)) ** (1.0 / exponent)
+    assert_allclose(unequal.dataset.equivalent_torque.sel(gear="pinion", mode="flank"), expected, rtol=ROUNDING)
+
+
+def test_speed_of_a_bin_counts_its_load_cycles_beside_quicker_ones():
+    both = under(bins((200.0, 1.0)) + bins((200.0, 1.0), pinion_speed_rpm=750.0))
+    assert_allclose(both.cycles[1], 0.5 * both.cycles[0], rtol=ROUNDING)
+    assert_allclose(both.damage[1, :, 1], 0.5 * both.damage[0, :, 1], rtol=ROUNDING)
+    assert (both.Z_v[1] < both.Z_v[0]).all()
+
+
+def test_bins_with_speeds_need_no_operation():
+    whole = solved(**GIVEN, **{"load.case": bins((200.0, 1.0), pinion_speed_rpm=1500.0), "operation": None})
+    assert whole.rating().K_A == 1.0
+
+
+def test_reversed_bins_load_the_other_flanks_and_bend_roots_both_ways():
+    plain, back = under(bins((100.0, 1.0), (200.0, 1.0))), bins((100.0, 1.0), (200.0, 1.0))
+    back[0]["reversed"] = True
+    rated = under(back)
+    assert_array_equal(rated.damage[0, :, [0, 2]], 0.0)
+    assert_array_equal(rated.flank_safety[0], np.inf)
+    assert_allclose(rated.damage[1], plain.damage[1], rtol=ROUNDING)
+    sensitivity = 0.8 - 0.15 * rated.Y_S[0]  # case-hardened, annex B of ISO 6336-3:2006
+    assert_allclose(rated.Y_M[0], 1.0 / (1.0 + 1.2 * (1.0 - sensitivity) / (1.0 + sensitivity)), rtol=ROUNDING)
+    assert (rated.damage[0, :, 1] > plain.damage[0, :, 1]).all()
+    assert any(
+        note.startswith("1 reversed bins load the other flanks, which are not analysed") for note in rated.notes()
+    )
+
+
+def test_idle_bins_take_their_time_and_do_no_damage():
+    idle, loaded = under(bins((0.0, 1.0), (200.0, 1.0))), under(bins((200.0, 1.0)))
+    assert_array_equal(idle.damage[0], 0.0)
+    assert_array_equal(idle.root_safety[0], np.inf)
+    assert_allclose(idle.life_hours, 2.0 * loaded.life_hours, rtol=ROUNDING)
+
+
+def test_a_bin_above_the_static_strength_leaves_no_life():
+    rated = under(bins((100.0, 1.0), (200.0, 1e-6)), **{"rating.required_root_safety": 20.0})
+    assert_array_equal(rated.dataset.life_hours.sel(mode="root"), 0.0)
+    assert any("pinion: root: life 0 at the required safety 20" in note for note in rated.notes())
+
+
+def test_powers_of_the_torque_are_interpolated_without_error():
+    torque, places = np.array([1e5, 2e5, 3e5, 5e5]), np.zeros((2, 4, 2))
+    nodes = SolvedLoads(
+        torque, 2.0 * torque**-0.1, np.ones(4), torque**0.4, places, np.zeros(4, dtype=bool),
+        np.stack([torque, 2.0 * torque**1.1], axis=-1), np.full((4, 2), -0.3), np.ones((4, 2)), places,
+    )  # fmt: skip
+    wanted = np.array([5e4, 1e5, 1.7e5, 4.9e5])
+    found = nodes.at(wanted)
+    assert_allclose(found.face_load_factor, 2.0 * wanted**-0.1, rtol=ROUNDING)
+    assert_allclose(found.pressure, wanted**0.4, rtol=ROUNDING)
+    assert_allclose(found.root_tension[:, 1], 2.0 * wanted**1.1, rtol=ROUNDING)
+    assert_allclose(found.root_stress_ratio, -0.3, rtol=ROUNDING)
+    assert_allclose(nodes.every_second().torque, [1e5, 3e5, 5e5])
+
+
+def test_solved_torques_count_as_they_are_and_have_no_error():
+    rated = under(bins((100.0, 1.0), (200.0, 1.0)))
+    assert_array_equal(rated.interpolation_error, 0.0)
+    between = under(bins((100.0, 1.0), (150.0, 1.0), (200.0, 1.0)))
+    assert np.isnan(between.interpolation_error).all()
+    assert any(
+        "1 of 3 bins are interpolated between 2 torques that were solved: there is no estimate" in note
+        for note in between.notes()
+    )
+    assert ((between.sigma_H[0] < between.sigma_H[1]) & (between.sigma_H[1] < between.sigma_H[2])).all()
+
+
+def test_kinks_between_torques_are_told(monkeypatch):
+    torque = np.linspace(1e5, 2e5, 8)
+    kinked = np.maximum(1.0, torque / 1.5e5)
+    ones, places = np.ones(8), np.zeros((2, 8, 2))
+    excitation = dict.fromkeys(("mesh_stiffness", "transmission_error_span", "transmission_error_order_1"), ones)
+    loads = SolvedLoads(torque, 1.2 * kinked, ones, 900.0 * kinked, places, ones < 0.0, excitation=excitation)
+    monkeypatch.setattr("loaded_tca.rating.call.solved_loads", lambda _: loads)
+    cases = bins(*((torque, 1.0) for torque in np.linspace(100.0, 200.0, 41)))
+    changes = {
+        "analysis.root_stress": False,
+        "rating.face_load_factor": "analysis",
+        "operation.application_factor": 4.0,
+    }
+    whole = solved(**GIVEN | changes | {"load.case": cases})
+    with pytest.warns(AccuracyWarning, match="rating: the damage of the spectrum may be wrong by"):
+        rated = whole.rating()
+    assert (rated.interpolation_error[:, 0] > 0.01).all()
+
+
+def test_summary_shows_all_bins_together_and_those_of_the_largest_damage():
+    rated = under(bins(*((100.0 + 10.0 * n, 1.0) for n in range(11))))
+    text = rated.summary()
+    assert "ISO 6336-6" not in text.splitlines()[0]
+    assert "-6:2019 with 11 bins" in text
+    assert "8 of 11 bins, of the largest damage" not in text.splitlines()[2]
+    line = next(line for line in text.splitlines() if line.startswith("bin "))
+    assert line.split() == ["bin", *map(str, range(4, 12))]
+    figures = rated.key_figures()
+    assert len(figures) == 11
+    assert figures[0]["pinion_flank_life_h"] == figures[10]["pinion_flank_life_h"] == rated.life_hours[0, 0]
+    assert figures[3]["wheel_root_damage"] == rated.damage[3, 1, 1]
+    assert figures[0]["pinion_root_equivalent_torque_Nm"] == pytest.approx(1e-3 * rated.equivalent_torque[0, 1])
+    assert rated.figures["wheel_local_root_damage"].of(rated.under(2)) == rated.damage[2, 1, 3]
+
+
+def test_list_of_torques_is_no_spectrum():
+    cases = cases_of(solved().scene, np.array([1e5, 2e5]))
+    assert not cases.is_spectrum
+    assert_array_equal(cases.hours, 20000.0)
+    single = alone()
+    assert_allclose(single.damage, 20000.0 / single.life_hours, rtol=ROUNDING)
+
+
+CAST = {"kind": "GG", "hardness_HBW": 200.0, "proof_stress_MPa": 250.0}
+test_spectra_refuse = refusals(
+    lambda cases, changes: under(cases, **changes),
+    (bins((300.0, 1.0)), {"analysis.torques_Nm": None}, "load.case: a bin has 300 N m; allowed up to 200"),
+    (bins((200.0, 1.0)), {"operation": None}, "operation: missing; .* K_v depend on pinion_speed_rpm; bin 0 has none"),
+    (
+        [*bins((100.0, 1.0)), *bins((200.0, 1.0), reversed=True)],
+        {"wheel.strength": HARD | {"material": None} | CAST},
+        r"load.case: reversed bins; the standard has no Y_M of kind 'GG' \(wheel.strength\)",
+    ),
+)  # fmt: skip
+
+
+def test_torques_in_place_of_those_of_a_spectrum_reach_its_largest():
+    scene = replace(solved()).scene
+    with pytest.raises(
+        InputError, match=r"load: a bin has 300 N m; allowed up to 200, the largest of analysis.torques_Nm"
+    ):
+        scene.with_changes({"load.case": bins((300.0, 1.0))})
