@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dgesv
+import scipy
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError
@@ -156,7 +156,9 @@ def _newton_step(pairs: Sequence[_Pair], torque: float, forces: Sequence[float],
         pressed = pair.law.deformation_under(force)
         sides.append((pair.wheel_lever, -pressed - bent[n] - pair.separation))
         tangent[row, row] += pair.law.exponent * pressed / force
-    _, _, moved, singular = dgesv(tangent, sides)  # what solves for a few pairs in a fourth of NumPy's time
+    _, _, moved, singular = scipy.linalg.lapack.dgesv(
+        tangent, sides
+    )  # what solves for a few pairs in a fourth of NumPy's time
     if singular:
         raise ConvergenceError(
             "load sharing: forces of the tooth pairs are not determined by one rotation", last=forces

@@ -145,7 +145,8 @@ def test_peak_pressures_follow_contacts_that_a_profile_crowning_moves_over_their
     # on supports that hardly give way they are those of rigid ones
     supported = analyse(middle.scene.with_changes({"pinion.support.compliance": (1e-12 * np.eye(6)).tolist()}))
     peaks = [one.sensitivities([key]).peak_pressure[..., 0] for one in (supported, middle)]
-    assert_allclose(*peaks, rtol=1e-3)
+    # two analyses, each solved to 1e-6: of the largest slope, beside which that of the other contact is a hundredth
+    assert_allclose(*peaks, rtol=0.0, atol=1e-3 * np.nanmax(np.abs(peaks)))
 
 
 def test_load_shares_of_all_pairs_change_by_nothing_together():
