@@ -156,9 +156,7 @@ def _newton_step(pairs: Sequence[_Pair], torque: float, forces: Sequence[float],
         pressed = pair.law.deformation_under(force)
         sides.append((pair.wheel_lever, -pressed - bent[n] - pair.separation))
         tangent[row, row] += pair.law.exponent * pressed / force
-    _, _, moved, singular = scipy.linalg.lapack.dgesv(
-        tangent, sides
-    )  # what solves for a few pairs in a fourth of NumPy's time
+    _, _, moved, singular = scipy.linalg.lapack.dgesv(tangent, sides)  # a fourth of the time that NumPy takes
     if singular:
         raise ConvergenceError(
             "load sharing: forces of the tooth pairs are not determined by one rotation", last=forces
