@@ -2355,6 +2355,13 @@ FAULTS = (
         'joined("damage")',
         "stages/test_stage_rating.py::test_smaller_safety_of_both_meshes_counts_for_planets",
     ),
+    Fault(
+        "exchange: the time that no load case has is left out",
+        "exchange/strength.py",
+        'return [*rows, idle] if name == "share"',
+        'return [*rows, idle] if name == "part"',
+        "exchange/test_strength.py::test_share_that_no_load_case_has_is_idle",
+    ),
 )
 
 
