@@ -2349,6 +2349,48 @@ FAULTS = (
         "logarithms",
         "rating/test_spectrum.py::test_powers_of_the_torque_are_interpolated_without_error",
     ),
+    Fault(
+        "spectra: roots under reversed bins have the tension of the place that decides without reversal",
+        "rating/evaluate.py",
+        "np.where(cases.reversed, solved.largest_root_tension[:, place], solved.root_tension[:, place])",
+        "solved.root_tension[:, place]",
+        "rating/test_spectrum.py::test_roots_under_reversed_bins_have_the_largest_tension",
+    ),
+    Fault(
+        "spectra: places of the next solved torque are shown for a bin",
+        "rating/places.py",
+        "    solved = np.isin(rating.torque, rating.result.torque)\n",
+        "    solved = rating.torque > 0.0\n",
+        "rating/test_spectrum.py::test_places_are_those_of_bins_whose_torque_was_solved",
+    ),
+    Fault(
+        "spectra: studies have the safeties of the first bin",
+        "rating/spectrum.py",
+        'return self.values("spectrum_safety")[None], self',
+        "return super().safeties_and_lives()[0][:1], self",
+        "rating/test_spectrum.py::test_studies_have_what_all_bins_do_together",
+    ),
+    Fault(
+        "spectra: the rating written into a REXS model is that of the first bin",
+        "output/rexs.py",
+        "case = int(cases[0])",
+        "case = 0",
+        "output/test_rexs_rating.py::test_of_a_load_spectrum_the_bin_of_the_torque_is_written",
+    ),
+    Fault(
+        "stages: the smaller damage of both meshes counts for planets",
+        "stages/rating.py",
+        'joined("damage", np.maximum)',
+        'joined("damage")',
+        "stages/test_stage_rating.py::test_smaller_safety_of_both_meshes_counts_for_planets",
+    ),
+    Fault(
+        "exchange: the time that no load case has is left out",
+        "exchange/strength.py",
+        'return [*rows, idle] if name == "share"',
+        'return [*rows, idle] if name == "part"',
+        "exchange/test_strength.py::test_share_that_no_load_case_has_is_idle",
+    ),
 )
 
 

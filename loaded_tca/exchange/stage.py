@@ -23,7 +23,7 @@ from loaded_tca.exchange.gears import (
 from loaded_tca.exchange.model import LENGTH, Component, Model, Reading
 from loaded_tca.exchange.modifications import Teeth, modification_keys
 from loaded_tca.exchange.shafts import diameter_at, rest_of, shaft_section
-from loaded_tca.exchange.strength import strength_section
+from loaded_tca.exchange.strength import cases_of_spectrum, has_times, load_spectrum, strength_section
 from loaded_tca.pairs.gear import ON_SHAFT
 from loaded_tca.scene import Scene, scene_from_table
 from loaded_tca.scene.keys import literal
@@ -96,10 +96,12 @@ def _cases(model: Model) -> str:
     return ", ".join(f"{one.spectrum}:{one.id}" for one in model.load_cases)
 
 
-def _note_loads(reading: Reading, load_case: str | None) -> None:
+def _note_loads(reading: Reading, load_case: str | None, bins: int) -> None:
     """Note which torques and speeds hold, where the model has more than those of its components."""
     if load_case is not None:
         reading.note(f"torques and speeds: those of the load case {load_case}")
+    elif bins:
+        reading.note(f"load spectrum of {bins} bins: load cases {_cases(reading.model)}, which have durations")
     elif reading.model.load_cases:
         reading.note(
             f"torques and speeds: those of the components themselves, of none of the load cases {_cases(reading.model)}"
@@ -122,7 +124,8 @@ def import_stage(
     stage : str
         Id of its component.
     load_case : str, optional
-        Id of a load case, the torques and speeds of which hold; default: those of the components themselves.
+        Id of a load case, the torques and speeds of which hold; default: all of them as a load spectrum, if each has a
+        duration or a share of the time, else those of the components themselves.
     torque_Nm : float, optional
         Torque on the pinion [N m], instead of that of the model.
 
@@ -151,8 +154,10 @@ def import_stage(
     gearbox = Gearbox(reading)
     chosen = gearbox.stage(stage)
     reading.touch([chosen.component, *chosen.gears])
-    _note_loads(reading, load_case)
     run = operation_of(gearbox, chosen, torque_Nm)
+    of_one = load_case is not None or torque_Nm is not None
+    cases = [] if of_one or not has_times(model) else cases_of_spectrum(load_spectrum(model, stage, run.side))
+    _note_loads(reading, load_case, len(cases))
     flanks = [flank_of(gearbox, chosen, gear, run.side) for gear in (0, 1)]
     table: dict[str, Any] = {"title": _title(chosen), "pair": pair_section(gearbox, chosen, flanks, run)}
     for n, name in enumerate(GEARS):
@@ -160,7 +165,7 @@ def import_stage(
         if strength := strength_section(reading, chosen.gears[n]):
             table[name]["strength"] = strength
     table |= _materials(reading, chosen, table)
-    table["load"] = {"pinion_torque_Nm": run.torque}
+    table["load"] = {"case": cases} if cases else {"pinion_torque_Nm": run.torque}
     if run.speed:
         table["operation"] = {"pinion_speed_rpm": run.speed}
     offset = _axial_offset(reading, chosen)
@@ -276,7 +281,7 @@ def _toml(table: Mapping[str, Any], path: str = "") -> list[str]:
         where = f"{path}{name}"
         if isinstance(value, Mapping):
             sections += ["", f"[{where}]", *_toml(value, f"{where}.")]
-        elif name in ("bearings", "loads"):
+        elif name in ("bearings", "loads", "case"):
             for one in value:
                 sections += ["", f"[[{where}]]", *_toml(one, f"{where}.")]
         elif name == "sections":

@@ -7,7 +7,7 @@ of a load case are those of the gear unit in it, ``load_duration`` up to 1.4 and
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from loaded_tca.exchange.gears import operation_of
 from loaded_tca.exchange.model import PRESSURE, SMALL_LENGTH, Component, Model, Reading
 from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_5 import MATERIALS, material_kind
+from loaded_tca.scene.load import SUM_OF_SHARES
 from loaded_tca.scene.rating import StrengthSection
 from loaded_tca.scene.section import check
 
@@ -154,7 +155,7 @@ class LoadBin:
     share : float or None
         Of the time of all, from 0 to 1.
     reversed : bool
-        Whether it loads the other flanks than the first case.
+        Whether it loads the other flanks, by default those that the first case does not load.
     """
 
     case: str
@@ -165,7 +166,7 @@ class LoadBin:
     reversed: bool
 
 
-def load_spectrum(model: Model, stage: str) -> tuple[LoadBin, ...]:
+def load_spectrum(model: Model, stage: str, side: int = 0) -> tuple[LoadBin, ...]:
     """Return torque, speed and duration of every load case of a model on the pinion of a cylindrical stage.
 
     Parameters
@@ -173,6 +174,8 @@ def load_spectrum(model: Model, stage: str) -> tuple[LoadBin, ...]:
     model : Model
     stage : str
         Id of its component.
+    side : int
+        Of the teeth, 1 or -1, whose load is not reversed; 0: that of the first case.
 
     Returns
     -------
@@ -192,7 +195,7 @@ def load_spectrum(model: Model, stage: str) -> tuple[LoadBin, ...]:
     [('1:1', 150.0, 1500.0, False), ('1:2', 60.0, 3000.0, True)]
     """
     bins: list[LoadBin] = []
-    first = 0
+    first = side
     for case in model.load_cases:
         name = f"{case.spectrum}:{case.id}"
         under = model.with_load_case(name)
@@ -208,10 +211,37 @@ def load_spectrum(model: Model, stage: str) -> tuple[LoadBin, ...]:
     return tuple(bins)
 
 
+def cases_of_spectrum(bins: Sequence[LoadBin]) -> list[dict[str, Any]]:
+    """Keys of ``[[load.case]]`` of bins that last hours, all of them, or have shares: what these leave is an idle bin.
+
+    None of bins that say neither, and of bins that all load the other flanks.
+    """
+    for name in ("hours", "share"):
+        times = [getattr(one, name) for one in bins]
+        if any(time is None for time in times) or not sum(times) > 0.0 or all(one.reversed for one in bins):
+            continue
+        rows = [
+            {"pinion_torque_Nm": one.torque, name: time}
+            | ({"pinion_speed_rpm": one.speed} if one.speed else {})
+            | ({"reversed": True} if one.reversed else {})
+            for one, time in zip(bins, times, strict=True)
+        ]
+        rest = 1.0 - sum(times)
+        idle = {"pinion_torque_Nm": 0.0, name: rest}
+        return [*rows, idle] if name == "share" and rest > SUM_OF_SHARES else rows
+    return []
+
+
 TIMES: tuple[tuple[tuple[str, ...], Mapping[str, float]], ...] = (
     (("operating_time", "load_duration"), HOURS),
     (("operating_time_fraction", "load_duration_fraction"), SHARE),
 )
+
+
+def has_times(model: Model) -> bool:
+    """Whether a load case of a model says how long it lasts."""
+    names = {name for these, _ in TIMES for name in these}
+    return any(names & {*own} for case in model.load_cases for own in case.components.values())
 
 
 def _of_unit(units: list[Component], names: tuple[str, ...], factors: Mapping[str, float]) -> float | None:

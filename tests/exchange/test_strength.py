@@ -7,6 +7,7 @@ from loaded_tca.exchange import import_stage, load_spectrum, read_rexs
 from loaded_tca.exchange.model import Attribute
 from loaded_tca.exchange.strength import KIND_OF_TYPE
 from loaded_tca.reference.iso6336_5 import KINDS
+from loaded_tca.scene import parse_scene
 from tests.samples.rexs import EXAMPLE, as_json, changed, part
 
 MM2, MUM = "N / mm^2", "mum"
@@ -113,3 +114,31 @@ def test_torques_of_bins_are_those_of_import():
 def test_negative_time_is_refused(tmp_path):
     with pytest.raises(InputError, match=r"load_duration: found -1; allowed from 0 on"):
         load_spectrum(spectrum(tmp_path, ({"load_duration": (-1.0, "h")}, {})), "10")
+
+
+def test_import_has_load_cases_with_times_as_a_spectrum(tmp_path):
+    hours = {"operating_time": (90.0, "min")}, {"operating_time": (2.0, "h")}
+    imported = import_stage(spectrum(tmp_path, hours), "10")
+    first, second = imported.scene.load.case
+    assert (first.pinion_torque_Nm, first.pinion_speed_rpm, first.hours, first.reversed) == (150.0, 1500.0, 1.5, False)
+    assert (second.pinion_torque_Nm, second.pinion_speed_rpm, second.hours, second.reversed) == (
+        60.0,
+        3000.0,
+        2.0,
+        True,
+    )
+    assert parse_scene(imported.to_toml()).load == imported.scene.load
+    assert any(one.startswith("load spectrum of 2 bins: load cases 1:1, 1:2") for one in imported.read_as)
+    one = import_stage(spectrum(tmp_path, hours), "10", load_case="2").scene.load
+    assert (one.case, one.pinion_torque_Nm) == (None, 60.0)
+
+
+def test_share_that_no_load_case_has_is_idle(tmp_path):
+    shares = {"load_duration_fraction": (20.0, "%")}, {"load_duration_fraction": (0.5, "none")}
+    *_, idle = import_stage(spectrum(tmp_path, shares), "10").scene.load.case
+    assert (idle.pinion_torque_Nm, idle.share) == (0.0, pytest.approx(0.3))
+
+
+def test_times_of_some_load_cases_make_no_spectrum(tmp_path):
+    imported = import_stage(spectrum(tmp_path, ({"operating_time": (2.0, "h")}, {})), "10")
+    assert imported.scene.load.case is None

@@ -32,3 +32,12 @@ def test_ratings_stand_in_stage_and_gears():
 def test_early_versions_and_scenes_without_rating_have_none(version, changes):
     written = results(version, **changes)
     assert not any("iso_6336" in name for attributes in written.values() for name in attributes)
+
+
+def test_of_a_load_spectrum_the_bin_of_the_torque_is_written():
+    cases = [{"pinion_torque_Nm": torque, "hours": 10.0} for torque in (200.0, 100.0)]
+    spectrum = {"load.case": cases}
+    written = results("1.7", **spectrum)
+    safety = solved(**spectrum).rating().flank_safety[1, 0]
+    assert written["31"]["safety_factor_pitting_iso_6336_2019"].value == safety
+    assert not any("iso_6336" in name for name in results("1.7", **{"load.case": cases[:1]})["10"])

@@ -7,10 +7,16 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.rating import flank_safeties, root_safeties
 from loaded_tca.rating.cases import cases_of
+from loaded_tca.rating.findings import findings
+from loaded_tca.rating.places import worst_case
 from loaded_tca.rating.solved import SolvedLoads
+from loaded_tca.rating.utilisation import utilisation_of
+from loaded_tca.reports.rating_page import rating_content
+from loaded_tca.studies import rating_figures
 from tests.refusals import refusals
-from tests.samples.rating import HARD, solved
+from tests.samples.rating import HARD, bevel_solved, solved
 
 ROUNDING = 1e-9  # exponents of S-N curves, up to 33, multiply rounding of stresses
 GIVEN = {"rating.dynamic_factor": "given", "rating.transverse_load_factor": 1.0, "rating.face_load_factor": 1.0}
@@ -217,3 +223,61 @@ def test_torques_in_place_of_those_of_a_spectrum_reach_its_largest():
         InputError, match=r"load: a bin has 300 N m; allowed up to 200, the largest of analysis.torques_Nm"
     ):
         scene.with_changes({"load.case": bins((300.0, 1.0))})
+
+
+def test_bins_of_bevel_pairs_add_up_by_hours():
+    changes = {"operation.application_factor": 2.0, "rating.transverse_load_factor": "method B"}
+    rows, single = bins((150.0, 30.0), (300.0, 10.0)), bevel_solved(**changes).rating()
+    rated = bevel_solved(**changes, **{"load.case": rows}).rating()
+    assert rated.modes == ("flank", "root", "local_flank")
+    expected = 1000.0 * (0.75 / single.life_hours[0] + 0.25 / single.life_hours[1])
+    assert_allclose(rated.miner_sum, expected, rtol=ROUNDING)
+    assert (rated.miner_sum[:, 0] > 0.0).all()
+    assert "ISO 10300-2 and -3:2023, method B1, ISO 6336-6:2019 with 2 bins" in rated.scope
+
+
+def test_places_are_those_of_bins_whose_torque_was_solved():
+    rated = under([*bins((150.0, 1.0), (200.0, 1.0)), *bins((200.0, 1.0), reversed=True)])
+    places = flank_safeties(rated, 1)
+    assert_allclose(places.safety.min(axis=1), rated.local_flank_safety[1], rtol=ROUNDING)
+    assert worst_case(rated, "local_root_safety") == 1  # the reversed bin has less, and no places
+    for case, words in ((0, "case: 0, 150 N m, was not solved"), (2, "case: 2, 200 N m, is reversed")):
+        with pytest.raises(InputError, match=words):
+            root_safeties(rated, case, 0)
+
+
+def test_roots_under_reversed_bins_have_the_largest_tension():
+    rated = under([*bins((200.0, 1.0)), *bins((200.0, 1.0), reversed=True)])
+    assert_allclose(rated.local_root_stress[1], 1.6 * np.nanmax(rated.result.root_tension[1], axis=0), rtol=ROUNDING)
+    assert_array_equal(rated.local_stress_ratio[1], -1.2)
+
+
+def test_sentences_and_report_say_which_bin_does_the_damage(monkeypatch):
+    monkeypatch.setattr("loaded_tca.reports.rating_page.rating_figures", lambda _: {})  # seconds, and tested elsewhere
+    cases = bins((100.0, 30.0), (200.0, 10.0))
+    rated = under(cases)
+    part = rated.damage[1, 0, 0] / rated.miner_sum[0, 0]
+    content = rating_content(rated.result)
+    assert content["findings"] == findings(rated)
+    assert content["findings"][0].startswith("after ISO 6336 what decides is")
+    assert f"; bin 2, 200 N m, does {100.0 * part:.0f} % of the damage" in content["findings"][0]
+    safeties = content["safeties"]
+    assert safeties.head[0] == "all bins together"
+    assert safeties.rows[0][2] == f"{rated.spectrum_safety[0, 0]:.4g}"
+    assert content["tables"][0].head[1] == "bin 1, 100 N m, pinion"
+
+
+def test_studies_have_what_all_bins_do_together():
+    rated = under(bins((100.0, 30.0), (200.0, 10.0)))
+    figures = rating_figures(rated.result)
+    assert_allclose(figures["S_H"], [rated.spectrum_safety[:, 0].min()] * 2, rtol=ROUNDING)
+    assert_allclose(figures["life_h"], [rated.life_hours[:, :2].min()] * 2, rtol=ROUNDING)
+    assert_allclose(figures["life_local_h"], [rated.life_hours[:, 2:].min()] * 2, rtol=ROUNDING)
+
+
+def test_what_spectra_do_not_have_is_refused():
+    rated = under(bins((200.0, 1.0)))
+    with pytest.raises(InputError, match=r"load.case: a load spectrum; derivatives of safeties are"):
+        rated.sensitivities(["pinion.modifications.lead_crowning_um"])
+    with pytest.raises(InputError, match=r"load.case: a load spectrum; give load.pinion_torque_Nm"):
+        utilisation_of(rated.scene, 200e3)

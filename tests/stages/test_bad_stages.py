@@ -37,6 +37,10 @@ test_bad_stage_is_refused = refused_calls(
         lambda: changed(sun__pitch__runout_um=10.0),
         "sun.pitch: found a section; not allowed: teeth of a stage are alike",
     ),
+    (
+        lambda: changed(rating={"required_flank_safety": 1.0, "required_root_safety": 1.4}),
+        "rating.life_hours: missing; a stage has no load cases",
+    ),
     (lambda: on_angles(0.0, 90.0, 172.8), "stage.planet_angles_deg: found planets on one side of a sun .*187.2 deg"),
     (lambda: parse_stage('stage = "wind_spur.toml"'), "not a stage but a study of wind_spur.toml"),
     (lambda: read_scene(EXAMPLES / "wind_spur.toml"), "not the scene of a pair but a planetary stage; run it with"),
