@@ -28,15 +28,16 @@ from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties
 if TYPE_CHECKING:
     from loaded_tca.rating import Rating
 
+OF_SPECTRUM = "of all bins in the required life; strokes: each bin alone"
 LARGEST = 2.5
 """Safety over the least one from which colours do not differ any more."""
 SAFETIES = {
-    "flank_safety": "pitting, ISO 6336-2",
-    "local_flank_safety": "pitting, local",
-    "root_safety": "tooth breakage, ISO 6336-3",
-    "local_root_safety": "tooth breakage, local",
+    "flank": "pitting, {}-2",
+    "local_flank": "pitting, local",
+    "root": "tooth breakage, {}-3",
+    "local_root": "tooth breakage, local",
 }
-"""Safeties of a rating, and what pictures call them."""
+"""Kinds of failure of a rating, and what pictures call them after a standard."""
 
 
 def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
@@ -121,7 +122,7 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
 
 
 def plot_safeties(rating: Rating) -> Figure:
-    """Safeties of the standard and local ones of both gears, in every case, beside those required.
+    """Safeties of the standard and local ones of both gears, in every case or of a spectrum, beside those required.
 
     Parameters
     ----------
@@ -131,26 +132,27 @@ def plot_safeties(rating: Rating) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    names = [name for name in SAFETIES if rating.has(name) and np.isfinite(rating.values(name)).any()]
-    figure = Figure(figsize=(8.5, 1.8 + 0.75 * len(names)), layout="constrained")
-    axes = figure.add_subplot()
-    for row, name in enumerate(names):
-        required = _required(rating, "root" if "root" in name else "flank")
+    modes = [mode for mode in SAFETIES if mode in rating.modes and np.isfinite(rating.values(f"{mode}_safety")).any()]
+    figure = Figure(figsize=(8.5, 1.8 + 0.75 * len(modes)), layout="constrained")
+    axes, bars = figure.add_subplot(), rating.safeties_and_lives()[0]
+    for row, mode in enumerate(modes):
+        required = _required(rating, "root" if "root" in mode else "flank")
         for gear, colour in enumerate(GEAR_COLOURS):
-            values = rating.values(name)[:, gear]
+            values = rating.values(f"{mode}_safety")[:, gear]
             values = values[np.isfinite(values)]
             if not values.size:  # a rim thinner than the standard allows
                 continue
-            at = row + (gear - 0.5) * 0.36
-            axes.barh(at, values.min(), 0.34, color=colour, label=GEARS[gear] if row == 0 else "")
+            at, least = row + (gear - 0.5) * 0.36, float(np.nanmin(bars[:, gear, rating.modes.index(mode)]))
+            axes.barh(at, least, 0.34, color=colour, label=GEARS[gear] if row == 0 else "")
             axes.plot(values, np.full(len(values), at), "|", color="black", markersize=7.0)
-            axes.text(0.0, at, f"  {plain(values.min())}", va="center", fontsize="small", color="white", weight="bold")
+            axes.text(0.0, at, f"  {plain(least)}", va="center", fontsize="small", color="white", weight="bold")
         label = "required" if row == 0 else ""
         axes.plot([required, required], [row - 0.42, row + 0.42], color="black", linewidth=2.5, label=label)
-    axes.set_yticks(range(len(names)), [SAFETIES[name] for name in names])
+    axes.set_yticks(range(len(modes)), [SAFETIES[mode].format(rating.standard) for mode in modes])
     axes.invert_yaxis()
-    axes.set_xlabel("safety, the least of all cases; strokes: each case")
-    every = np.concatenate([rating.values(name).ravel() for name in names])
+    of_bars = OF_SPECTRUM if rating.has("spectrum_safety") else "the least of all cases; strokes: each case"
+    axes.set_xlabel(f"safety, {of_bars}")
+    every = np.concatenate([rating.values(f"{mode}_safety").ravel() for mode in modes])
     axes.set_xlim(0.0, 1.15 * float(every[np.isfinite(every)].max()))
     axes.grid(axis="x", alpha=0.3)
     axes.set_axisbelow(True)
@@ -264,8 +266,9 @@ class RatingPicture(NamedTuple):
 SAFETY_PICTURES = {
     "safeties": RatingPicture(
         "safeties of the standard and local ones beside those required",
-        "Of both gears the least of all cases; where the local one is below that of the standard, the contact of the "
-        "analysis carries its load less evenly than the standard assumes, or its pressure lacks Z_eps.",
+        "Of both gears the least of all cases, or that of the whole spectrum; where the local one is below that of the "
+        "standard, the contact of the analysis carries its load less evenly than the standard assumes, or its pressure "
+        "lacks Z_eps.",
         "flank_safety",
         plot_safeties,
     ),
