@@ -116,7 +116,7 @@ def test_report_and_pictures_name_the_standard(monkeypatch):
     captions = [table.caption for table in rating_content(rated.result)["tables"]]
     assert captions[1:3] == ["Flanks, ISO 10300-2", "Roots, ISO 10300-3"]
     (axes,) = plot_safeties(rated).axes
-    assert [label.get_text() for label in axes.get_yticklabels()][0] == "pitting, ISO 10300-2"
+    assert axes.get_yticklabels()[0].get_text() == "pitting, ISO 10300-2"
 
 
 def test_more_profile_crowning_and_a_coarser_grade_cost_safety():
