@@ -126,6 +126,8 @@ def test_idle_bins_take_their_time_and_do_no_damage():
     assert_array_equal(idle.damage[0], 0.0)
     assert_array_equal(idle.root_safety[0], np.inf)
     assert_allclose(idle.life_hours, 2.0 * loaded.life_hours, rtol=ROUNDING)
+    assert_array_equal(idle.interpolation_error, 0.0)  # no torque lies between those that were solved
+    assert not any("interpolated" in note or "lie below" in note for note in idle.notes())
 
 
 def test_a_bin_above_the_static_strength_leaves_no_life():
