@@ -2433,6 +2433,13 @@ FAULTS = (
         "(shown or picture.of_places)",
         "rating/test_spectrum.py::test_pictures_of_places_are_left_out_where_no_bin_was_solved",
     ),
+    Fault(
+        "REXS: of bins with one torque the first one is written, whatever its safety",
+        "output/rexs.py",
+        "int(cases[rating.flank_safety[cases].min(axis=1).argmin()])",
+        "int(cases[0])",
+        "output/test_rexs_rating.py::test_of_bins_with_one_torque_the_one_of_the_least_safety_is_written",
+    ),
 )
 
 
