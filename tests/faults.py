@@ -2391,6 +2391,55 @@ FAULTS = (
         'return [*rows, idle] if name == "part"',
         "exchange/test_strength.py::test_share_that_no_load_case_has_is_idle",
     ),
+    Fault(
+        "rating: a cap on the pressure makes flanks safer",
+        "rating/solved.py",
+        "        pressure[torque] = sweep.elastic_pressure[worst]",
+        "        pressure[torque] = sweep.pressure[worst]",
+        "rating/test_rating.py::test_surface_that_yields_is_rated_by_its_line_load",
+    ),
+    Fault(
+        "rating: stiffness of the standard takes the pinion of the scene for the smaller gear",
+        "scene/standards.py",
+        "key=lambda gear: (gear[0], -gear[1])",
+        "key=lambda gear: 0",
+        "rating/test_vibration.py::test_smaller_gear_is_the_pinion_of_the_stiffness",
+    ),
+    Fault(
+        "rating: Z_W hardens the wheel though it is the smaller gear",
+        "reference/iso6336_2.py",
+        "    larger = int(gear_ratio >= 1.0)",
+        "    larger = 1",
+        "reference/test_iso6336_2.py::test_harder_through_hardened_pinion_hardens_the_wheel_alone",
+    ),
+    Fault(
+        "rating: idle bins count as interpolated",
+        "rating/cases.py",
+        "(self.torque > 0.0) & ~np.isin",
+        "(self.torque >= 0.0) & ~np.isin",
+        "rating/test_spectrum.py::test_idle_bins_take_their_time_and_do_no_damage",
+    ),
+    Fault(
+        "studies: bins of a spectrum that vary as one stop a study",
+        "studies/study.py",
+        "return as_given(key.read(_whole_if_asked(key, value)))",
+        "return key.read(_whole_if_asked(key, value))",
+        "studies/test_study.py::test_bins_of_a_spectrum_vary_as_one",
+    ),
+    Fault(
+        "rating: a spectrum of torques that were not solved has no rating, since it has no pictures of places",
+        "plots/rating.py",
+        "(shown or not picture.of_places)",
+        "(shown or picture.of_places)",
+        "rating/test_spectrum.py::test_pictures_of_places_are_left_out_where_no_bin_was_solved",
+    ),
+    Fault(
+        "REXS: of bins with one torque the first one is written, whatever its safety",
+        "output/rexs.py",
+        "int(cases[rating.flank_safety[cases].min(axis=1).argmin()])",
+        "int(cases[0])",
+        "output/test_rexs_rating.py::test_of_bins_with_one_torque_the_one_of_the_least_safety_is_written",
+    ),
 )
 
 

@@ -199,14 +199,17 @@ OF_GEARS = {
 
 
 def _of_rating(result: MeshCycle, gearbox: Gearbox, stage: Stage, torque: int) -> Results:
-    """Safeties and factors of ISO 6336-2:2019 and -3:2006, of scenes with strengths and [rating] and version 1.7."""
+    """Safeties and factors of ISO 6336-2:2019 and -3:2006, of scenes with strengths and [rating] and version 1.7.
+
+    Of several bins with that torque, those of the bin with the least safety of flanks.
+    """
     if gearbox.reading.model.version < RATED_SINCE or not is_rated(result.scene):
         return {}
     rating = result.rating()
     cases = np.flatnonzero((rating.torque == result.torque[torque]) & ~rating.inputs.cases.reversed)
     if not cases.size:  # no bin of a load spectrum has that torque
         return {}
-    case = int(cases[0])
+    case = int(cases[rating.flank_safety[cases].min(axis=1).argmin()])
     results: Results = {stage.id: _attributes({name: rating.values(name)[case] for name in OF_STAGE}, OF_STAGE)}
     for gear, data in enumerate(gear_data(gearbox.reading, stage)):
         if data is not None:

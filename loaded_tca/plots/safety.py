@@ -255,12 +255,16 @@ def _draw_fillets(axes: Axes, one: RootSafeties, scale: Normalize, colours: Colo
 
 
 class RatingPicture(NamedTuple):
-    """A picture of a rating: its line of the help, its caption in reports, a number that it needs, what draws it."""
+    """A picture of a rating: its line of the help, its caption in reports, a number that it needs, what draws it.
+
+    One of places is drawn where a case has these: a bin that is not reversed, of a torque that was solved.
+    """
 
     line: str
     caption: str
     needs: str
     draw: Callable[[Rating], Figure]
+    of_places: bool = False
 
 
 SAFETY_PICTURES = {
@@ -277,12 +281,14 @@ SAFETY_PICTURES = {
         "The smallest safety that each place of the flanks has over the mesh cycle.",
         "local_flank_safety",
         plot_flank_safety,
+        of_places=True,
     ),
     "root_safety": RatingPicture(
         "local safety against breakage over fillet and face of both gears, in the worst case",
         "With the extremes of a whole turn at each place, and below its smallest over the face.",
         "local_root_safety",
         plot_root_safety,
+        of_places=True,
     ),
 }
 """Name -> picture of safeties that the command draws."""

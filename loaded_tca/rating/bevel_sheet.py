@@ -106,8 +106,8 @@ class BevelSheet:
 
     @property
     def gear_ratio(self) -> float:
-        """u, without regard to which gear is the smaller one."""
-        return max(self.teeth) / min(self.teeth)
+        """z_2/z_1, below 1 where the wheel is the smaller gear."""
+        return self.teeth[1] / self.teeth[0]
 
     def tolerance_diameter(self, gear: int) -> float:
         """d_T of ISO 17485, in the middle of the working depth [mm]."""

@@ -51,6 +51,10 @@ class Cases:
         """Torques (c,) that load factors are found at [N mm]: of bins from a part of the largest on."""
         return np.maximum(self.torque, LEAST_PART * self.torque.max()) if self.is_spectrum else self.torque
 
+    def between(self, solved: Array) -> Mask:
+        """Which cases (c,) have a torque that is none of those solved [N mm]; idle ones ask for none."""
+        return np.asarray((self.torque > 0.0) & ~np.isin(self.factor_torque, solved))
+
     def alone(self, torques: Array) -> Cases:
         """Torques (t,) [N mm] that stand each for itself in the same life, at the largest speed."""
         ones = np.ones(len(torques))

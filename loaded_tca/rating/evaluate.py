@@ -107,7 +107,7 @@ def strength_of_flanks(inputs: RatingInputs) -> iso6336_2.FlankFactors:
             velocity=inputs.velocity,
             viscosity_40=inputs.lubricant.viscosity_40_mm2_s,
             cycles=inputs.cycles.T,
-            gear_ratio=max(mesh.gear_ratio, 1.0 / mesh.gear_ratio),
+            gear_ratio=mesh.gear_ratio,
             limited_pitting=wanted.limited_pitting,
             long_life_factor=wanted.long_life_factor,
         )

@@ -98,8 +98,8 @@ def flank_safeties(rating: Rating, case: int) -> FlankSafeties:
     require(*index_checks(case=(case, len(rating.torque))))
     sweep = slices_of(rating.result)
     some = sweep.of_torque(_torque_of(rating, case))
-    some = some[np.isfinite(sweep.pressure[some])]
-    stress = sweep.pressure[some] * np.sqrt(rating.K_A[case] * rating.K_gamma[case] * rating.K_v[case])
+    some = some[np.isfinite(sweep.elastic_pressure[some])]
+    stress = sweep.elastic_pressure[some] * np.sqrt(rating.K_A[case] * rating.K_gamma[case] * rating.K_v[case])
     return FlankSafeties(
         rating.sigma_HG[case][:, None] / stress,
         sweep.point[some],

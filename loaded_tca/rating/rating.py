@@ -209,7 +209,7 @@ class Rating(Result):
         -------
         xarray.Dataset
             ``flank_safety``, ``root_safety``, ``local_flank_safety`` and, with root stress, ``local_root_safety`` over
-            case, gear and key [1 per unit of the key].
+            case, gear and key [1 per unit of the key]; NaN of flanks where the slice that decides yields.
 
         Raises
         ------

@@ -126,7 +126,7 @@ def _pressure_slopes(sensitivities: Sensitivities) -> Array:
     slopes = np.zeros((count, len(sensitivities.keys)))
     for torque in range(count):
         some = sweep.of_torque(torque)
-        worst = int(some[np.nanargmax(sweep.pressure[some])])
+        worst = int(some[np.nanargmax(sweep.elastic_pressure[some])])
         under, row = _under(sensitivities, torque)
         place = row, int(sweep.position[worst]), int(sweep.column[worst])
         slopes[torque] = _of_contact(under, place)
@@ -145,8 +145,8 @@ def _of_contact(under: Sensitivities, place: tuple[int, int, int]) -> Array:
         np.broadcast_to(peak.slopes if k == number else 0.0, one.active.shape) for k, one in enumerate(tangents.grids)
     )
     change = tangents.functional_change(row, under.growth.gaps, under.torques)[:, tangents.state[number]]
-    if not peak.slopes.any():  # at the cap
-        return np.zeros(len(under.keys))
+    if not peak.slopes.any():  # at the cap, where the derivatives of the line load are not those of the pressure
+        return np.full(len(under.keys), np.nan)
     curvature = curvature_growth(pair, [grid], [peak], under.changes, under.growth.of_grids([number]))[:, 0]
     return np.asarray(change / peak.pressure + 0.5 * curvature)
 

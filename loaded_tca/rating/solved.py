@@ -34,7 +34,8 @@ class SolvedLoads:
         Ascending, of those that were solved.
     face_load_factor, transverse_load_factor : (c,) array
     pressure : (c,) array [MPa]
-        Largest pressure of a line contact over all slices of all contacts.
+        Largest pressure of an elastic line contact over all slices of all contacts, whatever the cap: strengths of
+        flanks are such pressures.
     places : (2, c, 2) array [mm]
         Radius and axial coordinate of its place, on pinion and wheel; between torques that of the nearest.
     at_edge : (c,) array of bool
@@ -182,14 +183,14 @@ def _excitation(result: CycleNumbers) -> dict[str, Array]:
 
 
 def _largest_pressures(result: CycleNumbers) -> tuple[Array, Array, Mask]:
-    """Largest contact pressure of slices under each torque (t,), its places (2, t, 2), whether they lie at an edge."""
+    """Largest elastic pressure of slices under each torque (t,), its places (2, t, 2), whether they lie at an edge."""
     sweep, count = slices_of(result), len(result.torque)
     pressure, places, at_edge = np.full(count, np.nan), np.full((2, count, 2), np.nan), np.zeros(count, dtype=bool)
     for torque in range(count):
         some = sweep.of_torque(torque)
-        some = some[np.isfinite(sweep.pressure[some])]
-        worst = int(some[sweep.pressure[some].argmax()])
-        pressure[torque] = sweep.pressure[worst]
+        some = some[np.isfinite(sweep.elastic_pressure[some])]
+        worst = int(some[sweep.elastic_pressure[some].argmax()])
+        pressure[torque] = sweep.elastic_pressure[worst]
         places[0, torque] = sweep.radius[worst], sweep.wheel_radius[worst]
         places[1, torque] = sweep.axial[worst], sweep.wheel_axial[worst]
         at_edge[torque] = sweep.on_edge[worst]

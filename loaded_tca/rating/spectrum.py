@@ -61,8 +61,8 @@ def of_spectrum(
 
 def _interpolation_error(inputs: CommonInputs, damage: Array, evaluate: Evaluate) -> Array:
     """By which part the damage (gear, mode) of bins (c, gear, mode) may be wrong; 0 where all torques were solved."""
-    wanted, solved = inputs.cases.factor_torque, inputs.solved
-    if np.isin(wanted, solved.torque).all():
+    solved = inputs.solved
+    if not inputs.cases.between(solved.torque).any():
         return np.zeros(damage.shape[1:])
     if len(solved.torque) < FEWEST_SOLVED:
         return np.full(damage.shape[1:], nan)
@@ -75,7 +75,8 @@ def _interpolation_error(inputs: CommonInputs, damage: Array, evaluate: Evaluate
 def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array) -> Iterator[str]:
     """What of a spectrum is assumed or left out."""
     cases, solved, sums = inputs.cases, inputs.solved, arrays["miner_sum"]
-    between, below = ~np.isin(cases.factor_torque, solved.torque), cases.factor_torque < solved.torque[0]
+    between = cases.between(solved.torque)
+    below = between & (cases.factor_torque < solved.torque[0])
     if between.any():
         known = error[np.isfinite(error)]
         told = f"damage is right within {float(known.max()):.1%}" if known.size else "there is no estimate of the error"

@@ -440,7 +440,7 @@ def flank_factors(
     cycles : array (gear, ...)
         Load cycles of pinion and wheel.
     gear_ratio : float
-        u, without sign.
+        z_2/z_1 without sign; below 1 the wheel is the smaller gear.
     limited_pitting : bool
         Whether some pits are allowed.
     long_life_factor : float
@@ -478,7 +478,7 @@ def flank_factors(
             f"cycles: shape {number.shape}; asked for is (2, ...), one of each gear",
         ),
         (0.0 < size_factor <= 1.0, f"size_factor: {size_factor}; allowed above 0, up to 1"),
-        (1.0 <= gear_ratio < inf, f"gear_ratio: {gear_ratio} is below 1 or not finite"),
+        (0.0 < gear_ratio < inf, f"gear_ratio: {gear_ratio} is not positive and finite"),
     )
     gears = pinion, wheel
     softer = min(gear.limit_stress for gear in gears)
@@ -529,10 +529,11 @@ def _work_factors(
         low, high = _WORK_HARDENING
         if not low <= gear.hardness <= high:
             notes.append(f"Z_W: {gear.hardness:g} HBW is not within {low:g} to {high:g} HBW, and counts as the nearer")
-    pinion, wheel = gears
-    if pinion.hardens_at_work and wheel.hardens_at_work and pinion.hardness and wheel.hardness:
-        ratio = pinion.hardness / wheel.hardness
-        work[1] = np.asarray(through_hardened_work_factor(ratio, gear_ratio))
-        if gear_ratio > _LARGEST_RATIO and ratio >= 1.2:
-            notes.append(f"Z_W: the gear ratio {gear_ratio:g} counts as {_LARGEST_RATIO:g}")
+    larger = int(gear_ratio >= 1.0)
+    soft, hard = gears[larger], gears[1 - larger]
+    if soft.hardens_at_work and hard.hardens_at_work and soft.hardness and hard.hardness:
+        ratio, step = hard.hardness / soft.hardness, max(gear_ratio, 1.0 / gear_ratio)
+        work[larger] = np.asarray(through_hardened_work_factor(ratio, step))
+        if step > _LARGEST_RATIO and ratio >= 1.2:
+            notes.append(f"Z_W: the gear ratio {step:g} counts as {_LARGEST_RATIO:g}")
     return work, static, tuple(notes)

@@ -91,17 +91,23 @@ def _single_contact(mesh: InvoluteMesh, overlap_ratio: float) -> tuple[float, fl
 
 
 def _single_stiffness(mesh: InvoluteMesh, materials: tuple[Material, Material]) -> float:
-    """c' of both materials, a ring as a rack; NaN for profile shifts beyond those that the standard has fitted."""
+    """c' of both materials, a ring as a rack; NaN for profile shifts beyond those that the standard has fitted.
+
+    The smaller gear is the pinion of the series, of equal ones that of the larger shift, whichever the scene calls so.
+    """
     gear, shifts = mesh.pinion, (mesh.pinion.profile_shift, mesh.wheel.profile_shift)
     if not FITTED_SHIFTS[0] <= sum(shifts) <= FITTED_SHIFTS[1]:
         return nan
-    first, second = (
+    virtual = [
         iso6336.virtual_teeth(one.teeth, one.helix_angle, one.pressure_angle) if one.teeth > 0 else inf
         for one in (mesh.pinion, mesh.wheel)
+    ]
+    (first, of_first), (second, of_second) = sorted(
+        zip(virtual, shifts, strict=True), key=lambda gear: (gear[0], -gear[1])
     )
     moduli = [material.youngs_modulus for material in materials]
     return iso6336.single_stiffness(
-        iso6336.theoretical_single_stiffness((first, second), shifts),
+        iso6336.theoretical_single_stiffness((first, second), (of_first, of_second)),
         gear.helix_angle,
         basic_rack_factor=iso6336.basic_rack_factor(gear.dedendum_coefficient, gear.pressure_angle),
         youngs_modulus=2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]),

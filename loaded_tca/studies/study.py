@@ -20,7 +20,7 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 from loaded_tca.scene import Scene
 from loaded_tca.scene.keys import Key, Number, Whole, shown
-from loaded_tca.scene.section import as_table
+from loaded_tca.scene.section import as_given, as_table
 from loaded_tca.separation.pair_change import value_at
 from loaded_tca.stages import Stage
 from loaded_tca.studies.stage import key_of, problem_of_places
@@ -242,7 +242,7 @@ def _plain(value: Any) -> Any:
 def _as_key_takes(key: Key, value: Any) -> Any:
     """The value in the key's own type; a number that it refuses stays what it is."""
     try:
-        return key.read(_whole_if_asked(key, value))
+        return as_given(key.read(_whole_if_asked(key, value)))
     except ValueError:
         return value
 

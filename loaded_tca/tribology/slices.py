@@ -55,6 +55,8 @@ class Slices:
         rho across the contact; NaN where the flanks are not curved towards each other.
     pressure, half_width : (n,) array [MPa], [mm]
         Of a line contact; the pressure up to the cap.
+    elastic_pressure : (n,) array [MPa]
+        The same without a cap: what an elastic surface has under that line load.
     rolling : (2, n) array [mm]
         Velocities of both surfaces across the contact, over the angular velocity of the pinion; positive as both roll.
     sliding : (n,) array [mm]
@@ -83,6 +85,7 @@ class Slices:
     line_load: Array
     relative_radius: Array
     pressure: Array
+    elastic_pressure: Array
     half_width: Array
     rolling: Array
     sliding: Array
@@ -184,6 +187,7 @@ def _swept(result: CycleNumbers) -> Slices:
         line_load=flat["line_load"],
         relative_radius=1.0 / curved,
         pressure=np.minimum(pressure, cap),
+        elastic_pressure=pressure,
         half_width=np.sqrt(4.0 * flat["line_load"] / (math.pi * pair.contact_modulus * curved)),
         rolling=rolling * np.where(rolling.sum(axis=0) < 0.0, -1.0, 1.0),
         sliding=flat["sliding"],

@@ -34,6 +34,12 @@ def test_early_versions_and_scenes_without_rating_have_none(version, changes):
     assert not any("iso_6336" in name for attributes in written.values() for name in attributes)
 
 
+def test_of_bins_with_one_torque_the_one_of_the_least_safety_is_written():
+    cases = [{"pinion_torque_Nm": 100.0, "hours": hours} for hours in (1.0, 1e5)]
+    shares = [results("1.7", **{"load.case": order}) for order in (cases, cases[::-1])]
+    assert shares[0] == shares[1]
+
+
 def test_of_a_load_spectrum_the_bin_of_the_torque_is_written():
     cases = [{"pinion_torque_Nm": torque, "hours": 10.0} for torque in (200.0, 100.0)]
     spectrum = {"load.case": cases}

@@ -133,7 +133,7 @@ def test_what_the_standard_assumes_is_told():
     assert "K_F0: 1, the lengthwise curve has no cutter" in notes
     straight = bevel_sheet(read_scene(SCENES / "straight_bevel.toml"))
     assert straight.wheel == 0  # the pinion of that scene has more teeth
-    assert_allclose(straight.gear_ratio, 39 / 32)
+    assert_allclose(straight.gear_ratio, 32 / 39)
     assert not any("K_F0" in note for note in straight.notes)
     shifted = read_scene(SCENES / "straight_bevel.toml").with_changes({"pinion.profile_shift": 0.1})
     assert bevel_sheet(shifted).notes[-1].startswith("scope: profile shifts have a sum of 0.1; ")

@@ -89,6 +89,12 @@ def test_local_stresses_are_those_of_the_contact_and_the_roots():
     assert_allclose(rated.local_flank_stress, peaks, rtol=0.1)
 
 
+def test_surface_that_yields_is_rated_by_its_line_load():
+    elastic, yielding = solved().rating(), solved(**{"material.max_pressure_MPa": 300.0}).rating()
+    assert slices_of(yielding.result).capped
+    assert_allclose(yielding.local_flank_stress, elastic.local_flank_stress, rtol=ROUNDING)  # the maps are the same
+
+
 def test_mean_stress_lowers_the_strength_of_roots():
     once, reversed_ = solved().rating(), solved(**{"wheel.strength.root_stress_ratio": -1.0}).rating()
     sensitivity = 0.8 - 0.15 * once.Y_S[0, 1]  # case-hardened, annex B of ISO 6336-3:2006

@@ -7,6 +7,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.output import write_rating
+from loaded_tca.plots import RATING_PICTURES
+from loaded_tca.plots import rating_figures as rating_pictures
 from loaded_tca.rating import flank_safeties, root_safeties
 from loaded_tca.rating.cases import cases_of
 from loaded_tca.rating.findings import findings
@@ -126,6 +129,8 @@ def test_idle_bins_take_their_time_and_do_no_damage():
     assert_array_equal(idle.damage[0], 0.0)
     assert_array_equal(idle.root_safety[0], np.inf)
     assert_allclose(idle.life_hours, 2.0 * loaded.life_hours, rtol=ROUNDING)
+    assert_array_equal(idle.interpolation_error, 0.0)  # no torque lies between those that were solved
+    assert not any("interpolated" in note or "lie below" in note for note in idle.notes())
 
 
 def test_a_bin_above_the_static_strength_leaves_no_life():
@@ -244,6 +249,19 @@ def test_places_are_those_of_bins_whose_torque_was_solved():
     for case, words in ((0, "case: 0, 150 N m, was not solved"), (2, "case: 2, 200 N m, is reversed")):
         with pytest.raises(InputError, match=words):
             root_safeties(rated, case, 0)
+
+
+def test_pictures_of_places_are_left_out_where_no_bin_was_solved(monkeypatch):
+    drawn = {name: picture._replace(draw=lambda _: None) for name, picture in RATING_PICTURES.items()}
+    monkeypatch.setattr("loaded_tca.plots.rating.RATING_PICTURES", drawn)
+    solved_bin = {*rating_pictures(under(bins((200.0, 1.0))))}
+    assert solved_bin - {*rating_pictures(under(bins((150.0, 1.0))))} == {"flank_safety", "root_safety"}
+
+
+def test_picture_of_an_earlier_rating_does_not_stay(tmp_path):
+    (tmp_path / "flank_safety.png").write_bytes(b"of other bins")
+    files = write_rating(under(bins((150.0, 1.0))), tmp_path, outdated=["flank_safety.png", "rating.csv"])
+    assert {*tmp_path.iterdir()} == {*files} == {tmp_path / "rating.json", tmp_path / "rating.csv"}
 
 
 def test_roots_under_reversed_bins_have_the_largest_tension():

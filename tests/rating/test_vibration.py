@@ -84,3 +84,11 @@ def test_ratio_is_unknown_where_the_standard_has_no_stiffness():
     unknown, known = resonance_ratio(inputs_of(solved()), np.array([np.nan, 20.0]))
     assert np.isnan(unknown)
     assert known > 0.0
+
+
+def test_smaller_gear_is_the_pinion_of_the_stiffness():
+    scene = solved().scene
+    exchanged = scene.with_changes({"pinion.teeth": scene.wheel.teeth, "wheel.teeth": scene.pinion.teeth})
+    assert scene.wheel.teeth != scene.pinion.teeth
+    single, of_exchanged = (each.contact_standard.single_stiffness for each in (scene, exchanged))
+    assert_allclose(of_exchanged, single, rtol=ROUNDING)

@@ -114,6 +114,9 @@ def test_harder_through_hardened_pinion_hardens_the_wheel_alone():
     factors = flank_factors(replace(QUENCHED, hardness=336.0), QUENCHED, **OF_TR, cycles=[1e8, 1e8])
     assert_allclose(factors.Z_W, [1.0, through_hardened_work_factor(1.4, 103 / 17)])
     assert factors.Z_W_static.tolist() == [1.0, 1.0]
+    exchanged = {**OF_TR, "gear_ratio": 17 / 103}
+    factors = flank_factors(QUENCHED, replace(QUENCHED, hardness=336.0), **exchanged, cycles=[1e8, 1e8])
+    assert_allclose(factors.Z_W, [through_hardened_work_factor(1.4, 103 / 17), 1.0])
 
 
 def test_values_beyond_the_standard_are_told():
@@ -141,8 +144,8 @@ def test_safeties_of_bins_are_those_of_each_gear_for_any_number_of_bins():
 test_iso6336_2_refuses = refused_calls(
     (lambda: flank_factors(HARD, HARD, **OF_TR, cycles=1e8), r"cycles: shape \(\); asked for is \(2, ...\)"),
     (
-        lambda: flank_factors(HARD, HARD, **{**OF_TR, "gear_ratio": 0.5}, cycles=[1, 1], size_factor=0.0),
-        ("^size_factor: 0.0; allowed above 0, up to 1$", "^gear_ratio: 0.5 is below 1"),
+        lambda: flank_factors(HARD, HARD, **{**OF_TR, "gear_ratio": 0.0}, cycles=[1, 1], size_factor=0.0),
+        ("^size_factor: 0.0; allowed above 0, up to 1$", "^gear_ratio: 0.0 is not positive"),
     ),
     (
         lambda: flank_factors(HARD, replace(QUENCHED, hardness=None), **OF_TR, cycles=[1, 1]),

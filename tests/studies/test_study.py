@@ -185,6 +185,15 @@ def test_variant_that_is_not_there():
         Study(helical(), {CROWNING: [1.0, 2.0]}).changes(2)
 
 
+def test_bins_of_a_spectrum_vary_as_one():
+    cases = [{"pinion_torque_Nm": 100.0, "hours": 5.0}], [{"pinion_torque_Nm": 100.0, "hours": 9.0}]
+    study = Study(helical(), {"load.case": cases})
+    digest = study.digests(figures)
+    assert digest(0) != digest(1)
+    changed = study.scene.with_changes({"load.pinion_torque_Nm": None} | study.changes(1))
+    assert changed.load.hours == 9.0
+
+
 def test_digest_tells_what_a_variant_is():
     def digest(scene, values, variant, of=figures):
         return Study(scene, {CROWNING: values}).digests(of)(variant)
