@@ -2391,6 +2391,20 @@ FAULTS = (
         'return [*rows, idle] if name == "part"',
         "exchange/test_strength.py::test_share_that_no_load_case_has_is_idle",
     ),
+    Fault(
+        "spectra: local safeties of roots have the load cycles and reversal of another bin",
+        "rating/places.py",
+        "stress_ratio(largest, smallest), case)",
+        "stress_ratio(largest, smallest), torque)",
+        "rating/test_spectrum.py::test_places_are_those_of_bins_whose_torque_was_solved",
+    ),
+    Fault(
+        "spectra: pictures of places are drawn where no bin has places",
+        "plots/rating.py",
+        "(shown or not picture.of_places)",
+        "True",
+        "rating/test_spectrum.py::test_spectra_without_a_solved_torque_have_the_pictures_without_places",
+    ),
 )
 
 

@@ -14,6 +14,7 @@ from loaded_tca.plots.safety import SAFETY_PICTURES, RatingPicture
 from loaded_tca.plots.style import DISTINCT_COLOURS, NO_MATERIAL
 from loaded_tca.rating import Rating, SpectrumRating
 from loaded_tca.rating.lives import Endurance
+from loaded_tca.rating.places import is_shown
 from loaded_tca.rating.rating import WORDS
 
 SHOWN_CYCLES = 1e2, 1e11
@@ -174,6 +175,11 @@ def rating_figures(rating: Rating) -> dict[str, Figure]:
     Returns
     -------
     dict of str to matplotlib.figure.Figure
-        By the names of ``RATING_PICTURES``.
+        By the names of ``RATING_PICTURES``; without those of places where no case was solved on the flanks analysed.
     """
-    return {name: picture.draw(rating) for name, picture in RATING_PICTURES.items() if rating.has(picture.needs)}
+    shown = bool(is_shown(rating).any())
+    return {
+        name: picture.draw(rating)
+        for name, picture in RATING_PICTURES.items()
+        if rating.has(picture.needs) and (shown or not picture.of_places)
+    }

@@ -23,6 +23,7 @@ from loaded_tca.plots.flanks import ToPicture, both_flanks
 from loaded_tca.plots.pressure_map import FIELDS, POINTS_OF_A_FIELD
 from loaded_tca.plots.root_stress import GEAR_COLOURS
 from loaded_tca.plots.style import ACCENT, COLOURS, load
+from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, ROOT
 from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties, root_safeties, worst_case
 
 if TYPE_CHECKING:
@@ -31,12 +32,12 @@ if TYPE_CHECKING:
 LARGEST = 2.5
 """Safety over the least one from which colours do not differ any more."""
 SAFETIES = {
-    "flank_safety": "pitting, ISO 6336-2",
-    "local_flank_safety": "pitting, local",
-    "root_safety": "tooth breakage, ISO 6336-3",
-    "local_root_safety": "tooth breakage, local",
+    FLANK: "pitting, {}-2",
+    LOCAL_FLANK: "pitting, local",
+    ROOT: "tooth breakage, {}-3",
+    LOCAL_ROOT: "tooth breakage, local",
 }
-"""Safeties of a rating, and what pictures call them."""
+"""Kinds of failure, and what pictures call the safety against each, with the standard."""
 
 
 def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
@@ -121,7 +122,7 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
 
 
 def plot_safeties(rating: Rating) -> Figure:
-    """Safeties of the standard and local ones of both gears, in every case, beside those required.
+    """Safeties of the standard and local ones of both gears beside those required, with those of each case.
 
     Parameters
     ----------
@@ -130,27 +131,32 @@ def plot_safeties(rating: Rating) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+        A bar is the least safety of all torques, or the safety under all bins of a load spectrum together.
     """
-    names = [name for name in SAFETIES if rating.has(name) and np.isfinite(rating.values(name)).any()]
+    least = dict(zip(rating.modes, np.moveaxis(rating.safeties_and_lives()[0].min(axis=0), -1, 0), strict=True))
+    names = [mode for mode in SAFETIES if mode in least and np.isfinite(least[mode]).any()]
     figure = Figure(figsize=(8.5, 1.8 + 0.75 * len(names)), layout="constrained")
     axes = figure.add_subplot()
     for row, name in enumerate(names):
-        required = _required(rating, "root" if "root" in name else "flank")
+        required = _required(rating, name.removeprefix("local_"))
         for gear, colour in enumerate(GEAR_COLOURS):
-            values = rating.values(name)[:, gear]
-            values = values[np.isfinite(values)]
-            if not values.size:  # a rim thinner than the standard allows
+            safety, values = float(least[name][gear]), rating.values(f"{name}_safety")[:, gear]
+            if not np.isfinite(safety):  # a rim thinner than the standard allows
                 continue
             at = row + (gear - 0.5) * 0.36
-            axes.barh(at, values.min(), 0.34, color=colour, label=GEARS[gear] if row == 0 else "")
+            axes.barh(at, safety, 0.34, color=colour, label=GEARS[gear] if row == 0 else "")
+            values = values[np.isfinite(values)]
             axes.plot(values, np.full(len(values), at), "|", color="black", markersize=7.0)
-            axes.text(0.0, at, f"  {plain(values.min())}", va="center", fontsize="small", color="white", weight="bold")
+            axes.text(0.0, at, f"  {plain(safety)}", va="center", fontsize="small", color="white", weight="bold")
         label = "required" if row == 0 else ""
         axes.plot([required, required], [row - 0.42, row + 0.42], color="black", linewidth=2.5, label=label)
-    axes.set_yticks(range(len(names)), [SAFETIES[name] for name in names])
+    axes.set_yticks(range(len(names)), [SAFETIES[name].format(rating.standard) for name in names])
     axes.invert_yaxis()
-    axes.set_xlabel("safety, the least of all cases; strokes: each case")
-    every = np.concatenate([rating.values(name).ravel() for name in names])
+    of_bins = "safety of all bins together; strokes: each bin alone"
+    axes.set_xlabel(
+        of_bins if rating.inputs.cases.is_spectrum else "safety, the least of all cases; strokes: each case"
+    )
+    every = np.concatenate([rating.values(f"{name}_safety").ravel() for name in names])
     axes.set_xlim(0.0, 1.15 * float(every[np.isfinite(every)].max()))
     axes.grid(axis="x", alpha=0.3)
     axes.set_axisbelow(True)
@@ -253,19 +259,24 @@ def _draw_fillets(axes: Axes, one: RootSafeties, scale: Normalize, colours: Colo
 
 
 class RatingPicture(NamedTuple):
-    """A picture of a rating: its line of the help, its caption in reports, a number that it needs, what draws it."""
+    """A picture of a rating: its line of the help, its caption in reports, a number that it needs, what draws it.
+
+    Pictures of places need a case that has them, too.
+    """
 
     line: str
     caption: str
     needs: str
     draw: Callable[[Rating], Figure]
+    of_places: bool = False
 
 
 SAFETY_PICTURES = {
     "safeties": RatingPicture(
         "safeties of the standard and local ones beside those required",
-        "Of both gears the least of all cases; where the local one is below that of the standard, the contact of the "
-        "analysis carries its load less evenly than the standard assumes, or its pressure lacks Z_eps.",
+        "Of both gears the least of all cases, or that of all bins of a load spectrum together; where the local one is "
+        "below that of the standard, the contact of the analysis carries its load less evenly than the standard "
+        "assumes, or its pressure lacks Z_eps.",
         "flank_safety",
         plot_safeties,
     ),
@@ -274,12 +285,14 @@ SAFETY_PICTURES = {
         "The smallest safety that each place of the flanks has over the mesh cycle.",
         "local_flank_safety",
         plot_flank_safety,
+        of_places=True,
     ),
     "root_safety": RatingPicture(
         "local safety against breakage over fillet and face of both gears, in the worst case",
         "With the extremes of a whole turn at each place, and below its smallest over the face.",
         "local_root_safety",
         plot_root_safety,
+        of_places=True,
     ),
 }
 """Name -> picture of safeties that the command draws."""

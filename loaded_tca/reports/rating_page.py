@@ -26,12 +26,12 @@ MOST_CASES = 2
 """With a column for each gear in one table of a page."""
 BLOCKS = {
     "torque": "Loads and load factors",
-    "Z_H": "Flanks, ISO 6336-2",
-    "Y_F": "Roots, ISO 6336-3",
+    "Z_H": "Flanks, {}-2",
+    "Y_F": "Roots, {}-3",
     "local_flank_stress": "Local",
     "damage": "Damage and lives",
 }
-"""First number of each table, and its caption."""
+"""First number of each table, and its caption with the standard."""
 
 
 def rating_content(result: MeshCycle) -> dict[str, Any] | None:
@@ -93,7 +93,7 @@ def _tables(rating: Rating, cases: Sequence[int]) -> Iterator[Table]:
         if name in BLOCKS:
             if rows:
                 yield Table(tuple(rows), ("", *heads), caption)
-            caption, rows = BLOCKS[name], []
+            caption, rows = BLOCKS[name].format(rating.standard), []
         if not rating.has(name) or name == "torque" or number.dims == OF_SPECTRUM:
             continue
         head = number.head(name)

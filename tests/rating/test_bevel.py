@@ -9,9 +9,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError, NotAskedError, noted_accuracy_warnings
+from loaded_tca.plots import plot_safeties
 from loaded_tca.rating.bevel import _stiffness_notes, bevel_inputs_of
 from loaded_tca.rating.bevel_sheet import bevel_sheet
 from loaded_tca.reference import iso10300_1, iso10300_2, iso10300_3
+from loaded_tca.reports.rating_page import rating_content
 from loaded_tca.scene import read_scene
 from tests.samples.rating import OF_SAMPLE_1, RATED, bevel_solved
 from tests.samples.results import SCENES
@@ -106,6 +108,15 @@ def test_factors_of_the_other_standard_are_not_there():
     with pytest.raises(NotAskedError, match="Z_H: a factor of ISO 6336; bevel pairs have those of ISO 10300"):
         rated.Z_H  # noqa: B018
     assert "zone factor Z_H" not in rated.summary()
+
+
+def test_pictures_and_tables_name_the_standard_of_bevel_pairs(monkeypatch):
+    monkeypatch.setattr("loaded_tca.reports.rating_page.rating_figures", lambda _: {})  # seconds, and tested elsewhere
+    (axes,) = plot_safeties(rated_sample()).axes
+    labels = [label.get_text() for label in axes.get_yticklabels()]
+    assert labels == ["pitting, ISO 10300-2", "pitting, local", "tooth breakage, ISO 10300-3"]
+    captions = {table.caption for table in rating_content(rated_sample().result)["tables"]}
+    assert {"Flanks, ISO 10300-2", "Roots, ISO 10300-3"} < captions
 
 
 def test_more_profile_crowning_and_a_coarser_grade_cost_safety():

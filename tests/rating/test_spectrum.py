@@ -7,6 +7,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.plots import plot_safeties
+from loaded_tca.plots import rating_figures as pictures_of_ratings
 from loaded_tca.rating import flank_safeties, root_safeties
 from loaded_tca.rating.cases import cases_of
 from loaded_tca.rating.findings import findings
@@ -237,13 +239,30 @@ def test_bins_of_bevel_pairs_add_up_by_hours():
 
 
 def test_places_are_those_of_bins_whose_torque_was_solved():
-    rated = under([*bins((150.0, 1.0), (200.0, 1.0)), *bins((200.0, 1.0), reversed=True)])
-    places = flank_safeties(rated, 1)
-    assert_allclose(places.safety.min(axis=1), rated.local_flank_safety[1], rtol=ROUNDING)
-    assert worst_case(rated, "local_root_safety") == 1  # the reversed bin has less, and no places
-    for case, words in ((0, "case: 0, 150 N m, was not solved"), (2, "case: 2, 200 N m, is reversed")):
+    rated = under([*bins((150.0, 1.0)), *bins((200.0, 1.0), reversed=True), *bins((200.0, 1.0))])
+    places = flank_safeties(rated, 2)
+    assert_allclose(places.safety.min(axis=1), rated.local_flank_safety[2], rtol=ROUNDING)
+    assert worst_case(rated, "local_root_safety") == 2  # the reversed bin has less, and no places
+    for gear in range(2):  # tops of parabolas exceed the nodes of 5 deg and a face by little
+        least = np.nanmin(root_safeties(rated, 2, gear).safety)
+        assert_allclose(least, rated.local_root_safety[2, gear], rtol=0.01)
+    for case, words in ((0, "case: 0, 150 N m, was not solved"), (1, "case: 1, 200 N m, is reversed")):
         with pytest.raises(InputError, match=words):
             root_safeties(rated, case, 0)
+
+
+def test_spectra_without_a_solved_torque_have_the_pictures_without_places():
+    rated = under(bins((150.0, 1.0), (120.0, 3.0)))
+    assert [*pictures_of_ratings(rated)] == ["safeties", "rating_sn_curves", "rating_damage"]
+
+
+def test_picture_of_safeties_has_that_of_all_bins_together():
+    rated = under(bins((100.0, 30.0), (200.0, 10.0)))
+    (axes,) = plot_safeties(rated).axes
+    lengths = [bar.get_width() for bar in axes.patches]
+    order = [0, 2, 1, 3]  # flanks, then roots, each of the standard first
+    assert_allclose(lengths, rated.spectrum_safety[:, order].T.ravel(), rtol=ROUNDING)
+    assert axes.get_xlabel() == "safety of all bins together; strokes: each bin alone"
 
 
 def test_roots_under_reversed_bins_have_the_largest_tension():
