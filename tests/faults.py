@@ -2405,6 +2405,13 @@ FAULTS = (
         "True",
         "rating/test_spectrum.py::test_spectra_without_a_solved_torque_have_the_pictures_without_places",
     ),
+    Fault(
+        "ratings: pictures of an older rating stay beside a new one that has none of them",
+        "output/other_results.py",
+        "{*outdated} - {*files}",
+        "set()",
+        "test_cli_rating.py::test_command_rates_a_result_again_under_a_spectrum",
+    ),
 )
 
 

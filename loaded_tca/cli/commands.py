@@ -170,12 +170,12 @@ def _changed_stage(options: argparse.Namespace) -> tuple[StageResult, Path]:
 
 
 def _rating_files(rated: Rating, directory: Path) -> tuple[Path, ...]:
-    """Write a rating with its pictures."""
+    """Write a rating with its pictures; those of an older one that it does not have go."""
     from loaded_tca.output.other_results import write_rating
-    from loaded_tca.plots import png_of, rating_figures
+    from loaded_tca.plots import RATING_PICTURES, png_of, rating_figures
 
     pictures = {f"{name}.png": png_of(figure) for name, figure in rating_figures(rated).items()}
-    return write_rating(rated, directory, pictures)
+    return write_rating(rated, directory, pictures, outdated=[f"{name}.png" for name in RATING_PICTURES])
 
 
 def _rated(result: MeshCycle, directory: Path) -> tuple[list[Path], str]:

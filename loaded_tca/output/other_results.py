@@ -19,7 +19,7 @@ from loaded_tca.tribology.quantities import COLUMNS
 from loaded_tca.units import MICROMETRES, as_ending
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from loaded_tca.flank_maps.ease_off_map import EaseOffMap
@@ -148,7 +148,7 @@ RATING_FILES = "rating.json", "rating.csv"
 
 @checked
 def write_rating(
-    rating: Rating | StageRating, directory: FilePath, more: Mapping[str, Buffer] = {}
+    rating: Rating | StageRating, directory: FilePath, more: Mapping[str, Buffer] = {}, outdated: Iterable[str] = ()
 ) -> tuple[Path, ...]:
     """Write ``rating.json`` and ``rating.csv``, all files or none.
 
@@ -159,6 +159,9 @@ def write_rating(
         Made if it does not exist.
     more : mapping of str to bytes
         Contents of files to write with these, by their names: pictures.
+
+    outdated : iterable of str
+        Names of files of an older rating to remove where this one has none of that name.
 
     Returns
     -------
@@ -173,7 +176,8 @@ def write_rating(
     beside = {"spectrum": spectrum_figures(rating)} if isinstance(rating, SpectrumRating) else {}
     text = figures_json(rating, **beside, notes=rating.notes(), warnings=rating.warnings or ())
     contents = text.encode(), csv_table(rating.to_table()).encode()
-    return replace_together(directory, {**dict(zip(RATING_FILES, contents, strict=True)), **more})
+    files = {**dict(zip(RATING_FILES, contents, strict=True)), **more}
+    return replace_together(directory, files, {*outdated} - {*files})
 
 
 def spectrum_figures(rating: SpectrumRating) -> dict[str, Any]:
