@@ -2373,8 +2373,8 @@ FAULTS = (
     Fault(
         "spectra: the rating written into a REXS model is that of the first bin",
         "output/rexs.py",
+        "case = int(cases[rating.flank_safety[cases].min(axis=1).argmin()])",
         "case = int(cases[0])",
-        "case = 0",
         "output/test_rexs_rating.py::test_of_a_load_spectrum_the_bin_of_the_torque_is_written",
     ),
     Fault(
@@ -2439,6 +2439,27 @@ FAULTS = (
         "int(cases[rating.flank_safety[cases].min(axis=1).argmin()])",
         "int(cases[0])",
         "output/test_rexs_rating.py::test_of_bins_with_one_torque_the_one_of_the_least_safety_is_written",
+    ),
+    Fault(
+        "spectra: local safeties of roots have the load cycles and reversal of another bin",
+        "rating/places.py",
+        "stress_ratio(largest, smallest), case)",
+        "stress_ratio(largest, smallest), torque)",
+        "rating/test_spectrum.py::test_places_are_those_of_bins_whose_torque_was_solved",
+    ),
+    Fault(
+        "spectra: pictures of places are drawn where no bin has places",
+        "plots/rating.py",
+        "(shown or not picture.of_places)",
+        "True",
+        "rating/test_spectrum.py::test_spectra_without_a_solved_torque_have_the_pictures_without_places",
+    ),
+    Fault(
+        "ratings: pictures of an older rating stay beside a new one that has none of them",
+        "output/other_results.py",
+        "{*outdated} - {*files}",
+        "set()",
+        "test_cli_rating.py::test_command_rates_a_result_again_under_a_spectrum",
     ),
 )
 

@@ -4,6 +4,7 @@ import csv
 import json
 import os
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -47,6 +48,8 @@ def test_command_writes_what_the_call_finds(run, out):
 def test_command_rates_a_result_again_under_a_spectrum(run, out):
     with open("bins.csv", "w", encoding="utf-8") as file:
         file.write("pinion_torque_Nm,hours\n120,3\n200,1\n")
+    for name in ("root_safety.png", "pressure_map.png"):  # of an older rating, and of the run
+        Path(out, name).touch()
     code, text, _ = run("rating", out, "--set", "load.spectrum=bins.csv", "--set", "rating.required_root_safety=5")
     assert code == 0
     cases = [{"pinion_torque_Nm": 120.0, "hours": 3.0}, {"pinion_torque_Nm": 200.0, "hours": 1.0}]
@@ -60,6 +63,7 @@ def test_command_rates_a_result_again_under_a_spectrum(run, out):
     with open(f"{out}/rating.csv", encoding="utf-8", newline="") as file:
         damage = [float(row["wheel_root_damage"]) for row in csv.DictReader(file)]
     assert damage == pytest.approx(expected.damage[:, 1, 1].tolist(), rel=1e-8)  # nine digits
+    assert {*os.listdir(out)} == {"result.nc", "rating.json", "rating.csv", "safeties.png", "pressure_map.png"}
 
 
 def test_run_says_why_a_scene_is_not_rated(tmp_path):

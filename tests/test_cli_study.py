@@ -103,7 +103,8 @@ def test_wrong_options_are_bad_input(study, capsys, arguments, told):
 @pytest.mark.usefixtures("blank_pictures")
 def test_unknown_figure_is_told_once_all_is_written(study, capsys):
     assert cli.main(["study", study([2.0, 6.0]), "--out", "out", "--rank-by", "peak_pressure"]) == 2
-    assert "--rank-by peak_pressure: not in study.csv; ranked by the default figure" in capsys.readouterr().err
+    told = '--rank-by peak_pressure: not in study.csv; ranked by the default figure; did you mean "peak_pressure_MPa"?'
+    assert told in capsys.readouterr().err
     assert os.path.exists("out/ranking.csv")
 
 

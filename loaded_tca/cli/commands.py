@@ -170,7 +170,7 @@ def _changed_stage(options: argparse.Namespace) -> tuple[StageResult, Path]:
 
 
 def _rating_files(rated: Rating, directory: Path) -> tuple[Path, ...]:
-    """Write a rating with its pictures."""
+    """Write a rating with its pictures; those of an older one that it does not have go."""
     from loaded_tca.output.other_results import write_rating
     from loaded_tca.plots import RATING_PICTURES, png_of, rating_figures
 
@@ -472,6 +472,7 @@ def study(options: argparse.Namespace) -> None:
     """Analyse what is missing of a study, write its tables and pictures, and show the summary."""
     from loaded_tca.output.tables import write_study
     from loaded_tca.plots import plot_study, png_of
+    from loaded_tca.scene.keys import did_you_mean, nearest
     from loaded_tca.studies import read_study, run_study, study_summary
 
     study, directory = read_study(options.study), options.out
@@ -485,8 +486,12 @@ def study(options: argparse.Namespace) -> None:
     written = write_study(rows, directory, pictures, rank_by)
     print_summary(study_summary(rows), [directory / STUDY_FILE, *written])
     failed = (rows["status"] != "ok").values
+    hint = did_you_mean(nearest(options.rank_by or "", [str(name) for name in rows.data_vars]))
     require(
-        (rank_by == options.rank_by, f"--rank-by {options.rank_by}: not in study.csv; ranked by the default figure"),
+        (
+            rank_by == options.rank_by,
+            f"--rank-by {options.rank_by}: not in study.csv; ranked by the default figure{hint}",
+        ),
         (not failed.all(), "no variant was analysed; the summary says why"),
         *(
             (not failed[n], f"--keep-maps {n}: no maps, the variant is {rows['status'].values[n]}")

@@ -160,7 +160,7 @@ def write_rating(
     more : mapping of str to bytes
         Contents of files to write with these, by their names: pictures.
     outdated : iterable of str
-        Names of files of an earlier rating; those that are not written are removed.
+        Names of files of an older rating to remove where this one has none of that name.
 
     Returns
     -------

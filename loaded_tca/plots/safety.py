@@ -23,21 +23,21 @@ from loaded_tca.plots.flanks import ToPicture, both_flanks
 from loaded_tca.plots.pressure_map import FIELDS, POINTS_OF_A_FIELD
 from loaded_tca.plots.root_stress import GEAR_COLOURS
 from loaded_tca.plots.style import ACCENT, COLOURS, load
+from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, ROOT
 from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties, root_safeties, worst_case
 
 if TYPE_CHECKING:
     from loaded_tca.rating import Rating
 
-OF_SPECTRUM = "of all bins in the required life; strokes: each bin alone"
 LARGEST = 2.5
 """Safety over the least one from which colours do not differ any more."""
 SAFETIES = {
-    "flank": "pitting, {}-2",
-    "local_flank": "pitting, local",
-    "root": "tooth breakage, {}-3",
-    "local_root": "tooth breakage, local",
+    FLANK: "pitting, {}-2",
+    LOCAL_FLANK: "pitting, local",
+    ROOT: "tooth breakage, {}-3",
+    LOCAL_ROOT: "tooth breakage, local",
 }
-"""Kinds of failure of a rating, and what pictures call them after a standard."""
+"""Kinds of failure, and what pictures call the safety against each, with the standard."""
 
 
 def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
@@ -122,7 +122,7 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
 
 
 def plot_safeties(rating: Rating) -> Figure:
-    """Safeties of the standard and local ones of both gears, in every case or of a spectrum, beside those required.
+    """Safeties of the standard and local ones of both gears beside those required, with those of each case.
 
     Parameters
     ----------
@@ -131,28 +131,32 @@ def plot_safeties(rating: Rating) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+        A bar is the least safety of all torques, or the safety under all bins of a load spectrum together.
     """
-    modes = [mode for mode in SAFETIES if mode in rating.modes and np.isfinite(rating.values(f"{mode}_safety")).any()]
-    figure = Figure(figsize=(8.5, 1.8 + 0.75 * len(modes)), layout="constrained")
-    axes, bars = figure.add_subplot(), rating.safeties_and_lives()[0]
-    for row, mode in enumerate(modes):
-        required = _required(rating, "root" if "root" in mode else "flank")
+    least = dict(zip(rating.modes, np.moveaxis(rating.safeties_and_lives()[0].min(axis=0), -1, 0), strict=True))
+    names = [mode for mode in SAFETIES if mode in least and np.isfinite(least[mode]).any()]
+    figure = Figure(figsize=(8.5, 1.8 + 0.75 * len(names)), layout="constrained")
+    axes = figure.add_subplot()
+    for row, name in enumerate(names):
+        required = _required(rating, name.removeprefix("local_"))
         for gear, colour in enumerate(GEAR_COLOURS):
-            values = rating.values(f"{mode}_safety")[:, gear]
-            values = values[np.isfinite(values)]
-            if not values.size:  # a rim thinner than the standard allows
+            safety, values = float(least[name][gear]), rating.values(f"{name}_safety")[:, gear]
+            if not np.isfinite(safety):  # a rim thinner than the standard allows
                 continue
-            at, least = row + (gear - 0.5) * 0.36, float(np.nanmin(bars[:, gear, rating.modes.index(mode)]))
-            axes.barh(at, least, 0.34, color=colour, label=GEARS[gear] if row == 0 else "")
+            at = row + (gear - 0.5) * 0.36
+            axes.barh(at, safety, 0.34, color=colour, label=GEARS[gear] if row == 0 else "")
+            values = values[np.isfinite(values)]
             axes.plot(values, np.full(len(values), at), "|", color="black", markersize=7.0)
-            axes.text(0.0, at, f"  {plain(least)}", va="center", fontsize="small", color="white", weight="bold")
+            axes.text(0.0, at, f"  {plain(safety)}", va="center", fontsize="small", color="white", weight="bold")
         label = "required" if row == 0 else ""
         axes.plot([required, required], [row - 0.42, row + 0.42], color="black", linewidth=2.5, label=label)
-    axes.set_yticks(range(len(modes)), [SAFETIES[mode].format(rating.standard) for mode in modes])
+    axes.set_yticks(range(len(names)), [SAFETIES[name].format(rating.standard) for name in names])
     axes.invert_yaxis()
-    of_bars = OF_SPECTRUM if rating.has("spectrum_safety") else "the least of all cases; strokes: each case"
-    axes.set_xlabel(f"safety, {of_bars}")
-    every = np.concatenate([rating.values(f"{mode}_safety").ravel() for mode in modes])
+    of_bins = "safety of all bins together; strokes: each bin alone"
+    axes.set_xlabel(
+        of_bins if rating.inputs.cases.is_spectrum else "safety, the least of all cases; strokes: each case"
+    )
+    every = np.concatenate([rating.values(f"{name}_safety").ravel() for name in names])
     axes.set_xlim(0.0, 1.15 * float(every[np.isfinite(every)].max()))
     axes.grid(axis="x", alpha=0.3)
     axes.set_axisbelow(True)
@@ -257,7 +261,7 @@ def _draw_fillets(axes: Axes, one: RootSafeties, scale: Normalize, colours: Colo
 class RatingPicture(NamedTuple):
     """A picture of a rating: its line of the help, its caption in reports, a number that it needs, what draws it.
 
-    One of places is drawn where a case has these: a bin that is not reversed, of a torque that was solved.
+    Pictures of places need a case that has them, too.
     """
 
     line: str
@@ -270,9 +274,9 @@ class RatingPicture(NamedTuple):
 SAFETY_PICTURES = {
     "safeties": RatingPicture(
         "safeties of the standard and local ones beside those required",
-        "Of both gears the least of all cases, or that of the whole spectrum; where the local one is below that of the "
-        "standard, the contact of the analysis carries its load less evenly than the standard assumes, or its pressure "
-        "lacks Z_eps.",
+        "Of both gears the least of all cases, or that of all bins of a load spectrum together; where the local one is "
+        "below that of the standard, the contact of the analysis carries its load less evenly than the standard "
+        "assumes, or its pressure lacks Z_eps.",
         "flank_safety",
         plot_safeties,
     ),

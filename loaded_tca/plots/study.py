@@ -126,7 +126,8 @@ def plot_study_lines(study: xarray.Dataset, figure: str, over: str | None = None
     """Figure over a varied key, a line for each value of a second one.
 
     Each line is the median of the variants that differ in other keys only, with a band from their 5 to their 95 %.
-    With a second key there is a panel for each torque, without it a line.
+    With a second key there is a panel for each torque, without it a line; one for all torques where they have the same
+    values, as safeties and lives under a load spectrum.
 
     Parameters
     ----------
@@ -150,10 +151,12 @@ def plot_study_lines(study: xarray.Dataset, figure: str, over: str | None = None
     values = figure_values(study, figure)
     over = known_key(study, over or varied_keys(study)[0])
     places, _ = column_of(study, over)
-    torques, labels = shown_torques(study), torque_labels(study)
+    count = values.shape[1]
+    alike = count > 1 and np.array_equal(values, np.repeat(values[:, :1], count, axis=1), equal_nan=True)
+    torques, labels = ([0], ["all torques"]) if alike else (shown_torques(study), torque_labels(study))
     everywhere = np.ones(len(places), dtype=bool)
     if by is None:
-        panels = [("", [(labels[t], values[:, t], everywhere) for t in range(values.shape[1])])]
+        panels = [("", [(label, values[:, t], everywhere) for t, label in enumerate(labels)])]
     else:
         series = groups_of(study, [by])
         panels = [(labels[t], [(label, values[:, t], of) for label, of in series]) for t in torques]
@@ -176,7 +179,7 @@ def plot_study_lines(study: xarray.Dataset, figure: str, over: str | None = None
                 one.fill_between(at, spread[:, 0], spread[:, 2], color=colour, alpha=0.15, linewidth=0.0)
                 banded = True
         columns = np.stack([column for _, column, _ in lines], axis=1)
-        finish_panel(one, columns, title if values.shape[1] > 1 else "")
+        finish_panel(one, columns, title if count > 1 else "")
         one.set(xlabel=key_label(study, over), ylabel=label_of(figure))
         set_ticks(one.xaxis, study, over)
     if crossed:
@@ -184,9 +187,8 @@ def plot_study_lines(study: xarray.Dataset, figure: str, over: str | None = None
     legend_of(drawing, axes, key_label(study, by) if by else "")
     what = f"{without_unit(label_of(figure))} over {without_unit(label_of(over))}"
     band = [f"median and band ({BAND}) over the other keys"] if banded else []
-    set_study_title(
-        drawing, study, values, f"{what}{under_torques(study, torques if by else range(values.shape[1]))}", *band
-    )
+    under = "" if alike else under_torques(study, torques if by else range(count))
+    set_study_title(drawing, study, values, f"{what}{under}", *band)
     return drawing
 
 

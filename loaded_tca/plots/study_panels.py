@@ -271,12 +271,12 @@ def plot_study_ranking(
     kind = "designs" if design_keys(study) else "variants"
     what = f"{len(cells)} best of {len(ranked)} {kind}" if len(cells) < len(ranked) else kind
     largest_first = is_largest_best(by or main_figures(study)[0], largest_is_best)
-    worst = "least" if largest_first else "largest"
     lucky = 100.0 * quantile_of(by or main_figures(study)[0], largest_is_best)
     apart = largest_is_best is None and any(is_largest_best(name) != largest_first for name in columns if name in study)
-    but = " (the other end of those that are best the other way)" if apart else ""
+    worst = "worst" if apart else "least" if largest_first else "largest"
+    but = f" (of those that are best the other way the {100.0 - lucky:z.0f} % quantile)" if apart else ""
     quantile = [f"of each figure the {lucky:z.0f} % quantile over the samples{but}"] if design_keys(study) else []
-    of = [f"of each figure the {worst} over the torques{but}"] if torque is None and values.shape[1] > 1 else []
+    of = [f"of each figure the {worst} over the torques"] if torque is None and values.shape[1] > 1 else []
     order = "largest" if largest_first else "least"
     what = f"{what}, {order} {without_unit(label_of(by or main_figures(study)[0]))} first"
     set_study_title(drawing, study, values, what, *of, *quantile, *_why_unranked(rank_variants(study, by, torque)))

@@ -141,7 +141,7 @@ def root_safeties(rating: Rating, case: int, gear: int) -> RootSafeties:
     torque, stress = _torque_of(rating, case), rating.result.root_stress[gear]
     largest, smallest = stress.largest[torque], stress.smallest[torque]
     tense = largest > 0.0
-    _, factors, _ = local_root_factors(rating.inputs, gear, stress_ratio(largest, smallest), torque)
+    _, factors, _ = local_root_factors(rating.inputs, gear, stress_ratio(largest, smallest), case)
     strength = np.broadcast_to(factors.strength, largest.shape)
     safety = np.full(largest.shape, np.inf)
     np.divide(strength, largest * rating.K_A[case] * rating.K_gamma[case] * rating.K_v[case], out=safety, where=tense)

@@ -157,6 +157,6 @@ SPECTRUM_NUMBERS: dict[str, Number] = {
     "life_hours": Number(OF_SPECTRUM, "h", "life under the spectrum at the required safety", column="life_h"),
     "spectrum_safety": Number(OF_SPECTRUM, "1", "safety in the required life"),
     "equivalent_torque": Number(OF_SPECTRUM, "N mm", "equivalent pinion torque"),
-    "interpolation_error": Number(OF_SPECTRUM, "1", "told error of the damage, by interpolation between torques"),
+    "interpolation_error": Number(OF_SPECTRUM, "1", "estimated error of the damage, by interpolation between torques"),
 }
 """The same of a load spectrum, whose bins are the cases."""

@@ -90,7 +90,7 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array) -> Iter
         part = f"their damage is {largest:.1g} of all"
         yield f"{below.sum()} bins lie below {1e-3 * solved.torque[0]:.4g} N m, the smallest torque solved; {part}"
     if cases.reversed.any():
-        bins = f"{cases.reversed.sum()} reversed bins"
+        bins = f"reversed bins ({cases.reversed.sum()} of {len(between)})"
         yield f"{bins} load the other flanks, which are not analysed: no damage of these is counted"
         yield (
             f"{bins} stress roots as the same torques do the other way, with Y_M of R = {REVERSED:g}; the others have "

@@ -31,7 +31,7 @@ BLOCKS = {
     "local_flank_stress": "Local",
     "damage": "Damage and lives",
 }
-"""First number of each table, and its caption after a standard."""
+"""First number of each table, and its caption with the standard."""
 
 
 def rating_content(result: MeshCycle) -> dict[str, Any] | None:

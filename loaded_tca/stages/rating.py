@@ -29,6 +29,7 @@ from loaded_tca.scene.rating import ANALYSIS, RatingSection, StrengthSection
 from loaded_tca.scene.section import contents
 from loaded_tca.scene.sections import Operation
 from loaded_tca.stages.sections import RING_MESH, SUN_MESH, Stage, in_words_of, words_of
+from loaded_tca.stages.warnings import WHOSE
 
 if TYPE_CHECKING:
     import xarray
@@ -150,9 +151,9 @@ class StageRating(Result):
                 cells = (" | ".join(shown(row[one], one) for one in names) for row in figures)
                 label = f"{WORDS[kind]}: {number.text}" if kind else number.label or number.text
                 rows.append((labelled(names[0], label), *cells))
-        for mesh, gears in MESHES.items():
+        for (mesh, gears), whose in zip(MESHES.items(), WHOSE, strict=True):
             rating: Rating = getattr(self, mesh)
-            rows.append((f"{gears['pinion']} and {gears['wheel']}", *("" for _ in figures)))
+            rows.append((f"{gears['pinion']} and {gears['wheel']}, under {whose}", *("" for _ in figures)))
             rows += [(f"  {words_of(gears, label)}", *cells) for label, *cells in rating.rows(rating.key_figures())]
         return rows
 

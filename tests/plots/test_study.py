@@ -547,3 +547,13 @@ def test_torques_without_a_name_are_numbered():
     )
     labels = [text.get_text() for text in plot_study_lines(varied, PRESSURE).legends[0].texts]
     assert_array_equal(labels, ["pinion torque 1 N m", "torque 2 of 2"])
+
+
+@pytest.mark.parametrize("by", [None, TIP])
+def test_figures_that_all_torques_share_have_one_panel_of_lines(by):
+    study = grid(torques=(40.0, 80.0))
+    study[SPAN] = study[SPAN].isel(torque=0).expand_dims(torque=2, axis=1)  # as a safety under a load spectrum
+    figure = plot_study_lines(study, SPAN, LEAD, by)
+    (axes,) = figure.axes
+    assert len(curves(axes)) == (1 if by is None else 2)
+    assert ("all torques" in axes.get_legend_handles_labels()[1]) == (by is None)

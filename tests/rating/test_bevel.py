@@ -110,13 +110,13 @@ def test_factors_of_the_other_standard_are_not_there():
     assert "zone factor Z_H" not in rated.summary()
 
 
-def test_report_and_pictures_name_the_standard(monkeypatch):
-    monkeypatch.setattr("loaded_tca.reports.rating_page.rating_figures", lambda _: {})
-    rated = rated_sample()
-    captions = [table.caption for table in rating_content(rated.result)["tables"]]
-    assert captions[1:3] == ["Flanks, ISO 10300-2", "Roots, ISO 10300-3"]
-    (axes,) = plot_safeties(rated).axes
-    assert axes.get_yticklabels()[0].get_text() == "pitting, ISO 10300-2"
+def test_pictures_and_tables_name_the_standard_of_bevel_pairs(monkeypatch):
+    monkeypatch.setattr("loaded_tca.reports.rating_page.rating_figures", lambda _: {})  # seconds, and tested elsewhere
+    (axes,) = plot_safeties(rated_sample()).axes
+    labels = [label.get_text() for label in axes.get_yticklabels()]
+    assert labels == ["pitting, ISO 10300-2", "pitting, local", "tooth breakage, ISO 10300-3"]
+    captions = {table.caption for table in rating_content(rated_sample().result)["tables"]}
+    assert {"Flanks, ISO 10300-2", "Roots, ISO 10300-3"} < captions
 
 
 def test_more_profile_crowning_and_a_coarser_grade_cost_safety():

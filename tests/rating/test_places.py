@@ -122,15 +122,6 @@ def test_safeties_that_the_standard_has_not_are_left_out():
     assert len(axes.patches) == 7  # bars of both gears, but for the root of the wheel
 
 
-def test_bars_of_a_spectrum_are_its_own_safeties():
-    cases = [{"pinion_torque_Nm": 100.0, "hours": 9e4}, {"pinion_torque_Nm": 200.0, "hours": 1e4}]
-    rated = solved(**{"load.case": cases}).rating()
-    (axes,) = plot_safeties(rated).axes
-    widths = [bar.get_width() for bar in axes.patches]
-    assert_allclose(widths[:2], rated.spectrum_safety[:, rated.modes.index("flank")], rtol=ROUNDING)
-    assert "all bins" in axes.get_xlabel()
-
-
 def test_report_has_factors_by_gear_and_case(monkeypatch):
     monkeypatch.setattr("loaded_tca.reports.rating_page.rating_figures", lambda _: {})  # seconds, and tested above
     content = rating_content(solved())

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.output import write_rating
-from loaded_tca.plots import RATING_PICTURES
+from loaded_tca.plots import RATING_PICTURES, plot_safeties
 from loaded_tca.plots import rating_figures as rating_pictures
 from loaded_tca.rating import flank_safeties, root_safeties
 from loaded_tca.rating.cases import cases_of
@@ -120,7 +120,8 @@ def test_reversed_bins_load_the_other_flanks_and_bend_roots_both_ways():
     assert_allclose(rated.Y_M[0], 1.0 / (1.0 + 1.2 * (1.0 - sensitivity) / (1.0 + sensitivity)), rtol=ROUNDING)
     assert (rated.damage[0, :, 1] > plain.damage[0, :, 1]).all()
     assert any(
-        note.startswith("1 reversed bins load the other flanks, which are not analysed") for note in rated.notes()
+        note.startswith("reversed bins (1 of 2) load the other flanks, which are not analysed")
+        for note in rated.notes()
     )
 
 
@@ -242,11 +243,14 @@ def test_bins_of_bevel_pairs_add_up_by_hours():
 
 
 def test_places_are_those_of_bins_whose_torque_was_solved():
-    rated = under([*bins((150.0, 1.0), (200.0, 1.0)), *bins((200.0, 1.0), reversed=True)])
-    places = flank_safeties(rated, 1)
-    assert_allclose(places.safety.min(axis=1), rated.local_flank_safety[1], rtol=ROUNDING)
-    assert worst_case(rated, "local_root_safety") == 1  # the reversed bin has less, and no places
-    for case, words in ((0, "case: 0, 150 N m, was not solved"), (2, "case: 2, 200 N m, is reversed")):
+    rated = under([*bins((150.0, 1.0)), *bins((200.0, 1.0), reversed=True), *bins((200.0, 1.0))])
+    places = flank_safeties(rated, 2)
+    assert_allclose(places.safety.min(axis=1), rated.local_flank_safety[2], rtol=ROUNDING)
+    assert worst_case(rated, "local_root_safety") == 2  # the reversed bin has less, and no places
+    for gear in range(2):  # tops of parabolas exceed the nodes of 5 deg and a face by little
+        least = np.nanmin(root_safeties(rated, 2, gear).safety)
+        assert_allclose(least, rated.local_root_safety[2, gear], rtol=0.01)
+    for case, words in ((0, "case: 0, 150 N m, was not solved"), (1, "case: 1, 200 N m, is reversed")):
         with pytest.raises(InputError, match=words):
             root_safeties(rated, case, 0)
 
@@ -262,6 +266,15 @@ def test_picture_of_an_earlier_rating_does_not_stay(tmp_path):
     (tmp_path / "flank_safety.png").write_bytes(b"of other bins")
     files = write_rating(under(bins((150.0, 1.0))), tmp_path, outdated=["flank_safety.png", "rating.csv"])
     assert {*tmp_path.iterdir()} == {*files} == {tmp_path / "rating.json", tmp_path / "rating.csv"}
+
+
+def test_picture_of_safeties_has_that_of_all_bins_together():
+    rated = under(bins((100.0, 30.0), (200.0, 10.0)))
+    (axes,) = plot_safeties(rated).axes
+    lengths = [bar.get_width() for bar in axes.patches]
+    order = [0, 2, 1, 3]  # flanks, then roots, each of the standard first
+    assert_allclose(lengths, rated.spectrum_safety[:, order].T.ravel(), rtol=ROUNDING)
+    assert axes.get_xlabel() == "safety of all bins together; strokes: each bin alone"
 
 
 def test_roots_under_reversed_bins_have_the_largest_tension():

@@ -128,7 +128,7 @@ def test_numbers_are_columns_of_gears_and_of_meshes(tmp_path):
     assert figures["sun_mesh_K_v"] == 1.0
     lines = rating.summary().splitlines()
     assert next(line for line in lines if line.startswith("safety against pitting S_H")).count("|") == 2
-    assert "planet and ring" in {line.strip() for line in lines}
+    assert "planet and ring, under the torque of a planet at the ring" in {line.strip() for line in lines}
     files = write_rating(rating, tmp_path)
     stored = json.loads(files[0].read_text(encoding="utf-8"))["torques"][0]
     assert set(stored) == set(figures)
