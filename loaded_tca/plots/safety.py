@@ -24,7 +24,7 @@ from loaded_tca.plots.pressure_map import FIELDS, POINTS_OF_A_FIELD
 from loaded_tca.plots.root_stress import GEAR_COLOURS
 from loaded_tca.plots.style import ACCENT, COLOURS, load
 from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, ROOT
-from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties, root_safeties, worst_case
+from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties, root_safeties, torque_of, worst_case
 
 if TYPE_CHECKING:
     from loaded_tca.rating import Rating
@@ -59,7 +59,7 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
         If the rating has no such case, or the case no places.
     """
     case = worst_case(rating, "local_flank_safety") if case is None else case
-    places, required = flank_safeties(rating, case), _required(rating, "flank")
+    places, required = flank_safeties(rating, case), rating.required.required_safety(FLANK)
     scale, colours = _scale(places.safety, required)
     gears = iter(range(len(GEARS)))  # panels come in this order
 
@@ -72,7 +72,12 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
     figure, panels = both_flanks(rating.result, draw)
     mappable = ScalarMappable(scale, colours)
     figure.colorbar(mappable, ax=panels, label="local safety against pitting", extend="both")
-    style.set_title(figure, rating.result, f"local safety of the flanks, {_case(rating, case)}", *_about(required))
+    style.set_title(
+        figure,
+        rating.result,
+        f"local safety of the flanks, {load(rating.result, torque_of(rating, case))}",
+        *_about(required),
+    )
     return figure
 
 
@@ -98,7 +103,8 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
         If the scene does not ask for root stress.
     """
     case = worst_case(rating, "local_root_safety") if case is None else case
-    both, required = [root_safeties(rating, case, gear) for gear in range(len(GEARS))], _required(rating, "root")
+    both = [root_safeties(rating, case, gear) for gear in range(len(GEARS))]
+    required = rating.required.required_safety(ROOT)
     scale, colours = _scale(np.concatenate([one.safety.ravel() for one in both]), required)
     figure = Figure(figsize=(11.0, 7.5), layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=(1.6, 1.0))
@@ -117,7 +123,12 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
     below.set_ylim(0.0, float(scale.vmax or LARGEST))
     below.grid(alpha=0.3)
     below.legend(fontsize="small", ncols=3)
-    style.set_title(figure, rating.result, f"local safety of the roots, {_case(rating, case)}", *_about(required))
+    style.set_title(
+        figure,
+        rating.result,
+        f"local safety of the roots, {load(rating.result, torque_of(rating, case))}",
+        *_about(required),
+    )
     return figure
 
 
@@ -138,7 +149,7 @@ def plot_safeties(rating: Rating) -> Figure:
     figure = Figure(figsize=(8.5, 1.8 + 0.75 * len(names)), layout="constrained")
     axes = figure.add_subplot()
     for row, name in enumerate(names):
-        required = _required(rating, name.removeprefix("local_"))
+        required = rating.required.required_safety(name)
         for gear, colour in enumerate(GEAR_COLOURS):
             safety, values = float(least[name][gear]), rating.values(f"{name}_safety")[:, gear]
             if not np.isfinite(safety):  # a rim thinner than the standard allows
@@ -163,11 +174,6 @@ def plot_safeties(rating: Rating) -> Figure:
     return style.finished(figure, axes, rating.result, "safeties beside those required", rating.scope)
 
 
-def _required(rating: Rating, kind: str) -> float:
-    """Required safety of flanks or roots."""
-    return float(getattr(rating.scene.rating, f"required_{kind}_safety"))
-
-
 def _scale(safety: Array, required: float) -> tuple[Normalize, Colormap]:
     """Scale of colours from the required safety, or from a smaller least one on, and colours: below it an accent."""
     known = safety[np.isfinite(safety)]
@@ -181,11 +187,6 @@ def _about(required: float) -> tuple[str, ...]:
         f"required {plain(required)}, below it orange; the smallest of all positions",
         "cross: where it is smallest",
     )
-
-
-def _case(rating: Rating, case: int) -> str:
-    torque = int(np.abs(rating.result.torque - rating.torque[case]).argmin())
-    return load(rating.result, torque)
 
 
 def _axial(gear: str) -> str:

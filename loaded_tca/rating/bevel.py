@@ -16,6 +16,8 @@ from loaded_tca.rating.evaluate import (
     OfRoot,
     both,
     endurances_of_flanks,
+    flank_conditions,
+    flank_strengths,
     in_order,
     local_flanks,
     of_both_roots,
@@ -24,9 +26,10 @@ from loaded_tca.rating.evaluate import (
     on_drive,
 )
 from loaded_tca.rating.inputs import CommonInputs, common_inputs
+from loaded_tca.rating.loads import flank_face_load_factor, run_in
 from loaded_tca.rating.vibration import errors_of
 from loaded_tca.reference import iso6336, iso6336_1, iso10300_1, iso10300_2, iso10300_3
-from loaded_tca.reference.iso6336_2 import FlankFactors, FlankStrength
+from loaded_tca.reference.iso6336_2 import FlankFactors
 from loaded_tca.reference.iso17485 import single_pitch_tolerance
 from loaded_tca.scene.rating import ANALYSIS, METHOD_B
 from loaded_tca.scene.spiral import SpiralScene
@@ -71,16 +74,18 @@ class BevelInputs(CommonInputs):
     @property
     def virtual_force(self) -> Array:
         """F_vmt, of the virtual gears (c,) [N]."""
-        return self._virtual(self.torque)
+        return self.mean_force * self._virtual
 
     @property
     def factor_force(self) -> Array:
         """F_vmt for load factors (c,) [N]."""
-        return self._virtual(self.cases.factor_torque)
+        return self.cases.factor_torque / (0.5 * self.sheet.mean_diameters[0]) * self._virtual
 
-    def _virtual(self, torque: Array) -> Array:
+    @property
+    def _virtual(self) -> float:
+        """F_vmt over F_mt1."""
         pair = self.sheet.pair
-        return torque / (0.5 * self.sheet.mean_diameters[0]) * (cos(pair.spiral_angle) / cos(pair.spiral_angles[0]))
+        return cos(pair.spiral_angle) / cos(pair.spiral_angles[0])
 
     @property
     def velocity(self) -> Array:
@@ -144,11 +149,7 @@ def _pitch_deviation(inputs: BevelInputs) -> Array:
         deviation = single_pitch_tolerance(
             sheet.teeth[gear], sheet.pair.mean_normal_module, sheet.tolerance_diameter(gear), grade
         )
-    pinion, wheel = (
-        iso6336_1.running_in_allowance(strength.kind_of_material, deviation, strength.limits[0], inputs.velocity)
-        for strength in inputs.strengths
-    )
-    return deviation - 0.5 * (pinion + wheel)
+    return deviation - run_in(inputs, deviation)
 
 
 def _load_factors(inputs: BevelInputs) -> tuple[Arrays, tuple[str, ...]]:
@@ -162,9 +163,7 @@ def _load_factors(inputs: BevelInputs) -> tuple[Arrays, tuple[str, ...]]:
     if wanted.dynamic_factor == METHOD_B:
         dynamic, more = _dynamic_factor(inputs, load, softer)
         notes += more
-    face = ones * (inputs.loads.face_load_factor if wanted.face_load_factor == ANALYSIS else wanted.face_load_factor)
-    face = np.maximum(face, 1.0)
-    transverse = ones
+    face = flank_face_load_factor(inputs)
     if wanted.transverse_load_factor == METHOD_B:
         transverse = iso10300_1.transverse_load_factor(
             load * dynamic * face,
@@ -232,22 +231,13 @@ def _contact_stresses(inputs: BevelInputs, loads: Arrays, share: float) -> tuple
 
 def _flank_factors(inputs: BevelInputs, hypoid: float) -> FlankFactors:
     """What both flanks withstand."""
-    pinion, wheel = (
-        FlankStrength(strength.limits[0], strength.kind_of_material, strength.flank_Rz_um, strength.brinell)
-        for strength in inputs.strengths
-    )
     with named("rating of flanks"):
         return iso10300_2.bevel_flank_factors(
-            pinion,
-            wheel,
+            *flank_strengths(inputs),
             hypoid_factor=hypoid,
             relative_radius=inputs.sheet.pair.relative_radius,
-            velocity=inputs.velocity,
-            viscosity_40=inputs.lubricant.viscosity_40_mm2_s,
-            cycles=inputs.cycles.T,
             gear_ratio=inputs.sheet.gear_ratio,
-            limited_pitting=inputs.rating.limited_pitting,
-            long_life_factor=inputs.rating.long_life_factor,
+            **flank_conditions(inputs),
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import copysign
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -93,24 +93,35 @@ def _contact_stresses(inputs: RatingInputs, loads: Arrays) -> Arrays:
 
 def strength_of_flanks(inputs: RatingInputs) -> iso6336_2.FlankFactors:
     """What both flanks withstand."""
-    mesh, wanted = inputs.mesh, inputs.rating
-    gears = [
-        iso6336_2.FlankStrength(strength.limits[0], strength.kind_of_material, strength.flank_Rz_um, strength.brinell)
-        for strength in inputs.strengths
-    ]
+    mesh = inputs.mesh
     bases = 2.0 * mesh.pinion.base_radius, copysign(2.0 * mesh.wheel.base_radius, mesh.wheel.teeth)
     with named("rating of flanks"):
         return iso6336_2.flank_factors(
-            gears[0],
-            gears[1],
+            *flank_strengths(inputs),
             relative_radius=iso6336_2.relative_radius(bases, mesh.working_pressure_angle),
-            velocity=inputs.velocity,
-            viscosity_40=inputs.lubricant.viscosity_40_mm2_s,
-            cycles=inputs.cycles.T,
             gear_ratio=mesh.gear_ratio,
-            limited_pitting=wanted.limited_pitting,
-            long_life_factor=wanted.long_life_factor,
+            **flank_conditions(inputs),
         )
+
+
+def flank_strengths(inputs: CommonInputs) -> tuple[iso6336_2.FlankStrength, iso6336_2.FlankStrength]:
+    """Materials and surfaces of both flanks."""
+    pinion, wheel = (
+        iso6336_2.FlankStrength(strength.limits[0], strength.kind_of_material, strength.flank_Rz_um, strength.brinell)
+        for strength in inputs.strengths
+    )
+    return pinion, wheel
+
+
+def flank_conditions(inputs: CommonInputs) -> dict[str, Any]:
+    """What the strength of flanks depends on, whatever the kind of gears."""
+    return {
+        "velocity": inputs.velocity,
+        "viscosity_40": inputs.lubricant.viscosity_40_mm2_s,
+        "cycles": inputs.cycles.T,
+        "limited_pitting": inputs.rating.limited_pitting,
+        "long_life_factor": inputs.rating.long_life_factor,
+    }
 
 
 def of_flanks(inputs: CommonInputs, factors: iso6336_2.FlankFactors, stress: Array) -> Arrays:

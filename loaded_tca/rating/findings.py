@@ -9,11 +9,11 @@ import numpy as np
 
 from loaded_tca.arrays import GEARS
 from loaded_tca.plain import plain
+from loaded_tca.rating.lives import FLANK, ROOT
 
 if TYPE_CHECKING:
     from loaded_tca.rating.rating import Rating
 
-FLANK, ROOT = "flank", "root"
 FAILURES = {FLANK: "pitting", ROOT: "tooth breakage"}
 
 
@@ -37,13 +37,13 @@ class Worst(NamedTuple):
 
 def worst_of(rating: Rating, prefix: str = "") -> Worst:
     """The safety that is the least over that required, of the standard or, with "local_", of the local ones."""
-    wanted, found = rating.scene.rating, []
+    every = []
     for kind in FAILURES:
         if rating.has(name := f"{prefix}{kind}_safety") and np.isfinite(values := rating.values(name)).any():
             case, gear = (int(place) for place in np.unravel_index(np.nanargmin(values), values.shape))
-            required = float(getattr(wanted, f"required_{kind}_safety"))
-            found.append(Worst(kind, case, gear, float(values[case, gear]), required))
-    return min(found, key=lambda one: one.safety / one.required)
+            required = rating.required.required_safety(kind)
+            every.append(Worst(kind, case, gear, float(values[case, gear]), required))
+    return min(every, key=lambda worst: worst.safety / worst.required)
 
 
 def findings(rating: Rating) -> tuple[str, ...]:
@@ -65,7 +65,7 @@ def findings(rating: Rating) -> tuple[str, ...]:
 def _of_all_bins(rating: Rating) -> Iterator[str]:
     """What decides under a spectrum, after the standard and by local stresses, and the bin that does most of it."""
     safeties = rating.safeties_and_lives()[0][0]
-    required = np.array([getattr(rating.scene.rating, f"required_{_kind(mode)}_safety") for mode in rating.modes])
+    required = np.array([rating.required.required_safety(mode) for mode in rating.modes])
     for words, local in ((f"after {rating.standard}", False), ("by local stresses", True)):
         of = [n for n, mode in enumerate(rating.modes) if mode.startswith("local_") == local]
         part = (safeties / required)[:, of]

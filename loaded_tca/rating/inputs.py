@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import cos, pi
@@ -29,6 +29,12 @@ if TYPE_CHECKING:
 
 FEWEST = 5
 """Positions over a pitch: of fewer the largest pressure and K_Hbeta miss much of the mesh."""
+NEEDED = {
+    "strength": "nothing is rated without allowable stresses: give material, or kind with its stresses",
+    "rating": "it has the required safeties and the hours",
+    "lubricant": "the strength of flanks depends on viscosity_40_mm2_s",
+}
+"""Sections of any rating, and why they are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +105,11 @@ class CommonInputs(ABC):
     @abstractmethod
     def normal_module(self) -> float:
         """Of both gears, of bevel gears in the middle of the face [mm]."""
+
+    @property
+    @abstractmethod
+    def velocity(self) -> Array:
+        """At the circle that the standard takes (c,) [m/s]."""
 
     @abstractmethod
     def root_section(self, place: int) -> RootSection:
@@ -187,14 +198,8 @@ def common_inputs(result: CycleNumbers, outside: Sequence[str] = ()) -> dict[str
         With everything that is missing or wrong, and what lies ``outside`` the standard.
     """
     scene = result.scene
-    no_limits = "missing; nothing is rated without allowable stresses: give material, or kind with its stresses"
-    needed = {
-        "pinion.strength": (scene.pinion.strength, no_limits),
-        "wheel.strength": (scene.wheel.strength, no_limits),
-        "rating": (scene.rating, "missing; it has the required safeties and the hours"),
-        "lubricant": (scene.lubricant, "missing; the strength of flanks depends on viscosity_40_mm2_s"),
-    }
-    problems = [f"{name}: {words}" for name, (section, words) in needed.items() if section is None]
+    strengths = {f"{gear}.strength": getattr(scene, gear).strength for gear in GEARS}
+    problems = missing_sections({**strengths, "rating": scene.rating, "lubricant": scene.lubricant})
     analysis, torques = scene.analysis, np.asarray(result.torque)
     if not analysis.load_sharing:
         problems.append("analysis.load_sharing: false; K_Hbeta is that of a mesh: set it to true and run the scene")
@@ -214,6 +219,12 @@ def common_inputs(result: CycleNumbers, outside: Sequence[str] = ()) -> dict[str
         "cases": cases,
         "solved": solved_factors(result),
     }
+
+
+def missing_sections(sections: Mapping[str, object], **reasons: str) -> list[str]:
+    """Which sections of a rating are missing, and why they are needed; ``reasons`` of others than ``NEEDED``."""
+    why = {**NEEDED, **reasons}
+    return [f"{name}: missing; {why[name.rpartition('.')[2]]}" for name, one in sections.items() if one is None]
 
 
 def _outside(scene: CylindricalScene) -> list[tuple[str, str, bool, str]]:

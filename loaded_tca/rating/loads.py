@@ -16,7 +16,7 @@ from loaded_tca.reference.iso6336_3 import face_load_factor
 from loaded_tca.scene.rating import ANALYSIS, METHOD_B
 
 if TYPE_CHECKING:
-    from loaded_tca.rating.inputs import RatingInputs
+    from loaded_tca.rating.inputs import CommonInputs, RatingInputs
 
 
 def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...]]:
@@ -31,9 +31,7 @@ def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...
     notes: tuple[str, ...] = ()
     if wanted.dynamic_factor == METHOD_B:
         dynamic, notes = _dynamic_factor(inputs)
-    of_analysis = wanted.face_load_factor == ANALYSIS
-    face = ones * (inputs.loads.face_load_factor if of_analysis else float(wanted.face_load_factor))
-    face = np.maximum(face, 1.0)
+    face = flank_face_load_factor(inputs)
     flank, root = _transverse_factors(inputs, dynamic * face)
     height = inputs.scene.tooth_height_over_width
     factors = {
@@ -46,6 +44,12 @@ def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...
         "K_Falpha": ones * root,
     }
     return factors, notes
+
+
+def flank_face_load_factor(inputs: CommonInputs) -> Array:
+    """K_Hbeta (c,): of the analysis, from 1 on, or given."""
+    wanted, ones = inputs.rating.face_load_factor, np.ones(len(inputs.torque))
+    return np.maximum(ones * (inputs.loads.face_load_factor if wanted == ANALYSIS else float(wanted)), 1.0)
 
 
 def _deviations(inputs: RatingInputs) -> tuple[float, float]:
@@ -62,7 +66,7 @@ def _deviations(inputs: RatingInputs) -> tuple[float, float]:
     return max(pitches), max(profiles)
 
 
-def _run_in(inputs: RatingInputs, deviation: float) -> Array:
+def run_in(inputs: CommonInputs, deviation: float) -> Array:
     """Running-in allowance for a deviation (c,), the mean of both gears [um]."""
     pinion, wheel = (
         iso6336_1.running_in_allowance(strength.kind_of_material, deviation, strength.limits[0], inputs.velocity)
@@ -93,8 +97,8 @@ def _dynamic_factor(inputs: RatingInputs) -> tuple[Array, tuple[str, ...]]:
         inputs.load,
         single_stiffness=standard.single_stiffness * shares,
         total_contact_ratio=mesh.total_contact_ratio,
-        pitch_deviation=pitch - _run_in(inputs, pitch),
-        profile_deviation=profile - _run_in(inputs, profile),
+        pitch_deviation=pitch - run_in(inputs, pitch),
+        profile_deviation=profile - run_in(inputs, profile),
         tip_relief=_tip_relief(inputs),
         speed_parameter=inputs.velocity * mesh.pinion.teeth / 100.0 * ratio / hypot(1.0, ratio),
     )
@@ -116,7 +120,7 @@ def _transverse_factors(inputs: RatingInputs, load_factor: Array) -> tuple[Array
     return iso6336_1.transverse_load_factors(
         inputs.load * load_factor,
         mesh_stiffness=standard.mesh_stiffness * iso6336.share_of_stiffness(inputs.load),
-        deviation=max(pitch, profile) - _run_in(inputs, pitch),
+        deviation=max(pitch, profile) - run_in(inputs, pitch),
         transverse_contact_ratio=mesh.transverse_contact_ratio,
         overlap_ratio=mesh.overlap_ratio,
         virtual_contact_ratio=inputs.virtual_contact_ratio,

@@ -97,8 +97,7 @@ def flank_safeties(rating: Rating, case: int) -> FlankSafeties:
     """
     require(*index_checks(case=(case, len(rating.torque))))
     sweep = slices_of(rating.result)
-    some = sweep.of_torque(_torque_of(rating, case))
-    some = some[np.isfinite(sweep.elastic_pressure[some])]
+    some = sweep.known_of_torque(torque_of(rating, case))
     stress = sweep.elastic_pressure[some] * np.sqrt(rating.K_A[case] * rating.K_gamma[case] * rating.K_v[case])
     return FlankSafeties(
         rating.sigma_HG[case][:, None] / stress,
@@ -138,7 +137,7 @@ def root_safeties(rating: Rating, case: int, gear: int) -> RootSafeties:
         If the scene does not ask for root stress.
     """
     require(*index_checks(case=(case, len(rating.torque)), gear=(gear, len(GEARS))))
-    torque, stress = _torque_of(rating, case), rating.result.root_stress[gear]
+    torque, stress = torque_of(rating, case), rating.result.root_stress[gear]
     largest, smallest = stress.largest[torque], stress.smallest[torque]
     tense = largest > 0.0
     _, factors, _ = local_root_factors(rating.inputs, gear, stress_ratio(largest, smallest), case)
@@ -160,7 +159,7 @@ def worst_case(rating: Rating, name: str) -> int:
     return int(safety.argmin())
 
 
-def _torque_of(rating: Rating, case: int) -> int:
+def torque_of(rating: Rating, case: int) -> int:
     """Index of the torque of a case in its result."""
     torque = 1e-3 * float(rating.torque[case])
     words = "is reversed" if rating.inputs.cases.reversed[case] else "was not solved; analysis.torques_Nm has what is"

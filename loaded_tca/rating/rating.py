@@ -181,17 +181,15 @@ class Rating(Result):
 
     def _short(self) -> list[str]:
         """Sentences on safeties below those required."""
-        wanted = self.required
-        required = {"flank": wanted.required_flank_safety, "root": wanted.required_root_safety}
         sentences = []
-        for kind, least in required.items():
-            for name in (f"{kind}_safety", f"local_{kind}_safety"):
-                for place, gear in enumerate(GEARS if self.has(name) else ()):
-                    short = self.values(name)[:, place] < least
-                    torques = ", ".join(f"{1e-3 * torque:g}" for torque in self.torque[short])
-                    if torques:
-                        words = self.NUMBERS[name].text.replace(":", "")
-                        sentences.append(f"{gear}: {words} below the required {least:g} under {torques} N m")
+        for mode in (FLANK, LOCAL_FLANK, ROOT, LOCAL_ROOT):
+            name, least = f"{mode}_safety", self.required.required_safety(mode)
+            for place, gear in enumerate(GEARS if self.has(name) else ()):
+                short = self.values(name)[:, place] < least
+                torques = ", ".join(f"{1e-3 * torque:g}" for torque in self.torque[short])
+                if torques:
+                    words = self.NUMBERS[name].text.replace(":", "")
+                    sentences.append(f"{gear}: {words} below the required {least:g} under {torques} N m")
         return sentences
 
     def sensitivities(self, keys: Sequence[str]) -> xarray.Dataset:

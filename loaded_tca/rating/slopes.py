@@ -125,8 +125,7 @@ def _pressure_slopes(sensitivities: Sensitivities) -> Array:
     sweep, count = slices_of(result), len(result.torque)
     slopes = np.zeros((count, len(sensitivities.keys)))
     for torque in range(count):
-        some = sweep.of_torque(torque)
-        worst = int(some[np.nanargmax(sweep.elastic_pressure[some])])
+        worst = sweep.deciding(torque)
         under, row = _under(sensitivities, torque)
         place = row, int(sweep.position[worst]), int(sweep.column[worst])
         slopes[torque] = _of_contact(under, place)

@@ -187,9 +187,7 @@ def _largest_pressures(result: CycleNumbers) -> tuple[Array, Array, Mask]:
     sweep, count = slices_of(result), len(result.torque)
     pressure, places, at_edge = np.full(count, np.nan), np.full((2, count, 2), np.nan), np.zeros(count, dtype=bool)
     for torque in range(count):
-        some = sweep.of_torque(torque)
-        some = some[np.isfinite(sweep.elastic_pressure[some])]
-        worst = int(some[sweep.elastic_pressure[some].argmax()])
+        worst = sweep.deciding(torque)
         pressure[torque] = sweep.elastic_pressure[worst]
         places[0, torque] = sweep.radius[worst], sweep.wheel_radius[worst]
         places[1, torque] = sweep.axial[worst], sweep.wheel_axial[worst]

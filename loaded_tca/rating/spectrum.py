@@ -12,10 +12,9 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.rating.evaluate import Evaluated
-from loaded_tca.rating.findings import findings
-from loaded_tca.rating.lives import ROOT, change_of_damage, damages_of
+from loaded_tca.rating.lives import change_of_damage, damages_of
 from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS
-from loaded_tca.rating.rating import NOT_COUNTED, WORDS, Rating, all_figures
+from loaded_tca.rating.rating import WORDS, Rating, all_figures
 from loaded_tca.rating.roots import REVERSED
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.summary import shown, summary_of
@@ -156,16 +155,12 @@ class SpectrumRating(Rating):
         *_, table = summary_of("", which, numbered, sentences).split("\n", 1)
         return f"{together}\n\n{table}"
 
-    def notes(self) -> tuple[str, ...]:
-        """What lies outside the ranges of the standard, what decides, what is too short or too weak, what lacks."""
-        return (*self.remarks, *findings(self), *self._short(), NOT_COUNTED)
-
     def _short(self) -> list[str]:
         sentences = []
         for place, gear in enumerate(GEARS):
             for n, mode in enumerate(self.modes):
                 life, safety = float(self.life_hours[place, n]), float(self.spectrum_safety[place, n])
-                least = self.required.required_root_safety if ROOT in mode else self.required.required_flank_safety
+                least = self.required.required_safety(mode)
                 if life == 0.0:
                     sentences.append(
                         f"{gear}: {WORDS[mode]}: life 0 at the required safety {least:g}: a bin lies above the static "

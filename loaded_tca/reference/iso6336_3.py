@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 import loaded_tca.roots as roots
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array, Indices, interval_check
+from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import GeometryError, require, require_positive
 from loaded_tca.reference.iso6336 import virtual_teeth
 from loaded_tca.reference.iso6336_3_strength import RootFactors, RootStrength, root_factors
@@ -275,15 +275,13 @@ def _touching_angle(depth: float, offset: float, teeth: float) -> float:
     """Angle theta at which the tangent touches the fillet [rad]."""
     slope = 2.0 * depth / teeth
 
-    def difference(angle: Array, _: Indices) -> Array:
-        return np.asarray(angle - slope * np.tan(angle) + offset)
+    def difference(angle: float) -> float:
+        return angle - slope * tan(angle) + offset
 
     last = 0.49 * pi if slope <= 0.0 else min(0.49 * pi, acos(min(1.0, sqrt(slope))))  # where the difference is largest
-    ends = np.array([[0.0], [last]])
-    values = difference(ends, np.zeros(1, dtype=int))
-    if values[0, 0] * values[1, 0] > 0.0:
+    if difference(0.0) * difference(last) > 0.0:
         raise GeometryError("no critical section: no tangent of 30 degrees, or 60 of a ring, touches the fillet")
-    return float(roots.find_roots(difference, ends, values, 1e-15)[0])
+    return roots.find_root(difference, 0.0, last)
 
 
 def _single_contact(

@@ -63,15 +63,13 @@ def rating_content(result: MeshCycle) -> dict[str, Any] | None:
 
 def _safeties(rating: Rating) -> Table:
     """The least safeties of all cases of both gears beside those required, and the shortest lives."""
-    wanted, rows = rating.scene.rating, []
-    assert wanted is not None  # rated
+    rows = []
     safeties, lives = (values.min(axis=0) for values in rating.safeties_and_lives())
     for n, mode in enumerate(rating.modes):
         kind = mode.removeprefix("local_")
         words = FAILURES[kind] if kind == mode else f"{FAILURES[kind]}, local"
-        required = getattr(wanted, f"required_{kind}_safety")
         cells = (shown(float(values[gear, n]), "") for gear in range(len(GEARS)) for values in (safeties, lives))
-        rows.append((words, plain(required), *cells))
+        rows.append((words, plain(rating.required.required_safety(mode)), *cells))
     heads = (f"{gear}, {what}" for gear in GEARS for what in ("safety", "life [h]"))
     together = "all bins together" if isinstance(rating, SpectrumRating) else "least of all cases"
     return Table(tuple(rows), (together, "required", *heads))

@@ -231,6 +231,10 @@ class RatingSection(Section):
         ),
     )
 
+    def required_safety(self, mode: str) -> float:
+        """Required safety against a kind of failure, of flanks or roots."""
+        return self.required_root_safety if mode.endswith("root") else self.required_flank_safety
+
 
 def is_rated(scene: Scene) -> bool:
     """Whether a scene says what its gears withstand and what is required of them."""

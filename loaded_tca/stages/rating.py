@@ -12,7 +12,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.rating import Rating, rating_of
-from loaded_tca.rating.inputs import Duty
+from loaded_tca.rating.inputs import Duty, missing_sections
 from loaded_tca.rating.lives import MODES
 from loaded_tca.rating.quantities import CASE, NUMBERS, OF_MODES
 from loaded_tca.rating.rating import NOT_COUNTED, WORDS
@@ -220,14 +220,9 @@ def stage_rating_of(result: StageResult, *, warn: bool = True) -> StageRating:
 
 def _require_sections(stage: Stage) -> None:
     """Refuse a stage without a section that its rating needs, with every one."""
-    no_limits = "missing; nothing is rated without allowable stresses: give material, or kind with its stresses"
-    needed = {
-        **{f"{gear}.strength": (getattr(stage, gear).strength, no_limits) for gear in MEMBERS},
-        "rating": (stage.rating, "missing; it has the required safeties and the hours"),
-        "operation": (stage.operation, "missing; strength, cycles and K_v depend on sun_speed_rpm"),
-        "lubricant": (stage.lubricant, "missing; the strength of flanks depends on viscosity_40_mm2_s"),
-    }
-    if problems := [f"{name}: {words}" for name, (section, words) in needed.items() if section is None]:
+    sections = {f"{gear}.strength": getattr(stage, gear).strength for gear in MEMBERS}
+    sections |= {"rating": stage.rating, "operation": stage.operation, "lubricant": stage.lubricant}
+    if problems := missing_sections(sections, operation="strength, cycles and K_v depend on sun_speed_rpm"):
         raise InputError(problems)
 
 

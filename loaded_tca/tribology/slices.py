@@ -108,6 +108,15 @@ class Slices:
         """Indices of the slices under one torque."""
         return np.flatnonzero(self.torque == torque)
 
+    def known_of_torque(self, torque: int) -> Indices:
+        """Indices of those whose pressure is known."""
+        return np.flatnonzero((self.torque == torque) & np.isfinite(self.elastic_pressure))
+
+    def deciding(self, torque: int) -> int:
+        """Index of the slice with the largest elastic pressure under one torque."""
+        some = self.known_of_torque(torque)
+        return int(some[self.elastic_pressure[some].argmax()])
+
 
 _KEPT: WeakKeyDictionary[CycleNumbers, Slices] = WeakKeyDictionary()
 """Slices of the results in use: every speed and oil asks for them again."""
