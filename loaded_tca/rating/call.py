@@ -47,8 +47,8 @@ def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -
     kind: type[Rating] = Rating
     if cases.is_spectrum:
         kind = SpectrumRating
-        more, remarks, told = of_spectrum(inputs, arrays, _evaluated)
-        arrays, notes, sentences = arrays | more, (*notes, *remarks), [*sentences, *told]
+        more, remarks, warned = of_spectrum(inputs, arrays, _evaluated)
+        arrays, notes, sentences = arrays | more, (*notes, *remarks), [*sentences, *warned]
     about: dict[str, Any] = {"version": result.version, "warnings": "\n".join(sentences)}
     dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*GEARS], mode=[*endurances])
     for sentence in sentences if warn else ():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
@@ -62,6 +62,29 @@ def _head(head: str, gear: str, mode: str = "") -> str:
 def all_figures(numbers: Mapping[str, Number]) -> dict[str, Figure]:
     """Key figures under each torque, in the order of the summary."""
     return {name: figure for each, number in numbers.items() for name, figure in _figures(each, number).items()}
+
+
+def rows_of(
+    rated: Result, gears: Sequence[str], modes: Sequence[str], figures: Sequence[Figures]
+) -> list[tuple[str, ...]]:
+    """Lines of numbers of load cases: label with unit, and a cell for each case, of all gears where they differ."""
+    rows: list[tuple[str, ...]] = []
+
+    def add(names: Sequence[str], label: str) -> None:
+        cells = (" | ".join(shown(row[name], name) for name in names) for row in figures)
+        rows.append((labelled(names[0], label), *cells))
+
+    for name, number in rated.NUMBERS.items():
+        if not rated.has(name) or number.dims == OF_SPECTRUM:
+            continue
+        head = number.head(name)
+        if number.dims == OF_MODES:
+            for mode in modes:
+                add([_head(head, gear, mode) for gear in gears], f"{WORDS[mode]}: {number.text}")
+        else:
+            names = [_head(head, gear) for gear in gears] if number.dims == OF_GEARS else [head]
+            add(names, number.label or number.text)
+    return rows
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -157,23 +180,7 @@ class Rating(Result):
 
     def rows(self, figures: Sequence[Figures]) -> list[tuple[str, ...]]:
         """Lines of the summary: label with unit, and a cell for each torque, of both gears where they differ."""
-        rows = []
-        for name, number in self.NUMBERS.items():
-            if not self.has(name) or number.dims == OF_SPECTRUM:
-                continue
-            head = number.head(name)
-            if number.dims != OF_MODES:
-                names = [_head(head, gear) for gear in GEARS] if number.dims == OF_GEARS else [head]
-                rows.append((labelled(names[0], number.label or number.text), *self._cells(figures, names)))
-                continue
-            for mode in self.modes:
-                names = [_head(head, gear, mode) for gear in GEARS]
-                rows.append((labelled(names[0], f"{WORDS[mode]}: {number.text}"), *self._cells(figures, names)))
-        return rows
-
-    @staticmethod
-    def _cells(figures: Sequence[Figures], names: Sequence[str]) -> Iterator[str]:
-        return (" | ".join(shown(row[name], name) for name in names) for row in figures)
+        return rows_of(self, GEARS, self.modes, figures)
 
     def notes(self) -> tuple[str, ...]:
         """What lies outside the ranges of the standard, what decides, which safeties are too small, what lacks."""

@@ -77,11 +77,13 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array) -> Iter
     between = cases.between(solved.torque)
     below = between & (cases.factor_torque < solved.torque[0])
     if between.any():
-        known = error[np.isfinite(error)]
-        told = f"damage is right within {float(known.max()):.1%}" if known.size else "there is no estimate of the error"
+        finite = error[np.isfinite(error)]
+        within = (
+            f"damage is right within {float(finite.max()):.1%}" if finite.size else "there is no estimate of the error"
+        )
         yield (
             f"stresses under {between.sum()} of {len(between)} bins are interpolated between {len(solved.torque)} "
-            f"torques that were solved: {told}"
+            f"torques that were solved: {within}"
         )
     if below.any():
         parts = arrays["damage"][below].sum(axis=0)[sums > 0.0] / sums[sums > 0.0]

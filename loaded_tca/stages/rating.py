@@ -15,15 +15,14 @@ from loaded_tca.rating import Rating, rating_of
 from loaded_tca.rating.inputs import Duty, missing_sections
 from loaded_tca.rating.lives import MODES
 from loaded_tca.rating.quantities import CASE, NUMBERS, OF_MODES
-from loaded_tca.rating.rating import NOT_COUNTED, WORDS
+from loaded_tca.rating.rating import NOT_COUNTED, WORDS, rows_of
 from loaded_tca.rating.roots import REVERSED
 from loaded_tca.reference.iso6336_3_strength import mean_stress_sensitivities
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.declared import Number, Row
-from loaded_tca.results.figure import Figure, Figures, labelled
+from loaded_tca.results.figure import Figure, Figures
 from loaded_tca.results.files import RATING
 from loaded_tca.results.result import Result
-from loaded_tca.results.summary import shown
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.rating import ANALYSIS, RatingSection, StrengthSection
 from loaded_tca.scene.section import contents
@@ -139,18 +138,7 @@ class StageRating(Result):
 
     def rows(self, figures: Sequence[Figures]) -> list[tuple[str, ...]]:
         """Lines of the summary: of the gears, then of both meshes with all factors."""
-        rows = []
-        for name, number in self.NUMBERS.items():
-            if not self.has(name):
-                continue
-            head = number.head(name)
-            kinds = self.sun_mesh.modes if number.dims == OF_MODES else [""]
-            for kind in kinds:
-                of_gears = [f"{gear}_{kind}_{head}" if kind else f"{gear}_{head}" for gear in MEMBERS]
-                names = [head] if number.dims == CASE else of_gears
-                cells = (" | ".join(shown(row[one], one) for one in names) for row in figures)
-                label = f"{WORDS[kind]}: {number.text}" if kind else number.label or number.text
-                rows.append((labelled(names[0], label), *cells))
+        rows = rows_of(self, MEMBERS, self.sun_mesh.modes, figures)
         for (mesh, gears), whose in zip(MESHES.items(), WHOSE, strict=True):
             rating: Rating = getattr(self, mesh)
             rows.append((f"{gears['pinion']} and {gears['wheel']}, under {whose}", *("" for _ in figures)))
