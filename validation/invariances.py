@@ -56,6 +56,9 @@ GRIDS = 1e-2
 """Transmission error and share by grids: the accuracy that was asked for."""
 FROM_FILE = 1e-6
 """Files keep every digit; states that are solved again from them are solved to 1e-6."""
+NO_SHARE = 1e-6
+"""Change of a share within a key's tolerance below which its digits are not compared: a pair that carries alone has
+derivatives that are differences of numbers near 1."""
 BALANCED = 1e-6
 """Forces of the last solutions balance the torque to the tolerance of the contact solver."""
 ENERGY = 0.01
@@ -335,28 +338,24 @@ def memory_and_file(subject: Subject) -> Off:
             f"figure {name}": _unlike(value, loaded.key_figures()[0][name])
             for name, value in result.key_figures()[0].items()
         }
-        every = [*default_tolerances(subject.scene)]
-        keys = subject.rng.choice(every, min(3, len(every)), replace=False).tolist()
+        tolerances = default_tolerances(subject.scene)
+        keys = subject.rng.choice([*tolerances], min(3, len(tolerances)), replace=False).tolist()
         slopes = [one.sensitivities(keys) for one in (result, loaded)]
-        for name in (
-            "transmission_error",
-            "load_share",
-            "peak_pressure",
-            "line_load",
-            "face_load_factor",
-            "peak_to_peak",
-        ):
+        for name in ("transmission_error", "peak_pressure", "line_load", "face_load_factor", "peak_to_peak"):
             off[f"derivatives of the {name}"] = _unlike(*(getattr(one, name) for one in slopes))
+        widths = np.array([tolerances[key] for key in slopes[0].keys])
+        shares = [one.load_share * widths for one in slopes]
+        off["derivatives of the load_share"] = _unlike(*shares, least=NO_SHARE)
     return {name: part / FROM_FILE for name, part in off.items()}
 
 
-def _unlike(one: Any, other: Any) -> float:
-    """Largest difference of two arrays over the largest number; infinite where one of them is NaN alone."""
+def _unlike(one: Any, other: Any, least: float = 0.0) -> float:
+    """Largest difference of two arrays over the largest number, or over ``least``; infinite where one is NaN alone."""
     first, second = np.asarray(one, dtype=float), np.asarray(other, dtype=float)
     known = np.isfinite(first)
     if first.shape != second.shape or (known != np.isfinite(second)).any():
         return math.inf
-    if not known.any() or not (largest := float(np.abs(first[known]).max())):
+    if not known.any() or not (largest := max(least, float(np.abs(first[known]).max()))):
         return 0.0
     return float(np.abs(first - second)[known].max()) / largest
 
