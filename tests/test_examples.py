@@ -47,6 +47,7 @@ EXPECTED = {
     "plot_micro_geometry": (1.0, 1e-12),  # every step of crowning
     "plot_tip_relief_and_rounding": (-1.0 / 3.0, 0.01),  # the power of the radius: a pressed part much smaller than it
     "plot_tooth_3d": (1.0, 5e-3),  # the pressure laid on the flank carries the load
+    "plot_measured_settings": (1.0, 0.02),  # the error that was made, with three standard deviations by noise
     "plot_bidirectional_start": (1.0, 1e-7),  # five equations and ease-off find the same contact
 }
 
@@ -55,6 +56,7 @@ QUICK = (
     "plot_contact_pattern",
     "plot_bevel_pressure",
     "plot_ease_off",
+    "plot_measured_settings",
     "plot_bidirectional_start",
 )
 """Of half a second. The others are analyses and pictures that the tests of their folders have on fewer cells."""

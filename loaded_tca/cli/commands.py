@@ -396,6 +396,18 @@ def ease_off(options: argparse.Namespace) -> None:
 
 
 def settings(options: argparse.Namespace) -> None:
+    """Write the face-milled scene of a bevel blank, or one with settings corrected from measured flanks."""
+    if options.measured:
+        from loaded_tca.cli.measured_settings import correct
+
+        correct(options)
+        return
+    only = ((options.settings, "--settings"), (options.turned, "--turned"), (options.as_cut, "--as-cut"))
+    require(*((not value, f"{name}: needs --measured") for value, name in only))
+    _settings_of_blank(options)
+
+
+def _settings_of_blank(options: argparse.Namespace) -> None:
     """Write the face-milled scene of a bevel blank, with all its machine settings."""
     from loaded_tca.results.files import replace_file
     from loaded_tca.scene.bevel import BevelScene

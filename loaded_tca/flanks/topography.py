@@ -17,7 +17,8 @@ The columns are either ``x, y, z`` (points), or ``radius`` (or ``diameter``), ``
 (positive: **more** material than nominal, as measuring centres count) and ``removed`` (positive: less material, as
 modifications count), each with ``_um``, ``_mm``, ``_m`` or ``_in`` behind it. Rows come in any order with the columns
 ``profile_index`` and ``lengthwise_index``; without them in the order of the grid, the profile running fastest, and a
-comment says how many points there are: ``# points = 5 x 9`` (profile x lengthwise). Semicolons and tabs separate
+comment says how many points there are: ``# points = 5 x 9`` (profile x lengthwise). A column ``weight``, without a
+unit, has the weights of the points where settings follow from them. Semicolons and tabs separate
 values, too, and a first line ``sep=;`` is read. Names and values may be quoted, the sign for micro in a name stands for
 u, and separators at the ends of lines, as spreadsheets write them, are left out. Numbers have a decimal point.
 
@@ -40,7 +41,7 @@ from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, OtherKindError, numbers, shown
-from loaded_tca.errors import InputError, named
+from loaded_tca.errors import InputError, named, require
 from loaded_tca.flanks.base import Flank
 from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
 from loaded_tca.plain import plain
@@ -50,6 +51,8 @@ LARGEST_FILE = 2**23
 UNITS = {"um": 1e-3, "mm": 1.0, "m": 1e3, "in": 25.4}
 """Unit at the end of a column's name -> factor to mm."""
 INDICES = ("profile_index", "lengthwise_index")
+WEIGHT = "weight"
+UNITLESS = (*INDICES, WEIGHT)
 LENGTHS = ("x", "y", "z", "radius", "diameter", "axial", "deviation", "removed")
 CHOICES = ({"x", "y", "z"}, {"radius", "axial", "deviation"}, {"radius", "axial", "removed"})
 MOST_PROBLEMS = 10
@@ -106,10 +109,11 @@ def parse_topography(text: str) -> Topography:
     else:
         shape, order = _given_order(len(values), notes.get("points", ""))
     grids = {name: column[order].reshape(shape) for name, column in table.items() if name not in INDICES}
+    weights = grids.get(WEIGHT)
     if "x" in grids:
-        return MeasuredPoints(np.stack([grids[name] for name in ("x", "y", "z")], axis=-1), notes)
+        return MeasuredPoints(np.stack([grids[name] for name in ("x", "y", "z")], axis=-1), notes, weights)
     excess = grids["deviation"] if "deviation" in grids else -grids["removed"]
-    return MeasuredDeviations(grids["radius"], grids["axial"], excess, notes)
+    return MeasuredDeviations(grids["radius"], grids["axial"], excess, notes, weights)
 
 
 def _numbers(table: Table) -> Array:
@@ -147,10 +151,10 @@ def _number(cell: str) -> float:
 def _factors(line: int, header: Sequence[str]) -> list[tuple[str, float]]:
     """Name of each column without its unit, and the factor to mm; InputError with every problem of the header."""
     factors, problems = [], []
-    known = [*INDICES, *(f"{name}_{unit}" for name in LENGTHS for unit in UNITS)]
+    known = [*UNITLESS, *(f"{name}_{unit}" for name in LENGTHS for unit in UNITS)]
     for k, column in enumerate(header, 1):
         name, _, unit = column.rpartition("_")
-        if column in INDICES:
+        if column in UNITLESS:
             factors.append((column, 1.0))
         elif name == "diameter" and unit in UNITS:
             factors.append(("radius", 0.5 * UNITS[unit]))
@@ -163,11 +167,11 @@ def _factors(line: int, header: Sequence[str]) -> list[tuple[str, float]]:
             problems.append(f"line {line}, column {k}: the unit of {name} is unknown; allowed {allowed}")
         else:
             near = difflib.get_close_matches(column, known, 1)
-            meant = f"did you mean {near[0]!r}?" if near else f"allowed {', '.join(INDICES)}, and lengths as x_mm"
+            meant = f"did you mean {near[0]!r}?" if near else f"allowed {', '.join(UNITLESS)}, and lengths as x_mm"
             problems.append(f"line {line}, column {k}: the name of the column is unknown; {meant}")
     names = [name for name, _ in factors]
     problems += [f"column {name} appears twice" for name in sorted(set(names)) if names.count(name) > 1]
-    lengths = set(names) - set(INDICES)
+    lengths = set(names) - set(UNITLESS)
     if not problems and lengths not in CHOICES:
         allowed = "x, y, z, or radius, axial and deviation, or radius, axial and removed, each with its unit"
         problems.append(f"columns {', '.join(sorted(lengths)) or 'none'}; allowed {allowed}")
@@ -227,11 +231,19 @@ class Topography(ABC):
         Cylindrical coordinates of the points; axial from mid-face (cylindrical) or from the apex (bevel).
     notes : mapping
         What the file said about the measurement.
+    weights : (n, m) array or None
+        Of the points where settings follow from them; None: one each. A spline through points has none.
     """
 
     radius: Array
     axial: Array
     notes: Mapping[str, str]
+    weights: ArrayLike | None
+
+    def require_no_weights(self) -> None:
+        """Refuse weights where a spline goes through the points."""
+        problem = "weight: a spline through measured points has none, settings from measured flanks do; leave it out"
+        require((self.weights is None, problem))
 
     @abstractmethod
     def excess_over(self, nominal: Flank, turned: bool) -> Array:
@@ -248,18 +260,21 @@ class MeasuredPoints(Topography):
     points : (n, m, 3) array [mm]
         x, y, z; the azimuth of the tooth is free where the flank is turned to its pitch point.
     notes : mapping, optional
+    weights : (n, m) array, optional
 
     Raises
     ------
     InputError
-        If the shape is another one or a point is not finite.
+        If the shape is another one, a point or weight is not finite, or a weight is negative or none is positive.
     """
 
     points: ArrayLike
     notes: Mapping[str, str] = field(default_factory=dict)
+    weights: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         points = _grid("points", self.points, 3)
+        object.__setattr__(self, "weights", _weights(self.weights, points.shape[:2]))
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "radius", np.hypot(points[..., 0], points[..., 1]))
         object.__setattr__(self, "axial", points[..., 2])
@@ -285,17 +300,20 @@ class MeasuredDeviations(Topography):
     excess : (n, m) array [mm]
         Positive where there is more material than nominal.
     notes : mapping, optional
+    weights : (n, m) array, optional
 
     Raises
     ------
     InputError
-        If the shapes differ or are no grid, a value is not finite, or a radius is not positive.
+        If the shapes differ or are no grid, a value is not finite, a radius is not positive, or weights are negative
+        or all zero.
     """
 
     radius: ArrayLike  # type: ignore[assignment]
     axial: ArrayLike  # type: ignore[assignment]
     excess: ArrayLike
     notes: Mapping[str, str] = field(default_factory=dict)
+    weights: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         arrays: dict[str, Array] = {}
@@ -313,6 +331,7 @@ class MeasuredDeviations(Topography):
             raise InputError(problems)
         for name, array in arrays.items():
             object.__setattr__(self, name, array)
+        object.__setattr__(self, "weights", _weights(self.weights, arrays["radius"].shape))
 
     def excess_over(self, nominal: Flank, turned: bool) -> Array:  # noqa: ARG002 (the nominal flank they belong to)
         """The deviations themselves [mm]."""
@@ -328,6 +347,18 @@ def excess_problems(nominal: Flank, excess: Array) -> list[str]:
         f"the points lie up to {plain(largest)} mm off the nominal flank along its normal, more than the "
         f"{plain(limit)} mm of any deviation: wrong gear, hand, side of the tooth, frame or unit?"
     ]
+
+
+def _weights(weights: ArrayLike | None, shape: tuple[int, ...]) -> Array | None:
+    """Weights of points as an array, or none."""
+    if weights is None:
+        return None
+    array = _grid("weights", weights)
+    require(
+        (array.shape == shape, f"weights: shape {array.shape}; allowed {shape}, as the points"),
+        (bool((array >= 0.0).all() and array.any()), "weights: allowed from 0 on, and not all of them 0"),
+    )
+    return array
 
 
 def _grid(name: str, values: ArrayLike, parts: int | None = None) -> Array:

@@ -184,8 +184,8 @@ def test_columns_that_are_unknown_without_unit_or_double_are_refused_all_at_once
         "column axial appears twice",
     )
     assert problems_of("# note\nqqq,x_mm,y_mm,z_mm\n1,2,3,4") == (
-        "line 2, column 1: the name of the column is unknown; allowed profile_index, lengthwise_index, and lengths as "
-        "x_mm",
+        "line 2, column 1: the name of the column is unknown; allowed profile_index, lengthwise_index, weight, and "
+        "lengths as x_mm",
     )
 
 
