@@ -13,14 +13,26 @@ Files hold comma-separated values with the unit of every column in its header::
     2,1,84.45,-11.2,-1.6
     ...
 
-The columns are either ``x, y, z`` (points), or ``radius`` (or ``diameter``), ``axial`` and one of ``deviation``
-(positive: **more** material than nominal, as measuring centres count) and ``removed`` (positive: less material, as
-modifications count), each with ``_um``, ``_mm``, ``_m`` or ``_in`` behind it. Rows come in any order with the columns
-``profile_index`` and ``lengthwise_index``; without them in the order of the grid, the profile running fastest, and a
-comment says how many points there are: ``# points = 5 x 9`` (profile x lengthwise). A column ``weight``, without a
-unit, has the weights of the points where settings follow from them. Semicolons and tabs separate
-values, too, and a first line ``sep=;`` is read. Names and values may be quoted, the sign for micro in a name stands for
-u, and separators at the ends of lines, as spreadsheets write them, are left out. Numbers have a decimal point.
+The columns are one of
+
+- ``radius`` (or ``diameter``), ``axial`` and ``deviation`` (positive: **more** material than nominal, as measuring
+  centres count), or ``removed`` (positive: less material, as modifications count);
+- ``x, y, z``: points of the measured flank;
+- ``x, y, z, nx, ny, nz, deviation``: points of the nominal flank, unit normals there and deviations along these, as
+  nominal data of bevel gears are exchanged: measured points are P + e n;
+- ``x, y, z, deviation``: points of the nominal flank and deviations from it;
+- ``line, radius, axial, deviation``: two lines of a cylindrical gear, ``profile`` and ``helix``. A point of the flank
+  deviates by what the profile line does at its radius and by what the helix line does at its place along the face, both
+  less what they do where they cross. Of lines of more than 50 points means of points that follow each other count.
+
+Each has ``_um``, ``_mm``, ``_m`` or ``_in`` behind it, but normals and ``line``. Rows of points come in any order with
+the columns ``profile_index`` and ``lengthwise_index``, or ``i`` and ``j``, of which the one whose lines of points are
+longer runs along the tooth; without them in the order of the grid, the profile running fastest, and a comment says how
+many points there are: ``# points = 5 x 9`` (profile x lengthwise). A column ``weight``, without a unit, has the weights
+of the points where settings follow from them. Semicolons and tabs separate values, too, and a first line ``sep=;`` is
+read; blanks do where the line of names has nothing else. Names and values may be quoted, the sign for micro in a name
+stands for u, and separators at the ends of lines, as spreadsheets write them, are left out. Numbers have a decimal
+point.
 
 References
 ----------
@@ -43,6 +55,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, OtherKindError, numbers, shown
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.measured_columns import LINES, along_normals, flank_of_lines, runs_lengthwise_first
 from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
 from loaded_tca.plain import plain
 
@@ -50,11 +63,25 @@ LARGEST_FILE = 2**23
 """Bytes of a topography file; a point takes about 60."""
 UNITS = {"um": 1e-3, "mm": 1.0, "m": 1e3, "in": 25.4}
 """Unit at the end of a column's name -> factor to mm."""
-INDICES = ("profile_index", "lengthwise_index")
-WEIGHT = "weight"
-UNITLESS = (*INDICES, WEIGHT)
+INDICES, MACHINE_INDICES = ("profile_index", "lengthwise_index"), ("i", "j")
+LINE, WEIGHT = "line", "weight"
+NORMAL = ("nx", "ny", "nz")
+UNITLESS = (*INDICES, *MACHINE_INDICES, *NORMAL, LINE, WEIGHT)
 LENGTHS = ("x", "y", "z", "radius", "diameter", "axial", "deviation", "removed")
-CHOICES = ({"x", "y", "z"}, {"radius", "axial", "deviation"}, {"radius", "axial", "removed"})
+EXCESS = ("deviation", "removed")
+CHOICES = [
+    {"x", "y", "z"},
+    *({*places, excess} for places in (("x", "y", "z"), ("x", "y", "z", *NORMAL)) for excess in EXCESS),
+    *({*places, excess} for places in (("radius", "axial"), (LINE, "radius", "axial")) for excess in EXCESS),
+]
+ALLOWED = (
+    "x, y, z; x, y, z, deviation; x, y, z, nx, ny, nz, deviation; radius, axial, deviation; or line, radius, axial, "
+    "deviation, with removed for deviation, and lengths with their units"
+)
+GDE = (
+    "an XML file: GDE (VDI/VDE 2610) and other XML of measuring centres are not read, since no public description of "
+    "their elements is known; have the points written as a table, whose columns docs/guide/measured_flank.md names"
+)
 MOST_PROBLEMS = 10
 """Problems of single lines that are told; more of them are counted."""
 
@@ -96,6 +123,7 @@ def read_topography(path: str | os.PathLike[str]) -> Topography:
 
 def parse_topography(text: str) -> Topography:
     """Topography of the text of a file; see ``read_topography``."""
+    require((not text.lstrip().startswith("<"), GDE))
     lines = table_in(text)
     comments = [comment.split("=", 1) for comment in lines.comments]
     notes = {part[0].strip(): part[1].strip() for part in comments if len(part) == 2}
@@ -104,16 +132,42 @@ def parse_topography(text: str) -> Topography:
     columns = _factors(lines.number, lines.names)
     values = _numbers(lines)
     table = {name: values[:, k] * factor for k, (name, factor) in enumerate(columns)}
-    if INDICES[0] in table:
-        shape, order = _order_by_indices(*(table[name] for name in INDICES))
+    if "removed" in table:
+        table["deviation"] = -table.pop("removed")
+    if LINE in table:
+        return MeasuredDeviations(
+            *flank_of_lines(*(table[name] for name in (LINE, "radius", "axial", "deviation"))), notes
+        )
+    by_machine = MACHINE_INDICES[0] in table
+    if INDICES[0] in table or by_machine:
+        names = MACHINE_INDICES if by_machine else INDICES
+        shape, order = _order_by_indices(names, *(table[name] for name in names))
     else:
         shape, order = _given_order(len(values), notes.get("points", ""))
-    grids = {name: column[order].reshape(shape) for name, column in table.items() if name not in INDICES}
+    grids = {name: column[order].reshape(shape) for name, column in table.items()}
+    if "x" in grids and "deviation" in grids:
+        grids |= {"radius": np.hypot(grids["x"], grids["y"]), "axial": grids["z"]}
+    if by_machine and runs_lengthwise_first(*_places(grids)):
+        grids = {name: grid.T for name, grid in grids.items()}
+    return _topography(grids, notes)
+
+
+def _places(grids: Mapping[str, Array]) -> tuple[Array, Array]:
+    """Radius and axial coordinate of points by their columns."""
+    if "radius" in grids:
+        return grids["radius"], grids["axial"]
+    return np.hypot(grids["x"], grids["y"]), grids["z"]
+
+
+def _topography(grids: Mapping[str, Array], notes: Mapping[str, str]) -> Topography:
+    """Topography of columns (n, m) of points, in mm."""
     weights = grids.get(WEIGHT)
-    if "x" in grids:
-        return MeasuredPoints(np.stack([grids[name] for name in ("x", "y", "z")], axis=-1), notes, weights)
-    excess = grids["deviation"] if "deviation" in grids else -grids["removed"]
-    return MeasuredDeviations(grids["radius"], grids["axial"], excess, notes, weights)
+    if "x" in grids and not ("deviation" in grids and NORMAL[0] not in grids):
+        points = np.stack([grids[name] for name in ("x", "y", "z")], axis=-1)
+        if NORMAL[0] in grids:
+            points = along_normals(points, np.stack([grids[name] for name in NORMAL], axis=-1), grids["deviation"])
+        return MeasuredPoints(points, notes, weights)
+    return MeasuredDeviations(*_places(grids), grids["deviation"], notes, weights)
 
 
 def _numbers(table: Table) -> Array:
@@ -128,9 +182,9 @@ def _numbers(table: Table) -> Array:
         if len(cells) != len(header):
             problems.append(f"line {number}: {len(cells)} values; the header names {len(header)} columns")
             continue
-        row = [_number(cell) for cell in cells]
+        row = [_number(cell, name) for cell, name in zip(cells, header, strict=True)]
         problems += [
-            f"line {number}, column {k}: {name} is not a finite number"
+            f"line {number}, column {k}: {name} is {'no line, profile or helix' if name == LINE else NOT_FINITE}"
             for k, (name, value) in enumerate(zip(header, row, strict=True), 1)
             if not np.isfinite(value)
         ]
@@ -141,7 +195,12 @@ def _numbers(table: Table) -> Array:
     return np.array(rows)
 
 
-def _number(cell: str) -> float:
+NOT_FINITE = "not a finite number"
+
+
+def _number(cell: str, name: str) -> float:
+    if name == LINE:
+        return LINES.get(cell.lower(), float("nan"))
     try:
         return number_in(cell)
     except ValueError:
@@ -171,12 +230,20 @@ def _factors(line: int, header: Sequence[str]) -> list[tuple[str, float]]:
             problems.append(f"line {line}, column {k}: the name of the column is unknown; {meant}")
     names = [name for name, _ in factors]
     problems += [f"column {name} appears twice" for name in sorted(set(names)) if names.count(name) > 1]
-    lengths = set(names) - set(UNITLESS)
+    pairs = INDICES, MACHINE_INDICES
+    lengths = set(names) - {*INDICES, *MACHINE_INDICES, WEIGHT}
     if not problems and lengths not in CHOICES:
-        allowed = "x, y, z, or radius, axial and deviation, or radius, axial and removed, each with its unit"
-        problems.append(f"columns {', '.join(sorted(lengths)) or 'none'}; allowed {allowed}")
-    if not problems and len(set(names) & set(INDICES)) == 1:
-        problems.append(f"columns {' and '.join(INDICES)} belong together; only one is there")
+        problems.append(f"columns {', '.join(sorted(lengths)) or 'none'}; allowed {ALLOWED}")
+    if not problems:
+        problems += [
+            f"columns {' and '.join(pair)} belong together; only one is there"
+            for pair in pairs
+            if len(set(names) & set(pair)) == 1
+        ]
+        beside = sorted(set(names) & {*INDICES, *MACHINE_INDICES, WEIGHT}) if LINE in names else []
+        twice = all(set(pair) <= set(names) for pair in pairs)
+        problems += [f"columns {' and '.join(INDICES)}, i and j: allowed one pair of them"] if twice else []
+        problems += [f"column {beside[0]}: not allowed beside line"] if beside else []
     if problems:
         raise InputError(problems)
     return factors
@@ -194,9 +261,9 @@ def _given_order(count: int, points: str) -> tuple[tuple[int, int], Array]:
     return shape, np.arange(count).reshape(shape[::-1]).T.ravel()
 
 
-def _order_by_indices(profile: Array, lengthwise: Array) -> tuple[tuple[int, int], Array]:
+def _order_by_indices(names: Sequence[str], profile: Array, lengthwise: Array) -> tuple[tuple[int, int], Array]:
     """Shape (profile, lengthwise) of a grid with these indices, and the order of the rows in which they fill it."""
-    fractions = [(name, at[at != np.round(at)]) for name, at in zip(INDICES, (profile, lengthwise), strict=True)]
+    fractions = [(name, at[at != np.round(at)]) for name, at in zip(names, (profile, lengthwise), strict=True)]
     problems = [f"{name}: {at[0]:g} is not a whole number ({at.size} such rows)" for name, at in fractions if at.size]
     if problems:  # each would be a line of the grid of its own
         raise InputError(problems)
@@ -209,7 +276,7 @@ def _order_by_indices(profile: Array, lengthwise: Array) -> tuple[tuple[int, int
     cases = ((missing, first_free, "missing"), (len(twice), int(twice[0]) if len(twice) else 0, "given more than once"))
     problems = [
         f"{count} of the {shape[0]} x {shape[1]} points {'is' if count == 1 else 'are'} {what}, the first at "
-        f"{INDICES[0]} {rows[first // shape[1]]:g}, {INDICES[1]} {columns[first % shape[1]]:g}"
+        f"{names[0]} {rows[first // shape[1]]:g}, {names[1]} {columns[first % shape[1]]:g}"
         for count, first, what in cases
         if count
     ]
