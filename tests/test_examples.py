@@ -217,6 +217,18 @@ def test_measured_flank_is_what_its_script_makes():
     assert_allclose(*numbers, rtol=0, atol=0.011)  # one unit of the last digit written
 
 
+def test_other_files_of_measured_flanks_are_what_their_examples_write():
+    lines, settings = (loaded(EXAMPLES / f"{name}.py") for name in ("make_measured_lines", "plot_measured_settings"))
+    made = {
+        "measured_lines": lines.main(),
+        **{f"duplex_wheel_{side}": settings.measure(side) for side in settings.FLANKS},
+    }
+    for name, text in made.items():
+        stored = (EXAMPLES / "scenes" / f"{name}.csv").read_text(encoding="utf-8")
+        numbers = [[float(row.rpartition(",")[2]) for row in each.splitlines()[5:]] for each in (stored, text)]
+        assert_allclose(*numbers, rtol=0, atol=0.011, err_msg=name)  # one unit of the last digit written
+
+
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 def test_bspline_example_is_the_pair_of_its_equations(gear):
     fitted = read_scene(EXAMPLES / "scenes" / "bspline_bevel.toml")

@@ -55,6 +55,9 @@ files beside FILE (out.toml):
   out_deviations.csv        one row per measured point: deviation before and after
   out_deviations.png        the same over the flanks
 docs/guide/measured_settings.md says more."""
+MEASURED = """Slopes, crownings and twist by least squares over the measured points, with their standard deviations, and
+the form deviations that they leave. Points, profile and helix lines are read as docs/guide/measured_flank.md says.
+FILE of --out is the scene with these modifications on a flank by its equations."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
 touch. Axes are those of each gear's own frame, which does not turn with it: z the axis of the gear, x to the pitch
 point, turns right-handed.
@@ -326,6 +329,7 @@ def _add_tables_and_maps(command: Command) -> None:
     cut.add_argument("--turned", choices=("flank", "tooth"), help=text)
     text = "with --measured: write the scene whose settings cut the flanks as they were measured"
     cut.add_argument("--as-cut", action="store_true", help=text)
+    _add_measured(command)
     shaft = command("shaft", run_by.shaft, "show how the shafts of a scene bend, without contact", SHAFT)
     _add_scene(shaft)
     shaft.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: none is written")
@@ -343,6 +347,21 @@ def _add_tables_and_maps(command: Command) -> None:
         "--loaded", action="store_true", help="under the torques of the scene, with all its analysis asks for"
     )
     _add_engine(vh)
+
+
+def _add_measured(command: Command) -> None:
+    """Add the modifications of a measured flank."""
+    text = "show what modifications a measured flank has, beside those of its scene"
+    reader = command("measured", run_by.measured, text, MEASURED)
+    _add_scene(reader)
+    text = "measured flank; default: that of [pinion.flank] or [wheel.flank]"
+    reader.add_argument("--file", metavar="FILE", type=_path, help=text)
+    text = "whose flank; default: that of the file's comment '# gear = wheel', or the one that the scene has measured"
+    reader.add_argument("--gear", choices=("pinion", "wheel"), help=text)
+    text = "what deviations count from: the flank with the modifications of the scene (default), or the bare one"
+    kinds = "modified", "unmodified"
+    reader.add_argument("--from", dest="measured_from", choices=kinds, default=kinds[0], help=text)
+    reader.add_argument("--out", metavar="FILE", type=_path, help="scene with these modifications; default: none")
 
 
 def _add_exchange(command: Command) -> None:

@@ -426,6 +426,13 @@ def _settings_of_blank(options: argparse.Namespace) -> None:
     print_files([options.out])
 
 
+def measured(options: argparse.Namespace) -> None:
+    """Show what modifications a measured flank has, and write the scene that has them."""
+    from loaded_tca.cli.measured_flank import measured
+
+    measured(options)
+
+
 def shaft(options: argparse.Namespace) -> None:
     """Show the forces on the bearings of a scene's shafts, and write how they bend, without contact."""
     from loaded_tca.loaded.shaft_lines import shaft_lines

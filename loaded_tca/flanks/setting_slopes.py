@@ -120,7 +120,7 @@ def cut_at(
     >>> wheel, (rho, z) = spread_blade(blank)[1], (np.array([part]) for part in (60.5, 40.3))
     >>> slopes = cut_at(wheel, "concave", rho, z, ["machine.radial", "cutter.convex.point_radius"])[1]
     >>> [round(float(one), 6) for one in slopes[:, 0]]
-    [0.0, 0.0]
+    [0.004811, 0.0]
     """
     generation = CradleGeneration(gear.cutter.blade(flank), flank, gear.machine)
     points = generation.solve(rho, z)

@@ -82,6 +82,8 @@ GDE = (
     "an XML file: GDE (VDI/VDE 2610) and other XML of measuring centres are not read, since no public description of "
     "their elements is known; have the points written as a table, whose columns docs/guide/measured_flank.md names"
 )
+LINES_NOTE = "lines"
+"""Among the notes of a flank that was measured in two lines, which have no twist."""
 MOST_PROBLEMS = 10
 """Problems of single lines that are told; more of them are counted."""
 
@@ -135,9 +137,8 @@ def parse_topography(text: str) -> Topography:
     if "removed" in table:
         table["deviation"] = -table.pop("removed")
     if LINE in table:
-        return MeasuredDeviations(
-            *flank_of_lines(*(table[name] for name in (LINE, "radius", "axial", "deviation"))), notes
-        )
+        parts = (table[name] for name in (LINE, "radius", "axial", "deviation"))
+        return MeasuredDeviations(*flank_of_lines(*parts), notes | {LINES_NOTE: "profile and helix"})
     by_machine = MACHINE_INDICES[0] in table
     if INDICES[0] in table or by_machine:
         names = MACHINE_INDICES if by_machine else INDICES
