@@ -24,6 +24,7 @@ import numpy as np
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array, GearName
 from loaded_tca.errors import InputError, named, require
+from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.removal import removal_change
 from loaded_tca.flanks.topography import LINES_NOTE, Topography, excess_problems
 from loaded_tca.pairs.gear import Gear
@@ -156,46 +157,67 @@ def measured_modifications(
     keys = tuple(key for key in AMOUNTS if key != "twist_um" or LINES_NOTE not in topography.notes)
     bare = _with(scene, gear, {})
     flank = (_with(scene, gear, section) if measured_from == "modified" else bare).flank
-    nominal = bare.nominal_flank
-    rho, z = topography.radius, topography.axial
     with named(f"{gear}.flank"):
-        inside = nominal.inside(rho, z, OFF_EDGE * min(nominal.extent))
-        require((bool(np.all(inside)), f"{int((~inside).sum())} of {inside.size} points lie beside the flank"))
-        excess = topography.excess_over(flank, turned=True)
-        if problems := excess_problems(flank, excess):
-            raise InputError(problems)
-    forms = {key: getattr(section, key) for key in ("lead_crowning_form",)}
-    shapes = [
-        removal_change(bare.flank, _with(scene, gear, forms | {key: 1.0}).flank, rho, z).ravel() * MICROMETRES
-        for key in keys
-    ]
-    turning = np.broadcast_to(nominal.side / nominal.gradient_norm(rho, z).value, rho.shape).ravel()
-    weights = np.ones(rho.size) if topography.weights is None else np.sqrt(np.asarray(topography.weights).ravel())
-    matrix = weights[:, None] * np.stack([*(-shape for shape in shapes), turning], axis=1)
-    sizes = np.linalg.norm(matrix, axis=0)
-    require((bool((sizes > 0.0).all()), f"{gear}.flank: the points do not tell all of {', '.join(keys)}"))
-    values = np.linalg.svd(matrix / sizes, compute_uv=False)
-    told = rho.size >= len(sizes) and values[-1] > ALIKE * values[0]
-    require((told, f"{gear}.flank: {rho.size} points do not tell {', '.join(keys)} apart; measure more lines"))
-    amounts = np.linalg.lstsq(matrix / sizes, weights * excess.ravel(), rcond=None)[0] / sizes
-    left = excess.ravel() - np.stack([*(-shape for shape in shapes), turning], axis=1) @ amounts
-    free = max(1, int((weights > 0.0).sum()) - len(sizes))
-    spread = np.linalg.norm(np.linalg.pinv(matrix / sizes), axis=1) / sizes
-    if LINES_NOTE in topography.notes:  # the noise of a point of a line is that of all points across it
-        spread[:-1] *= [rho.shape["profile" in key] ** 0.5 for key in keys]
-    noise = float(np.linalg.norm(weights * left)) / np.sqrt(free)
-    of_scene = np.array([float(getattr(section, key)) for key in keys])
-    base = of_scene if measured_from == "modified" else np.zeros(len(keys))
+        excess = _excess(topography, flank, bare.nominal_flank)
+        shapes = [
+            removal_change(bare.flank, _with(scene, gear, amount).flank, topography.radius, topography.axial)
+            for amount in ({"lead_crowning_form": section.lead_crowning_form, key: 1.0} for key in keys)
+        ]
+        fit = _Fit.of(keys, topography, bare.nominal_flank, [MICROMETRES * shape for shape in shapes], excess)
+    design = np.array([float(getattr(section, key)) for key in keys])
+    base = design if measured_from == "modified" else np.zeros(len(keys))
+    amounts = base + MICROMETRES * fit.amounts
     return MeasuredModifications(
-        scene,
-        name,
-        keys,
-        of_scene,
-        base + MICROMETRES * amounts[:-1],
-        MICROMETRES * noise * spread[:-1],
-        excess - (turning * amounts[-1]).reshape(rho.shape),
-        left.reshape(rho.shape),
+        scene, name, keys, design, amounts, MICROMETRES * fit.deviation, fit.left + fit.modified, fit.left
     )
+
+
+def _excess(topography: Topography, flank: Flank, nominal: Flank) -> Array:
+    """Deviations of points that lie on a flank [mm]."""
+    inside = nominal.inside(topography.radius, topography.axial, OFF_EDGE * min(nominal.extent))
+    require((bool(np.all(inside)), f"{int((~inside).sum())} of {inside.size} points lie beside the flank"))
+    excess = topography.excess_over(flank, turned=True)
+    if problems := excess_problems(flank, excess):
+        raise InputError(problems)
+    return excess
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """Amounts (k,) of modifications [mm], their standard deviations, what they make of the points and what is left."""
+
+    amounts: Array
+    deviation: Array
+    modified: Array
+    left: Array
+
+    @classmethod
+    def of(
+        cls, keys: tuple[str, ...], topography: Topography, nominal: Flank, shapes: list[Array], excess: Array
+    ) -> _Fit:
+        """Least squares of the deviations (n, m) by what units of the modifications remove, and a turn of the flank."""
+        shape = excess.shape
+        turning = np.broadcast_to(
+            nominal.side / nominal.gradient_norm(topography.radius, topography.axial).value, shape
+        )
+        columns = np.stack([*(-one.ravel() for one in shapes), turning.ravel()], axis=1)
+        weights = topography.weights
+        root = np.ones(excess.size) if weights is None else np.sqrt(np.asarray(weights).ravel())
+        sizes = np.linalg.norm(root[:, None] * columns, axis=0)
+        require((bool((sizes > 0.0).all()), f"the points do not tell all of {', '.join(keys)}"))
+        matrix = root[:, None] * columns / sizes
+        values = np.linalg.svd(matrix, compute_uv=False)
+        apart = excess.size >= len(sizes) and values[-1] > ALIKE * values[0]
+        require((apart, f"{excess.size} points do not tell {', '.join(keys)} apart; measure more lines"))
+        inverse = np.linalg.pinv(matrix) / sizes[:, None]
+        amounts = inverse @ (root * excess.ravel())
+        left = excess.ravel() - columns @ amounts
+        free = max(1, int((root > 0.0).sum()) - len(sizes))
+        deviation = float(np.linalg.norm(root * left)) / free**0.5 * np.linalg.norm(inverse, axis=1)[:-1]
+        if LINES_NOTE in topography.notes:  # the noise of a point of a line is that of all points across it
+            deviation *= [shape["profile" in key] ** 0.5 for key in keys]
+        modified = columns[:, :-1] @ amounts[:-1]
+        return cls(amounts[:-1], deviation, modified.reshape(shape), left.reshape(shape))
 
 
 OFF_EDGE = 0.02

@@ -85,13 +85,21 @@ def read_measured_flank(
     Raises
     ------
     InputError
-        If the file cannot be read, holds problems, or nothing says which flank it is of.
+        If the file cannot be read, holds problems, nothing says which flank it is of, or it says that it is another.
     """
     topography = read_topography(path)
     parts = {"gear": gear, "flank": flank}
     stated = {name: part or topography.notes.get(name, "") for name, part in parts.items()}
     with named(os.fspath(path)):
-        require(*((bool(part), f"{name}: missing; a comment '# {name} = ...'") for name, part in stated.items()))
+        names: dict[str, Sequence[str]] = {"gear": GEARS, "flank": (*BLADE_SIGNS,)}
+        notes = {name: topography.notes.get(name, "") for name in names}
+        require(
+            *((bool(part), f"{name}: missing; a comment '# {name} = ...'") for name, part in stated.items()),
+            *(
+                (note not in names[name] or note == stated[name], f"{name}: {stated[name]}; the file says {note}")
+                for name, note in notes.items()
+            ),
+        )
         return MeasuredFlank(cast(GearName, stated["gear"]), cast(FlankName, stated["flank"]), topography)
 
 

@@ -69,8 +69,8 @@ class MeasuredFlank:
     @property
     def weights(self) -> Array:
         """Weights of the points, (n, m)."""
-        given = self.topography.weights
-        return np.ones(self.topography.radius.shape[:2]) if given is None else np.asarray(given)
+        weights = self.topography.weights
+        return np.ones(self.topography.radius.shape[:2]) if weights is None else np.asarray(weights)
 
     @property
     def name(self) -> str:
@@ -180,10 +180,10 @@ class SettingsProblem:
         values, slopes = [], []
         for one in self.points:
             gear, flank = one.measured.gear, one.measured.flank
-            own = [number for number, (of, _) in enumerate(self.names) if of == gear]
-            theta, by_own = cut_at(gears[gear], flank, one.rho, one.z, [self.names[number][1] for number in own])
+            free = [number for number, (of, _) in enumerate(self.names) if of == gear]
+            theta, by_free = cut_at(gears[gear], flank, one.rho, one.z, [self.names[number][1] for number in free])
             by_all = np.zeros((len(self.keys), one.rho.size))
-            by_all[own] = by_own
+            by_all[free] = by_free
             values.append(one.scale * (theta - one.theta))
             slopes.append((one.scale * by_all).T)
         return np.concatenate(values), np.concatenate(slopes)

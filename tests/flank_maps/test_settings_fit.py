@@ -262,6 +262,8 @@ def file(tmp_path, generated):
 
 def test_file_says_its_flank_and_weights(file):
     flank = read_measured_flank(file)
+    with pytest.raises(InputError, match="gear: pinion; the file says wheel"):
+        read_measured_flank(file, gear="pinion")
     assert (flank.gear, flank.flank, flank.weights[1:3, 0].tolist()) == ("wheel", "concave", [1.0, 2.0])
     file.write_text(file.read_text().replace("# flank = concave\n", ""))
     with pytest.raises(InputError, match="flank: missing; a comment '# flank = "):

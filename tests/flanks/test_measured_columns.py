@@ -9,6 +9,7 @@ from loaded_tca.flanks import FlankModifications, MeasuredDeviations, MeasuredPo
 from loaded_tca.flanks.base import outward_normal, unmodified
 from loaded_tca.flanks.measured_columns import MOST_OF_LINE
 from loaded_tca.flanks.topography import parse_topography
+from loaded_tca.scene import FlankForm
 from tests.flanks.test_topography import pair_of
 from tests.samples.gear_pairs import gear_pair
 
@@ -130,3 +131,17 @@ def test_files_that_are_refused(words):
     with pytest.raises(InputError) as caught:
         parse_topography(REFUSED[words])
     assert words in str(caught.value)
+
+
+def test_weights_are_refused_where_a_spline_goes_through_the_points(flank, tmp_path):
+    """In Python, and in a scene that names the file."""
+    rows = "\n".join(f"{i},{j},{40 + i},{60 + j},0,1" for i, j in np.ndindex(4, 4))
+    text = "profile_index,lengthwise_index,radius_mm,axial_mm,deviation_um,weight\n" + rows
+    with pytest.raises(InputError, match="weight: a spline through measured points has none"):
+        measured(flank, parse_topography(text))
+    file = tmp_path / "weighted.csv"
+    file.write_text(text)
+    with pytest.raises(InputError, match="weight: a spline through measured points has none"):
+        FlankForm(form="measured", file=str(file))
+    with pytest.raises(InputError, match="weights: allowed from 0 on, and not all of them 0"):
+        parse_topography(text.replace(",1\n", ",-1\n"))
