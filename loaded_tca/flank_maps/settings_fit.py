@@ -164,7 +164,8 @@ class SettingsFit:
     corrections : (k,) array
         To be added to them, in the units that the keys end in.
     deviation : (k,) array
-        Standard deviations of the corrections if what is left is noise; 0 of those at their limits.
+        Standard deviations of the corrections if what is left is noise; 0 of those at their limits, NaN where there are
+        no more points than unknowns.
     limits : (k,) array
         Largest corrections that were allowed; inf: any.
     flanks : tuple of FlankDeviations

@@ -276,10 +276,13 @@ class SettingsProblem:
         )
 
     def deviation(self, errors: Array, left: Array, fixed: Array) -> Array:
-        """Standard deviations of the errors by what is left, as noise; zero of those that are fixed."""
+        """Standard deviations of the errors by what is left, as noise; zero of those that are fixed.
+
+        NaN where there are no more points than unknowns, which leave nothing.
+        """
         free = self.without_turns(self.weight[:, None] * self.cut(errors)[1][:, ~fixed])
         count = int((self.weight > 0.0).sum()) - free.shape[1] - self.turning.shape[1]
-        result = np.zeros(errors.size)
+        result = np.where(fixed, 0.0, np.nan)
         if count > 0 and free.shape[1]:
             sizes = np.linalg.norm(free, axis=0)
             inverse = np.linalg.pinv(free / sizes) / sizes[:, None]

@@ -149,6 +149,13 @@ def test_noise_gives_standard_deviations_and_points_of_weight_zero_none(scene, g
     )
     assert exact.corrections[0] == pytest.approx(-0.05, rel=FOUND)
     assert exact.flanks[0].after[2, 3] == pytest.approx(0.05, abs=1e-6)
+    weights = np.zeros((5, 7))
+    weights[0, 0] = weights[4, 6] = 1.0  # as many points as unknowns: the setting and the turn
+    few = fit_settings(
+        scene, [measured(generated, place, {"machine.radial": 0.05}, weights=weights)], ["wheel.machine.radial_mm"]
+    )
+    assert few.corrections[0] == pytest.approx(-0.05, rel=FOUND)
+    assert np.isnan(few.deviation[0])
     noise = 1e-3
     noisy = fit_settings(
         scene, [measured(generated, place, {"machine.radial": 0.05}, noise=noise)], ["wheel.machine.radial_mm"]
