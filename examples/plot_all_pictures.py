@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from loaded_tca import analyse, analyse_revolution, plots, read_scene, shaft_lines
-from loaded_tca.flank_maps import ease_off_map, vh_check
+from loaded_tca.flank_maps import ease_off_map, fit_settings, read_measured_flank, vh_check
 from loaded_tca.results import stress_below
 from loaded_tca.stages import analyse_stage, read_stage
 from loaded_tca.studies import run_study, vh_study
@@ -23,6 +23,7 @@ RELIEF = {TIP: 10.0, "wheel.modifications.tip_relief_start_mm": 179.0, "analysis
 HELICAL = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(COARSE | RELIEF)
 BEVEL = read_scene(SCENES / "mesh_cycle_bevel.toml").with_changes(FEW | {"analysis.torques_Nm": [0.8]})
 OIL = Lubricant(viscosity_40=220.0, viscosity_100=19.0, density_15=890.0, oil_temperature=80.0)
+CUT, CONVEX = read_scene(SCENES / "duplex_30x20_mended.toml"), read_measured_flank(SCENES / "duplex_wheel_convex.csv")
 (V, H), STEPS = BEVEL.vh_keys, (-0.01, 0.0, 0.01)
 
 
@@ -35,16 +36,15 @@ def main() -> None:
     drawn |= {"comparison": plots.plot_comparison(both), "compared_maps": plots.plot_compared_maps(both)}
     check = vh_check(lambda v, h: BEVEL.with_changes({V: v, H: h}).pair(), STEPS, STEPS)
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
+    drawn["measured_settings"] = plots.plot_measured_settings(fit_settings(CUT, [CONVEX], ["wheel.machine.radial_mm"]))
     drawn["shafts"] = plots.plot_shafts(shaft_lines(read_scene(SCENES / "helical_on_shafts.toml")))
     on = read_scene(SCENES / "helical_on_rolling_bearings.toml").with_changes(FEW | {"analysis.torques_Nm": [40, 130]})
     on_bearings, rigid = analyse(on), analyse(on.on_rigid_supports())
     drawn |= {kind: getattr(plots, f"plot_{kind}")(on_bearings) for kind in ("misalignment", "bearing_loads")}
     drawn["face_load_on_supports"] = plots.plot_face_load_on_supports(on_bearings, rigid)
-    turning = {"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}
-    turn = analyse_revolution(HELICAL.with_changes(FEW | turning))
+    turn = analyse_revolution(HELICAL.with_changes(FEW | {"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
     drawn |= {name: draw(turn) for name, draw in plots.REVOLUTION_PICTURES.items()}
-    stage = analyse_stage(read_stage(STAGE).with_changes(FEW))
-    drawn |= plots.stage_figures(stage)
+    drawn |= plots.stage_figures(analyse_stage(read_stage(STAGE).with_changes(FEW)))
     oiled = result.tribology([500.0, 1500.0], OIL, (0.6, 0.6), permissible_film_ratio=0.3)
     drawn |= {name: one for name, one in plots.tribology_figures(oiled).items() if not name.startswith("flank_")}
     drawn["over_flank"] = plots.plot_over_flank(oiled, "film_ratio")

@@ -180,8 +180,8 @@ def table_in(text: str) -> Table:
     """The table that a text is, as people and spreadsheets write it; without names and rows if it has no line.
 
     Between cells is what a first line such as ``sep=;`` says; without it semicolons, tabs or commas, the first of them
-    that the line of names has. Cells may be quoted. Separators at the ends of lines, below nothing in the line of
-    names, and lines of separators alone are left out.
+    that the line of names has, or blanks where it has none of these. Cells may be quoted. Separators at the ends of
+    lines, below nothing in the line of names, and lines of separators alone are left out.
 
     Raises
     ------
@@ -194,8 +194,9 @@ def table_in(text: str) -> Table:
     comments = [line for _, line in numbered if line.lstrip(BESIDE_CELLS).startswith("#")]
     body = [(number, line) for number, line in numbered if not line.lstrip(BESIDE_CELLS).startswith("#")]
     marks = ";\t" if declared is None else declared[1]
-    separator = next((mark for mark in marks if body and mark in body[0][1]), ",")
-    rows = [(number, _cells(number, line, separator)) for number, line in body]
+    blanks = bool(body) and not any(mark in body[0][1] for mark in (*marks, ",")) and len(body[0][1].split()) > 1
+    separator = " " if blanks else next((mark for mark in marks if body and mark in body[0][1]), ",")
+    rows = [(number, line.split() if blanks else _cells(number, line, separator)) for number, line in body]
     names = [name.translate(MICRO) for name in rows[0][1]] if rows else []
     while names and not names[-1]:
         del names[-1]

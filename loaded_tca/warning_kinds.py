@@ -345,6 +345,13 @@ OPEN_REVOLUTION = Kind(
     "spans hold for the part that is there",
     '`pitches = "hunting"`, or a multiple of the number of teeth of that gear',
 )
+WEAK_SETTINGS = Kind(
+    "settings from measured flanks: together these hardly change the flanks, by {effect} um where each by itself "
+    "changes them by up to 10 um: {changes}",
+    "noise of the measurement turns into large corrections that undo each other: what is left is small, the settings "
+    "are not those of the machine",
+    "fewer settings, limits for their changes, or both flanks of the gear measured; compare the standard deviations",
+)
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))
 """Of every accuracy warning of an analysis, of derivatives of its result, of its tribology and its rating."""

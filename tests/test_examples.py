@@ -47,6 +47,7 @@ EXPECTED = {
     "plot_micro_geometry": (1.0, 1e-12),  # every step of crowning
     "plot_tip_relief_and_rounding": (-1.0 / 3.0, 0.01),  # the power of the radius: a pressed part much smaller than it
     "plot_tooth_3d": (1.0, 5e-3),  # the pressure laid on the flank carries the load
+    "plot_measured_settings": (1.0, 0.02),  # the error that was made, with three standard deviations by noise
     "plot_bidirectional_start": (1.0, 1e-7),  # five equations and ease-off find the same contact
 }
 
@@ -55,6 +56,7 @@ QUICK = (
     "plot_contact_pattern",
     "plot_bevel_pressure",
     "plot_ease_off",
+    "plot_measured_settings",
     "plot_bidirectional_start",
 )
 """Of half a second. The others are analyses and pictures that the tests of their folders have on fewer cells."""
@@ -213,6 +215,18 @@ def test_measured_flank_is_what_its_script_makes():
     ]
     assert stored.splitlines()[:5] == made.splitlines()[:5]
     assert_allclose(*numbers, rtol=0, atol=0.011)  # one unit of the last digit written
+
+
+def test_other_files_of_measured_flanks_are_what_their_examples_write():
+    lines, settings = (loaded(EXAMPLES / f"{name}.py") for name in ("make_measured_lines", "plot_measured_settings"))
+    made = {
+        "measured_lines": lines.main(),
+        **{f"duplex_wheel_{side}": settings.measure(side) for side in settings.FLANKS},
+    }
+    for name, text in made.items():
+        stored = (EXAMPLES / "scenes" / f"{name}.csv").read_text(encoding="utf-8")
+        numbers = [[float(row.rpartition(",")[2]) for row in each.splitlines()[5:]] for each in (stored, text)]
+        assert_allclose(*numbers, rtol=0, atol=0.011, err_msg=name)  # one unit of the last digit written
 
 
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])

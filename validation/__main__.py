@@ -52,6 +52,7 @@ CASES = (
     "face_milled.duplex_paper",
     "face_milled.hypoid_pair",
     "face_milled.synthesis",
+    "face_milled.measured_settings",
     "cylindrical.iso_tr_6336_30",
     "cylindrical.nrel_5mw_stage_3",
     "cylindrical.metric_gear_technology",

@@ -41,9 +41,17 @@ def define_file(_: object, script: str) -> None:
     warnings.formatwarning = lambda message, category, *_: f"{category.__name__}: {message}\n"
 
 
+WRITTEN = {
+    "make_measured_flank": ["measured_flank.csv"],
+    "make_measured_lines": ["measured_lines.csv"],
+    "plot_measured_settings": ["."],
+}
+"""Arguments of scripts that write into the folder of scenes otherwise."""
+
+
 def arguments(_: object, script: dict[str, object]) -> list[str]:
     """Command line of a script: none, but that of the one which writes a file of scenes has a place of its own."""
-    return ["measured_flank.csv"] if Path(str(script["src_file"])).stem == "make_measured_flank" else []
+    return WRITTEN.get(Path(str(script["src_file"])).stem, [])
 
 
 def collect_pictures(_: object, script: dict[str, object], configuration: dict[str, str]) -> str:

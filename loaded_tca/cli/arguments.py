@@ -42,7 +42,22 @@ files in DIR:
 SETTINGS = """SCENE has bevel gears with a section [pair.blank] and the radius of its cutter. FILE is a scene of type
 face_milled with the same blanks, and with all machine settings and cutters: in closed form, a start to be mended by
 what its contact shows ('loaded-tca run', 'vh', 'ease-off'), or with the pinion's by local synthesis, whose contact at
-the mean point is what [pair.settings] of a scene of type face_milled asks for, or what is usual."""
+the mean point is what [pair.settings] of a scene of type face_milled asks for, or what is usual.
+
+With --measured SCENE has face-milled gears, and FILE is the scene with settings that bring the deviations of measured
+flanks to zero in least squares, as far as the chosen settings can. A measured flank has the columns of
+docs/guide/measured_flank.md, and weight; comments "# gear = wheel" and "# flank = convex" say which it is, or its name
+before the file: wheel.convex=FILE. LIMIT is the largest change of a setting in its unit. Default settings: radial,
+root angle and ratio of roll of each measured gear, cradle angle instead of the latter where it does not roll.
+
+files beside FILE (out.toml):
+  out_corrections.csv       one row per setting: its correction, standard deviation and limit, in its unit
+  out_deviations.csv        one row per measured point: deviation before and after
+  out_deviations.png        the same over the flanks
+docs/guide/measured_settings.md says more."""
+MEASURED = """Slopes, crownings and twist by least squares over the measured points, with their standard deviations, and
+the form deviations that they leave. Points, profile and helix lines are read as docs/guide/measured_flank.md says.
+FILE of --out is the scene with these modifications on a flank by its equations."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
 touch. Axes are those of each gear's own frame, which does not turn with it: z the axis of the gear, x to the pitch
 point, turns right-handed.
@@ -298,12 +313,23 @@ def _add_tables_and_maps(command: Command) -> None:
     ease_off = command("ease-off", run_by.ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     _add_scene(ease_off)
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
-    cut = command("settings", run_by.settings, "write the face-milled scene of a bevel blank", SETTINGS)
+    cut = command(
+        "settings", run_by.settings, "write machine settings of a bevel blank, or from measured flanks", SETTINGS
+    )
     _add_scene(cut)
     cut.add_argument("--out", metavar="FILE", required=True, type=_path, help="scene file to write")
     methods = "duplex_spread_blade", "spread_blade", "local_synthesis"
     text = f"how both gears are cut; default: pair.settings.method of the scene, else {methods[0]}"
     cut.add_argument("--method", choices=methods, help=text)
+    text = "measured flank whose deviations the settings are to bring to zero; may be given again for other flanks"
+    cut.add_argument("--measured", metavar="[GEAR.FLANK=]FILE", action="append", type=_measured, help=text)
+    text = "with --measured: settings that may change, as wheel.machine.radial_mm=0.1"
+    cut.add_argument("--settings", metavar="KEY[=LIMIT]", nargs="+", type=_limit, help=text)
+    text = "with --measured: each flank may turn about the axis of its gear (default), or the tooth with both flanks"
+    cut.add_argument("--turned", choices=("flank", "tooth"), help=text)
+    text = "with --measured: write the scene whose settings cut the flanks as they were measured"
+    cut.add_argument("--as-cut", action="store_true", help=text)
+    _add_measured(command)
     shaft = command("shaft", run_by.shaft, "show how the shafts of a scene bend, without contact", SHAFT)
     _add_scene(shaft)
     shaft.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: none is written")
@@ -321,6 +347,21 @@ def _add_tables_and_maps(command: Command) -> None:
         "--loaded", action="store_true", help="under the torques of the scene, with all its analysis asks for"
     )
     _add_engine(vh)
+
+
+def _add_measured(command: Command) -> None:
+    """Add the modifications of a measured flank."""
+    text = "show what modifications a measured flank has, beside those of its scene"
+    reader = command("measured", run_by.measured, text, MEASURED)
+    _add_scene(reader)
+    text = "measured flank; default: that of [pinion.flank] or [wheel.flank]"
+    reader.add_argument("--file", metavar="FILE", type=_path, help=text)
+    text = "whose flank; default: that of the file's comment '# gear = wheel', or the one that the scene has measured"
+    reader.add_argument("--gear", choices=("pinion", "wheel"), help=text)
+    text = "what deviations count from: the flank with the modifications of the scene (default), or the bare one"
+    kinds = "modified", "unmodified"
+    reader.add_argument("--from", dest="measured_from", choices=kinds, default=kinds[0], help=text)
+    reader.add_argument("--out", metavar="FILE", type=_path, help="scene with these modifications; default: none")
 
 
 def _add_exchange(command: Command) -> None:
@@ -491,6 +532,29 @@ def _tolerance(text: str) -> tuple[str, float | None]:
         allowed = "KEY or KEY=TOLERANCE, the tolerance a number above 0, as mounting.axial_offset_mm=0.05"
         raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed {allowed}")
     return key, tolerance
+
+
+def _measured(text: str) -> tuple[str | None, str | None, Path]:
+    """Gear and flank of a measured flank, where they are given, and its file."""
+    names = [f"{gear}.{flank}" for gear in ("pinion", "wheel") for flank in ("concave", "convex")]
+    place, _, file = text.partition("=")
+    if place not in names:
+        return None, None, _path(text)
+    gear, flank = place.split(".")
+    return gear, flank, _path(file)
+
+
+def _limit(text: str) -> tuple[str, float | None]:
+    """Key of a setting, and the largest change of it if that is given."""
+    key, equals, value = (part.strip() for part in text.partition("="))
+    try:
+        limit = number_in(value) if equals else None
+    except ValueError:
+        limit = math.nan
+    if not key or not (limit is None or 0.0 < limit < math.inf):
+        allowed = "KEY or KEY=LIMIT, the limit a number above 0, as wheel.machine.radial_mm=0.1"
+        raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed {allowed}")
+    return key, limit
 
 
 def _add_scene(parser: argparse.ArgumentParser) -> None:

@@ -396,6 +396,18 @@ def ease_off(options: argparse.Namespace) -> None:
 
 
 def settings(options: argparse.Namespace) -> None:
+    """Write the face-milled scene of a bevel blank, or one with settings corrected from measured flanks."""
+    if options.measured:
+        from loaded_tca.cli.measured_settings import correct
+
+        correct(options)
+        return
+    only = ((options.settings, "--settings"), (options.turned, "--turned"), (options.as_cut, "--as-cut"))
+    require(*((not value, f"{name}: needs --measured") for value, name in only))
+    _settings_of_blank(options)
+
+
+def _settings_of_blank(options: argparse.Namespace) -> None:
     """Write the face-milled scene of a bevel blank, with all its machine settings."""
     from loaded_tca.results.files import replace_file
     from loaded_tca.scene.bevel import BevelScene
@@ -412,6 +424,13 @@ def settings(options: argparse.Namespace) -> None:
         cut = scene.face_milled(options.method or "duplex_spread_blade")
     replace_file(options.out, cut.to_toml().encode())
     print_files([options.out])
+
+
+def measured(options: argparse.Namespace) -> None:
+    """Show what modifications a measured flank has, and write the scene that has them."""
+    from loaded_tca.cli.measured_flank import measured
+
+    measured(options)
 
 
 def shaft(options: argparse.Namespace) -> None:

@@ -212,6 +212,10 @@ class CradleGeneration:
             *self.roll(phi)[1:],
         )
 
+    def place(self, rho: Array, alpha: Array, z: Array, phi: Array) -> Array:
+        """Place (3, n) of points of the blank from the cutter's centre along e_r, e_t, z [mm]."""
+        return self._seen_from_cutter(rho, alpha, z, phi)[0]
+
     def roll(self, phi: Array) -> tuple[Array, Array, Array]:
         """Turn of the blank psi(phi) [rad], psi' and psi''."""
         machine = self.machine

@@ -383,6 +383,7 @@ def measured(
     >>> round(float(hollow.distance_to(nominal, radius, axial)[2, 8]), 9)
     0.01
     """
+    topography.require_no_weights()
     data = StructuredGrid.of(nominal, topography.radius, topography.axial)
     degrees, counts = data.degrees(degree), coefficients or (data.radius.shape[0], data.radius.shape[1])
     problems = data.problems(nominal, degrees, counts)

@@ -13,13 +13,26 @@ Files hold comma-separated values with the unit of every column in its header::
     2,1,84.45,-11.2,-1.6
     ...
 
-The columns are either ``x, y, z`` (points), or ``radius`` (or ``diameter``), ``axial`` and one of ``deviation``
-(positive: **more** material than nominal, as measuring centres count) and ``removed`` (positive: less material, as
-modifications count), each with ``_um``, ``_mm``, ``_m`` or ``_in`` behind it. Rows come in any order with the columns
-``profile_index`` and ``lengthwise_index``; without them in the order of the grid, the profile running fastest, and a
-comment says how many points there are: ``# points = 5 x 9`` (profile x lengthwise). Semicolons and tabs separate
-values, too, and a first line ``sep=;`` is read. Names and values may be quoted, the sign for micro in a name stands for
-u, and separators at the ends of lines, as spreadsheets write them, are left out. Numbers have a decimal point.
+The columns are one of
+
+- ``radius`` (or ``diameter``), ``axial`` and ``deviation`` (positive: **more** material than nominal, as measuring
+  centres count), or ``removed`` (positive: less material, as modifications count);
+- ``x, y, z``: points of the measured flank;
+- ``x, y, z, nx, ny, nz, deviation``: points of the nominal flank, unit normals there and deviations along these, as
+  nominal data of bevel gears are exchanged: measured points are P + e n;
+- ``x, y, z, deviation``: points of the nominal flank and deviations from it;
+- ``line, radius, axial, deviation``: two lines of a cylindrical gear, ``profile`` and ``helix``. A point of the flank
+  deviates by what the profile line does at its radius and by what the helix line does at its place along the face, both
+  less what they do where they cross. Of lines of more than 50 points means of points that follow each other count.
+
+Each has ``_um``, ``_mm``, ``_m`` or ``_in`` behind it, but normals and ``line``. Rows of points come in any order with
+the columns ``profile_index`` and ``lengthwise_index``, or ``i`` and ``j``, of which the one whose lines of points are
+longer runs along the tooth; without them in the order of the grid, the profile running fastest, and a comment says how
+many points there are: ``# points = 5 x 9`` (profile x lengthwise). A column ``weight``, without a unit, has the weights
+of the points where settings follow from them. Semicolons and tabs separate values, too, and a first line ``sep=;`` is
+read; blanks do where the line of names has nothing else. Names and values may be quoted, the sign for micro in a name
+stands for u, and separators at the ends of lines, as spreadsheets write them, are left out. Numbers have a decimal
+point.
 
 References
 ----------
@@ -40,8 +53,9 @@ from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, OtherKindError, numbers, shown
-from loaded_tca.errors import InputError, named
+from loaded_tca.errors import InputError, named, require
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.measured_columns import LINES, along_normals, flank_of_lines, runs_lengthwise_first
 from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
 from loaded_tca.plain import plain
 
@@ -49,9 +63,27 @@ LARGEST_FILE = 2**23
 """Bytes of a topography file; a point takes about 60."""
 UNITS = {"um": 1e-3, "mm": 1.0, "m": 1e3, "in": 25.4}
 """Unit at the end of a column's name -> factor to mm."""
-INDICES = ("profile_index", "lengthwise_index")
+INDICES, MACHINE_INDICES = ("profile_index", "lengthwise_index"), ("i", "j")
+LINE, WEIGHT = "line", "weight"
+NORMAL = ("nx", "ny", "nz")
+UNITLESS = (*INDICES, *MACHINE_INDICES, *NORMAL, LINE, WEIGHT)
 LENGTHS = ("x", "y", "z", "radius", "diameter", "axial", "deviation", "removed")
-CHOICES = ({"x", "y", "z"}, {"radius", "axial", "deviation"}, {"radius", "axial", "removed"})
+EXCESS = ("deviation", "removed")
+CHOICES = [
+    {"x", "y", "z"},
+    *({*places, excess} for places in (("x", "y", "z"), ("x", "y", "z", *NORMAL)) for excess in EXCESS),
+    *({*places, excess} for places in (("radius", "axial"), (LINE, "radius", "axial")) for excess in EXCESS),
+]
+ALLOWED = (
+    "x, y, z; x, y, z, deviation; x, y, z, nx, ny, nz, deviation; radius, axial, deviation; or line, radius, axial, "
+    "deviation, with removed for deviation, and lengths with their units"
+)
+GDE = (
+    "an XML file: GDE (VDI/VDE 2610) and other XML of measuring centres are not read, since no public description of "
+    "their elements is known; have the points written as a table, whose columns docs/guide/measured_flank.md names"
+)
+LINES_NOTE = "lines"
+"""Among the notes of a flank that was measured in two lines, which have no twist."""
 MOST_PROBLEMS = 10
 """Problems of single lines that are told; more of them are counted."""
 
@@ -93,6 +125,7 @@ def read_topography(path: str | os.PathLike[str]) -> Topography:
 
 def parse_topography(text: str) -> Topography:
     """Topography of the text of a file; see ``read_topography``."""
+    require((not text.lstrip().startswith("<"), GDE))
     lines = table_in(text)
     comments = [comment.split("=", 1) for comment in lines.comments]
     notes = {part[0].strip(): part[1].strip() for part in comments if len(part) == 2}
@@ -101,15 +134,41 @@ def parse_topography(text: str) -> Topography:
     columns = _factors(lines.number, lines.names)
     values = _numbers(lines)
     table = {name: values[:, k] * factor for k, (name, factor) in enumerate(columns)}
-    if INDICES[0] in table:
-        shape, order = _order_by_indices(*(table[name] for name in INDICES))
+    if "removed" in table:
+        table["deviation"] = -table.pop("removed")
+    if LINE in table:
+        parts = (table[name] for name in (LINE, "radius", "axial", "deviation"))
+        return MeasuredDeviations(*flank_of_lines(*parts), notes | {LINES_NOTE: "profile and helix"})
+    by_machine = MACHINE_INDICES[0] in table
+    if INDICES[0] in table or by_machine:
+        names = MACHINE_INDICES if by_machine else INDICES
+        shape, order = _order_by_indices(names, *(table[name] for name in names))
     else:
         shape, order = _given_order(len(values), notes.get("points", ""))
-    grids = {name: column[order].reshape(shape) for name, column in table.items() if name not in INDICES}
-    if "x" in grids:
-        return MeasuredPoints(np.stack([grids[name] for name in ("x", "y", "z")], axis=-1), notes)
-    excess = grids["deviation"] if "deviation" in grids else -grids["removed"]
-    return MeasuredDeviations(grids["radius"], grids["axial"], excess, notes)
+    grids = {name: column[order].reshape(shape) for name, column in table.items()}
+    if "x" in grids and "deviation" in grids:
+        grids |= {"radius": np.hypot(grids["x"], grids["y"]), "axial": grids["z"]}
+    if by_machine and runs_lengthwise_first(*_places(grids)):
+        grids = {name: grid.T for name, grid in grids.items()}
+    return _topography(grids, notes)
+
+
+def _places(grids: Mapping[str, Array]) -> tuple[Array, Array]:
+    """Radius and axial coordinate of points by their columns."""
+    if "radius" in grids:
+        return grids["radius"], grids["axial"]
+    return np.hypot(grids["x"], grids["y"]), grids["z"]
+
+
+def _topography(grids: Mapping[str, Array], notes: Mapping[str, str]) -> Topography:
+    """Topography of columns (n, m) of points, in mm."""
+    weights = grids.get(WEIGHT)
+    if "x" in grids and not ("deviation" in grids and NORMAL[0] not in grids):
+        points = np.stack([grids[name] for name in ("x", "y", "z")], axis=-1)
+        if NORMAL[0] in grids:
+            points = along_normals(points, np.stack([grids[name] for name in NORMAL], axis=-1), grids["deviation"])
+        return MeasuredPoints(points, notes, weights)
+    return MeasuredDeviations(*_places(grids), grids["deviation"], notes, weights)
 
 
 def _numbers(table: Table) -> Array:
@@ -124,9 +183,9 @@ def _numbers(table: Table) -> Array:
         if len(cells) != len(header):
             problems.append(f"line {number}: {len(cells)} values; the header names {len(header)} columns")
             continue
-        row = [_number(cell) for cell in cells]
+        row = [_number(cell, name) for cell, name in zip(cells, header, strict=True)]
         problems += [
-            f"line {number}, column {k}: {name} is not a finite number"
+            f"line {number}, column {k}: {name} is {'no line, profile or helix' if name == LINE else NOT_FINITE}"
             for k, (name, value) in enumerate(zip(header, row, strict=True), 1)
             if not np.isfinite(value)
         ]
@@ -137,7 +196,12 @@ def _numbers(table: Table) -> Array:
     return np.array(rows)
 
 
-def _number(cell: str) -> float:
+NOT_FINITE = "not a finite number"
+
+
+def _number(cell: str, name: str) -> float:
+    if name == LINE:
+        return LINES.get(cell.lower(), float("nan"))
     try:
         return number_in(cell)
     except ValueError:
@@ -147,10 +211,10 @@ def _number(cell: str) -> float:
 def _factors(line: int, header: Sequence[str]) -> list[tuple[str, float]]:
     """Name of each column without its unit, and the factor to mm; InputError with every problem of the header."""
     factors, problems = [], []
-    known = [*INDICES, *(f"{name}_{unit}" for name in LENGTHS for unit in UNITS)]
+    known = [*UNITLESS, *(f"{name}_{unit}" for name in LENGTHS for unit in UNITS)]
     for k, column in enumerate(header, 1):
         name, _, unit = column.rpartition("_")
-        if column in INDICES:
+        if column in UNITLESS:
             factors.append((column, 1.0))
         elif name == "diameter" and unit in UNITS:
             factors.append(("radius", 0.5 * UNITS[unit]))
@@ -163,16 +227,24 @@ def _factors(line: int, header: Sequence[str]) -> list[tuple[str, float]]:
             problems.append(f"line {line}, column {k}: the unit of {name} is unknown; allowed {allowed}")
         else:
             near = difflib.get_close_matches(column, known, 1)
-            meant = f"did you mean {near[0]!r}?" if near else f"allowed {', '.join(INDICES)}, and lengths as x_mm"
+            meant = f"did you mean {near[0]!r}?" if near else f"allowed {', '.join(UNITLESS)}, and lengths as x_mm"
             problems.append(f"line {line}, column {k}: the name of the column is unknown; {meant}")
     names = [name for name, _ in factors]
     problems += [f"column {name} appears twice" for name in sorted(set(names)) if names.count(name) > 1]
-    lengths = set(names) - set(INDICES)
+    pairs = INDICES, MACHINE_INDICES
+    lengths = set(names) - {*INDICES, *MACHINE_INDICES, WEIGHT}
     if not problems and lengths not in CHOICES:
-        allowed = "x, y, z, or radius, axial and deviation, or radius, axial and removed, each with its unit"
-        problems.append(f"columns {', '.join(sorted(lengths)) or 'none'}; allowed {allowed}")
-    if not problems and len(set(names) & set(INDICES)) == 1:
-        problems.append(f"columns {' and '.join(INDICES)} belong together; only one is there")
+        problems.append(f"columns {', '.join(sorted(lengths)) or 'none'}; allowed {ALLOWED}")
+    if not problems:
+        problems += [
+            f"columns {' and '.join(pair)} belong together; only one is there"
+            for pair in pairs
+            if len(set(names) & set(pair)) == 1
+        ]
+        beside = sorted(set(names) & {*INDICES, *MACHINE_INDICES, WEIGHT}) if LINE in names else []
+        twice = all(set(pair) <= set(names) for pair in pairs)
+        problems += [f"columns {' and '.join(INDICES)}, i and j: allowed one pair of them"] if twice else []
+        problems += [f"column {beside[0]}: not allowed beside line"] if beside else []
     if problems:
         raise InputError(problems)
     return factors
@@ -190,9 +262,9 @@ def _given_order(count: int, points: str) -> tuple[tuple[int, int], Array]:
     return shape, np.arange(count).reshape(shape[::-1]).T.ravel()
 
 
-def _order_by_indices(profile: Array, lengthwise: Array) -> tuple[tuple[int, int], Array]:
+def _order_by_indices(names: Sequence[str], profile: Array, lengthwise: Array) -> tuple[tuple[int, int], Array]:
     """Shape (profile, lengthwise) of a grid with these indices, and the order of the rows in which they fill it."""
-    fractions = [(name, at[at != np.round(at)]) for name, at in zip(INDICES, (profile, lengthwise), strict=True)]
+    fractions = [(name, at[at != np.round(at)]) for name, at in zip(names, (profile, lengthwise), strict=True)]
     problems = [f"{name}: {at[0]:g} is not a whole number ({at.size} such rows)" for name, at in fractions if at.size]
     if problems:  # each would be a line of the grid of its own
         raise InputError(problems)
@@ -205,7 +277,7 @@ def _order_by_indices(profile: Array, lengthwise: Array) -> tuple[tuple[int, int
     cases = ((missing, first_free, "missing"), (len(twice), int(twice[0]) if len(twice) else 0, "given more than once"))
     problems = [
         f"{count} of the {shape[0]} x {shape[1]} points {'is' if count == 1 else 'are'} {what}, the first at "
-        f"{INDICES[0]} {rows[first // shape[1]]:g}, {INDICES[1]} {columns[first % shape[1]]:g}"
+        f"{names[0]} {rows[first // shape[1]]:g}, {names[1]} {columns[first % shape[1]]:g}"
         for count, first, what in cases
         if count
     ]
@@ -227,11 +299,19 @@ class Topography(ABC):
         Cylindrical coordinates of the points; axial from mid-face (cylindrical) or from the apex (bevel).
     notes : mapping
         What the file said about the measurement.
+    weights : (n, m) array or None
+        Of the points where settings follow from them; None: one each. A spline through points has none.
     """
 
     radius: Array
     axial: Array
     notes: Mapping[str, str]
+    weights: ArrayLike | None
+
+    def require_no_weights(self) -> None:
+        """Refuse weights where a spline goes through the points."""
+        problem = "weight: a spline through measured points has none, settings from measured flanks do; leave it out"
+        require((self.weights is None, problem))
 
     @abstractmethod
     def excess_over(self, nominal: Flank, turned: bool) -> Array:
@@ -248,18 +328,21 @@ class MeasuredPoints(Topography):
     points : (n, m, 3) array [mm]
         x, y, z; the azimuth of the tooth is free where the flank is turned to its pitch point.
     notes : mapping, optional
+    weights : (n, m) array, optional
 
     Raises
     ------
     InputError
-        If the shape is another one or a point is not finite.
+        If the shape is another one, a point or weight is not finite, or a weight is negative or none is positive.
     """
 
     points: ArrayLike
     notes: Mapping[str, str] = field(default_factory=dict)
+    weights: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         points = _grid("points", self.points, 3)
+        object.__setattr__(self, "weights", _weights(self.weights, points.shape[:2]))
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "radius", np.hypot(points[..., 0], points[..., 1]))
         object.__setattr__(self, "axial", points[..., 2])
@@ -285,17 +368,20 @@ class MeasuredDeviations(Topography):
     excess : (n, m) array [mm]
         Positive where there is more material than nominal.
     notes : mapping, optional
+    weights : (n, m) array, optional
 
     Raises
     ------
     InputError
-        If the shapes differ or are no grid, a value is not finite, or a radius is not positive.
+        If the shapes differ or are no grid, a value is not finite, a radius is not positive, or weights are negative
+        or all zero.
     """
 
     radius: ArrayLike  # type: ignore[assignment]
     axial: ArrayLike  # type: ignore[assignment]
     excess: ArrayLike
     notes: Mapping[str, str] = field(default_factory=dict)
+    weights: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         arrays: dict[str, Array] = {}
@@ -313,6 +399,7 @@ class MeasuredDeviations(Topography):
             raise InputError(problems)
         for name, array in arrays.items():
             object.__setattr__(self, name, array)
+        object.__setattr__(self, "weights", _weights(self.weights, arrays["radius"].shape))
 
     def excess_over(self, nominal: Flank, turned: bool) -> Array:  # noqa: ARG002 (the nominal flank they belong to)
         """The deviations themselves [mm]."""
@@ -328,6 +415,18 @@ def excess_problems(nominal: Flank, excess: Array) -> list[str]:
         f"the points lie up to {plain(largest)} mm off the nominal flank along its normal, more than the "
         f"{plain(limit)} mm of any deviation: wrong gear, hand, side of the tooth, frame or unit?"
     ]
+
+
+def _weights(weights: ArrayLike | None, shape: tuple[int, ...]) -> Array | None:
+    """Weights of points as an array, or none."""
+    if weights is None:
+        return None
+    array = _grid("weights", weights)
+    require(
+        (array.shape == shape, f"weights: shape {array.shape}; allowed {shape}, as the points"),
+        (bool((array >= 0.0).all() and array.any()), "weights: allowed from 0 on, and not all of them 0"),
+    )
+    return array
 
 
 def _grid(name: str, values: ArrayLike, parts: int | None = None) -> Array:

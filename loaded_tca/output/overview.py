@@ -10,7 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import GEARS
 from loaded_tca.effort import expected_run_effort
-from loaded_tca.errors import give_accuracy_warning, noted_accuracy_warnings
+from loaded_tca.errors import InputError, give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.plain import lasting, plain
 from loaded_tca.results.gear_warnings import questions, warn_of_gears
@@ -194,11 +194,24 @@ def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
             at_points = 1e3 * flank.distance_to(flank.nominal, *gear.flank.measurement.places)
             yield f"{name}: deviations at points, from, to [um]", f"{at_points.min():z.2f}", f"{at_points.max():z.2f}"
             yield f"{name}: deviations of flank, from, to [um]", f"{excess.min():z.2f}", f"{excess.max():z.2f}"
+            yield from _measured_rows(scene, name)
         errors = {"at points": flank.fit_error, "between them": flank.check_error}
         for where, error in errors.items():
             if error is not None:
                 label = f"{name}: fit {where}, largest, rms [um]"
                 yield label, f"{1e3 * error.largest:.1e}", f"{1e3 * error.rms:.1e}"
+
+
+def _measured_rows(scene: Scene, name: str) -> Iterator[Row]:
+    """Modifications of a measured flank, where its points tell them apart."""
+    from loaded_tca.flank_maps.measured_modifications import measured_modifications
+
+    try:
+        made = measured_modifications(scene, name)
+    except InputError:  # of few points
+        return
+    for key, design, value in zip(made.keys, made.design, made.measured, strict=True):
+        yield f"{name}: {key.removesuffix('_um')}, of the scene, measured [um]", f"{design:z.2f}", f"{value:z.2f}"
 
 
 def _changed(section: Section, place: str) -> list[Row]:

@@ -40,6 +40,7 @@ from loaded_tca.plots.sensitivities import (
     plot_tornado,
     plot_transmission_error_band,
 )
+from loaded_tca.plots.settings import plot_measured_settings
 from loaded_tca.plots.shafts import plot_shafts
 from loaded_tca.plots.sharing import (
     plot_face_load,
@@ -119,6 +120,7 @@ __all__ = [
     "plot_line_load_distribution",
     "plot_load_share",
     "plot_loaded_vh_check",
+    "plot_measured_settings",
     "plot_mesh_stiffness",
     "plot_misalignment",
     "plot_over_flank",

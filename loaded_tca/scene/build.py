@@ -179,6 +179,17 @@ def build_topography(measurement: Measurement, upwards: int = 1) -> Topography:
     """Return the measured points, or deviations; ``upwards`` is that of the frame of the flank."""
     values = in_base_units(measurement)
     notes = {"source": values["source"]}
+    topography: Topography
     if measurement.x_mm is not None:
-        return MeasuredPoints(np.stack([values["x"], values["y"], values["z"]], axis=-1) * (1, upwards, upwards), notes)
-    return MeasuredDeviations(values["radius"], upwards * np.asarray(values["axial"]), values["deviation"], notes)
+        topography = MeasuredPoints(np.stack([values["x"], values["y"], values["z"]], axis=-1), notes)
+    else:
+        topography = MeasuredDeviations(values["radius"], values["axial"], values["deviation"], notes)
+    return in_own_frame(topography, upwards)
+
+
+def in_own_frame(topography: Topography, upwards: int) -> Topography:
+    """Return a topography of a file in the frame of its gear, whose y and z point against it where upwards is -1."""
+    if isinstance(topography, MeasuredPoints):
+        return replace(topography, points=np.asarray(topography.points) * (1, upwards, upwards))
+    assert isinstance(topography, MeasuredDeviations)
+    return replace(topography, axial=upwards * np.asarray(topography.axial))

@@ -194,6 +194,7 @@ def read_measurement(file: str) -> Measurement:
         raise InputError(f"file: {file}: is not a file")
     with named("file"):
         topography = read_topography(file)
+        topography.require_no_weights()
     columns: tuple[Any, ...]
     if isinstance(topography, MeasuredPoints):
         names, columns = COLUMNS[1], tuple(topography.points[..., part] for part in range(3))  # type: ignore[index,call-overload]

@@ -183,10 +183,9 @@ def test_columns_that_are_unknown_without_unit_or_double_are_refused_all_at_once
         "line 1, column 4: the name of the column is unknown; did you mean 'deviation_um'?",
         "column axial appears twice",
     )
-    assert problems_of("# note\nqqq,x_mm,y_mm,z_mm\n1,2,3,4") == (
-        "line 2, column 1: the name of the column is unknown; allowed profile_index, lengthwise_index, and lengths as "
-        "x_mm",
-    )
+    (problem,) = problems_of("# note\nqqq,x_mm,y_mm,z_mm\n1,2,3,4")
+    assert problem.startswith("line 2, column 1: the name of the column is unknown; allowed profile_index, ")
+    assert problem.endswith(", weight, and lengths as x_mm")
 
 
 @pytest.mark.parametrize(
@@ -194,8 +193,8 @@ def test_columns_that_are_unknown_without_unit_or_double_are_refused_all_at_once
 )
 def test_columns_that_do_not_belong_together_are_refused(header):
     (problem,) = problems_of(header + "\n" + ",".join("1" for _ in header.split(",")))
-    assert problem.endswith(
-        "allowed x, y, z, or radius, axial and deviation, or radius, axial and removed, each with its unit"
+    assert (
+        "allowed x, y, z; x, y, z, deviation; x, y, z, nx, ny, nz, deviation; radius, axial, deviation; or" in problem
     )
 
 

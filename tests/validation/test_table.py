@@ -50,6 +50,7 @@ DEAR = {
     "face_milled.duplex_paper",
     "face_milled.hypoid_pair",
     "face_milled.synthesis",
+    "face_milled.measured_settings",
     "loaded.limits",
     "loaded.revolution",
     "loaded.rolling_bearings",

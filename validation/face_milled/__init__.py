@@ -5,5 +5,6 @@
 - ``duplex_paper``: the bidirectional start of the duplex paper; ``duplex_document`` writes the page;
 - ``hypoid_pair``: a hypoid pair beside its five contact equations, which ``hypoid_axes`` has, and ISO/TR 10300-30;
 - ``synthesis``: settings by local synthesis beside what was asked for, by the same equations;
+- ``measured_settings``: errors of settings found from flanks that a swept cutter leaves;
 - ``pairs``: the pairs that both share.
 """
