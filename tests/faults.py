@@ -2338,8 +2338,8 @@ FAULTS = (
     Fault(
         "spectra: torques between those that are solved stand in equal ratios",
         "scene/load.py",
-        "np.linspace(smallest, largest, SOLVED)",
-        "np.geomspace(smallest, largest, SOLVED)",
+        "np.linspace(first, largest, count)",
+        "np.geomspace(first, largest, count)",
         "scene/test_load.py::test_many_torques_are_a_dozen_in_equal_steps_up_to_the_largest",
     ),
     Fault(
