@@ -330,8 +330,8 @@ SPECTRUM_BETWEEN = Kind(
     "rating: the damage of the spectrum may be wrong by {change:.1%}, since stresses are interpolated between {count} "
     "torques that were solved",
     "damage grows with a high power of the stress, which bends over the torque where contacts come to edges, reliefs "
-    "and further tooth pairs; the error is told by leaving out every second torque",
-    "more torques, `analysis.torques_Nm`, up to the largest of the spectrum",
+    "and further tooth pairs; the error is told by leaving out every second torque, and by how solved torques scatter",
+    "more torques, `analysis.torques_Nm`, up to the largest of the spectrum; where they scatter, more `cells`",
 )
 PITCH_DEVIATIONS = Kind(
     "the gears have runout or teeth that differ, which an analysis of one pitch leaves out: all teeth count as alike",

@@ -2338,8 +2338,8 @@ FAULTS = (
     Fault(
         "spectra: torques between those that are solved stand in equal ratios",
         "scene/load.py",
-        "np.linspace(smallest, largest, SOLVED)",
-        "np.geomspace(smallest, largest, SOLVED)",
+        "np.linspace(first, largest, count)",
+        "np.geomspace(first, largest, count)",
         "scene/test_load.py::test_many_torques_are_a_dozen_in_equal_steps_up_to_the_largest",
     ),
     Fault(
@@ -2453,6 +2453,55 @@ FAULTS = (
         "{*outdated} - {*files}",
         "set()",
         "test_cli_rating.py::test_command_rates_a_result_again_under_a_spectrum",
+    ),
+    Fault(
+        "spectra: the smallest torque is not solved where it seems not to matter, though K_v raises it",
+        "scene/load.py",
+        "return [*([smallest] if alone else []), first",
+        "return [first",
+        "scene/test_load.py::test_of_torques_that_do_next_to_no_damage_the_smallest_is_solved",
+    ),
+    Fault(
+        "spectra: the error of the damage does not see stresses just below the end of their curve",
+        "rating/interpolation.py",
+        "for one in (coarse, _mirrored(endurances, coarse))",
+        "for one in (coarse, coarse)",
+        "rating/test_interpolation.py::test_stress_just_below_the_end_of_a_curve_is_no_certainty_of_no_damage",
+    ),
+    Fault(
+        "spectra: the error of the damage counts scatter of the damage instead of the stress",
+        "rating/interpolation.py",
+        "endurance.stress * np.exp(part)",
+        "endurance.stress * np.exp(part / 13.0)",
+        "rating/test_interpolation.py::test_error_covers_what_scatter_of_solved_torques_does",
+    ),
+    Fault(
+        "spectra: the smallest torque solved stays where stresses below it are judged",
+        "rating/interpolation.py",
+        "solved.every_second(first)",
+        "solved.every_second(0)",
+        "rating/test_interpolation.py::test_error_of_bins_below_the_smallest_solved_torque_counts",
+    ),
+    Fault(
+        "spectra: idle bins show load factors of a thousandth of the largest torque",
+        "rating/spectrum.py",
+        "(torque > 0.0).reshape",
+        "(torque >= 0.0).reshape",
+        "rating/test_spectrum.py::test_idle_bins_take_their_time_and_do_no_damage",
+    ),
+    Fault(
+        "summaries: tables of many torques are as wide as they come",
+        "results/summary.py",
+        "max(1, (WIDEST - labels) // width)",
+        "100",
+        "rating/test_spectrum.py::test_summary_shows_all_bins_together_and_those_of_the_largest_damage",
+    ),
+    Fault(
+        "pictures: bars of small damages are not seen beside large ones",
+        "plots/rating.py",
+        'axes.set_yscale("log")',
+        'axes.set_yscale("linear")',
+        "plots/test_rating.py::test_bars_add_up_to_the_damage",
     ),
 )
 

@@ -21,6 +21,8 @@ SHOWN_CYCLES = 1e2, 1e11
 """Of the axis of load cycles, at least."""
 MOST_BARS = 40
 """Of a panel of damage: bins of more torques are put together in equal steps of torque."""
+LEAST_BAR, OF_ONE_DECADE = 1e-6, 0.1
+"""Of the largest damage: what is drawn of smaller ones, and from where on down bars need a logarithmic axis."""
 FEWEST_CYCLES = 1.0
 GEAR_STYLES = {"pinion": (DISTINCT_COLOURS[0], "o", "-"), "wheel": (DISTINCT_COLOURS[1], "s", "--")}
 """Colour, marker and line of each gear."""
@@ -64,7 +66,8 @@ def plot_damage(rating: Rating) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Of a spectrum of more than 40 torques, bins stand together in 40 equal steps of torque.
+        Of a spectrum of more than 40 torques, bins stand together in 40 equal steps of torque. Where damages differ by
+        more than a decade, their axis is logarithmic, down to a millionth of the largest.
     """
     figure, panels = _panels(rating)
     for n, (mode, axes) in enumerate(zip(rating.modes, panels, strict=True)):
@@ -81,13 +84,24 @@ def plot_damage(rating: Rating) -> Figure:
                 label = f"{gear}: above the static strength"
                 axes.plot(broken, np.full(broken.size, 0.97), "v", color=colour, transform=top, label=label)
         axes.set(xlabel="pinion torque [N m]", ylabel=f"damage in {rating.life_required:g} h [-]")
-        axes.set_ylim(bottom=0.0)
+        _scale(axes, damage[np.isfinite(damage)])
         if not (damage > 0.0).any():
             style.tell(axes, "no damage: stresses below the end of the curve")
         _finish(axes, WORDS[mode])
     several = isinstance(rating, SpectrumRating)
     what = f"damage of {len(rating.torque)} bins" if several else "damage under each torque alone"
     return _finished(figure, panels, rating, what)
+
+
+def _scale(axes: Axes, damage: Array) -> None:
+    """An axis on which bars of all sizes can be read, but for those that are nothing beside the largest."""
+    largest = float(damage.max(initial=0.0))
+    least = float(damage[damage > LEAST_BAR * largest].min(initial=largest))
+    if least > OF_ONE_DECADE * largest or largest == 0.0:
+        axes.set_ylim(bottom=0.0)
+    else:
+        axes.set_yscale("log")
+        axes.set_ylim(0.5 * least, 2.0 * largest)
 
 
 def _panels(rating: Rating) -> tuple[Figure, list[Axes]]:

@@ -47,7 +47,7 @@ def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -
     kind: type[Rating] = Rating
     if cases.is_spectrum:
         kind = SpectrumRating
-        more, remarks, warned = of_spectrum(inputs, arrays, _evaluated)
+        more, remarks, warned = of_spectrum(inputs, arrays, endurances, _evaluated)
         arrays, notes, sentences = arrays | more, (*notes, *remarks), [*sentences, *warned]
     about: dict[str, Any] = {"version": result.version, "warnings": "\n".join(sentences)}
     dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*GEARS], mode=[*endurances])

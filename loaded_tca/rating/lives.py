@@ -118,10 +118,3 @@ def _by_mode(endurances: Endurances, number: Callable[[Endurance], Array]) -> Ar
     """Numbers (..., gear, mode) of all kinds of failure of both gears."""
     rows = [[number(endurances[mode][place]) for mode in endurances] for place in range(len(GEARS))]
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
-
-
-def change_of_damage(fine: Array, coarse: Array) -> Array:
-    """Sum of the changes of all damages (c, gear, mode) over that of the damages; 0 where nothing changes."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        changes = np.where(coarse == fine, 0.0, np.abs(coarse - fine)).sum(axis=0)
-        return np.where(changes == 0.0, 0.0, changes / fine.sum(axis=0))

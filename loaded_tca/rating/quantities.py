@@ -147,6 +147,13 @@ NUMBERS: dict[str, Number] = {
     "life_hours": Number(OF_MODES, "h", "life at the required safety, of the load case alone", column="life_h"),
 }
 """Names in ``Rating.dataset``, and what each is, in the order of the summary."""
+UNDER_LOAD = (
+    *(name for name in _LOADS if name not in ("K_A", "K_gamma")),
+    *_RESONANCE,
+    *_EXCITATION,
+    *(f"local_{name}" for name in ("flank_radius", "flank_axial", "root_angle", "root_axial", "stress_ratio", "Y_M")),
+)
+"""Numbers that nothing has without a torque: those of idle bins are not known."""
 SPECTRUM_NUMBERS: dict[str, Number] = {
     "torque": NUMBERS["torque"],
     "pinion_speed": Number(CASE, "rpm", "pinion speed", label="pinion speed"),

@@ -99,9 +99,9 @@ class SolvedLoads:
             **roots,
         )
 
-    def every_second(self) -> SolvedLoads:
-        """The same with every second torque left out, but for the first and the last."""
-        places = np.unique([*range(0, len(self.torque), 2), len(self.torque) - 1])
+    def every_second(self, first: int = 0) -> SolvedLoads:
+        """The same with every second torque left out, from the ``first`` on, but for the last."""
+        places = np.unique([*range(first, len(self.torque), 2), len(self.torque) - 1])
         return self._of(places)
 
     def _nearest(self, torques: Array) -> Indices:

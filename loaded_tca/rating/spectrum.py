@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from math import nan
 from typing import TYPE_CHECKING, ClassVar
 
@@ -11,9 +11,9 @@ import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array
-from loaded_tca.rating.evaluate import Evaluated
-from loaded_tca.rating.lives import change_of_damage, damages_of
-from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS
+from loaded_tca.rating.interpolation import Evaluate, interpolation_error
+from loaded_tca.rating.lives import Endurances
+from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS, UNDER_LOAD
 from loaded_tca.rating.rating import WORDS, Rating, all_figures
 from loaded_tca.rating.roots import REVERSED
 from loaded_tca.results.figure import labelled
@@ -26,30 +26,22 @@ ROUNDING = 1e-9
 """Of hours that are the same."""
 MOST_SHOWN = 8
 """Bins that the summary has in full: those of the largest damage."""
-FEWEST_SOLVED = 4
-"""Torques, of fewer of which leaving out every second one says nothing of the interpolation."""
 TOLD = 0.01
 """Told error of the damage from which on a warning is given."""
-SCATTER = 0.005
-"""Of the damage, by what solved torques scatter about a smooth curve, which leaving out every second one may not show:
-K_Hbeta of an electric drive by 0.06 %, damage by 0.3 % (``validation/rating/spectra.py``)."""
-
-
-Evaluate = Callable[["CommonInputs"], Evaluated]
-"""What gives the numbers of inputs after the standard of the gears."""
 
 
 def of_spectrum(
-    inputs: CommonInputs, arrays: dict[str, Array], evaluate: Evaluate
+    inputs: CommonInputs, arrays: dict[str, Array], endurances: Endurances, evaluate: Evaluate
 ) -> tuple[dict[str, Array], list[str], list[str]]:
     """What a rating of a spectrum has beside: arrays, notes, and sentences of warnings."""
     cases, solved = inputs.cases, inputs.solved
-    error = _interpolation_error(inputs, arrays["damage"], evaluate)
+    error = interpolation_error(inputs, endurances, evaluate)
     more = {
         "pinion_speed": cases.speed,
         "hours": cases.hours,
         "reversed": cases.reversed.astype(int),
         "interpolation_error": error,
+        **{name: _loaded(cases.torque, arrays[name]) for name in UNDER_LOAD if name in arrays},
     }
     sentences = []
     largest = float(np.nanmax(error)) if np.isfinite(error).any() else nan
@@ -58,17 +50,9 @@ def of_spectrum(
     return more, [*_notes(inputs, arrays, error)], sentences
 
 
-def _interpolation_error(inputs: CommonInputs, damage: Array, evaluate: Evaluate) -> Array:
-    """By which part the damage (gear, mode) of bins (c, gear, mode) may be wrong; 0 where all torques were solved."""
-    solved = inputs.solved
-    if not inputs.cases.between(solved.torque).any():
-        return np.zeros(damage.shape[1:])
-    if len(solved.torque) < FEWEST_SOLVED:
-        return np.full(damage.shape[1:], nan)
-    coarse = replace(inputs, solved=solved.every_second())
-    _, endurances, _ = evaluate(coarse)
-    change = change_of_damage(damage, damages_of(endurances))
-    return np.where(damage.sum(axis=0) > 0.0, change + SCATTER, change)
+def _loaded(torque: Array, values: Array) -> Array:
+    """Values (c, ...) under torques (c,); NaN under none."""
+    return np.where((torque > 0.0).reshape(-1, *[1] * (values.ndim - 1)), values, nan)
 
 
 def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array) -> Iterator[str]:

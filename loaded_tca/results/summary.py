@@ -19,6 +19,8 @@ ROUNDING = 1e-6
 """Figures below this, in the engineer's units, are rounding; residuals and errors of the grid are not."""
 FOUR_DIGITS = 9999.5
 """From here on four digits would be written with an exponent."""
+WIDEST = 120
+"""Characters of a line of a table; more columns stand below it, in further tables."""
 MOST_TORQUES = 6
 """Torques that a note names one by one."""
 
@@ -46,17 +48,30 @@ def summary_of(
     title, scope : str
         First lines.
     rows : sequence of (str, ...)
-        Of the table: a label, and a cell for each torque.
+        Of the table: a label, and a cell for each torque. Where they are wider than 120 characters, the table goes on
+        below, with the same labels.
     sentences : mapping of str to sequence of str
         Word that each of some sentences begins with -> the sentences.
     beside : str
         A line below the table.
     """
-    width = 2 + max(len(cell) for _, *cells in rows for cell in cells)
-    labels = max(len(label) for label, *_ in rows)
-    table = [f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for label, *cells in rows]
+    tables = "\n\n".join(_tables(rows))
     below = [f"{word}: {sentence}" for word, some in sentences.items() for sentence in some]
-    return "\n".join([title, scope, *table, *([beside] if beside else []), *below])
+    return "\n".join([title, scope, tables, *([beside] if beside else []), *below])
+
+
+def _tables(rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Tables with as many columns each as have room; a label may reach over the empty part of its first cell."""
+    width = 2 + max(len(cell) for _, *cells in rows for cell in cells)
+    labels = max(len(label) + 2 + max(map(len, cells), default=0) for label, *cells in rows) - width
+    count, columns = max(1, (WIDEST - labels) // width), max(len(cells) for _, *cells in rows)
+    for first in range(0, columns, count):
+        lines = []
+        for label, *cells in rows:
+            text = "".join(f"{cell:>{width}}" for cell in cells[first : first + count])
+            if text or first == 0:
+                lines.append(f"{label:<{labels}}{text[max(0, len(label) - labels) :]}")
+        yield "\n".join(lines)
 
 
 def summary_text(

@@ -32,6 +32,10 @@ def test_bars_add_up_to_the_damage(torques):
     heights = [bar.get_height() for bar in axes.patches]
     assert len(heights) == 2 * (40 if len(torques) else 2)
     assert sum(heights) == pytest.approx(one.damage[:, :, 1].sum(), rel=1e-9)  # rounding of sums
+    seen = [height for height in heights if height > 1e-6 * max(heights)]
+    low, high = axes.get_ylim()
+    assert low < min(seen) <= max(seen) < high
+    assert axes.get_yscale() == ("log" if max(seen) > 10.0 * min(seen) else "linear")
     assert axes.get_ylabel() == "damage in 20000 h [-]"
 
 

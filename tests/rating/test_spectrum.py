@@ -130,6 +130,9 @@ def test_idle_bins_take_their_time_and_do_no_damage():
     assert_array_equal(idle.damage[0], 0.0)
     assert_array_equal(idle.root_safety[0], np.inf)
     assert_allclose(idle.life_hours, 2.0 * loaded.life_hours, rtol=ROUNDING)
+    factors = {label: cells for label, *cells in idle.rows(idle.key_figures())}
+    assert factors["face load factor K_Hbeta"][0] == "-"
+    assert factors["face load factor K_Hbeta"][1] != "-"
     assert_array_equal(idle.interpolation_error, 0.0)  # no torque lies between those that were solved
     assert not any("interpolated" in note or "lie below" in note for note in idle.notes())
 
@@ -192,8 +195,10 @@ def test_summary_shows_all_bins_together_and_those_of_the_largest_damage():
     assert "ISO 6336-6" not in text.splitlines()[0]
     assert "-6:2019 with 11 bins" in text
     assert "8 of 11 bins, of the largest damage" not in text.splitlines()[2]
-    line = next(line for line in text.splitlines() if line.startswith("bin "))
-    assert line.split() == ["bin", *map(str, range(4, 12))]
+    heads = [line.split() for line in text.splitlines() if line.startswith("bin ")]
+    assert [number for _, *numbers in heads for number in numbers] == [*map(str, range(4, 12))]
+    of_tables = [line for line in text.splitlines() if not line.startswith(("note: ", "ISO 6336"))]
+    assert 100 < max(map(len, of_tables)) <= 120
     figures = rated.key_figures()
     assert len(figures) == 11
     assert figures[0]["pinion_flank_life_h"] == figures[10]["pinion_flank_life_h"] == rated.life_hours[0, 0]
