@@ -20,7 +20,9 @@ FILES = """files in DIR:
   positions.csv             one row per torque and position
   contacts.csv              one row per torque, position and tooth pair, only where pairs share the load
 {pictures}
-Pictures of these names that the result does not have are removed; docs/reference/files.md says more."""
+Pictures of these names that the result does not have are removed; docs/reference/files.md says more.
+Of a scene with pair.double_helical: double_helical.nc, .json and .csv, half_a.nc and half_b.nc, which are results of a
+pair, and halves_*.png; docs/guide/double_helical.md says more."""
 TEETH = """files in DIR:
   pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
   pressure.vtk              the cells under pressure on the pinion's flank, in MPa

@@ -117,21 +117,23 @@ def require_result(directory: Path, path: Path, command: str) -> None:
 
 
 def result_file(path: Path) -> Path:
-    """The file of a result that is named by itself or by its directory; that of a stage is refused by its reader."""
+    """The file of a result that is named by itself or by its directory; that of another kind its reader refuses."""
+    from loaded_tca.double_helical.result import PAIR_FILE
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.stages.result import STAGE_FILE
 
-    if not os.path.isdir(path):
-        return path
-    return path / (STAGE_FILE if (path / STAGE_FILE).is_file() and not (path / RESULT).exists() else RESULT)
+    if not os.path.isdir(path) or (path / RESULT).exists():
+        return path / RESULT if os.path.isdir(path) else path
+    return path / next((name for name in (STAGE_FILE, PAIR_FILE) if (path / name).is_file()), RESULT)
 
 
 def file_of_report(path: Path) -> Path:
     """The file of a result, a stage, a study or a design that is named by itself or by its directory."""
+    from loaded_tca.double_helical.result import PAIR_FILE
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.stages.result import STAGE_FILE
 
-    result, *others = (path / name for name in (RESULT, STAGE_FILE, STUDY_FILE, DESIGN_FILE))
+    result, *others = (path / name for name in (RESULT, STAGE_FILE, PAIR_FILE, STUDY_FILE, DESIGN_FILE))
     if not os.path.isdir(path):
         return path
     found = next((one for one in (result, *others) if one.is_file()), result)

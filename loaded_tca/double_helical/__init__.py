@@ -6,9 +6,8 @@ from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
     from loaded_tca.double_helical.analyse import analyse_double_helical
-    from loaded_tca.double_helical.balance import HalfLaw, Halves, shared
     from loaded_tca.double_helical.result import DoubleHelicalResult
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
-__all__ = ["DoubleHelicalResult", "HalfLaw", "Halves", "analyse_double_helical", "shared"]
+__all__ = ["DoubleHelicalResult", "analyse_double_helical"]

@@ -18,6 +18,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array
 from loaded_tca.double_helical.balance import HalfLaw, Halves, Shares, shared
 from loaded_tca.double_helical.result import DoubleHelicalResult
+from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import (
     ConvergenceError,
     GeometryError,
@@ -109,6 +110,21 @@ def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None 
     return _result(scene, analysed, state)
 
 
+def expected_double_helical_effort(scene: DoubleHelicalScene) -> Effort:
+    """Estimate of what an analysis takes where halves share evenly, as of :func:`loaded_tca.effort.expected_effort`."""
+    first, second = scene.half_scenes(scene.mounting.axial_offset_mm)
+    effort = expected_effort(first)
+    if _are_alike(first, second):
+        return effort
+    return replace(
+        effort,
+        contacts=2 * effort.contacts,
+        states=2.0 * effort.states,
+        teeth=2 * effort.teeth,
+        roots=2 * effort.roots,
+    )
+
+
 def _even_torques(scene: DoubleHelicalScene) -> list[list[float]]:
     """Pinion torques of both halves [N mm] with even shares."""
     even = sorted({0.5 * torque for torque in scene.torques})
@@ -132,7 +148,7 @@ class _Progress:
 def _analysed(scenes: Sequence[CylindricalScene], shown: _Progress) -> tuple[_Half, _Half]:
     """Mesh cycles of both halves; halves that are alike are analysed once."""
     first, second = scenes
-    alike = replace(first, title=second.title) == second
+    alike = _are_alike(first, second)
     halves: list[_Half] = []
     for half, one in enumerate(scenes[: 1 if alike else 2]):
         shown.start(len(one.torques) * one.analysis.positions)
@@ -143,6 +159,11 @@ def _analysed(scenes: Sequence[CylindricalScene], shown: _Progress) -> tuple[_Ha
         cycle = halves[0].cycle
         halves.append(_Half(replace(cycle, scene=second, states=None), []))
     return halves[0], halves[1]
+
+
+def _are_alike(first: CylindricalScene, second: CylindricalScene) -> bool:
+    """Whether two halves are one, but for their titles."""
+    return replace(first, title=second.title) == second
 
 
 def _of_half(sentence: str) -> str:

@@ -10,9 +10,20 @@ from loaded_tca import ConvergenceError, InputError, analyse
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
 from loaded_tca.results import load_result
+from tests.samples import double_helical as samples
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # few cells
 HELD = {"pair.floating": "none"}
+
+
+@pytest.fixture(scope="module")
+def equal_halves():
+    return samples.equal_halves()
+
+
+@pytest.fixture(scope="module")
+def unlike_halves():
+    return samples.unlike_halves()
 
 
 @pytest.fixture(scope="module")
@@ -21,8 +32,8 @@ def one_half(equal_halves):
 
 
 @pytest.fixture(scope="module")
-def unlike(unlike_halves):
-    return analyse_double_helical(unlike_halves)
+def unlike():
+    return samples.analysed()[0]
 
 
 @pytest.fixture(scope="module")
@@ -154,3 +165,11 @@ def test_halves_out_of_reach_of_each_other_are_told(equal_halves):
         "other half give way",
     )
     assert_allclose(result.key_figures()[0]["share_factor"], 2.0)
+
+
+def test_warnings_say_whose_they_are(unlike):
+    _, sentences = samples.analysed()
+    assert sentences == list(unlike.warnings)
+    assert {sentence[:8] for sentence in sentences} == {"half a: ", "half b: "}
+    placed = [sentence for sentence in sentences if "pressure maps" in sentence]
+    assert all(sentence.endswith("; N m: the torque of the half)") for sentence in placed)

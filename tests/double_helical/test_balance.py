@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.double_helical import HalfLaw, Halves, shared
+from loaded_tca.double_helical.balance import HalfLaw, Halves, shared
 from tests.refusals import refusals
 
 RATE = 0.4
