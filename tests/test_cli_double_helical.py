@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 
 import pytest
 
@@ -63,8 +64,9 @@ def test_check_describes_both_halves(capsys):
     by_label = {line[:44].strip(): line[44:].split() for line in lines}
     assert by_label["face width of a half [mm]"] == ["40.0000", "40.0000"]
     assert by_label["floating along its axis"] == ["pinion,", "on", "20", "N/um"]
-    # T/2 tan(beta)/r at the reference circle of 29 teeth of 4 mm at 28 deg
-    assert float(by_label["axial force of a half, even shares [N]"][0]) == pytest.approx(6475.5, abs=0.1)
+    # T/2 tan(beta)/r at the reference circle, 2 r = 29 * 4 mm/cos(beta)
+    axial = 800e3 * math.sin(math.radians(15.0)) / 58.0
+    assert float(by_label["axial force of a half, even shares [N]"][0]) == pytest.approx(axial, abs=0.1)
     assert by_label["pinion.modifications.helix_slope_um"] == ["8.0"]
     assert sum(line.startswith("half ") for line in lines) == 2
 

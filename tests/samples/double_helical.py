@@ -14,6 +14,7 @@ FEW = {
     "analysis.free_edges": False,
     "analysis.positions": 2,
     "pair.apex_offset_mm": 0.0,
+    "pair.helix_angle_deg": 15.0,
 }
 SLOPE = {"pinion.half_b": {"modifications": {"helix_slope_um": 8.0}}}
 
