@@ -50,8 +50,6 @@ def test_run_writes_both_halves_with_tables_and_pictures(written):
 def test_commands_for_one_pair_name_the_files_of_the_halves(written, capsys):
     assert main(["plot", str(written)]) == 2
     assert "a double helical pair, not the result of a mesh cycle; half_a.nc and half_b.nc" in capsys.readouterr().err
-    assert main(["report", str(written)]) == 2
-    assert "half_a.nc and half_b.nc beside it are such results" in capsys.readouterr().err
     assert main(["run", str(SCENE.with_name("helical.toml")), "--out", str(written)]) == 2
     assert "holds a double helical pair (double_helical.nc)" in capsys.readouterr().err
     assert main(["dynamics", str(written / "half_b.nc"), "--out", str(written / "b.csv")]) == 0

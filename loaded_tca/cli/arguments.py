@@ -363,7 +363,7 @@ def _add_studies(command: Command) -> None:
     )
     text = "write a report of a result, a planetary stage, a study or a design as HTML"
     report = command("report", run_by.report, text, REPORT)
-    text = "result.nc, stage.nc, study.nc, the file of a design, or the directory that holds one"
+    text = "result.nc, stage.nc, double_helical.nc, study.nc, the file of a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
     report.add_argument(

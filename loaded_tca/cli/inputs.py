@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     import xarray
 
+    from loaded_tca.double_helical import DoubleHelicalResult
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
     from loaded_tca.stages import Stage, StageResult
@@ -128,7 +129,7 @@ def result_file(path: Path) -> Path:
 
 
 def file_of_report(path: Path) -> Path:
-    """The file of a result, a stage, a study or a design that is named by itself or by its directory."""
+    """The file of what has a report, a result, stage, study or design, named by itself or by its directory."""
     from loaded_tca.double_helical.result import PAIR_FILE
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.stages.result import STAGE_FILE
@@ -141,15 +142,19 @@ def file_of_report(path: Path) -> Path:
     return found
 
 
-def subject_of_report(path: Path) -> MeshCycle | StageResult | xarray.Dataset | DesignResult:
-    """The result, stage, study or design in a file."""
-    from loaded_tca.results.files import DESIGN, STAGE, STUDY, read_dataset
+def subject_of_report(path: Path) -> MeshCycle | StageResult | DoubleHelicalResult | xarray.Dataset | DesignResult:
+    """The result, stage, double helical pair, study or design in a file."""
+    from loaded_tca.results.files import DESIGN, DOUBLE_HELICAL, STAGE, STUDY, read_dataset
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.studies import load_design, load_study
 
     kind = read_dataset(path).attrs.get("kind")
     if kind == STUDY:
         return load_study(path)
+    if kind == DOUBLE_HELICAL:
+        from loaded_tca.double_helical import DoubleHelicalResult
+
+        return DoubleHelicalResult.load(path.parent)
     if kind == STAGE:
         from loaded_tca.stages import StageResult
 

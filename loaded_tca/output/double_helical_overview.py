@@ -30,20 +30,28 @@ def describe_double_helical(scene: DoubleHelicalScene) -> str:
     InputError, GeometryError
         If gears of a half cannot exist, mesh or turn.
     """
-    lines = [scene.title or "Double helical pair", *(_line(*row) for row in _pair_rows(scene))]
+    lines = [scene.title or "Double helical pair", *(_line(*row) for row in pair_rows(scene))]
     warned: list[str] = []
+    for name, rows, sentences in geometry_of_halves(scene):
+        lines += ["", f"{name}, z from the groove outwards", *(_line(*row) for row in rows)]
+        warned += [f"warning: {name}: {sentence}" for sentence in sentences]
+    seconds = plain(expected_double_helical_effort(scene).seconds, 2)
+    return "\n".join([*lines, "", _line("analysis of even shares, about [s]", seconds), HELD, *warned])
+
+
+def geometry_of_halves(scene: DoubleHelicalScene) -> list[tuple[str, list[Row], list[str]]]:
+    """Name of each half, the rows of its overview, of half b what may differ, and its warnings on whole gears."""
+    geometry = []
     for half, own in enumerate(scene.half_scenes(scene.mounting.axial_offset_mm)):
         with noted_accuracy_warnings(given=False) as sentences:
             warn_of_gears(own, own.pair())
             sections = scene_sections(own)
         rows = chain.from_iterable(rows for name, rows in sections.items() if not half or name in OF_EACH)
-        lines += ["", f"half {HALVES[half]}, z from the groove outwards", *(_line(*row) for row in rows)]
-        warned += [f"warning: half {HALVES[half]}: {sentence}" for sentence in dict.fromkeys(sentences)]
-    seconds = plain(expected_double_helical_effort(scene).seconds, 2)
-    return "\n".join([*lines, "", _line("analysis of even shares, about [s]", seconds), HELD, *warned])
+        geometry.append((f"half {HALVES[half]}", [*rows], list(dict.fromkeys(sentences))))
+    return geometry
 
 
-def _pair_rows(scene: DoubleHelicalScene) -> list[Row]:
+def pair_rows(scene: DoubleHelicalScene) -> list[Row]:
     """Of both halves together: widths, hands, how the gears stand along the axes, torques and axial forces."""
     geometry, gears = scene.geometry, (scene.pinion, scene.wheel)
     shown = torques_with_columns(scene.torques)

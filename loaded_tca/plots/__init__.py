@@ -16,6 +16,7 @@ from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
 from loaded_tca.plots.double_helical import (
+    DOUBLE_HELICAL_CAPTIONS,
     DOUBLE_HELICAL_PICTURES,
     double_helical_figures,
     plot_halves_axial_motion,
@@ -95,6 +96,7 @@ from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 __all__ = [
+    "DOUBLE_HELICAL_CAPTIONS",
     "DOUBLE_HELICAL_PICTURES",
     "MORE_PICTURES",
     "PICTURES",

@@ -148,6 +148,13 @@ def plot_halves_shares(result: DoubleHelicalResult, torque: int | None = None) -
     return _finished(figure, result, f"shares of the halves, pinion torque {shown_torque(result.torque[torque])}")
 
 
+DOUBLE_HELICAL_CAPTIONS = {
+    "halves_face_load": "Normal force per face width along the pinion, mean over a pitch, under the largest torque.",
+    "halves_shares": "Even where a gear floats freely; where both are held the half that stands nearer carries more.",
+    "halves_error": "What both halves excite together: a motion along the axis evens out what they do not share.",
+    "halves_axial_motion": "The mean is the place that the gear finds, the span shuttles with each tooth mesh.",
+}
+"""How each picture is read, in reports."""
 DOUBLE_HELICAL_PICTURES: dict[str, Callable[[DoubleHelicalResult], Figure]] = {
     "halves_face_load": plot_halves_face_load,
     "halves_shares": plot_halves_shares,
