@@ -280,7 +280,8 @@ def _arrays(scene: DoubleHelicalScene, cycles: Sequence[MeshCycle], state: Share
         arrays[name] = _of_halves(cycles, values, carried)
     mean = carried.mean(axis=1)[:, None]
     factors = [cycle.face_load_factor[:, None] for cycle in cycles]
-    arrays["face_load_factor"] = _of_halves(cycles, factors, mean, known_at_zero=False)[:, 0]
+    known = _of_halves(cycles, factors, mean, known_at_zero=False)
+    arrays["face_load_factor"] = np.where(mean > 0.0, known, math.nan)[:, 0]
     if scene.analysis.root_stress:
         tensions = [
             _of_halves(cycles, [np.nan_to_num(cycle.root_tension[..., gear]) for cycle in cycles], carried).max(axis=1)

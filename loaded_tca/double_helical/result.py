@@ -57,7 +57,7 @@ NUMBERS = numbers(
         "line_load": Number(
             OVER_HALVES, "N/mm", "largest line load in the half", columns=("half_{}_line_load_N_per_mm",)
         ),
-        "face_load_factor": (HALF, "1", "face load factor K_Hbeta of the half, under its mean torque"),
+        "face_load_factor": (HALF, "1", "face load factor K_Hbeta of the half, under its mean torque; NaN: no load"),
         "share_factor": Number(
             TORQUE, "1", "largest share of a half over an even one", label="largest share of a half over an even one"
         ),

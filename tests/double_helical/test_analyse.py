@@ -11,6 +11,7 @@ from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helica
 from loaded_tca.double_helical import analyse as analyses
 from loaded_tca.results import load_result
 from tests.samples import double_helical as samples
+from tests.samples.root_stress import coarsely
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # few cells
 HELD = {"pair.floating": "none"}
@@ -168,6 +169,17 @@ def test_halves_out_of_reach_of_each_other_are_told(equal_halves):
         "other half give way",
     )
     assert_allclose(result.key_figures()[0]["share_factor"], 2.0)
+    assert result.peak_pressure[0, 0, 1] == 0.0
+    assert np.isnan(result.face_load_factor[0, 1])
+
+
+@pytest.mark.thorough
+def test_root_tension_of_equal_halves_is_that_of_one(equal_halves):
+    with coarsely():
+        result = analyse_double_helical(equal_halves.with_changes({"analysis.root_stress": True}))
+    assert_allclose(result.root_tension, result.half_a.root_tension.max(axis=1)[:, None] * np.ones((2, 1)), rtol=1e-10)
+    figures = result.key_figures()[0]
+    assert figures["half_b_wheel_root_tension_MPa"] == pytest.approx(result.root_tension[0, 1, 1])
 
 
 def test_warnings_say_whose_they_are(unlike):
