@@ -10,7 +10,8 @@ from loaded_tca import InputError
 from loaded_tca.cli import main
 from loaded_tca.double_helical import DoubleHelicalResult
 from loaded_tca.plots import DOUBLE_HELICAL_PICTURES
-from loaded_tca.studies import Study
+from loaded_tca.reports import write_html_report
+from loaded_tca.studies import Study, rank_variants, run_study
 from tests.samples.double_helical import FEW, SCENE, analysed, unlike_halves
 
 FILES = ["double_helical.csv", "double_helical.json", "double_helical.nc", "half_a.nc", "half_b.nc"]
@@ -80,6 +81,14 @@ def test_sides_and_supports_are_not_compared(tmp_path, capsys):
     assert "--coast, --rigid: not of double helical pairs" in capsys.readouterr().err
 
 
-def test_studies_are_refused_before_they_begin():
-    with pytest.raises(InputError, match="scene: found a double helical pair; not in studies"):
-        Study(unlike_halves(), {"pair.gap_mm": [10.0, 20.0]})
+@pytest.mark.usefixtures("blank_pictures")
+def test_study_keeps_the_figures_of_both_halves_and_has_a_report(tmp_path, monkeypatch):
+    monkeypatch.setattr("loaded_tca.studies.double_helical.analyse_double_helical", lambda _: analysed()[0])
+    study = Study(unlike_halves(), {"pair.gap_mm": [10.0, 20.0]})
+    rows = run_study(study, out=tmp_path / "study.nc")
+    assert rows["half_b_torque_share"].values.tolist() == [[0.5], [0.5]]
+    assert rank_variants(rows)["rank"].tolist() == [1, 2]  # by the transmission error, of which both have the same
+    report = write_html_report(rows, tmp_path / "report.html", date="2026-03-04T05:06:07+00:00")
+    assert "Half b, z from the groove outwards" in report.read_text()
+    with pytest.raises(InputError, match="keep_maps: not of a study of double helical pairs"):
+        run_study(study, out=tmp_path / "study.nc", keep_maps=[0])

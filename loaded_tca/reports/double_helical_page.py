@@ -13,6 +13,7 @@ from loaded_tca.results.summary import shown
 
 if TYPE_CHECKING:
     from loaded_tca.double_helical import DoubleHelicalResult
+    from loaded_tca.scene.double_helical import DoubleHelicalScene
 
 FILES = "half_a.nc", "half_b.nc"
 
@@ -30,17 +31,24 @@ def double_helical_content(result: DoubleHelicalResult) -> dict[str, Any]:
         "analysed_by": result.version,
         "held": HELD,
         "scope": result.scope,
-        "asked": tables_of(pair_rows(scene)),
+        **halves_geometry(scene),
         "key_figures": [_figures(result, part) for part in parts_of(result.torque.tolist(), MOST_TORQUES)],
         "notes": result.notes(),
+        "files": FILES,
+        "warnings": explained(result.warnings or ()),
+        "pictures": pictures_of(double_helical_figures(result), DOUBLE_HELICAL_CAPTIONS, scene.title),
+    }
+
+
+def halves_geometry(scene: DoubleHelicalScene) -> dict[str, Any]:
+    """Return what templates take of a scene: what was asked, the geometry of both halves, the text of the file."""
+    return {
+        "asked": tables_of(pair_rows(scene)),
         "geometry": [
             table
             for name, rows, _ in geometry_of_halves(scene)
             for table in tables_of(rows, f"{name.capitalize()}, z from the groove outwards")
         ],
-        "files": FILES,
-        "warnings": explained(result.warnings or ()),
-        "pictures": pictures_of(double_helical_figures(result), DOUBLE_HELICAL_CAPTIONS, scene.title),
         "scene_toml": scene.to_toml(),
     }
 

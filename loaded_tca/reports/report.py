@@ -22,14 +22,15 @@ from loaded_tca.plain import plain
 from loaded_tca.plots import plot_before_and_after, plot_peak_to_peak_over_torque, plot_study
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports import page
-from loaded_tca.reports.double_helical_page import double_helical_content
+from loaded_tca.reports.double_helical_page import double_helical_content, halves_geometry
 from loaded_tca.reports.page import Table, pictures_of
 from loaded_tca.reports.result_page import explained, result_content, scene_content, stage_content, stage_geometry
 from loaded_tca.results.files import STUDY, FilePath, make_directory, replace_file
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import shown, shown_torque
 from loaded_tca.results.warnings import without_place
-from loaded_tca.scene import parse_scene
+from loaded_tca.scene import Scene, parse_scene
+from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.stages import Stage, StageResult
 from loaded_tca.studies.design import KEPT, DesignResult
 from loaded_tca.studies.design_figures import FIGURES
@@ -185,7 +186,7 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
         "statuses": Counter(study["status"].values.tolist()).most_common(),
         "variants": variants,
         "analysed": "ok" in study["status"].values,
-        **(stage_geometry(subject) if isinstance(subject, Stage) else scene_content(subject)),
+        **_geometry_of(subject),
         "varied": _varied(study),
         "seed": f"{study.attrs.get('seed', '-')}" if sampled else "",
         "scatter": [*_scatter(study, by)],
@@ -207,6 +208,13 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
         "warnings": explained([f"{reason} ({count} of {variants} variants)" for reason, count in concerned.items()]),
         "pictures": pictures_of(figures, STUDY_CAPTIONS, subject.title),
     }
+
+
+def _geometry_of(subject: Scene | Stage) -> dict[str, Any]:
+    """What was asked, the geometry, and the text of a scene or a stage."""
+    if isinstance(subject, Stage):
+        return stage_geometry(subject)
+    return halves_geometry(subject) if isinstance(subject, DoubleHelicalScene) else scene_content(subject)
 
 
 def _quantiles(study: xarray.Dataset, by: str | None) -> str:

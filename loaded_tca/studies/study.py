@@ -19,7 +19,6 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 from loaded_tca.scene import Scene
-from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.scene.keys import Key, Number, Whole, shown
 from loaded_tca.scene.section import as_given, as_table
 from loaded_tca.separation.pair_change import value_at
@@ -84,8 +83,6 @@ class Study:
     table: Mapping[str, Sequence[Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        of_halves = isinstance(self.scene, DoubleHelicalScene)
-        require((not of_halves, "scene: found a double helical pair; not in studies, give one half as a helical pair"))
         problems = [*self._problems_of_numbers(), *self._problems_of_keys()]
         kinds = self._kinds
         for key, values in (*self.table.items(), *self.factors.items()):
