@@ -39,9 +39,10 @@ transmission error of helical pairs that are crowned by 5 um."""
 ACCURATE, WARNED = 1e-4, 1e-3
 """Estimated error of a share with which no more torques are analysed, and above which a warning says so."""
 NEAR = 0.02
-"""Relative difference of two torques of which one is enough."""
-BEYOND = 0.01
-"""By how much torques at the ends lie outside the shares."""
+"""Difference of two torques, over an even share, of which one is enough where shares are uncertain."""
+OUTSIDE, BEYOND = 1e-3, 0.01
+"""By how much of an even share a half may carry more or less than at the torques that were analysed, and by how much
+torques at the ends lie outside its shares where it does."""
 LEAST = 0.05
 """Of an even share: the least torque that is analysed."""
 MOST_ROUNDS = 6
@@ -221,10 +222,14 @@ def _wanted(scene: DoubleHelicalScene, state: Shares, torques: Sequence[Sequence
     for half in range(len(HALVES)):
         own = [*torques[half]]
         for whole, forces, errors in zip(scene.torques, state.force[..., half], state.error, strict=True):
-            carried = radius * forces
-            ends = carried.min() * (1.0 - BEYOND), carried.max() * (1.0 + BEYOND)
+            carried, even = radius * forces, 0.5 * whole
+            low, high = float(carried.min()), float(carried.max())
+            if high > max(own) + OUTSIDE * even:
+                own.append(high * (1.0 + BEYOND))
+            if LEAST * even < low < min(own) - OUTSIDE * even:
+                own.append(low * (1.0 - BEYOND))
             if errors.max() > ACCURATE:
-                _add(own, (*ends, carried[errors.argmax()]), 0.5 * whole)
+                _add(own, (low, high, float(carried[errors.argmax()])), even)
         wanted.append(sorted(own))
     return wanted
 
@@ -232,7 +237,7 @@ def _wanted(scene: DoubleHelicalScene, state: Shares, torques: Sequence[Sequence
 def _add(torques: list[float], more: Sequence[float], even: float) -> None:
     """Add torques [N mm] that are not near others, over an even share."""
     for torque in more:
-        asked = max(float(torque), LEAST * even)
+        asked = max(torque, LEAST * even)
         if all(abs(asked - other) > NEAR * even for other in torques):
             torques.append(asked)
 

@@ -10,6 +10,7 @@ from loaded_tca import ConvergenceError, InputError, analyse
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
 from loaded_tca.results import load_result
+from loaded_tca.warning_kinds import SHARES_OF_HALVES, kind_of
 from tests.samples import double_helical as samples
 from tests.samples.root_stress import coarsely
 
@@ -160,10 +161,20 @@ def test_table_has_a_column_for_each_half(unlike):
     assert {"axial_motion_um", "half_b_axial_force_N", "transmission_error_um"} < set(table)
 
 
-def test_halves_out_of_reach_of_each_other_are_told(equal_halves):
-    scene = equal_halves.with_changes({**HELD, "pair.apex_offset_mm": 1.0, "analysis.positions": 1})
+def test_halves_out_of_reach_of_each_other_are_told_and_analysed_under_what_they_carry(
+    equal_halves, one_half, monkeypatch
+):
+    asked = []
+
+    def ready(scenes, _):
+        asked.append(scenes[0].torques)
+        return 2 * (analyses._Half(one_half, []),)
+
+    monkeypatch.setattr(analyses, "_analysed", ready)
+    scene = equal_halves.with_changes({**HELD, "pair.apex_offset_mm": 1.0})
     result = analyse_double_helical(scene)
-    assert result.torque_share.tolist() == [[[1.0, 0.0]]]
+    assert result.torque_share.tolist() == [[[1.0, 0.0]] * 2]
+    assert min(asked[-1]) == asked[0][0] < equal_halves.torques[0] < max(asked[-1])
     assert result.notes() == (
         "under 1600 N m half b carries nothing at all positions: its flanks stand farther apart than those of the "
         "other half give way",
@@ -188,3 +199,11 @@ def test_warnings_say_whose_they_are(unlike):
     assert {sentence[:8] for sentence in sentences} == {"half a: ", "half b: "}
     placed = [sentence for sentence in sentences if "pressure maps" in sentence]
     assert all(sentence.endswith("; N m: the torque of the half)") for sentence in placed)
+
+
+def test_uncertain_shares_are_told(equal_halves, one_half, monkeypatch):
+    monkeypatch.setattr(analyses, "_analysed", lambda *_: 2 * (analyses._Half(one_half, []),))
+    result = analyse_double_helical(equal_halves.with_changes({**HELD, "pair.apex_offset_mm": 0.03}))
+    (sentence,) = result.warnings
+    assert sentence.startswith("the shares of the halves are off by up to")  # far beyond the torques of one half
+    assert kind_of(sentence) is SHARES_OF_HALVES
