@@ -352,6 +352,13 @@ WEAK_SETTINGS = Kind(
     "are not those of the machine",
     "fewer settings, limits for their changes, or both flanks of the gear measured; compare the standard deviations",
 )
+SHARES_OF_HALVES = Kind(
+    "the shares of the halves are off by up to {error:.1%} of the torque, between torques of the halves that were "
+    "analysed",
+    "deflections bend over the torque where contacts come to edges, reliefs and further tooth pairs; the error is "
+    "told by how much compliances and deflections of neighbouring torques disagree",
+    "a gear that floats, halves that are alike, or more crowning and relief, so that contacts stay off the edges",
+)
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))
 """Of every accuracy warning of an analysis, of derivatives of its result, of its tribology and its rating."""

@@ -2503,6 +2503,41 @@ FAULTS = (
         'axes.set_yscale("linear")',
         "plots/test_rating.py::test_bars_add_up_to_the_damage",
     ),
+    Fault(
+        "double helical pairs: the place of a floating gear that moves on at the last step counts as settled",
+        "double_helical/analyse.py",
+        "    if not settled:\n",
+        "    if abs(moved - axial) > FACES * _width(scene):\n",
+        "double_helical/test_analyse.py::test_a_place_that_does_not_settle_is_an_error",
+    ),
+    Fault(
+        "double helical pairs: halves of a wheel that is tilted open and close the wrong way round",
+        "scene/double_helical.py",
+        "moved = -self._wheel_lever",
+        "moved = self._wheel_lever",
+        "scene/test_double_helical_scene.py::test_axis_errors_of_the_whole_wheel_move_and_turn_its_halves",
+    ),
+    Fault(
+        "double helical pairs: a support of the floating gear pushes it on",
+        "double_helical/balance.py",
+        "yields = 2.0 * rate**2 / stiffness if",
+        "yields = -2.0 * rate**2 / stiffness if",
+        "double_helical/test_balance.py::test_halves_are_in_balance_on_any_support",
+    ),
+    Fault(
+        "scenes: variants of a family are tried in the order in which they were imported",
+        "scene/parse.py",
+        "    return sorted(VARIANTS.get(scenes, {}).items(), key=lambda one: order.index(one[0].__module__))",
+        "    return list(VARIANTS.get(scenes, {}).items())",
+        "scene/test_double_helical_scene.py::test_a_ring_with_halves_is_told_of_its_teeth_whatever_was_imported_first",
+    ),
+    Fault(
+        "double helical pairs: a half that carries all is not analysed under what it carries",
+        "double_helical/analyse.py",
+        "if high > max(own) + OUTSIDE * even:",
+        "if errors.max() > ACCURATE:",
+        "double_helical/test_analyse.py::test_halves_out_of_reach_of_each_other_are_told_and_analysed_under_what_they_carry",
+    ),
 )
 
 

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, plots, trace_contact
-from loaded_tca.scene import read_scene
+from loaded_tca.scene import DoubleHelicalScene, read_scene
 from loaded_tca.studies import DesignModel, load_design, load_study, read_study
 from tests.samples.root_stress import coarsely
 
@@ -31,6 +31,7 @@ EXPECTED = {
     "plot_drive_stage": (1.0, 2e-3),  # bearings carry what the teeth press, whose normals lie 2 deg about one another
     "plot_rolling_bearings": (1.0, 1e-3),  # all forces of rollers are radial, and linear near the mean load
     "plot_planetary_stage": (1.0, 1e-9),  # a sun that floats among three planets is pressed evenly
+    "plot_double_helical": (1.0, 5e-3),  # the pinion follows the apex; faces are analysed where it stands
     "plot_bevel_blank": (1.165, 2.5e-3),  # printed of virtual gears; of these flanks 1.1631
     "plot_local_synthesis": (1.0, 1e-3),  # motion curve asked for, by differences that leave a fourth derivative
     "plot_tribology": (1.0, 1e-9),  # torques of friction do the friction power
@@ -75,6 +76,7 @@ SHORTER = {
     "plot_drive_stage": {
         "CHANGES": lambda all_: {**all_, **ON_A_GRID, "analysis.positions": 3, "analysis.torques_Nm": [250.0]}
     },
+    "plot_double_helical": {"CHANGES": lambda all_: {**all_, **ON_A_GRID, "analysis.positions": 2}},
     "plot_revolution": {"CHANGES": lambda all_: {**all_, **ON_A_GRID, **A_WHOLE_TURN, "analysis.torques_Nm": [120.0]}},
     "export_to_dynamics": {"SPEEDS": lambda _: np.linspace(0.3, 0.7, 33), "PHASES": lambda _: np.linspace(20, 24, 257)},
 }
@@ -193,7 +195,9 @@ def test_example_is_short_and_has_its_scenes(path):
 
 @pytest.mark.parametrize("path", sorted((EXAMPLES / "scenes").glob("*.toml")), ids=lambda path: path.stem)
 def test_example_scene_is_sound(path):
-    assert read_scene(path).pair().pitch > 0.0
+    scene = read_scene(path)
+    pairs = scene.halves if isinstance(scene, DoubleHelicalScene) else (scene.pair(),)
+    assert all(pair.pitch > 0.0 for pair in pairs)
 
 
 @pytest.mark.parametrize(

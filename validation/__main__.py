@@ -36,6 +36,7 @@ CASES = (
     "cylindrical.nrel_planet_ring",
     "cylindrical.internal_hertz",
     "stages.planetary",
+    "cylindrical.double_helical",
     "cylindrical.fzg_c14_geometry",
     "cylindrical.fzg_c14_root_stress",
     "tribology.published",

@@ -20,7 +20,9 @@ FILES = """files in DIR:
   positions.csv             one row per torque and position
   contacts.csv              one row per torque, position and tooth pair, only where pairs share the load
 {pictures}
-Pictures of these names that the result does not have are removed; docs/reference/files.md says more."""
+Pictures of these names that the result does not have are removed; docs/reference/files.md says more.
+Of a scene with pair.double_helical: double_helical.nc, .json and .csv, half_a.nc and half_b.nc, which are results of a
+pair, and halves_*.png; docs/guide/double_helical.md says more."""
 TEETH = """files in DIR:
   pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
   pressure.vtk              the cells under pressure on the pinion's flank, in MPa
@@ -402,7 +404,7 @@ def _add_studies(command: Command) -> None:
     )
     text = "write a report of a result, a planetary stage, a study or a design as HTML"
     report = command("report", run_by.report, text, REPORT)
-    text = "result.nc, stage.nc, study.nc, the file of a design, or the directory that holds one"
+    text = "result.nc, stage.nc, double_helical.nc, study.nc, the file of a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
     report.add_argument(

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from loaded_tca.rating import Rating
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
+    from loaded_tca.scene.double_helical import DoubleHelicalScene
     from loaded_tca.stages import StageResult
 
 # The modules that compute and draw take most of a second to import: each command imports what it needs.
@@ -69,10 +70,17 @@ def run(options: argparse.Namespace) -> None:
     """Read, analyse, write everything, and show the summary; a comparison with another side or supports where asked."""
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.output.tables import COMPARISON_DATA
+    from loaded_tca.scene.double_helical import DoubleHelicalScene
 
     scene, directory = scene_of(options), options.out
     check_place(directory)
     compared = options.coast or options.rigid
+    if isinstance(scene, DoubleHelicalScene):
+        require(
+            (not compared, "--coast, --rigid: not of double helical pairs; give the scene that is meant, and run it")
+        )
+        _run_double_helical(scene, directory)
+        return
     require_place_of(directory, COMPARISON_DATA if compared else RESULT)
     if not compared:
         _run_scene(scene, directory)
@@ -108,6 +116,22 @@ def _run_scene(scene: Scene, directory: Path) -> None:
     files, rating_text = _rated(result, directory)
     summary = "\n\n".join(filter(None, (result.summary(), rating_text)))
     print_summary(summary, [*report, *pictures, *files])
+
+
+def _run_double_helical(scene: DoubleHelicalScene, directory: Path) -> None:
+    """Analyse a double helical pair, write everything into a directory, and show the summary."""
+    from loaded_tca.double_helical import analyse_double_helical
+    from loaded_tca.double_helical.analyse import expected_double_helical_effort
+    from loaded_tca.double_helical.result import PAIR_FILE
+    from loaded_tca.output.other_results import write_double_helical
+    from loaded_tca.plots import double_helical_figures, png_of
+
+    require_place_of(directory, PAIR_FILE)
+    effort = expected_double_helical_effort(scene)
+    with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
+        result = analyse_double_helical(scene, progress=progress)
+    pictures = {f"{name}.png": png_of(figure) for name, figure in double_helical_figures(result).items()}
+    print_summary(result.summary(), write_double_helical(result, directory, pictures))
 
 
 def revolution(options: argparse.Namespace) -> None:
@@ -540,10 +564,18 @@ def check(options: argparse.Namespace) -> None:
         from loaded_tca.output.stage_overview import describe_stage
 
         print(describe_stage(stage_of(options)))
+        return
+    from loaded_tca.scene.double_helical import DoubleHelicalScene
+
+    scene = scene_of(options)
+    if isinstance(scene, DoubleHelicalScene):
+        from loaded_tca.output.double_helical_overview import describe_double_helical
+
+        print(describe_double_helical(scene))
     else:
         from loaded_tca.output.overview import describe_scene
 
-        print(describe_scene(scene_of(options)))
+        print(describe_scene(scene))
 
 
 def import_model(options: argparse.Namespace) -> None:

@@ -21,7 +21,7 @@ def require_place_of(directory: Path, main: str) -> None:
     directory : Path
         Need not exist.
     main : str
-        Name of the file that is to be written: that of a result, a stage, a study or a comparison.
+        Name of the file that is to be written: that of a result, a stage, a pair of halves, a study or a comparison.
 
     Raises
     ------
@@ -29,6 +29,7 @@ def require_place_of(directory: Path, main: str) -> None:
         If the directory has a main file of another name.
     """
     from loaded_tca.cli.inputs import DESIGN_FILE, STUDY_FILE
+    from loaded_tca.double_helical.result import PAIR_FILE
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.output.tables import COMPARISON_DATA
     from loaded_tca.stages.result import STAGE_FILE
@@ -36,6 +37,7 @@ def require_place_of(directory: Path, main: str) -> None:
     kinds = {
         RESULT: "a result",
         STAGE_FILE: "a stage",
+        PAIR_FILE: "a double helical pair",
         STUDY_FILE: "a study",
         DESIGN_FILE: "a design",
         COMPARISON_DATA: "a comparison of results",

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     import xarray
 
+    from loaded_tca.double_helical import DoubleHelicalResult
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
     from loaded_tca.stages import Stage, StageResult
@@ -117,21 +118,23 @@ def require_result(directory: Path, path: Path, command: str) -> None:
 
 
 def result_file(path: Path) -> Path:
-    """The file of a result that is named by itself or by its directory; that of a stage is refused by its reader."""
+    """The file of a result that is named by itself or by its directory; that of another kind its reader refuses."""
+    from loaded_tca.double_helical.result import PAIR_FILE
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.stages.result import STAGE_FILE
 
-    if not os.path.isdir(path):
-        return path
-    return path / (STAGE_FILE if (path / STAGE_FILE).is_file() and not (path / RESULT).exists() else RESULT)
+    if not os.path.isdir(path) or (path / RESULT).exists():
+        return path / RESULT if os.path.isdir(path) else path
+    return path / next((name for name in (STAGE_FILE, PAIR_FILE) if (path / name).is_file()), RESULT)
 
 
 def file_of_report(path: Path) -> Path:
-    """The file of a result, a stage, a study or a design that is named by itself or by its directory."""
+    """The file of what has a report, a result, stage, study or design, named by itself or by its directory."""
+    from loaded_tca.double_helical.result import PAIR_FILE
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.stages.result import STAGE_FILE
 
-    result, *others = (path / name for name in (RESULT, STAGE_FILE, STUDY_FILE, DESIGN_FILE))
+    result, *others = (path / name for name in (RESULT, STAGE_FILE, PAIR_FILE, STUDY_FILE, DESIGN_FILE))
     if not os.path.isdir(path):
         return path
     found = next((one for one in (result, *others) if one.is_file()), result)
@@ -139,15 +142,19 @@ def file_of_report(path: Path) -> Path:
     return found
 
 
-def subject_of_report(path: Path) -> MeshCycle | StageResult | xarray.Dataset | DesignResult:
-    """The result, stage, study or design in a file."""
-    from loaded_tca.results.files import DESIGN, STAGE, STUDY, read_dataset
+def subject_of_report(path: Path) -> MeshCycle | StageResult | DoubleHelicalResult | xarray.Dataset | DesignResult:
+    """The result, stage, double helical pair, study or design in a file."""
+    from loaded_tca.results.files import DESIGN, DOUBLE_HELICAL, STAGE, STUDY, read_dataset
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.studies import load_design, load_study
 
     kind = read_dataset(path).attrs.get("kind")
     if kind == STUDY:
         return load_study(path)
+    if kind == DOUBLE_HELICAL:
+        from loaded_tca.double_helical import DoubleHelicalResult
+
+        return DoubleHelicalResult.load(path.parent)
     if kind == STAGE:
         from loaded_tca.stages import StageResult
 

@@ -92,11 +92,15 @@ def say_cost(study: Study, workers: int = 1) -> None:
     from loaded_tca.effort import expected_effort
     from loaded_tca.plain import plain
     from loaded_tca.scene import Scene
+    from loaded_tca.studies.double_helical import expected_seconds_of_halves
     from loaded_tca.studies.stage import expected_seconds as of_stage
     from loaded_tca.threads import with_jobs
 
     with with_jobs(1):  # of each variant
-        each = expected_effort(study.scene).seconds if isinstance(study.scene, Scene) else of_stage(study) / len(study)
+        if isinstance(study.scene, Scene):
+            each = expected_seconds_of_halves(study.scene) or expected_effort(study.scene).seconds
+        else:
+            each = of_stage(study) / len(study)
     whole = len(study) * each / max(1, min(workers, len(study)))
     if sys.stderr is not None and (sys.stderr.isatty() or whole > WORTH_TELLING):
         minutes = f"{plain(whole / 60.0, 2)} min" if whole > 100.0 else f"{plain(whole, 2)} s"

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
+    from loaded_tca.double_helical import DoubleHelicalResult
     from loaded_tca.flank_maps.ease_off_map import EaseOffMap
     from loaded_tca.loaded.shaft_lines import ShaftLine
     from loaded_tca.rating import Rating
@@ -241,6 +242,37 @@ def stage_json(result: StageResult) -> str:
         findings=result.findings(),
         warnings=result.warnings or (),
     )
+
+
+@checked
+def write_double_helical(
+    result: DoubleHelicalResult, directory: FilePath, more: Mapping[str, Buffer] = {}
+) -> tuple[Path, ...]:
+    """Write a double helical pair, its figures and its table, all files or none.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+    directory : str or path
+        Made if it does not exist.
+    more : mapping of str to bytes
+        Contents of files to write with these, by their names: pictures.
+
+    Returns
+    -------
+    tuple of Path
+        ``double_helical.nc``, ``half_a.nc``, ``half_b.nc``, ``double_helical.json``, ``double_helical.csv``, and those
+        of ``more``.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    text = figures_json(result, notes=result.notes(), warnings=result.warnings or ())
+    table = csv_table(result.to_table())
+    files = {"double_helical.json": text.encode(), "double_helical.csv": table.encode()}
+    return replace_together(directory, {**result.contents(), **files, **more})
 
 
 FORCES = "force_x_N", "force_y_N", "force_z_N", "moment_x_Nm", "moment_y_Nm", "moment_z_Nm"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from loaded_tca.double_helical import DoubleHelicalResult
 from loaded_tca.rating.quantities import NUMBERS as RATING_NUMBERS
 from loaded_tca.rating.quantities import SPECTRUM_NUMBERS
 from loaded_tca.results.declared import PAIRS, Number
@@ -16,6 +17,7 @@ from loaded_tca.results.quantities import (
     ROOT_STRESS,
 )
 from loaded_tca.results.revolution import REVOLUTION_QUANTITIES
+from loaded_tca.scene.double_helical import HALVES
 from loaded_tca.stages import StageResult
 from loaded_tca.stages.rating import STAGE_RATING_NUMBERS
 from loaded_tca.tribology.quantities import NUMBERS, TORQUE
@@ -44,6 +46,7 @@ def describe_results() -> str:
         "`result.maps[torque][position][pair]`: one pressure map": _parts(MAP_PARTS),
         "Whole revolutions; on supports those of above, too": _numbers(of_turns),
         "Planetary stages": _numbers(StageResult.NUMBERS),
+        "Double helical pairs; axial directions are those of half a": _numbers(DoubleHelicalResult.NUMBERS),
         "Tribology; of several speeds most with an axis `speed`": _numbers(NUMBERS, of_torques=True),
         "Rating": _numbers(RATING_NUMBERS, of_torques=True),
         "Rating under a load spectrum, beside or in the place of these": _numbers(
@@ -79,7 +82,11 @@ def _numbers(numbers: Mapping[str, Number], *, of_contacts: bool = False, of_tor
 
 def _filled(heads: tuple[str, ...], number: Number) -> Iterator[str]:
     """Heads, those of several columns with the first names or numbers along their axis."""
-    labels: dict[str, tuple[object, ...]] = {"gear": ("pinion", "wheel"), "axis": ("x", "y")}
+    labels: dict[str, tuple[object, ...]] = {
+        "gear": ("pinion", "wheel"),
+        "axis": ("x", "y"),
+        "half": HALVES,
+    }
     for head in dict.fromkeys(heads):
         if "{" not in head:
             yield head

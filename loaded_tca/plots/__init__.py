@@ -15,6 +15,15 @@ from loaded_tca.plots.at_a_glance import plot_at_a_glance
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
+from loaded_tca.plots.double_helical import (
+    DOUBLE_HELICAL_CAPTIONS,
+    DOUBLE_HELICAL_PICTURES,
+    double_helical_figures,
+    plot_halves_axial_motion,
+    plot_halves_error,
+    plot_halves_face_load,
+    plot_halves_shares,
+)
 from loaded_tca.plots.first_order import plot_first_order_scatter
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
 from loaded_tca.plots.pressure_map import (
@@ -88,6 +97,8 @@ from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 __all__ = [
+    "DOUBLE_HELICAL_CAPTIONS",
+    "DOUBLE_HELICAL_PICTURES",
     "MORE_PICTURES",
     "PICTURES",
     "RATING_PICTURES",
@@ -95,6 +106,7 @@ __all__ = [
     "STAGE_CAPTIONS",
     "STAGE_PICTURES",
     "TRIBOLOGY_PICTURES",
+    "double_helical_figures",
     "draw_teeth",
     "plot_all",
     "plot_at_a_glance",
@@ -115,6 +127,10 @@ __all__ = [
     "plot_flank_safety",
     "plot_friction_power",
     "plot_full_mesh",
+    "plot_halves_axial_motion",
+    "plot_halves_error",
+    "plot_halves_face_load",
+    "plot_halves_shares",
     "plot_harmonics",
     "plot_line_load",
     "plot_line_load_distribution",

@@ -16,18 +16,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.arguments import checked
+from loaded_tca.double_helical import DoubleHelicalResult
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 from loaded_tca.plots import plot_before_and_after, plot_peak_to_peak_over_torque, plot_study
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports import page
+from loaded_tca.reports.double_helical_page import double_helical_content, halves_geometry
 from loaded_tca.reports.page import Table, pictures_of
 from loaded_tca.reports.result_page import explained, result_content, scene_content, stage_content, stage_geometry
 from loaded_tca.results.files import STUDY, FilePath, make_directory, replace_file
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import shown, shown_torque
 from loaded_tca.results.warnings import without_place
-from loaded_tca.scene import parse_scene
+from loaded_tca.scene import Scene, parse_scene
+from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.stages import Stage, StageResult
 from loaded_tca.studies.design import KEPT, DesignResult
 from loaded_tca.studies.design_figures import FIGURES
@@ -64,12 +67,13 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
 
     Parameters
     ----------
-    subject : MeshCycle, StageResult, xarray.Dataset or DesignResult
-        A result; a planetary stage; a study as :func:`loaded_tca.studies.run_study` returns it; a design.
+    subject : MeshCycle, StageResult, DoubleHelicalResult, xarray.Dataset or DesignResult
+        A result; a planetary stage; a double helical pair; a study as :func:`loaded_tca.studies.run_study` returns it;
+        a design.
     path : str or path
         Of the file; its directory is made if it does not exist.
     date : str, optional
-        Of the analysis; default: of a result and of a stage its own, of a study or design today's.
+        Of the analysis; default: of results its own, of a study or design today's.
     rank_by : str, optional
         Figure that ranks the variants of a study; default: the peak-to-peak transmission error. The least is best, of
         safeties, lives and films the largest. Where the study has distributions, combinations of its other values are
@@ -106,6 +110,9 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
             date = date or subject.date
         elif isinstance(subject, DesignResult):
             template, content = "design.html.j2", design_content(subject)
+        elif isinstance(subject, DoubleHelicalResult):
+            template, content = "double_helical.html.j2", double_helical_content(subject)
+            date = date or subject.date
         elif isinstance(subject, StageResult):
             template, content = "stage.html.j2", stage_content(subject)
             date = date or subject.date
@@ -113,7 +120,8 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
             template, content = "study.html.j2", study_content(subject, rank_by)
         else:
             raise InputError(
-                f"report: found a {type(subject).__name__}; allowed a result, a stage, a study or a design"
+                f"report: found a {type(subject).__name__}; allowed a result, a stage, a double helical pair, a study "
+                "or a design"
             )
     content = {"version": version("loaded_tca"), **content}
     content["date"] = _shown(date or datetime.now(UTC).isoformat(timespec="seconds"))
@@ -178,7 +186,7 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
         "statuses": Counter(study["status"].values.tolist()).most_common(),
         "variants": variants,
         "analysed": "ok" in study["status"].values,
-        **(stage_geometry(subject) if isinstance(subject, Stage) else scene_content(subject)),
+        **_geometry_of(subject),
         "varied": _varied(study),
         "seed": f"{study.attrs.get('seed', '-')}" if sampled else "",
         "scatter": [*_scatter(study, by)],
@@ -200,6 +208,13 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
         "warnings": explained([f"{reason} ({count} of {variants} variants)" for reason, count in concerned.items()]),
         "pictures": pictures_of(figures, STUDY_CAPTIONS, subject.title),
     }
+
+
+def _geometry_of(subject: Scene | Stage) -> dict[str, Any]:
+    """What was asked, the geometry, and the text of a scene or a stage."""
+    if isinstance(subject, Stage):
+        return stage_geometry(subject)
+    return halves_geometry(subject) if isinstance(subject, DoubleHelicalScene) else scene_content(subject)
 
 
 def _quantiles(study: xarray.Dataset, by: str | None) -> str:

@@ -25,13 +25,17 @@ if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes
 
 FORMAT = "loaded_tca"
 REVOLUTION, STAGE, TRIBOLOGY, RATING = "revolution", "stage", "tribology", "rating"
-STUDY, DESIGN = "study", "design"
+STUDY, DESIGN, DOUBLE_HELICAL = "study", "design", "double helical pair"
 """Attribute ``kind`` of files that hold something else than the result of a mesh cycle."""
 KINDS = {
     REVOLUTION: ("a whole revolution", "read it with Revolution.load"),
     STAGE: (
         "a planetary stage",
         "sun_mesh.nc and ring_mesh.nc beside it are such results; StageResult.load reads the stage",
+    ),
+    DOUBLE_HELICAL: (
+        "a double helical pair",
+        "half_a.nc and half_b.nc beside it are such results; DoubleHelicalResult.load reads the pair",
     ),
     TRIBOLOGY: ("tribology", "its numbers are read off a result again by result.tribology()"),
     RATING: ("a rating", "its numbers are read off a result again by result.rating()"),

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.scene import bevel, blank_face_milled, cylindrical, face_milled, internal
+    from loaded_tca.scene import bevel, blank_face_milled, cylindrical, double_helical, face_milled, internal
     from loaded_tca.scene.bevel import BevelScene
     from loaded_tca.scene.blank_face_milled import BlankFaceMilledScene
     from loaded_tca.scene.cylindrical import CylindricalScene
+    from loaded_tca.scene.double_helical import DoubleHelicalScene
     from loaded_tca.scene.face_milled import FaceMilledScene, hypoid_table
     from loaded_tca.scene.flank_form import FlankForm, Measurement
     from loaded_tca.scene.internal import InternalScene
@@ -30,6 +31,7 @@ __all__ = [
     "BevelScene",
     "BlankFaceMilledScene",
     "CylindricalScene",
+    "DoubleHelicalScene",
     "ElasticMaterial",
     "FaceMilledScene",
     "FlankForm",
@@ -43,6 +45,7 @@ __all__ = [
     "blank_face_milled",
     "cylindrical",
     "describe_keys",
+    "double_helical",
     "face_milled",
     "hypoid_table",
     "internal",

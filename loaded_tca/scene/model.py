@@ -51,7 +51,7 @@ from loaded_tca.scene.standards import WithStandards
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]
 """Label and cells of a line of an overview."""
-_OF_FAMILIES = frozenset({"pair", "pair.type", "pair.blank", "wheel", "wheel.teeth"})
+_OF_FAMILIES = frozenset({"pair", "pair.type", "pair.blank", "pair.double_helical", "wheel", "wheel.teeth"})
 """Keys whose change may make a scene one of another family or variant."""
 
 

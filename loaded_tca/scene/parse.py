@@ -175,7 +175,7 @@ def toml_table(text: str, source: str) -> dict[str, Any]:
 
 
 MODULES = {
-    "cylindrical": ("cylindrical", "internal"),
+    "cylindrical": ("cylindrical", "double_helical", "internal"),
     "straight_bevel": ("bevel",),
     "spiral_bevel": ("bevel",),
     "face_milled": ("face_milled", "blank_face_milled"),
@@ -230,6 +230,12 @@ def variant(scenes: type[Scene], about: str) -> Callable[[SceneType], SceneType]
     return known
 
 
+def _variants(scenes: type[Scene]) -> list[tuple[type[Scene], str]]:
+    """Variants of a family and of what they are, in the order of their modules: the first that describes a table."""
+    order = [f"loaded_tca.scene.{name}" for modules in MODULES.values() for name in modules]
+    return sorted(VARIANTS.get(scenes, {}).items(), key=lambda one: order.index(one[0].__module__))
+
+
 def scene_from_table(table: Mapping[str, Any]) -> Scene:
     """Return the scene that nested dictionaries describe, as TOML would give them; ``pair.type`` picks the family.
 
@@ -245,7 +251,7 @@ def scene_from_table(table: Mapping[str, Any]) -> Scene:
         scenes = FAMILIES[Choice(tuple(FAMILIES)).read(kind)]  # type: ignore[index]
     except ValueError as refused:
         raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
-    scenes = next((one for one in VARIANTS.get(scenes, {}) if one.describes(table)), scenes)
+    scenes = next((one for one, _ in _variants(scenes) if one.describes(table)), scenes)
     values, problems = check(scenes, table)
     if problems:
         raise InputError(problems)
@@ -306,11 +312,12 @@ def describe_keys() -> str:
         for path, (section, about) in table.items():
             if path and path not in shared:
                 lines += section_lines(path, section, f"{about} ({kinds})")
-        for own, when in VARIANTS.get(scene, {}).items():
+        for own, when in _variants(scene):
             of_families = {section for each in tables for section, _ in each.values()}
             for path, (section, about) in _sections(own, "", {}):
                 if path and section not in of_families:
-                    lines += section_lines(path, section, f"{about} ({when})", {})
+                    of_family = table.get(path, (None, ""))[0]
+                    lines += section_lines(path, section, f"{about} ({when})", {}, of_family)
     for path, keys_of in shared.items():
         lines += section_lines(path, *keys_of)
     return "\n".join(lines).strip() + "\n"
@@ -332,16 +339,35 @@ def _sections(section: type[Section], path: str, same_as: Mapping[str, str] = SA
                 yield from _sections(entry.section, inner, same_as)
 
 
-def section_lines(path: str, section: type[Section], about: str, same_as: Mapping[str, str] = SAME_AS) -> Iterator[str]:
-    """Lines of the table of a section in Markdown; of one that is the same as another its name."""
+def section_lines(
+    path: str,
+    section: type[Section],
+    about: str,
+    same_as: Mapping[str, str] = SAME_AS,
+    of_family: type[Section] | None = None,
+) -> Iterator[str]:
+    """Lines of the table of a section in Markdown; of one that is the same as another its name.
+
+    Of a variant whose section is that of its ``of_family`` with other keys: these.
+    """
     yield from ("", f"### `[{path}]`: {about}" if path else f"### {about}", "")
     if path in same_as:
         yield f"Keys as in `[{same_as[path]}]`."
         return
-    yield from ("| key | allowed | default | meaning |", "|---|---|---|---|")
-    for name, (_, entry) in entries(section).items():
-        if isinstance(entry, Key):
-            yield f"| `{name}` | {entry.kind.allowed} | {_default(entry)} | {entry.about} |"
+    known: dict[str, Any] = {}
+    if of_family is not None and issubclass(section, of_family):
+        known = {name: entry for name, (_, entry) in entries(of_family).items()}
+        yield from (f"Keys of `[{path}]` as above, and:", "")
+    others = {name: entry for name, (_, entry) in entries(section).items() if entry != known.get(name)}
+    rows = [
+        f"| `{name}` | {entry.kind.allowed} | {_default(entry)} | {entry.about} |"
+        for name, entry in others.items()
+        if isinstance(entry, Key)
+    ]
+    if rows:
+        yield from ("| key | allowed | default | meaning |", "|---|---|---|---|", *rows)
+    else:
+        yield from (f"- `[{path}.{name}]`: {entry.about}" for name, entry in others.items())
 
 
 def _default(entry: Key) -> str:

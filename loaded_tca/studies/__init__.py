@@ -10,6 +10,7 @@ from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
     from loaded_tca.studies.design import DesignModel, DesignResult, load_design, optimise, robustness
+    from loaded_tca.studies.double_helical import halves_figures
     from loaded_tca.studies.other_figures import revolution_figures, tribology_figures
     from loaded_tca.studies.ranking import figures, rank_combinations, rank_variants, study_summary
     from loaded_tca.studies.rating import rating_figures, shortfall, tolerance_class_study
@@ -26,6 +27,7 @@ __all__ = [
     "DesignResult",
     "Study",
     "figures",
+    "halves_figures",
     "load_design",
     "load_study",
     "optimise",

@@ -39,7 +39,9 @@ from loaded_tca.errors import (
 from loaded_tca.input_files import is_place
 from loaded_tca.results.files import FilePath, make_directory, read_dataset, remove, replace_file, write_dataset
 from loaded_tca.scene import Scene
+from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.stages import Stage
+from loaded_tca.studies.double_helical import halves_figures
 from loaded_tca.studies.ranking import figures as key_figures
 from loaded_tca.studies.ranking import figures_of
 from loaded_tca.studies.rows import Row, Rows, dataset_of, problem_of_figures
@@ -86,7 +88,7 @@ def run_study(
     figures : callable, optional
         What is kept of a variant: a function of its scene that returns numbers, or numbers over the torques, by their
         names, and that workers can import. Default: :func:`loaded_tca.studies.figures`, of stages
-        :func:`loaded_tca.studies.stage_figures`.
+        :func:`loaded_tca.studies.stage_figures`, of double helical pairs :func:`loaded_tca.studies.halves_figures`.
     keep_maps : collection of int
         Variants of which the whole result is kept, pressure maps included, if they are ok:
         ``<name>_maps/<variant>.nc`` beside ``out``, to be read by :func:`loaded_tca.load_result`.
@@ -119,7 +121,7 @@ def run_study(
     >>> study["face_load_factor"].squeeze().diff("sample").item() > 0.0  # more crowning, less of the face carries
     True
     """
-    figures = figures or (stage_figures if isinstance(study.scene, Stage) else key_figures)
+    figures = figures or _figures_by(study.scene)
     with_maps = set(keep_maps)
     _require_storable(study, figures, with_maps, out)
     digests = [*map(study.digests(figures), range(len(study)))]
@@ -160,14 +162,25 @@ def run_study(
     return dataset
 
 
+def _figures_by(scene: Scene | Stage) -> Figures:
+    """Figures of a variant where no others are asked for."""
+    if isinstance(scene, Stage):
+        return stage_figures
+    return halves_figures if isinstance(scene, DoubleHelicalScene) else key_figures
+
+
 def _require_storable(study: Study, figures: Figures, with_maps: set[int], out: FilePath | None) -> None:
     """Refuse figures whose rows nothing identifies, and maps that there will not be."""
     unknown = sorted(with_maps.difference(range(len(study))))
     named = "<lambda>" not in getattr(figures, "__qualname__", "<lambda>")
-    of_stage = isinstance(study.scene, Stage)
+    of_stage, of_halves = isinstance(study.scene, Stage), isinstance(study.scene, DoubleHelicalScene)
     require(
         (not with_maps or out is not None, "keep_maps: needs out"),
         (not (with_maps and of_stage), "keep_maps: not of a study of stages; analyse_stage has their mesh cycles"),
+        (
+            not (with_maps and of_halves),
+            "keep_maps: not of a study of double helical pairs; analyse_double_helical has both mesh cycles",
+        ),
         (not unknown, f"keep_maps: {unknown[:3]} are not variants 0 to {len(study) - 1}"),
         (named, f"figures: found {figures!r}; allowed a function with a name, which identifies its rows"),
     )

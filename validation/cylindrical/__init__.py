@@ -5,5 +5,6 @@
 - ``sam_paper``: peak pressure of the crowned pairs of the SAM paper;
 - ``nrel_planet_ring``: geometry of a planet and a ring against a published report;
 - ``internal_hertz``: pressure of a crowned pinion in a ring against Hertz's point contact;
+- ``double_helical``: halves of double helical pairs against one half, closed forms and balance along the axis;
 - ``line_contact``: pressure in the middle of unmodified pairs against Hertz's line contact.
 """

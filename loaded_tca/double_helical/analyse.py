@@ -1,0 +1,330 @@
+"""Double helical pairs in one function: the mesh cycles of both halves under several torques, and their balance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from datetime import UTC, datetime
+from importlib.metadata import version
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+
+import loaded_tca.warning_kinds as kinds
+from loaded_tca.analysis import analyse
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array
+from loaded_tca.double_helical.balance import HalfLaw, Halves, Shares, shared
+from loaded_tca.double_helical.result import DoubleHelicalResult
+from loaded_tca.effort import Effort, expected_effort
+from loaded_tca.errors import (
+    ConvergenceError,
+    GeometryError,
+    give_accuracy_warning,
+    named,
+    noted_accuracy_warnings,
+)
+from loaded_tca.plain import plain
+from loaded_tca.results import MeshCycle
+from loaded_tca.results.warnings import without_place
+from loaded_tca.scene.cylindrical import CylindricalScene
+from loaded_tca.scene.double_helical import HALVES, SIGNS, DoubleHelicalScene
+
+FACES = 1e-3
+"""How far the gears may stand from where their faces were analysed, over the width of a half. A motion along the axis
+turns a helix into itself, and moves its ends and modifications by as much: 1e-4 of the motion was left in the
+transmission error of helical pairs that are crowned by 5 um."""
+ACCURATE, WARNED = 1e-4, 1e-3
+"""Estimated error of a share with which no more torques are analysed, and above which a warning says so."""
+NEAR = 0.02
+"""Difference of two torques, over an even share, of which one is enough where shares are uncertain."""
+OUTSIDE, BEYOND = 1e-3, 0.01
+"""By how much of an even share a half may carry more or less than at the torques that were analysed, and by how much
+torques at the ends lie outside its shares where it does."""
+LEAST = 0.05
+"""Of an even share: the least torque that is analysed."""
+MOST_ROUNDS = 6
+"""Of analyses of both halves; two are the rule where shares differ, one where they do not."""
+Progress = Callable[[int, int], None]
+
+
+class _Half(NamedTuple):
+    """A half that was analysed, with the accuracy warnings."""
+
+    cycle: MeshCycle
+    warnings: list[str]
+
+
+@checked
+def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None = None) -> DoubleHelicalResult:
+    """Analyse a double helical pair: how its halves share the torque over a pitch, and how far a gear floats.
+
+    Parameters
+    ----------
+    scene : DoubleHelicalScene
+    progress : callable, optional
+        Called as ``progress(done, total)`` with the states of both halves; where shares differ, the total grows.
+
+    Returns
+    -------
+    DoubleHelicalResult
+
+    Raises
+    ------
+    InputError, GeometryError
+        As of :func:`loaded_tca.analyse` for both halves.
+    ConvergenceError
+        As there, and if the place of the floating gear does not settle.
+
+    Warns
+    -----
+    AccuracyWarning
+        As there, of both halves, and where shares are uncertain between the torques that were analysed.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> from loaded_tca import read_scene
+    >>> quick = {"analysis.positions": 1, "analysis.compliance": "contact", "load.pinion_torque_Nm": 20.0}
+    >>> quick |= {"pinion.half_b": None, "pair.apex_offset_mm": 0.01}
+    >>> scene = read_scene("examples/scenes/double_helical.toml").with_changes(quick)
+    >>> with warnings.catch_warnings(action="ignore"):  # of a contact that reaches an edge
+    ...     result = analyse_double_helical(scene)
+    >>> result.axial_motion.round(6).tolist()
+    [[0.01]]
+    """
+    axial, torques = scene.mounting.axial_offset_mm, _even_torques(scene)
+    shown = _Progress(progress)
+    for _ in range(MOST_ROUNDS):
+        scenes = scene.half_scenes(axial, [[1e-3 * torque for torque in of_half] for of_half in torques])
+        analysed = _analysed(scenes, shown)
+        state = _balanced(scene, analysed)
+        moved, wanted = _place(scene, state), _wanted(scene, state, torques)
+        settled = abs(moved - axial) <= FACES * _width(scene)
+        if settled and wanted == torques:
+            break
+        axial, torques = axial if settled else moved, wanted
+    if not settled:
+        raise ConvergenceError(
+            f"pair.floating: the place of the {scene.geometry.floating} along its axis, {plain(moved)} mm, is not "
+            f"settled in {MOST_ROUNDS} steps"
+        )
+    return _result(scene, analysed, state)
+
+
+def expected_double_helical_effort(scene: DoubleHelicalScene) -> Effort:
+    """Estimate of what an analysis takes where halves share evenly, as of :func:`loaded_tca.effort.expected_effort`."""
+    first, second = scene.half_scenes(scene.mounting.axial_offset_mm)
+    effort = expected_effort(first)
+    if _are_alike(first, second):
+        return effort
+    return replace(
+        effort,
+        contacts=2 * effort.contacts,
+        states=2.0 * effort.states,
+        teeth=2 * effort.teeth,
+        roots=2 * effort.roots,
+    )
+
+
+def _even_torques(scene: DoubleHelicalScene) -> list[list[float]]:
+    """Pinion torques of both halves [N mm] with even shares."""
+    even = sorted({0.5 * torque for torque in scene.torques})
+    return [even, [*even]]
+
+
+class _Progress:
+    """States that are done, of all that are known to be needed."""
+
+    def __init__(self, progress: Progress | None) -> None:
+        self.progress, self.before, self.total = progress, 0, 0
+
+    def start(self, states: int) -> None:
+        self.before, self.total = self.total, self.total + states
+
+    def __call__(self, done: int, _: int) -> None:
+        if self.progress is not None:
+            self.progress(self.before + done, self.total)
+
+
+def _analysed(scenes: Sequence[CylindricalScene], shown: _Progress) -> tuple[_Half, _Half]:
+    """Mesh cycles of both halves; halves that are alike are analysed once."""
+    first, second = scenes
+    alike = _are_alike(first, second)
+    halves: list[_Half] = []
+    for half, one in enumerate(scenes[: 1 if alike else 2]):
+        shown.start(len(one.torques) * one.analysis.positions)
+        name = "both halves" if alike else f"half {HALVES[half]}"
+        with named(name), noted_accuracy_warnings(given=False, alone=True) as sentences:
+            halves.append(_Half(analyse(one, shown), [f"{name}: {_of_half(sentence)}" for sentence in sentences]))
+    if alike:
+        cycle = halves[0].cycle
+        halves.append(_Half(replace(cycle, scene=second, states=None), []))
+    return halves[0], halves[1]
+
+
+def _are_alike(first: CylindricalScene, second: CylindricalScene) -> bool:
+    """Whether two halves are one, but for their titles."""
+    return replace(first, title=second.title) == second
+
+
+def _of_half(sentence: str) -> str:
+    """A sentence whose torques, if it has any, are said to be those of the half."""
+    placed = sentence != without_place(sentence)
+    return f"{sentence[:-1]}; N m: the torque of the half)" if placed else sentence
+
+
+def _balanced(scene: DoubleHelicalScene, analysed: Sequence[_Half]) -> Shares:
+    """Balance of both halves."""
+    laws = []
+    for name, half in zip(HALVES, analysed, strict=True):
+        with named(f"half {name}"):
+            laws.append(_law(half.cycle, scene.axial_rate))
+    geometry = scene.geometry
+    stiffness = math.inf if geometry.floating == "none" else 1e3 * geometry.axial_stiffness_N_per_um
+    total = np.asarray(scene.torques) / scene.mesh().pinion.base_radius
+    return shared(Halves((laws[0], laws[1]), scene.parted, scene.axial_rate, stiffness), total)
+
+
+def _law(cycle: MeshCycle, axial_rate: float) -> HalfLaw:
+    """How far the flanks of a half give way at the base circle, without what its axial offset brings together."""
+    scene, pair = cycle.scene, cycle.gear_pair
+    assert isinstance(scene, CylindricalScene)
+    offset = scene.mounting.axial_offset_mm
+    length = -pair.driving * pair.base_radii[1]
+    deflection = length * cycle.transmission_error
+    if not np.isfinite(deflection).all():
+        raise GeometryError("its flanks are out of contact at some positions, where it cannot share a torque")
+    return HalfLaw(
+        force=cycle.torque / pair.base_radii[0],
+        deflection=deflection - axial_rate * offset,
+        compliance=1.0 / (1e3 * cycle.face_width * cycle.mesh_stiffness),
+        unloaded=length * cycle.unloaded_transmission_error - axial_rate * offset,
+    )
+
+
+def _width(scene: DoubleHelicalScene) -> float:
+    """Smaller width of a half [mm]."""
+    return min(scene.half_width(scene.pinion), scene.half_width(scene.wheel))
+
+
+def _place(scene: DoubleHelicalScene, state: Shares) -> float:
+    """Mean place of the wheel along the axis, under all torques [mm]."""
+    return scene.mounting.axial_offset_mm + float(state.motion.mean())
+
+
+def _wanted(scene: DoubleHelicalScene, state: Shares, torques: Sequence[Sequence[float]]) -> list[list[float]]:
+    """Torques of both halves [N mm] between which the shares lie, with more where these are uncertain."""
+    radius = scene.mesh().pinion.base_radius
+    wanted = []
+    for half in range(len(HALVES)):
+        own = [*torques[half]]
+        for whole, forces, errors in zip(scene.torques, state.force[..., half], state.error, strict=True):
+            carried, even = radius * forces, 0.5 * whole
+            low, high = float(carried.min()), float(carried.max())
+            if high > max(own) + OUTSIDE * even:
+                own.append(high * (1.0 + BEYOND))
+            if LEAST * even < low < min(own) - OUTSIDE * even:
+                own.append(low * (1.0 - BEYOND))
+            if errors.max() > ACCURATE:
+                _add(own, (low, high, float(carried[errors.argmax()])), even)
+        wanted.append(sorted(own))
+    return wanted
+
+
+def _add(torques: list[float], more: Sequence[float], even: float) -> None:
+    """Add torques [N mm] that are not near others, over an even share."""
+    for torque in more:
+        asked = max(torque, LEAST * even)
+        if all(abs(asked - other) > NEAR * even for other in torques):
+            torques.append(asked)
+
+
+def _result(scene: DoubleHelicalScene, analysed: Sequence[_Half], state: Shares) -> DoubleHelicalResult:
+    """The result, with the warnings of both halves."""
+    cycles = [half.cycle for half in analysed]
+    with noted_accuracy_warnings(given=False) as own:
+        if (worst := float(state.error.max())) > WARNED:
+            give_accuracy_warning(kinds.SHARES_OF_HALVES.sentence(error=worst))
+    sentences = [*(sentence for half in analysed for sentence in half.warnings), *own]
+    for sentence in sentences:
+        give_accuracy_warning(sentence)
+    dataset = DoubleHelicalResult.dataset_of(
+        _arrays(scene, cycles, state),
+        version=version("loaded_tca"),
+        date=datetime.now(UTC).isoformat(timespec="seconds"),
+        warnings="\n".join(sentences),
+    )
+    return DoubleHelicalResult(scene=scene, dataset=dataset, half_a=cycles[0], half_b=cycles[1])
+
+
+def _arrays(scene: DoubleHelicalScene, cycles: Sequence[MeshCycle], state: Shares) -> dict[str, Array]:
+    """Arrays of the result."""
+    pair, torques = cycles[0].gear_pair, np.asarray(scene.torques)
+    base = pair.base_radii
+    width = 2.0 * min(float(cycle.face_width) for cycle in cycles)
+    carried = base[0] * state.force
+    axial = scene.axial_rate * state.force * np.asarray(SIGNS)
+    share = state.force / state.force.sum(axis=-1, keepdims=True)
+    toward = {"none": 0.0, "pinion": -1.0, "wheel": 1.0}[scene.geometry.floating]
+    arrays = {
+        "torque": torques,
+        "pinion_angle": cycles[0].pinion_angle,
+        "wheel_base_radius": np.float64(base[1]),
+        "face_width": np.float64(width),
+        "transmission_error": -pair.driving * state.approach / base[1],
+        "mesh_stiffness": 1e-3 / (width * state.compliance),
+        "torque_share": share,
+        "axial_motion": toward * state.motion + 0.0,
+        "axial_force": axial,
+        "axial_force_left": axial.sum(axis=-1),
+        "share_error": state.error,
+        "share_factor": 2.0 * share.max(axis=(1, 2)),
+    }
+    of_positions = {name: [_largest(cycle, name) for cycle in cycles] for name in ("peak_pressure", "line_load")}
+    for name, values in of_positions.items():
+        arrays[name] = _of_halves(cycles, values, carried)
+    mean = carried.mean(axis=1)[:, None]
+    factors = [cycle.face_load_factor[:, None] for cycle in cycles]
+    known = _of_halves(cycles, factors, mean, known_at_zero=False)
+    arrays["face_load_factor"] = np.where(mean > 0.0, known, math.nan)[:, 0]
+    if scene.analysis.root_stress:
+        tensions = [
+            _of_halves(cycles, [np.nan_to_num(cycle.root_tension[..., gear]) for cycle in cycles], carried).max(axis=1)
+            for gear in range(2)
+        ]
+        arrays["root_tension"] = np.stack(tensions, axis=-1)
+    return arrays
+
+
+def _largest(cycle: MeshCycle, name: str) -> Array:
+    """Largest value of the tooth pairs (torques, positions), 0 where nothing is loaded."""
+    return np.asarray(np.nan_to_num(cycle.values(name)).max(axis=-1))
+
+
+def _of_halves(
+    cycles: Sequence[MeshCycle], values: Sequence[Array], torques: Array, known_at_zero: bool = True
+) -> Array:
+    """Numbers (t, n, half) between those (k, n) under the torques of the mesh cycles, at torques (t, n, half)."""
+    return np.stack(
+        [
+            _between(cycle.torque, of_half, torques[..., half], known_at_zero)
+            for half, (cycle, of_half) in enumerate(zip(cycles, values, strict=True))
+        ],
+        axis=-1,
+    )
+
+
+def _between(nodes: Array, values: Array, torques: Array, known_at_zero: bool) -> Array:
+    """Numbers (t, n) under torques (t, n), between those (k, n) under the torques of a mesh cycle."""
+    if known_at_zero:
+        nodes, values = np.append(0.0, nodes), np.concatenate([np.zeros_like(values[:1]), values])
+    elif len(nodes) == 1:
+        return np.broadcast_to(values, torques.shape)
+    inside = np.clip(torques, nodes[0], nodes[-1])
+    numbers = np.full_like(inside, math.nan)
+    for n in np.flatnonzero(np.isfinite(values).all(axis=0)):  # a pitch of one position has no load factors
+        numbers[:, n] = scipy.interpolate.PchipInterpolator(nodes, values[:, n])(inside[:, n])
+    return numbers

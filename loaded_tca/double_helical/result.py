@@ -1,0 +1,263 @@
+"""The result of a double helical pair: how both halves share the torque, how far the gears move, and both halves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import GEARS, Array
+from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
+from loaded_tca.results import MeshCycle
+from loaded_tca.results.declared import CYCLE, Asked, Number, Row, numbers
+from loaded_tca.results.figure import Figure
+from loaded_tca.results.files import DOUBLE_HELICAL, Buffer, FilePath, replace_together
+from loaded_tca.results.result import AnalysisResult, figures_of
+from loaded_tca.results.summary import shown_torque
+from loaded_tca.scene.cylindrical import CylindricalScene
+from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
+from loaded_tca.units import MICROMETRES
+
+if TYPE_CHECKING:
+    import xarray
+
+PAIR_FILE, *HALF_FILES = FILES = "double_helical.nc", "half_a.nc", "half_b.nc"
+"""Names of the files of a result: both halves together, and the mesh cycles of each."""
+TORQUE, HALF, OVER_HALVES = ("torque",), ("torque", "half"), (*CYCLE, "half")
+NUMBERS = numbers(
+    {
+        "torque": Number(
+            TORQUE, "N mm", "pinion torque of both halves", column="pinion_torque_Nm", label="pinion torque"
+        ),
+        "pinion_angle": (("position",), "rad", "angle of the pinion phi1, 0 at the pitch point in mid-face of a half"),
+        "wheel_base_radius": ((), "mm", "base radius of the wheel"),
+        "face_width": ((), "mm", "common face width of both halves, without the groove"),
+        "transmission_error": Number(
+            CYCLE, "rad", "loaded transmission error, absolute, of both halves together", at_base_circle=True
+        ),
+        "mesh_stiffness": (CYCLE, "N/(mm um)", "tangent of the force over the face width of both halves to it"),
+        "torque_share": Number(OVER_HALVES, "1", "share of the half in the torque", columns=("half_{}_torque_share",)),
+        "axial_motion": Number(
+            CYCLE, "mm", "motion of the floating gear along its axis, towards half a", columns=("axial_motion_um",)
+        ),
+        "axial_force": Number(
+            OVER_HALVES, "N", "axial force of the half on the wheel, towards half a", columns=("half_{}_axial_force_N",)
+        ),
+        "axial_force_left": (CYCLE, "N", "axial force of both halves on the wheel, which its bearings take"),
+        "share_error": (CYCLE, "1", "estimated error of the share of a half, between torques that were analysed"),
+        "peak_pressure": Number(
+            OVER_HALVES, "MPa", "peak contact pressure in the half", columns=("half_{}_peak_pressure_MPa",)
+        ),
+        "line_load": Number(
+            OVER_HALVES, "N/mm", "largest line load in the half", columns=("half_{}_line_load_N_per_mm",)
+        ),
+        "face_load_factor": (HALF, "1", "face load factor K_Hbeta of the half, under its mean torque; NaN: no load"),
+        "share_factor": Number(
+            TORQUE, "1", "largest share of a half over an even one", label="largest share of a half over an even one"
+        ),
+    }
+)
+ROOTS = numbers(
+    {"root_tension": ((*HALF, "gear"), "MPa", "largest root tension of a gear in the half, over the pitch")},
+    Asked(
+        lambda scene, _: scene.analysis.root_stress, "the result has no root stress; set analysis.root_stress = true"
+    ),
+)
+"""Numbers of a double helical pair: those that all have, those of root stress."""
+
+
+def _of_half(name: str, half: int, row: Row) -> float:
+    return float(getattr(row, name)[..., half].max())
+
+
+def _share(half: int, row: Row) -> float:
+    return float(row.torque_share[..., half].mean())
+
+
+def _root(half: int, gear: int, row: Row) -> float:
+    return float(row.root_tension[half, gear])
+
+
+FIGURES: dict[str, Figure] = {
+    **figures_of({"torque": NUMBERS["torque"]}),
+    "transmission_error_peak_to_peak_um": Figure(
+        of=lambda row: float(np.ptp(row.result.um_per_rad * row.transmission_error)),
+        label="transmission error, peak to peak",
+    ),
+    **figures_of({"share_factor": NUMBERS["share_factor"]}),
+    **{
+        f"half_{name}_torque_share": Figure(of=partial(_share, half), label=f"share of half {name} in the torque, mean")
+        for half, name in enumerate(HALVES)
+    },
+    "axial_motion_mean_um": Figure(
+        of=lambda row: MICROMETRES * float(row.axial_motion.mean()), label="axial motion towards half a, mean"
+    ),
+    "axial_motion_span_um": Figure(
+        of=lambda row: MICROMETRES * float(np.ptp(row.axial_motion)), label="  over the pitch, peak to peak"
+    ),
+    "axial_force_left_N": Figure(
+        of=lambda row: float(np.abs(row.axial_force_left).max()), label="largest axial force that is left"
+    ),
+    **{
+        f"half_{name}_peak_pressure_MPa": Figure(
+            of=partial(_of_half, "peak_pressure", half), label=f"peak pressure of half {name}"
+        )
+        for half, name in enumerate(HALVES)
+    },
+    **{
+        f"half_{name}_line_load_N_per_mm": Figure(
+            of=partial(_of_half, "line_load", half), label=f"largest line load of half {name}"
+        )
+        for half, name in enumerate(HALVES)
+    },
+    **{
+        f"half_{name}_face_load_factor": Figure(
+            of=partial(_of_half, "face_load_factor", half), label=f"face load factor K_Hbeta of half {name}"
+        )
+        for half, name in enumerate(HALVES)
+    },
+    **{
+        f"half_{name}_{gear}_root_tension_MPa": Figure(
+            of=partial(_root, half, number), label=f"root tension of half {name} of the {gear}", needs="root_tension"
+        )
+        for half, name in enumerate(HALVES)
+        for number, gear in enumerate(GEARS)
+    },
+}
+"""Key figures by their names."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class DoubleHelicalResult(AnalysisResult):
+    """Both halves of a double helical pair over one pitch, under each torque.
+
+    Attributes
+    ----------
+    scene : DoubleHelicalScene
+        What was analysed.
+    dataset : xarray.Dataset
+        Numbers of ``NUMBERS`` with their units, over torque [N mm], position (``pinion_angle`` [rad]) and half.
+    half_a, half_b : MeshCycle
+        Of each half, with z from the groove outwards, under the torques between which its shares lie.
+    """
+
+    KIND: ClassVar = DOUBLE_HELICAL
+    WHAT: ClassVar = "the result of a double helical pair"
+    TITLE: ClassVar = "Double helical pair"
+    NUMBERS: ClassVar = NUMBERS | ROOTS
+    COORDINATES: ClassVar = ("torque", "pinion_angle")
+    FIGURES: ClassVar = FIGURES
+
+    scene: DoubleHelicalScene
+    dataset: xarray.Dataset
+    half_a: MeshCycle
+    half_b: MeshCycle
+
+    def __repr__(self) -> str:
+        sizes = self.dataset.sizes
+        return f"DoubleHelicalResult({sizes['torque']} torques, {sizes['position']} positions)"
+
+    @property
+    def halves(self) -> tuple[MeshCycle, MeshCycle]:
+        """Mesh cycles of half a and half b."""
+        return self.half_a, self.half_b
+
+    def along(self, axis: str) -> list[Any]:
+        """What counts along an axis: halves by their names, too."""
+        return [*HALVES] if axis == "half" else super().along(axis)
+
+    @property
+    def scope(self) -> str:
+        """Halves, what floats, positions, in words."""
+        geometry = self.scene.geometry
+        held = f"the {geometry.floating} floats along its axis"
+        if geometry.floating == "none":
+            held = "both gears held along the axes"
+        if geometry.axial_stiffness_N_per_um > 0.0:
+            held += f" on {geometry.axial_stiffness_N_per_um:g} N/um"
+        widths = " and ".join(plain(self.scene.half_width(gear)) for gear in (self.scene.pinion, self.scene.wheel))
+        return (
+            f"two halves of {widths} mm, a groove of {plain(geometry.gap_mm)} mm; {held}; "
+            f"{self.dataset.sizes['position']} positions of a pitch"
+        )
+
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on halves that carry nothing: under which torque, and whether at all positions."""
+        sentences = []
+        for shares, torque in zip(self.torque_share, self.torque.tolist(), strict=True):
+            for name, share in zip(HALVES, shares.T, strict=True):
+                if (share <= 0.0).any():
+                    words = "all" if (share <= 0.0).all() else "some"
+                    sentences.append(
+                        f"under {shown_torque(torque)} half {name} carries nothing at {words} positions: its flanks "
+                        "stand farther apart than those of the other half give way"
+                    )
+        return tuple(sentences)
+
+    @checked
+    def save(self, directory: FilePath) -> tuple[Path, ...]:
+        """Write ``double_helical.nc``, ``half_a.nc`` and ``half_b.nc`` into a directory, all or none.
+
+        Raises
+        ------
+        InputError
+            If they cannot be written.
+        """
+        return replace_together(directory, self.contents())
+
+    def contents(self) -> dict[str, Buffer]:
+        """Names and contents of the files that ``save`` writes."""
+        contents = self.to_netcdf(), *(half.to_netcdf() for half in self.halves)
+        return dict(zip(FILES, contents, strict=True))
+
+    @classmethod
+    @checked
+    def load(cls, directory: FilePath) -> Self:
+        """Read the files that ``save`` wrote into a directory.
+
+        Parameters
+        ----------
+        directory : str or path
+            The directory, or the file ``double_helical.nc`` in it.
+
+        Raises
+        ------
+        InputError
+            If one cannot be read, is damaged, or is no such file.
+        """
+        place = Path(directory)
+        return super().load(place / PAIR_FILE if place.is_dir() or place.name != PAIR_FILE else place)
+
+    @classmethod
+    def parts_of(
+        cls,
+        subject: DoubleHelicalScene,
+        file: xarray.Dataset,
+        arrays: Mapping[str, Array],  # noqa: ARG003
+    ) -> dict[str, Any]:
+        """Nothing else, of lengths as the scene has them."""
+        sizes = {"half": len(HALVES), "torque": len(subject.torques), "position": subject.analysis.positions}
+        require(*((file.sizes[name] == size, f"{name}: expected {size}") for name, size in sizes.items()))
+        return {}
+
+    @classmethod
+    def parts_beside(cls, path: Path, subject: DoubleHelicalScene) -> dict[str, Any]:
+        """Both mesh cycles, of the files beside that of the pair."""
+        places = [path.parent / name for name in HALF_FILES]
+        cycles = [MeshCycle.load(place) for place in places]
+        for half, (place, cycle) in enumerate(zip(places, cycles, strict=True)):
+            torques = [1e-3 * torque for torque in cycle.scene.torques]
+            expected, found = subject.half_scenes(0.0, [torques, torques])[half], cycle.scene
+            assert isinstance(found, CylindricalScene)  # half a pair
+            stands = replace(
+                expected.mounting, axial_offset_mm=found.mounting.axial_offset_mm
+            )  # where the gear floats to
+            if found != replace(expected, mounting=stands, load=found.load, analysis=found.analysis):
+                raise InputError(f"{place}: the mesh cycle of another pair than {PAIR_FILE} beside it")
+        return dict(zip(("half_a", "half_b"), cycles, strict=True))

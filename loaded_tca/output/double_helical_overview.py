@@ -1,0 +1,76 @@
+"""What a double helical pair amounts to before any contact is computed: its halves, forces, the geometry of each."""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from loaded_tca.double_helical.analyse import expected_double_helical_effort
+from loaded_tca.errors import noted_accuracy_warnings
+from loaded_tca.output.overview import LABEL, scene_sections, torques_with_columns
+from loaded_tca.plain import plain
+from loaded_tca.results.gear_warnings import warn_of_gears
+from loaded_tca.scene.double_helical import HALVES
+
+if TYPE_CHECKING:
+    from loaded_tca.scene.double_helical import DoubleHelicalScene
+    from loaded_tca.scene.model import Row
+
+OF_EACH = "mounting errors, edges and modifications", "flanks described by points"
+"""Subjects of an overview that each half has of its own; the others are those of half a."""
+HELD = "Each half is a gear of its own on a rigid bore: rim, web and groove between the halves do not bend or twist."
+"""What a double helical pair does not model."""
+
+
+def describe_double_helical(scene: DoubleHelicalScene) -> str:
+    """Return halves, forces and geometry of a double helical pair, a line each, with warnings on whole gears.
+
+    Raises
+    ------
+    InputError, GeometryError
+        If gears of a half cannot exist, mesh or turn.
+    """
+    lines = [scene.title or "Double helical pair", *(_line(*row) for row in pair_rows(scene))]
+    warned: list[str] = []
+    for name, rows, sentences in geometry_of_halves(scene):
+        lines += ["", f"{name}, z from the groove outwards", *(_line(*row) for row in rows)]
+        warned += [f"warning: {name}: {sentence}" for sentence in sentences]
+    seconds = plain(expected_double_helical_effort(scene).seconds, 2)
+    return "\n".join([*lines, "", _line("analysis of even shares, about [s]", seconds), HELD, *warned])
+
+
+def geometry_of_halves(scene: DoubleHelicalScene) -> list[tuple[str, list[Row], list[str]]]:
+    """Name of each half, the rows of its overview, of half b what may differ, and its warnings on whole gears."""
+    geometry = []
+    for half, own in enumerate(scene.half_scenes(scene.mounting.axial_offset_mm)):
+        with noted_accuracy_warnings(given=False) as sentences:
+            warn_of_gears(own, own.pair())
+            sections = scene_sections(own)
+        rows = chain.from_iterable(rows for name, rows in sections.items() if not half or name in OF_EACH)
+        geometry.append((f"half {HALVES[half]}", [*rows], list(dict.fromkeys(sentences))))
+    return geometry
+
+
+def pair_rows(scene: DoubleHelicalScene) -> list[Row]:
+    """Of both halves together: widths, hands, how the gears stand along the axes, torques and axial forces."""
+    geometry, gears = scene.geometry, (scene.pinion, scene.wheel)
+    shown = torques_with_columns(scene.torques)
+    mesh = scene.mesh()
+    axial = [0.5 * torque / mesh.pinion.base_radius * abs(scene.axial_rate) for torque in shown]
+    held = geometry.axial_stiffness_N_per_um
+    floats = f"{geometry.floating}, on {plain(held)} N/um" if held else geometry.floating
+    return [
+        ("", "pinion", "wheel"),
+        ("overall face width, with the groove [mm]", *(f"{gear.face_width_mm:z.4f}" for gear in gears)),
+        ("face width of a half [mm]", *(f"{scene.half_width(gear):z.4f}" for gear in gears)),
+        ("hand of half a, at z > 0", *scene.hands),
+        ("groove [mm]", f"{geometry.gap_mm:z.4f}"),
+        ("floating along its axis", floats),
+        ("apex of the wheel towards half a [mm]", f"{geometry.apex_offset_mm:z.4f}"),
+        ("pinion torque of both halves [N m]", *(f"{1e-3 * torque:g}" for torque in shown)),
+        ("axial force of a half, even shares [N]", *(f"{force:z.1f}" for force in axial)),
+    ]
+
+
+def _line(label: str, *cells: str) -> str:
+    return f"{label:<{LABEL}}" + "".join(f"{cell:>14}" if len(cell) < 14 else f"  {cell}" for cell in cells)

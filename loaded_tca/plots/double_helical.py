@@ -1,0 +1,183 @@
+"""Pictures of a double helical pair: load over both halves side by side, shares, axial motion, transmission error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from loaded_tca.double_helical import DoubleHelicalResult
+from loaded_tca.plain import plain
+from loaded_tca.plots import style
+from loaded_tca.results.load_factors import face_forces
+from loaded_tca.results.summary import shown_torque
+from loaded_tca.scene.double_helical import HALVES, SIGNS
+
+LEAST_um = 0.02
+"""Least height of a panel of motions and errors."""
+
+
+def _finished(figure: Figure, result: DoubleHelicalResult, shown: str, *rest: str) -> Figure:
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize="small")
+    style.write_title(figure, result.scene.title, shown, *rest)
+    return figure
+
+
+def plot_halves_face_load(result: DoubleHelicalResult, torque: int | None = None) -> Figure:
+    """Load over the face of both halves, beside each other as they lie on the pinion: half b, the groove, half a.
+
+    Normal force of all tooth pairs per width, the mean over a pitch, under the analysed torque of each half that is
+    nearest to its mean share, scaled to that.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+    torque : int, optional
+        Index of the torque; default: the largest.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    torque = style.torque_or_largest(result.torque, torque)
+    figure, axes = style.one_panel()
+    scene = result.scene
+    middle = 0.25 * (scene.pinion.face_width_mm + scene.geometry.gap_mm)
+    for half, (name, cycle, sign) in enumerate(zip(HALVES, result.halves, SIGNS, strict=True)):
+        carried = float(result.torque_share[torque, :, half].mean() * result.torque[torque])
+        row = int(np.abs(cycle.torque - carried).argmin())
+        borders, forces = face_forces(cycle.gear_pair, cycle.path, cycle.maps[row])
+        count = max(1, len(cycle.path) - 1)
+        load = carried / cycle.torque[row] * forces / count / np.diff(borders)
+        places, values = (sign * (middle + borders), load) if sign > 0 else (-(middle + borders)[::-1], load[::-1])
+        factor = plain(result.face_load_factor[torque, half], 3)
+        label = f"half {name}, share {plain(100.0 * carried / result.torque[torque], 3)} %, K_Hβ = {factor}"
+        axes.stairs(values, places, color=style.DISTINCT_COLOURS[half], label=label, fill=True, alpha=0.5)
+    groove = 0.5 * scene.geometry.gap_mm
+    axes.axvspan(-groove, groove, color="0.85", label="groove")
+    axes.set(xlabel="place along the pinion from the middle of its groove, half a to the right [mm]")
+    axes.set_ylabel("normal force per face width [N/mm]")
+    axes.set_ylim(bottom=0.0)
+    return _finished(figure, result, f"load over both halves, pinion torque {shown_torque(result.torque[torque])}")
+
+
+def _over_the_pitch(result: DoubleHelicalResult, number: Callable[[int], np.ndarray], label: str, shown: str) -> Figure:
+    """Curves over the pinion angle, one for each torque."""
+    figure, axes = style.one_panel()
+    angle = np.degrees(result.pinion_angle)
+    for torque in np.argsort(result.torque).tolist():
+        axes.plot(
+            angle,
+            number(torque),
+            color=style.torque_colour(torque, len(result.torque)),
+            marker=style.MARKERS[torque % len(style.MARKERS)],
+            label=f"pinion torque {shown_torque(result.torque[torque])}",
+        )
+    axes.set_ylabel(label)
+    style.widen(axes, LEAST_um)
+    axes.ticklabel_format(useOffset=False)
+    return _finished(figure, result, shown)
+
+
+def plot_halves_axial_motion(result: DoubleHelicalResult) -> Figure:
+    """Motion of the floating gear along its axis over a pitch, under each torque.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    gear = result.scene.geometry.floating
+    label, shown = f"motion of the {gear} towards half a [µm]", f"axial motion of the {gear} over a pitch"
+    return _over_the_pitch(result, lambda torque: 1e3 * result.axial_motion[torque], label, shown)
+
+
+def plot_halves_error(result: DoubleHelicalResult) -> Figure:
+    """Transmission error of both halves together, less its mean, under each torque.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+
+    def error(torque: int) -> np.ndarray:
+        values = result.um_per_rad * result.transmission_error[torque]
+        return np.asarray(values - values.mean())
+
+    return _over_the_pitch(
+        result, error, "transmission error less its mean [µm]", "transmission error at the base circle of the wheel"
+    )
+
+
+def plot_halves_shares(result: DoubleHelicalResult, torque: int | None = None) -> Figure:
+    """Shares of both halves in the torque over a pitch.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+    torque : int, optional
+        Index of the torque; default: the largest.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    torque = style.torque_or_largest(result.torque, torque)
+    figure, axes = style.one_panel()
+    for half, name in enumerate(HALVES):
+        axes.plot(
+            np.degrees(result.pinion_angle),
+            100.0 * result.torque_share[torque, :, half],
+            color=style.DISTINCT_COLOURS[half],
+            marker=style.MARKERS[half],
+            linewidth=2.6 - half,  # even shares lie on each other
+            label=f"half {name}",
+        )
+    axes.set_ylabel("share of the torque [%]")
+    style.widen(axes, 1.0)
+    axes.ticklabel_format(useOffset=False)
+    return _finished(figure, result, f"shares of the halves, pinion torque {shown_torque(result.torque[torque])}")
+
+
+DOUBLE_HELICAL_CAPTIONS = {
+    "halves_face_load": "Normal force per face width along the pinion, mean over a pitch, under the largest torque.",
+    "halves_shares": "Even where a gear floats freely; where both are held the half that stands nearer carries more.",
+    "halves_error": "What both halves excite together: a motion along the axis evens out what they do not share.",
+    "halves_axial_motion": "The mean is the place that the gear finds, the span shuttles with each tooth mesh.",
+}
+"""How each picture is read, in reports."""
+DOUBLE_HELICAL_PICTURES: dict[str, Callable[[DoubleHelicalResult], Figure]] = {
+    "halves_face_load": plot_halves_face_load,
+    "halves_shares": plot_halves_shares,
+    "halves_error": plot_halves_error,
+    "halves_axial_motion": plot_halves_axial_motion,
+}
+"""Name of the file of ``loaded-tca run`` -> how it is drawn."""
+
+
+def double_helical_figures(result: DoubleHelicalResult) -> dict[str, Figure]:
+    """Draw every picture of a double helical pair that it has: of a gear that moves, of a mean over some positions.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+
+    Returns
+    -------
+    dict of str to matplotlib.figure.Figure
+        By the names of ``DOUBLE_HELICAL_PICTURES``.
+    """
+    without = {
+        "halves_axial_motion": result.scene.geometry.floating == "none",
+        "halves_face_load": result.dataset.sizes["position"] == 1,
+    }
+    return {name: draw(result) for name, draw in DOUBLE_HELICAL_PICTURES.items() if not without.get(name)}

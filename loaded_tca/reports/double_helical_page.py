@@ -1,0 +1,61 @@
+"""What the report of a double helical pair tells."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from loaded_tca.output.double_helical_overview import HELD, geometry_of_halves, pair_rows
+from loaded_tca.plots import DOUBLE_HELICAL_CAPTIONS, double_helical_figures
+from loaded_tca.plots.style import label_of
+from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
+from loaded_tca.reports.result_page import MOST_TORQUES, explained
+from loaded_tca.results.summary import shown
+
+if TYPE_CHECKING:
+    from loaded_tca.double_helical import DoubleHelicalResult
+    from loaded_tca.scene.double_helical import DoubleHelicalScene
+
+FILES = "half_a.nc", "half_b.nc"
+
+
+def double_helical_content(result: DoubleHelicalResult) -> dict[str, Any]:
+    """Return what the template of a double helical pair takes.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+    """
+    scene = result.scene
+    return {
+        "title": scene.title or result.TITLE,
+        "analysed_by": result.version,
+        "held": HELD,
+        "scope": result.scope,
+        **halves_geometry(scene),
+        "key_figures": [_figures(result, part) for part in parts_of(result.torque.tolist(), MOST_TORQUES)],
+        "notes": result.notes(),
+        "files": FILES,
+        "warnings": explained(result.warnings or ()),
+        "pictures": pictures_of(double_helical_figures(result), DOUBLE_HELICAL_CAPTIONS, scene.title),
+    }
+
+
+def halves_geometry(scene: DoubleHelicalScene) -> dict[str, Any]:
+    """Return what templates take of a scene: what was asked, the geometry of both halves, the text of the file."""
+    return {
+        "asked": tables_of(pair_rows(scene)),
+        "geometry": [
+            table
+            for name, rows, _ in geometry_of_halves(scene)
+            for table in tables_of(rows, f"{name.capitalize()}, z from the groove outwards")
+        ],
+        "scene_toml": scene.to_toml(),
+    }
+
+
+def _figures(result: DoubleHelicalResult, part: slice) -> Table:
+    """Every figure under some torques."""
+    figures = result.key_figures()[part]
+    first, *names = result.labels()
+    rows = ((label_of(name), *(shown(row[name], name) for row in figures)) for name in names)
+    return Table(tuple(rows), (label_of(first), *(shown(row[first], first) for row in figures)))

@@ -1,0 +1,318 @@
+"""Scenes of double helical pairs: two halves of opposite hands on each gear, and how the gears stand along the axes.
+
+Half a lies at z > 0 and has the hands of the scene. Half b is its mirror image in the middle of the groove, and its
+keys count in that image: in both halves z runs from the groove outwards. So each half is an ordinary scene of two
+helical gears, and two equal halves are one scene.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar, Literal
+
+from loaded_tca.arrays import GEARS
+from loaded_tca.errors import InputError, named
+from loaded_tca.gears import CylindricalMesh
+from loaded_tca.pairs.gear_pair import GearPair, Sense, signs_of
+from loaded_tca.scene import cylindrical
+from loaded_tca.scene.cylindrical import CylindricalScene, MountingErrors
+from loaded_tca.scene.flank_form import FlankForm
+from loaded_tca.scene.keys import Choice, Number, above_zero, key
+from loaded_tca.scene.parse import scene_from_table, variant
+from loaded_tca.scene.section import Rule, Section, contents, rule, subsection
+from loaded_tca.scene.sections import ERROR_mm, Modifications
+
+# ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
+
+HALVES = "a", "b"
+SIGNS = 1.0, -1.0
+"""Of z of the pair, along the z of each half, which runs outwards."""
+OF_HALVES = frozenset({"double_helical", "gap_mm", "apex_offset_mm", "floating", "axial_stiffness_N_per_um"})
+"""Keys of [pair] that double helical pairs alone have."""
+ONE_BY_ONE = (
+    "found true; of both halves together 'loaded-tca run' and 'loaded-tca check' tell, in Python "
+    "loaded_tca.double_helical.analyse_double_helical; each half is a pair by itself: half_a.nc and half_b.nc of a "
+    "result, scene.halves"
+)
+NOT_OF_HALVES = {
+    "pitch": "whole revolutions are not analysed; give the half by itself, as a helical pair",
+    "tooth": "whole revolutions are not analysed; give the half by itself, as a helical pair",
+    "shaft": "the gears stand on rigid axes, but for pair.floating and pair.axial_stiffness_N_per_um",
+    "support": "the gears stand on rigid axes, but for pair.floating and pair.axial_stiffness_N_per_um",
+}
+"""Sections of a gear that a double helical pair does not have, and why."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Geometry(cylindrical.Geometry):
+    """[pair] of double helical gears."""
+
+    double_helical: bool = key(
+        Choice((False, True)), "whether each gear has two halves of opposite hands; leave it out where it has none"
+    )
+    gap_mm: float = key(above_zero(10000.0), "width of the groove between the halves, of both gears")
+    apex_offset_mm: float = key(
+        ERROR_mm,
+        "axial distance from the apex of the pinion's teeth to that of the wheel's, where the middles of both grooves "
+        "face each other; positive: that of the wheel lies nearer to half a",
+        0.0,
+    )
+    floating: Literal["pinion", "wheel", "none"] = key(
+        Choice((*GEARS, "none")),
+        "the gear that moves along its axis until the axial forces of both halves balance; none: both are held",
+        "pinion",
+    )
+    axial_stiffness_N_per_um: float = key(
+        Number(0.0, 1e9), "axial stiffness of the support of the floating gear; 0: nothing holds it", 0.0
+    )
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *cylindrical.Geometry.rules,
+        rule(("double_helical",), bool, "found false; allowed true, or leave it and the other keys of halves out"),
+        rule(
+            ("helix_angle_deg",),
+            lambda angle: angle > 0.0,
+            "found {0:g}; allowed above 0: the halves of spur teeth are one pair",
+        ),
+        rule(
+            ("axial_stiffness_N_per_um", "floating"),
+            lambda stiffness, floating: stiffness == 0.0 or floating != "none",
+            'found {0:g} beside floating = "{1}"; it holds the gear that floats: name it, or leave the stiffness out',
+        ),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class HalfSection(Section):
+    """[pinion.half_b], [wheel.half_b]: what the flanks of half b have instead of those of half a."""
+
+    modifications: Modifications | None = subsection(
+        Modifications, "material removed from the flanks of half b, instead of that of half a", optional=True
+    )
+    flank: FlankForm | None = subsection(
+        FlankForm, "how the flanks of half b are described, instead of those of half a", optional=True
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearSection(cylindrical.GearSection):
+    """[pinion], [wheel] of double helical gears."""
+
+    face_width_mm: float = key(
+        above_zero(10000.0), "overall face width b of both halves with the groove; a half has (b - gap_mm)/2"
+    )
+    half_b: HalfSection | None = subsection(
+        HalfSection, "flanks of half b, where they differ from those of half a", optional=True
+    )
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *cylindrical.GearSection.rules,
+        *(
+            Rule(
+                (name,),
+                lambda given, why=why: None if not given else f"found a section; not allowed of halves: {why}",
+            )
+            for name, why in NOT_OF_HALVES.items()
+        ),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mounting(MountingErrors):
+    """[mounting] of double helical gears: the whole wheel turns and moves about the middle of its groove."""
+
+    half_b: MountingErrors | None = subsection(
+        MountingErrors, "further errors of half b of the wheel, as counted from the groove outwards", optional=True
+    )
+
+
+def _within_face(gap: float, pinion: float, wheel: float) -> str | None:
+    narrow = min(pinion, wheel)
+    return None if gap < narrow else f"found {gap:g}; allowed below the overall face width, {narrow:g}"
+
+
+@variant(CylindricalScene, "a double helical pair: `pair.double_helical` is true")
+@dataclass(frozen=True, kw_only=True)
+class DoubleHelicalScene(CylindricalScene):
+    """A scene of two double helical gears.
+
+    Attributes
+    ----------
+    geometry : double_helical.Geometry
+    pinion, wheel : double_helical.GearSection
+    mounting : double_helical.Mounting
+    title, material, load, analysis
+        As for every ``Scene``; torques are those of both halves together.
+
+    Examples
+    --------
+    >>> from loaded_tca import read_scene
+    >>> scene = read_scene("examples/scenes/double_helical.toml")
+    >>> scene.halves
+    (GearPair(29/87, module 4 mm, face 40 mm), GearPair(29/87, module 4 mm, face 40 mm))
+    """
+
+    geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
+    pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
+    wheel: GearSection = subsection(GearSection, "its mating gear")
+    mounting: Mounting = subsection(Mounting, "mounting errors of the whole wheel")
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *CylindricalScene.rules,
+        Rule(("pair.gap_mm", "pinion.face_width_mm", "wheel.face_width_mm"), _within_face),
+        rule(
+            ("analysis.load_sharing",), bool, "found false; allowed true: the tooth pairs of both halves share the load"
+        ),
+        rule(
+            ("load",),
+            lambda load: load.case is None,
+            "found a load spectrum; not allowed of double helical pairs: give its torques as analysis.torques_Nm",
+        ),
+        rule(
+            ("load.pinion_torque_Nm", "analysis.torques_Nm"),
+            lambda torque, several: all(several or (1.0 if torque is None else torque,)),
+            "found a torque of 0; allowed above 0: the halves share a torque",
+        ),
+        rule(("revolution",), lambda given: given is None, f"found a section; not allowed: {NOT_OF_HALVES['pitch']}"),
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.half_scenes(self.mounting.axial_offset_mm)  # which checks what is of halves: lengths over half the face
+
+    @classmethod
+    def describes(cls, table: Mapping[str, Any]) -> bool:
+        """Whether the section [pair] has a key of double helical pairs."""
+        pair = table.get("pair")
+        return bool(OF_HALVES.intersection(contents(pair) if isinstance(pair, Section) else pair or ()))
+
+    @cached_property
+    def halves(self) -> tuple[GearPair, GearPair]:
+        """Flanks of both halves in space, each with z from the groove outwards."""
+        first, second = (scene.pair() for scene in self.half_scenes(self.mounting.axial_offset_mm))
+        return first, second
+
+    def half_scenes(
+        self, axial_mm: float, torques_Nm: Sequence[Sequence[float]] | None = None
+    ) -> tuple[CylindricalScene, CylindricalScene]:
+        """Return the scenes of both halves, each with z from the groove outwards.
+
+        Parameters
+        ----------
+        axial_mm : float [mm]
+            Where the wheel stands along the axis, positive towards half a: how far the faces lie beside each other.
+        torques_Nm : two sequences of float [N m], optional
+            Pinion torques of each half; default: halves of those of the scene.
+
+        Raises
+        ------
+        InputError
+            If values that are sound one by one do not fit a half.
+        """
+        torques = torques_Nm or 2 * [[0.5e-3 * torque for torque in self.torques]]
+        scenes = []
+        for half, name in enumerate(HALVES):
+            with named(f"half {name}"):
+                scenes.append(self._half(half, axial_mm, tuple(torques[half])))
+        return scenes[0], scenes[1]
+
+    def _half(self, half: int, axial_mm: float, torques: tuple[float, ...]) -> CylindricalScene:
+        mounting = self._mounting_of_half(half, axial_mm)
+        load = replace(self.load, pinion_torque_Nm=torques[-1])
+        analysis = replace(self.analysis, torques_Nm=torques)
+        title = f"{self.title}: half {HALVES[half]}".strip(": ")
+        changes = {"title": title, "mounting": mounting, "load": load, "analysis": analysis}
+        scene = scene_from_table({**contents(self), **self._gears_of_half(half), **changes})
+        assert isinstance(scene, CylindricalScene)
+        return scene
+
+    def _gears_of_half(self, half: int) -> dict[str, Any]:
+        """Sections of both gears of a half, and what they have in common."""
+        sections = {"pair": {k: v for k, v in contents(self.geometry).items() if k not in OF_HALVES}}
+        for name, gear in zip(GEARS, (self.pinion, self.wheel), strict=True):
+            own = contents(gear)
+            of_half: HalfSection | None = own.pop("half_b")
+            if half and of_half is not None:
+                own |= {section: value for section, value in contents(of_half).items() if value is not None}
+            sections[name] = own | {"face_width_mm": self.half_width(gear)}
+        return sections
+
+    def _mounting_of_half(self, half: int, axial_mm: float) -> dict[str, float]:
+        """Mounting errors of a half: of the whole wheel, which turns about the middle of its groove, and its own."""
+        sign, lever = SIGNS[half], self._wheel_lever
+        beside = sign * axial_mm + lever - 0.25 * (self.pinion.face_width_mm + self.geometry.gap_mm)
+        in_plane, out_of_plane = self.mounting.in_plane_deg, self.out_of_plane_deg
+        apart = lever * math.sin(math.radians(in_plane)) * math.cos(math.radians(out_of_plane))
+        own = contents(self.mounting.half_b) if half and self.mounting.half_b is not None else {}
+        errors = {
+            "in_plane_deg": sign * in_plane,
+            "out_of_plane_deg": sign * out_of_plane,
+            "centre_distance_error_mm": self.mounting.centre_distance_error_mm + sign * apart,
+            "axial_offset_mm": beside,
+        }
+        return {name: value + own.get(name, 0.0) + 0.0 for name, value in {"misalignment_um": 0.0, **errors}.items()}
+
+    def half_width(self, gear: cylindrical.GearSection) -> float:
+        """Face width of a half of a gear [mm]."""
+        return 0.5 * (gear.face_width_mm - self.geometry.gap_mm)
+
+    @property
+    def _wheel_lever(self) -> float:
+        """Distance from the middle of the wheel's groove to the middle of the face of a half [mm]."""
+        return 0.25 * (self.wheel.face_width_mm + self.geometry.gap_mm)
+
+    @property
+    def out_of_plane_deg(self) -> float:
+        """Axis error of the whole wheel across the plane of the axes, the misalignment included."""
+        if self.mounting.misalignment_um == 0.0:
+            return self.mounting.out_of_plane_deg
+        narrow = min(self.pinion.face_width_mm, self.wheel.face_width_mm)
+        pressure_angle = self.mesh().working_pressure_angle
+        slope = 1e-3 * self.mounting.misalignment_um / (narrow * math.cos(pressure_angle))
+        return self.mounting.out_of_plane_deg + math.degrees(slope)
+
+    @property
+    def axial_rate(self) -> float:
+        """By how much flanks of half a part along the line of action as the wheel moves towards it: +-tan(beta_b).
+
+        Those of half b come together by as much.
+        """
+        turning, drive = signs_of(self.driving, self.sense)
+        return -self.hand_signs[0] * turning * drive * math.tan(abs(self.mesh().pinion.base_helix_angle))
+
+    @property
+    def parted(self) -> tuple[float, float]:
+        """How far the flanks of both halves stand apart along the line of action beside what their scenes have [mm].
+
+        By where the wheel stands along the axis, its apex, and where an axis error moves the middles of its halves.
+        """
+        turning, drive = signs_of(self.driving, self.sense)
+        across = turning * drive * math.cos(self.mesh().working_pressure_angle)
+        moved = -self._wheel_lever * math.sin(math.radians(self.out_of_plane_deg))
+        along = self.mounting.axial_offset_mm + self.geometry.apex_offset_mm
+        whole = across * moved + self.axial_rate * along
+        own = 0.0 if self.mounting.half_b is None else self.mounting.half_b.axial_offset_mm
+        return whole, self.axial_rate * own - whole
+
+    def mesh(self) -> CylindricalMesh:
+        """Return the macro geometry of a half."""
+        return self._mesh_of_half
+
+    @cached_property
+    def _mesh_of_half(self) -> CylindricalMesh:
+        scene = scene_from_table({**contents(self), **self._gears_of_half(0), "mounting": None})
+        assert isinstance(scene, CylindricalScene)
+        return scene.mesh()
+
+    def analytic_pair(self, sense: Sense) -> GearPair:  # noqa: ARG002
+        """Refuse to make one pair of two halves.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        raise InputError(f"pair.double_helical: {ONE_BY_ONE}")

@@ -1,0 +1,94 @@
+"""The commands for double helical pairs."""
+
+import csv
+import json
+import math
+
+import pytest
+
+from loaded_tca import InputError
+from loaded_tca.cli import main
+from loaded_tca.double_helical import DoubleHelicalResult
+from loaded_tca.plots import DOUBLE_HELICAL_PICTURES
+from loaded_tca.reports import write_html_report
+from loaded_tca.studies import Study, rank_variants, run_study
+from tests.samples.double_helical import FEW, SCENE, analysed, unlike_halves
+
+FILES = ["double_helical.csv", "double_helical.json", "double_helical.nc", "half_a.nc", "half_b.nc"]
+
+
+@pytest.fixture
+def written(tmp_path, monkeypatch, capsys):
+    """Directory of a run whose analysis is not done again."""
+    (tmp_path / "scene.toml").write_text(unlike_halves().to_toml())
+    asked = []
+
+    def ready(scene, **_):
+        asked.append(scene)
+        return analysed()[0]
+
+    monkeypatch.setattr("loaded_tca.double_helical.analyse_double_helical", ready)
+    assert main(["run", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out")]) == 0
+    assert asked == [unlike_halves()]
+    assert "share of half a in the torque, mean" in capsys.readouterr().out
+    return tmp_path / "out"
+
+
+@pytest.mark.usefixtures("blank_pictures")
+def test_run_writes_both_halves_with_tables_and_pictures(written):
+    pictures = [f"{name}.png" for name in DOUBLE_HELICAL_PICTURES]
+    assert sorted(path.name for path in written.iterdir()) == sorted(FILES + pictures)
+    result = DoubleHelicalResult.load(written)
+    figures = json.loads((written / "double_helical.json").read_text())["torques"][0]
+    assert figures["half_b_torque_share"] == 0.5
+    assert figures["axial_motion_mean_um"] == pytest.approx(1e3 * result.axial_motion.mean())
+    with (written / "double_helical.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["axial_motion_um"]) for row in rows] == pytest.approx(1e3 * result.axial_motion[0])
+
+
+@pytest.mark.usefixtures("blank_pictures")
+def test_commands_for_one_pair_name_the_files_of_the_halves(written, capsys):
+    assert main(["plot", str(written)]) == 2
+    assert "a double helical pair, not the result of a mesh cycle; half_a.nc and half_b.nc" in capsys.readouterr().err
+    assert main(["run", str(SCENE.with_name("helical.toml")), "--out", str(written)]) == 2
+    assert "holds a double helical pair (double_helical.nc)" in capsys.readouterr().err
+    assert main(["dynamics", str(written / "half_b.nc"), "--out", str(written / "b.csv")]) == 0
+
+
+def test_check_describes_both_halves(capsys):
+    changes = [part for key, value in FEW.items() for part in ("--set", f"{key}={str(value).lower()}")]
+    assert main(["check", str(SCENE), *changes, "--set", "pair.axial_stiffness_N_per_um=20"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    by_label = {line[:44].strip(): line[44:].split() for line in lines}
+    assert by_label["face width of a half [mm]"] == ["40.0000", "40.0000"]
+    assert by_label["floating along its axis"] == ["pinion,", "on", "20", "N/um"]
+    # T/2 tan(beta)/r at the reference circle, 2 r = 29 * 4 mm/cos(beta)
+    axial = 800e3 * math.sin(math.radians(15.0)) / 58.0
+    assert float(by_label["axial force of a half, even shares [N]"][0]) == pytest.approx(axial, abs=0.1)
+    assert by_label["pinion.modifications.helix_slope_um"] == ["8.0"]
+    assert sum(line.startswith("half ") for line in lines) == 2
+
+
+@pytest.mark.parametrize("command", ["revolution", "vh", "ease-off"])
+def test_commands_that_take_one_pair_refuse_two_halves(command, tmp_path, capsys):
+    assert main([command, str(SCENE), "--out", str(tmp_path)]) == 2
+    assert "pair.double_helical: found true; of both halves together" in capsys.readouterr().err
+
+
+def test_sides_and_supports_are_not_compared(tmp_path, capsys):
+    assert main(["run", str(SCENE), "--coast", "--out", str(tmp_path)]) == 2
+    assert "--coast, --rigid: not of double helical pairs" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("blank_pictures")
+def test_study_keeps_the_figures_of_both_halves_and_has_a_report(tmp_path, monkeypatch):
+    monkeypatch.setattr("loaded_tca.studies.double_helical.analyse_double_helical", lambda _: analysed()[0])
+    study = Study(unlike_halves(), {"pair.gap_mm": [10.0, 20.0]})
+    rows = run_study(study, out=tmp_path / "study.nc")
+    assert rows["half_b_torque_share"].values.tolist() == [[0.5], [0.5]]
+    assert rank_variants(rows)["rank"].tolist() == [1, 2]  # by the transmission error, of which both have the same
+    report = write_html_report(rows, tmp_path / "report.html", date="2026-03-04T05:06:07+00:00")
+    assert "Half b, z from the groove outwards" in report.read_text()
+    with pytest.raises(InputError, match="keep_maps: not of a study of double helical pairs"):
+        run_study(study, out=tmp_path / "study.nc", keep_maps=[0])

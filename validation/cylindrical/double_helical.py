@@ -1,0 +1,115 @@
+"""Double helical pairs against one half, closed forms of axial displacements, and balance along the axis.
+
+- Equal halves in their places are one half under half the torque: nothing is computed twice, 1e-10.
+- The wheel of held gears displaced by d parts the flanks of the halves by 2 d tan(beta_b) without load: of involute
+  helicoids exactly, to where contacts are traced, 1e-9.
+- It takes load from one half to the other by that and both stiffnesses, F_a - F_b = k d tan(beta_b) with k of both
+  halves. The ends of the faces and the crowning move with it, and stiffness grows with the load: 3e-3.
+- The axial forces of unlike halves of a gear that floats balance, 1e-9 of one of them.
+- A gear that floats on a support of K takes what is left of them to K times its motion, 1e-9.
+"""
+
+import math
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from loaded_tca import AccuracyWarning, analyse, read_scene, trace_contact
+from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
+from loaded_tca.scene import DoubleHelicalScene
+from validation.table import Row
+
+CASE, FORM = "double helical pairs", "closed form"
+SCENE = Path(__file__).parents[2] / "examples" / "scenes" / "double_helical.toml"
+EQUAL = {"pinion.half_b": None, "pair.apex_offset_mm": 0.0, "pair.floating": "none"}
+OFFSET, SUPPORT = 0.005, 20.0  # mm, N/um
+SAME, TRACED, LINEAR, BALANCED = 1e-10, 1e-9, 3e-3, 1e-9
+
+
+def rows() -> list[Row]:
+    """Rows of all."""
+    return [*unloaded_rows(), *equal_rows(), *floating_rows()]
+
+
+def short_rows() -> list[Row]:
+    """Those without load."""
+    return unloaded_rows()
+
+
+def scene_with(**changes: object) -> DoubleHelicalScene:
+    """The example on five positions, with other values of keys whose dots are double underscores."""
+    own = {key.replace("__", "."): value for key, value in changes.items()}
+    scene = read_scene(SCENE).with_changes({"analysis.positions": 5, **own})
+    assert isinstance(scene, DoubleHelicalScene)
+    return scene
+
+
+def result_of(scene: DoubleHelicalScene) -> DoubleHelicalResult:
+    """Its result, without warnings of contacts that reach an edge."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        return analyse_double_helical(scene)
+
+
+def unloaded_rows() -> list[Row]:
+    """Flanks of both halves, traced where the wheel stands aside."""
+    plain = {"pinion__modifications": None, "wheel__modifications": None}
+    scene = scene_with(**{key.replace(".", "__"): value for key, value in EQUAL.items()}, **plain)
+    angles = []
+    for half in scene.half_scenes(OFFSET):
+        pair = half.pair()
+        angles.append(float(trace_contact(pair, np.zeros(1)).transmission_error[0]) * pair.base_radii[1])
+    apart = 2.0 * OFFSET * math.tan(abs(scene.mesh().pinion.base_helix_angle))
+    what = f"flanks of both halves apart, wheel aside by {OFFSET:g} mm [mm]"
+    return [Row(CASE, FORM, what, apart, abs(angles[0] - angles[1]), TRACED)]
+
+
+def equal_rows() -> list[Row]:
+    """Equal halves in their places, and with the wheel aside."""
+    scene = scene_with().with_changes(EQUAL)
+    assert isinstance(scene, DoubleHelicalScene)
+    result = result_of(scene)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        half = analyse(scene.half_scenes(0.0)[0])
+    table = [
+        Row(CASE, "one half under half the torque", what, float(expected), float(obtained), SAME)
+        for what, expected, obtained in (
+            (
+                "transmission error, first position [rad]",
+                half.transmission_error[0, 0],
+                result.transmission_error[0, 0],
+            ),
+            ("peak pressure [MPa]", np.nanmax(half.peak_pressure), result.peak_pressure.max()),
+            ("K_Hbeta of half b", half.face_load_factor[0], result.face_load_factor[0, 1]),
+        )
+    ]
+    aside = scene.with_changes({"mounting.axial_offset_mm": OFFSET})
+    assert isinstance(aside, DoubleHelicalScene)
+    displaced, mesh = result_of(aside), scene.mesh()
+    stiffness = 1e3 * result.face_width * result.mesh_stiffness[0, 0]
+    force = (displaced.torque_share[0, 0] @ [1.0, -1.0]) * displaced.torque[0] / mesh.pinion.base_radius
+    shift = stiffness * OFFSET * math.tan(abs(mesh.pinion.base_helix_angle))
+    what = f"F_a - F_b of held gears, wheel aside by {OFFSET:g} mm [N]"
+    table.append(Row(CASE, FORM, what, float(shift), float(force), LINEAR))
+    return table
+
+
+def floating_rows() -> list[Row]:
+    """Unlike halves of a pinion that floats, freely and on a support."""
+    free = result_of(scene_with())
+    left = float(np.abs(free.axial_force_left).max() / np.abs(free.axial_force).max())
+    held = result_of(scene_with(pair__axial_stiffness_N_per_um=SUPPORT))
+    support = -SUPPORT * 1e3 * held.axial_motion[0, 0]  # the pinion's motion is the wheel's backwards
+    return [
+        Row(CASE, "balance", "axial force left of a pinion that floats, over that of a half", 0.0, left, BALANCED),
+        Row(
+            CASE,
+            "balance",
+            f"axial force left of a pinion on {SUPPORT:g} N/um [N]",
+            float(support),
+            float(held.axial_force_left[0, 0]),
+            BALANCED,
+        ),
+    ]
