@@ -2454,6 +2454,27 @@ FAULTS = (
         "set()",
         "test_cli_rating.py::test_command_rates_a_result_again_under_a_spectrum",
     ),
+    Fault(
+        "rings: a longer span makes their teeth thicker",
+        "gears/tooth_measures.py",
+        "allowance = _side(gear) * (span - nominal)",
+        "allowance = (span - nominal)",
+        "gears/test_ring_measures.py::test_measures_of_a_ring_give_back_the_allowance",
+    ),
+    Fault(
+        "rings: the cutter of thinner teeth goes as deep as the basic rack",
+        "gears/ring.py",
+        "return nominal + self._cutting_distance - self._distance_of_cutter(self.profile_shift)",
+        "return nominal + self.normal_module * (self.profile_shift - self.generating_profile_shift)",
+        "gears/test_ring_measures.py::test_allowance_moves_the_root_of_a_ring_as_the_rack_or_its_cutter_does",
+    ),
+    Fault(
+        "rings: form factors of ISO 6336-3 are those of nominal teeth",
+        "scene/cylindrical.py",
+        "gear.dedendum_coefficient, gear.generating_profile_shift",
+        "gear.dedendum_coefficient, gear.profile_shift",
+        "scene/test_ring_thickness.py::test_complete_teeth_and_form_factors_of_a_ring_follow_its_allowance",
+    ),
 )
 
 

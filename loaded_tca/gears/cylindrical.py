@@ -16,14 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears import tooth_measures
 from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks
-from loaded_tca.gears.involute import InvoluteGear, inverse_involute, involute
+from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.tooth_measures import LARGEST_ALLOWANCE, MeasuredGear
 from loaded_tca.roots import find_root
 
 
 @dataclass(frozen=True)
-class CylindricalGear(InvoluteGear):
+class CylindricalGear(MeasuredGear):
     """External spur or helical gear, cut by the basic rack of ISO 53.
 
     The rounded tip of the rack shapes the fillet; where the asked radius does not fit on that tip, the tip is
@@ -106,7 +106,7 @@ class CylindricalGear(InvoluteGear):
             owner=self.name,
         )
         allowance, alteration = self.thickness_allowance, self.tip_alteration_coefficient
-        largest = tooth_measures.LARGEST_ALLOWANCE * self.normal_module
+        largest = LARGEST_ALLOWANCE * self.normal_module
         require(
             (abs(allowance) <= largest, f"thickness_allowance: {allowance:.6g} mm is not within {largest:.6g} mm"),
             (
@@ -161,11 +161,6 @@ class CylindricalGear(InvoluteGear):
         return self.tip_radius - self.reference_radius - self.normal_module * (1.0 + self.profile_shift)
 
     @property
-    def generating_profile_shift(self) -> float:
-        """x_E = x + A_sn/(2 m_n tan(alpha_n)), with which the rack cuts (ISO 21771, 7.4)."""
-        return self.profile_shift + 0.5 * self.thickness_allowance / (self.normal_module * tan(self.pressure_angle))
-
-    @property
     def root_radius(self) -> float:
         """r_f = r - m_n (h_fP/m_n - x_E) [mm]."""
         return self.reference_radius - self.normal_module * (self.dedendum_coefficient - self.generating_profile_shift)
@@ -176,11 +171,6 @@ class CylindricalGear(InvoluteGear):
         return self.base_radius / cos(inverse_involute(self.half_thickness_angle_at_base))
 
     @property
-    def tooth_thickness(self) -> float:
-        """Transverse tooth thickness s_t at the reference cylinder, an arc [mm]."""
-        return self.transverse_module * (0.5 * pi + 2.0 * self.generating_profile_shift * tan(self.pressure_angle))
-
-    @property
     def half_thickness_angle_at_base(self) -> float:
         """Half tooth thickness angle at the base circle, psi_b = s_t/(2 r) + inv(alpha_t) [rad]."""
         return 0.5 * self.tooth_thickness / self.reference_radius + involute(self.transverse_pressure_angle)
@@ -188,38 +178,6 @@ class CylindricalGear(InvoluteGear):
     def tooth_thickness_at(self, radius: float) -> float:
         """Transverse tooth thickness at a radius, an arc: 2 r (psi_b - inv(alpha_r)) [mm]."""
         return 2.0 * radius * (self.half_thickness_angle_at_base - self.involute_at(radius))
-
-    @property
-    def normal_tooth_thickness(self) -> float:
-        """s_n = s_t cos(beta) at the reference cylinder, an arc [mm]."""
-        return self.tooth_thickness * cos(self.helix_angle)
-
-    @property
-    def span_teeth(self) -> int:
-        """Number of teeth k that a span measurement is best taken over; it touches nearest to d + 2 x m_n."""
-        return tooth_measures.span_teeth(self)
-
-    def span_measurement(self, teeth: int | None = None) -> float:
-        """Span W_k over teeth, :attr:`span_teeth` by default [mm]; InputError where it touches no flank.
-
-        Examples
-        --------
-        >>> gear = CylindricalGear(teeth=25, normal_module=2.0, face_width=20.0)
-        >>> gear.span_teeth, round(gear.span_measurement(), 4)
-        (3, 15.4609)
-        """
-        return tooth_measures.span_measurement(self, self.span_teeth if teeth is None else teeth)
-
-    def ball_measurement(self, diameter: float) -> float:
-        """Measure M_dK over two balls of a diameter in opposite spaces [mm]; InputError where they touch no flank.
-
-        Examples
-        --------
-        >>> gear = CylindricalGear(teeth=20, normal_module=2.0, face_width=20.0)
-        >>> round(gear.ball_measurement(3.5), 4)
-        44.9293
-        """
-        return tooth_measures.ball_measurement(self, diameter)
 
     @property
     def rack_tip_radius(self) -> float:

@@ -17,15 +17,15 @@ from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, cylindrical_pa
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
 from loaded_tca.reference.iso1328 import flank_tolerances
-from loaded_tca.scene.blank import BlankGearSection, BlankScene
+from loaded_tca.scene.blank import BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
-from loaded_tca.scene.keys import Choice, Number, Whole, above_zero, key
+from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.parse import family
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
-from loaded_tca.scene.thickness import as_measured, needs, one_thickness, one_tip, thickness_rows
+from loaded_tca.scene.thickness import MeasuredSection, as_measured, one_tip, thickness_rows
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +54,7 @@ class Geometry(Pair):
 
 
 @dataclass(frozen=True, kw_only=True)
-class GearSection(BlankGearSection):
+class GearSection(MeasuredSection):
     """[pinion], [wheel] of cylindrical gears."""
 
     profile_shift: float | None = key(  # type: ignore[assignment]
@@ -71,26 +71,10 @@ class GearSection(BlankGearSection):
         None,
         "0",
     )
-    thickness_allowance_um: float | None = key(
-        SLOPE_um,
-        "allowance A_sn of the tooth thickness in the normal section at the reference circle, negative for thinner "
-        "teeth, up to half a module: flanks and root are cut with x_E",
-        None,
-        "0",
-    )
-    span_measurement_mm: float | None = key(DIAMETER_mm, "or span W_k of these teeth", None, "not measured")
-    span_teeth: int | None = key(
-        Whole(1, 10000), "number of teeth k of the span", None, "touches nearest to d + 2 x m_n"
-    )
-    ball_measurement_mm: float | None = key(DIAMETER_mm, "or measure M_dK over two balls", None, "not measured")
-    ball_diameter_mm: float | None = key(DIAMETER_mm, "diameter D_M of the balls", None, "of `ball_measurement_mm`")
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        *BlankGearSection.rules,
+        *MeasuredSection.rules,
         Rule(("tip_alteration_coefficient", "tip_diameter_mm"), one_tip),
-        Rule(("thickness_allowance_um", "span_measurement_mm", "ball_measurement_mm"), one_thickness),
-        needs("span_teeth", "span_measurement_mm"),
-        needs("ball_diameter_mm", "ball_measurement_mm", back=True),
         below("bore_diameter_mm", "tip_diameter_mm"),
         below("modifications.tip_relief_start_mm", "tip_diameter_mm"),
         below("modifications.root_relief_start_mm", "tip_diameter_mm"),
@@ -367,7 +351,7 @@ class CylindricalScene(BlankScene):
 
 def _root_section(mesh: InvoluteMesh, gear: CylindricalGear | RingGear) -> iso6336_3.RootSection | None:
     """Critical section of a gear after ISO 6336-3; None where the standard has none."""
-    module, dedendum, shift = gear.normal_module, gear.dedendum_coefficient, gear.profile_shift
+    module, dedendum, shift = gear.normal_module, gear.dedendum_coefficient, gear.generating_profile_shift
     try:
         if isinstance(gear, RingGear):
             dedendum = (gear.root_radius - gear.reference_radius) / module + shift
@@ -375,7 +359,7 @@ def _root_section(mesh: InvoluteMesh, gear: CylindricalGear | RingGear) -> iso63
             if gear.cutter is not None:
                 radius = iso6336_3.cut_root_radius(radius, dedendum, gear.cutter.teeth, gear.cutter.profile_shift)
         else:
-            shift, radius = gear.generating_profile_shift, gear.rack_tip_radius / module
+            radius = gear.rack_tip_radius / module
         return iso6336_3.root_section(
             gear.teeth,
             shift,

@@ -13,7 +13,6 @@ from loaded_tca.gears.cylindrical_mesh import ROUNDING
 from loaded_tca.gears.internal_mesh import internal_interferences, internal_profile_shift_sum
 from loaded_tca.pairs.cylindrical import internal_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
-from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
 from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
 from loaded_tca.scene.keys import Choice, Number, Whole, key
@@ -21,7 +20,7 @@ from loaded_tca.scene.model import Hand, Row, Scene
 from loaded_tca.scene.parse import variant
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.sections import DIAMETER_mm, below
-from loaded_tca.scene.thickness import as_measured
+from loaded_tca.scene.thickness import MeasuredSection, as_measured, thickness_rows
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +46,7 @@ def _above(larger_key: str, smaller_key: str) -> Rule:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RingSection(BlankGearSection):
+class RingSection(MeasuredSection):
     """[wheel] of an internal pair: a ring gear."""
 
     teeth: int = key(Whole(-10000, -3), "number of teeth z2 of the ring, negative as in ISO 21771")
@@ -62,7 +61,7 @@ class RingSection(BlankGearSection):
         "0, or what leaves no backlash",
     )
     tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a, positive", None, "d - 2 m_n (1 + x)")
-    root_diameter_mm: float | None = key(DIAMETER_mm, "root diameter d_f, positive", None, "d + 2 m_n (h_fP - x)")
+    root_diameter_mm: float | None = key(DIAMETER_mm, "root diameter d_f, positive", None, "d + 2 m_n (h_fP - x_E)")
     outer_diameter_mm: float | None = key(
         DIAMETER_mm, "outer diameter, held rigid where teeth bend", None, "root diameter + 14 m_n"
     )
@@ -71,7 +70,7 @@ class RingSection(BlankGearSection):
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        *BlankGearSection.rules,
+        *MeasuredSection.rules,
         rule(
             ("bore_diameter_mm",),
             lambda bore: bore is None,
@@ -169,7 +168,7 @@ class InternalScene(CylindricalScene):
                 values["helix_angle"] *= sign
                 values["profile_shift"] = shift or 0.0
             pinion = as_measured(CylindricalGear(**of_pinion, name="pinion"), self.pinion)
-            return pinion, RingGear(**of_ring, name="wheel")
+            return pinion, as_measured(RingGear(**of_ring, name="wheel"), self.wheel)
 
         shifts = [self.pinion.profile_shift, self.wheel.profile_shift]
         pinion, ring = gears(shifts)
@@ -219,6 +218,7 @@ class InternalScene(CylindricalScene):
             ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
             ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
             *_diameter_rows(mesh),
+            *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
             ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),
         ]
 
