@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks
+from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks, topping_check
 from loaded_tca.gears.involute import inverse_involute, involute
 from loaded_tca.gears.tooth_measures import LARGEST_ALLOWANCE, MeasuredGear
 from loaded_tca.roots import find_root
@@ -44,11 +44,11 @@ class CylindricalGear(MeasuredGear):
     profile_shift : float
         Coefficient x, in normal modules.
     tip_diameter : float [mm], optional
-        d_a; None: d + 2 m_n (1 + x + k).
+        d_a; None: d + 2 m_n (h_aP/m_n + x + k).
     dedendum_coefficient : float
         h_fP/m_n of the basic rack.
     root_radius_coefficient : float
-        rho_fP/m_n of the basic rack.
+        rho_fP/m_n of the basic rack; inf: its tip is fully rounded.
     bore_diameter : float [mm], optional
         For the compliance of the body.
     name : str
@@ -58,6 +58,10 @@ class CylindricalGear(MeasuredGear):
         half a module: the rack cuts with x_E (:attr:`generating_profile_shift`), and flanks and root follow it.
     tip_alteration_coefficient : float
         k, negative where the tip is shortened; 0 beside a tip diameter.
+    addendum_coefficient : float
+        h_aP/m_n of the basic rack.
+    topping : bool
+        Whether the tool cuts the tips, too: they follow x_E instead of x.
 
     Raises
     ------
@@ -91,9 +95,11 @@ class CylindricalGear(MeasuredGear):
     name: str = "gear"
     thickness_allowance: float = 0.0
     tip_alteration_coefficient: float = 0.0
+    addendum_coefficient: float = 1.0
+    topping: bool = False
 
     def __post_init__(self) -> None:
-        positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient"
+        positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient", "addendum_coefficient"
         finite = "profile_shift", "thickness_allowance", "tip_alteration_coefficient"
         rounding = self.root_radius_coefficient
         require(
@@ -102,7 +108,7 @@ class CylindricalGear(MeasuredGear):
             bore_check(self.bore_diameter),
             spiral_check("helix_angle", self.helix_angle),
             face_check(self.face_width, self.normal_module, "normal_module"),
-            (0.0 <= rounding < inf, f"root_radius_coefficient: {rounding} is negative or not finite"),
+            (0.0 <= rounding <= inf, f"root_radius_coefficient: {rounding} is negative or no number"),
             owner=self.name,
         )
         allowance, alteration = self.thickness_allowance, self.tip_alteration_coefficient
@@ -114,6 +120,7 @@ class CylindricalGear(MeasuredGear):
                 f"tip_alteration_coefficient: {alteration:g} beside a tip_diameter of {self.tip_diameter} mm; "
                 "give one of them",
             ),
+            topping_check(self),
             owner=self.name,
         )
         dedendum, deepest = self.dedendum_coefficient, pi / 4.0 / tan(self.pressure_angle)
@@ -153,12 +160,13 @@ class CylindricalGear(MeasuredGear):
         """r_a = d_a/2 [mm]."""
         if self.tip_diameter is not None:
             return 0.5 * self.tip_diameter
-        return self.reference_radius + self.normal_module * (1.0 + self.profile_shift + self.tip_alteration_coefficient)
+        return self.reference_radius + self.normal_module * self.addendum
 
     @property
     def tip_alteration(self) -> float:
-        """Tip alteration k m_n = r_a - r - m_n (1 + x), negative for a shortened tooth [mm]."""
-        return self.tip_radius - self.reference_radius - self.normal_module * (1.0 + self.profile_shift)
+        """Tip alteration k m_n = r_a - r - m_n (h_aP/m_n + x), negative for a shortened tooth [mm]."""
+        nominal = self.addendum_coefficient + self.profile_shift
+        return self.tip_radius - self.reference_radius - self.normal_module * nominal
 
     @property
     def root_radius(self) -> float:

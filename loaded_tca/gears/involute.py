@@ -65,6 +65,7 @@ class InvoluteGear:
     pressure_angle: float
     helix_angle: float
     profile_shift: float
+    dedendum_coefficient: float
 
     if TYPE_CHECKING:  # a property of each gear
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, require
-from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks
+from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks, topping_check
 from loaded_tca.gears.involute import inverse_involute, involute
 from loaded_tca.gears.tooth_measures import LARGEST_ALLOWANCE, MeasuredGear
 from loaded_tca.roots import find_root
@@ -83,14 +83,14 @@ class RingGear(MeasuredGear):
     profile_shift : float
         Coefficient x with the sign of ISO 21771, in normal modules.
     tip_diameter : float [mm], optional
-        abs(d_a); None: abs(d) - 2 m_n (1 + x).
+        abs(d_a); None: abs(d) - 2 m_n (h_aP/m_n + x + k).
     root_diameter : float [mm], optional
         abs(d_f); None: abs(d) + 2 m_n (h_fP/m_n - x_E), or what a cutter that is made for the ring without allowance
         leaves of one with it.
     dedendum_coefficient : float
         h_fP/m_n of the basic rack.
     root_radius_coefficient : float
-        Radius of arcs at the root in normal modules, where there is no cutter; at most the one that fits.
+        Radius of arcs at the root in normal modules, where there is no cutter; at most the one that fits, inf: that.
     outer_diameter : float [mm], optional
         Held rigid where teeth bend; None: seven normal modules beyond the root on each side.
     cutter : PinionCutter, optional
@@ -100,6 +100,12 @@ class RingGear(MeasuredGear):
     thickness_allowance : float [mm]
         A_sn of the tooth thickness in the normal section at the reference cylinder, negative for thinner teeth, at most
         half a module: the ring is cut with x_E (:attr:`generating_profile_shift`), and flanks and root follow it.
+    tip_alteration_coefficient : float
+        k, negative where the tip is shortened; 0 beside a tip diameter.
+    addendum_coefficient : float
+        h_aP/m_n of the basic rack.
+    topping : bool
+        Whether the tool cuts the tips, too: they follow x_E instead of x.
 
     Raises
     ------
@@ -133,22 +139,33 @@ class RingGear(MeasuredGear):
     cutter: PinionCutter | None = None
     name: str = "ring"
     thickness_allowance: float = 0.0
+    tip_alteration_coefficient: float = 0.0
+    addendum_coefficient: float = 1.0
+    topping: bool = False
 
     def __post_init__(self) -> None:
         positive = "normal_module", "face_width", "tip_diameter", "root_diameter", "dedendum_coefficient"
+        finite = "profile_shift", "thickness_allowance", "tip_alteration_coefficient"
         teeth, rounding = real(self.teeth), self.root_radius_coefficient
         whole = -inf < teeth <= -3 and teeth == int(teeth)
         require(
             (whole, f"teeth: {self.teeth} is not a whole number up to -3; those of a ring gear count negative"),
-            *input_checks(self, (*positive, "outer_diameter"), finite=("profile_shift", "thickness_allowance")),
+            *input_checks(self, (*positive, "addendum_coefficient", "outer_diameter"), finite),
             spiral_check("helix_angle", self.helix_angle),
             face_check(self.face_width, self.normal_module, "normal_module"),
-            (0.0 <= rounding < inf, f"root_radius_coefficient: {rounding} is negative or not finite"),
+            (0.0 <= rounding <= inf, f"root_radius_coefficient: {rounding} is negative or no number"),
             owner=self.name,
         )
         allowance, largest = self.thickness_allowance, LARGEST_ALLOWANCE * self.normal_module
+        alteration = self.tip_alteration_coefficient
         require(
             (abs(allowance) <= largest, f"thickness_allowance: {allowance:.6g} mm is not within {largest:.6g} mm"),
+            (
+                alteration == 0.0 or self.tip_diameter is None,
+                f"tip_alteration_coefficient: {alteration:g} beside a tip_diameter of {self.tip_diameter} mm; "
+                "give one of them",
+            ),
+            topping_check(self),
             owner=self.name,
         )
         if self.cutter is not None:
@@ -232,12 +249,13 @@ class RingGear(MeasuredGear):
         """abs(r_a) = abs(d_a)/2 [mm]."""
         if self.tip_diameter is not None:
             return 0.5 * self.tip_diameter
-        return self.reference_radius - self.normal_module * (1.0 + self.profile_shift)
+        return self.reference_radius - self.normal_module * self.addendum
 
     @property
     def tip_alteration(self) -> float:
-        """Tip alteration k m_n = abs(r) - abs(r_a) - m_n (1 + x), negative for a shortened tooth [mm]."""
-        return self.reference_radius - self.tip_radius - self.normal_module * (1.0 + self.profile_shift)
+        """Tip alteration k m_n = abs(r) - abs(r_a) - m_n (h_aP/m_n + x), negative for a shortened tooth [mm]."""
+        nominal = self.addendum_coefficient + self.profile_shift
+        return self.reference_radius - self.tip_radius - self.normal_module * nominal
 
     @property
     def root_radius(self) -> float:
@@ -291,7 +309,7 @@ class RingGear(MeasuredGear):
         """Radius of the arcs at the root, or of the rounding of the cutter's tip, at most what fits [mm]."""
         cutter = self.cutter
         coefficient = self.root_radius_coefficient if cutter is None else cutter.tip_radius_coefficient
-        wanted, least = self.normal_module * max(coefficient, SHARPEST), self.normal_module * SHARPEST
+        wanted, least = self.normal_module * min(max(coefficient, SHARPEST), pi), self.normal_module * SHARPEST
         angle_of = self._arc_centre if cutter is None else self._cutter_rounding_centre
 
         def room(radius: float) -> float:

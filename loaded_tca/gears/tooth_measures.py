@@ -25,6 +25,9 @@ class MeasuredGear(InvoluteGear):
     """Gear whose tooth thickness is measured: an external gear or a ring with an allowance A_sn."""
 
     thickness_allowance: float
+    addendum_coefficient: float
+    tip_alteration_coefficient: float
+    topping: bool
 
     if TYPE_CHECKING:  # a property of each gear
 
@@ -40,6 +43,13 @@ class MeasuredGear(InvoluteGear):
     def generating_profile_shift(self) -> float:
         """x_E = x + A_sn/(2 m_n tan(alpha_n)), with which the teeth are cut (ISO 21771, 7.4)."""
         return self.profile_shift + 0.5 * self.thickness_allowance / (self.normal_module * tan(self.pressure_angle))
+
+    @property
+    def addendum(self) -> float:
+        """Height of the tip above the reference circle where no tip diameter is given, h_aP/m_n + x + k [m_n]."""
+        if self.topping:
+            return self.addendum_coefficient + self.generating_profile_shift
+        return self.addendum_coefficient + self.profile_shift + self.tip_alteration_coefficient
 
     @property
     def tooth_thickness(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Literal
@@ -18,14 +18,25 @@ from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
 from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.blank import BlankScene
-from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
+from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.parse import family
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
-from loaded_tca.scene.thickness import MeasuredSection, as_measured, one_tip, thickness_rows
+from loaded_tca.scene.thickness import as_measured, thickness_rows
+from loaded_tca.scene.tools import (
+    ADDENDUM,
+    DEDENDUM,
+    ROOT_RADIUS,
+    SHORTENED_ONCE,
+    TIP_SHORTENING,
+    CutSection,
+    cut_parameters,
+    rack_rows,
+    shortening,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,14 +58,26 @@ class Geometry(Pair):
     sense: Literal["positive", "negative"] = key(
         SENSE, "sense of rotation; negative: the pinion turns the other way and pushes with its other flank", "positive"
     )
-    dedendum_coefficient: float = key(
-        above_zero(5.0), "dedendum of the basic rack (ISO 53 profile A) in modules, h_fP/m_n", 1.25
+    addendum_coefficient: float = key(
+        ADDENDUM, "addendum of the basic rack in modules, h_aP/m_n; each gear may have its own", 1.0
     )
-    root_radius_coefficient: float = key(Number(0.0, 1.0), "root radius of the basic rack in modules, rho_fP/m_n", 0.38)
+    dedendum_coefficient: float = key(
+        DEDENDUM, "dedendum of the basic rack (ISO 53 profile A) in modules, h_fP/m_n; likewise", 1.25
+    )
+    root_radius_coefficient: float | str = key(
+        ROOT_RADIUS,
+        'root radius of the basic rack in modules, rho_fP/m_n, or "full", the largest that fits; likewise',
+        0.38,
+    )
+    tip_shortening: str = key(
+        TIP_SHORTENING,
+        '"computed": both tips are altered by k m_n = a - a_d - m_n (x1 + x2) (ISO 21771) where that shortens them',
+        "none",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
-class GearSection(MeasuredSection):
+class GearSection(CutSection):
     """[pinion], [wheel] of cylindrical gears."""
 
     profile_shift: float | None = key(  # type: ignore[assignment]
@@ -64,17 +87,9 @@ class GearSection(MeasuredSection):
         None,
         "0, or what leaves no backlash",
     )
-    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a", None, "d + 2 m_n (1 + x + k)")
-    tip_alteration_coefficient: float | None = key(
-        Number(-2.0, 1.0),
-        "tip alteration coefficient k, negative for a shortened tip, instead of `tip_diameter_mm`",
-        None,
-        "0",
-    )
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        *MeasuredSection.rules,
-        Rule(("tip_alteration_coefficient", "tip_diameter_mm"), one_tip),
+        *CutSection.rules,
         below("bore_diameter_mm", "tip_diameter_mm"),
         below("modifications.tip_relief_start_mm", "tip_diameter_mm"),
         below("modifications.root_relief_start_mm", "tip_diameter_mm"),
@@ -133,6 +148,7 @@ class CylindricalScene(BlankScene):
     """
 
     vh_keys: ClassVar[tuple[str, str]] = ("mounting.in_plane_deg", "mounting.out_of_plane_deg")
+    rules: ClassVar[tuple[Rule, ...]] = (*BlankScene.rules, SHORTENED_ONCE)
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
@@ -147,20 +163,23 @@ class CylindricalScene(BlankScene):
     def _mesh(self) -> CylindricalMesh:
         """The macro geometry, which every number of the standards asks for again."""
 
-        def gear(own: GearSection, sign: int, name: str, shift: float | None) -> CylindricalGear:
-            values = parameters_of(CylindricalGear, self.geometry, own)
-            values["helix_angle"] *= sign
-            values["profile_shift"] = shift or 0.0
-            return as_measured(CylindricalGear(**values, name=name), own)
+        def gears(shifts: Sequence[float | None]) -> Iterator[CylindricalGear]:
+            both = shifts[0] or 0.0, shifts[1] or 0.0
+            tips = shortening(self.geometry, (self.pinion.teeth, self.wheel.teeth), both)
+            for own, sign, name, shift in zip(sections, self.hand_signs, names, both, strict=True):
+                values = cut_parameters(CylindricalGear, self.geometry, own) | tips
+                values["helix_angle"] *= sign
+                values["profile_shift"] = shift
+                yield as_measured(CylindricalGear(**values, name=name), own)
 
         sections, names, distance = (self.pinion, self.wheel), ("pinion", "wheel"), self.geometry.centre_distance_mm
         shifts = [own.profile_shift for own in sections]
-        pinion, wheel = map(gear, sections, self.hand_signs, names, shifts)
+        pinion, wheel = gears(shifts)
         if distance is not None and shifts.count(None) == 1:
             rest = profile_shift_sum(pinion, wheel, distance) - sum(shift for shift in shifts if shift is not None)
             shifts = [rest if shift is None else shift for shift in shifts]
             try:
-                pinion, wheel = map(gear, sections, self.hand_signs, names, shifts)
+                pinion, wheel = gears(shifts)
             except (InputError, GeometryError) as error:
                 error.add_note(
                     f"pair.centre_distance_mm = {distance:g} and the profile shift that is given ask for {rest:.4f} on "
@@ -313,6 +332,7 @@ class CylindricalScene(BlankScene):
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
             ("profile shift x", f"{mesh.pinion.profile_shift:z.4f}", f"{mesh.wheel.profile_shift:z.4f}"),
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
+            *rack_rows(mesh),
             *_diameter_rows(mesh),
             *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
             ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),

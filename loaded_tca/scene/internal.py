@@ -20,7 +20,8 @@ from loaded_tca.scene.model import Hand, Row, Scene
 from loaded_tca.scene.parse import variant
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.sections import DIAMETER_mm, below
-from loaded_tca.scene.thickness import MeasuredSection, as_measured, thickness_rows
+from loaded_tca.scene.thickness import as_measured, thickness_rows
+from loaded_tca.scene.tools import SHORTENED_ONCE, CutSection, cut_parameters, rack_rows, shortening
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,8 +46,20 @@ def _above(larger_key: str, smaller_key: str) -> Rule:
     return Rule((larger_key, smaller_key), complain)
 
 
+def _one_root(dedendum: float | None, diameter: float | None) -> str | None:
+    if dedendum is None or diameter is None:
+        return None
+    return f"found {dedendum:g} beside root_diameter_mm = {diameter:g}; give one of them: each says where the root is"
+
+
+def _one_fillet(radius: float | str | None, cutter: CutterSection | None) -> str | None:
+    if radius is None or cutter is None:
+        return None
+    return f"found {radius} beside [wheel.cutter], whose tip_radius_coefficient shapes the fillets; give one of them"
+
+
 @dataclass(frozen=True, kw_only=True)
-class RingSection(MeasuredSection):
+class RingSection(CutSection):
     """[wheel] of an internal pair: a ring gear."""
 
     teeth: int = key(Whole(-10000, -3), "number of teeth z2 of the ring, negative as in ISO 21771")
@@ -60,7 +73,7 @@ class RingSection(MeasuredSection):
         None,
         "0, or what leaves no backlash",
     )
-    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a, positive", None, "d - 2 m_n (1 + x)")
+    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a, positive", None, "d - 2 m_n (h_aP + x + k)")
     root_diameter_mm: float | None = key(DIAMETER_mm, "root diameter d_f, positive", None, "d + 2 m_n (h_fP - x_E)")
     outer_diameter_mm: float | None = key(
         DIAMETER_mm, "outer diameter, held rigid where teeth bend", None, "root diameter + 14 m_n"
@@ -70,7 +83,9 @@ class RingSection(MeasuredSection):
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        *MeasuredSection.rules,
+        *CutSection.rules,
+        Rule(("dedendum_coefficient", "root_diameter_mm"), _one_root),
+        Rule(("root_radius_coefficient", "cutter"), _one_fillet),
         rule(
             ("bore_diameter_mm",),
             lambda bore: bore is None,
@@ -125,6 +140,7 @@ class InternalScene(CylindricalScene):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *Scene.rules,
+        SHORTENED_ONCE,
         Rule(("wheel.hand", "pinion.hand"), _same_hands),
         Rule(
             ("wheel.teeth", "pinion.teeth"),
@@ -162,8 +178,10 @@ class InternalScene(CylindricalScene):
         cut_by = None if cutter is None else PinionCutter(**parameters_of(PinionCutter, cutter))
 
         def gears(shifts: list[float | None]) -> tuple[CylindricalGear, RingGear]:
-            of_pinion = parameters_of(CylindricalGear, self.geometry, self.pinion)
-            of_ring = parameters_of(RingGear, self.geometry, self.wheel) | {"cutter": cut_by}
+            both = shifts[0] or 0.0, shifts[1] or 0.0
+            tips = shortening(self.geometry, (self.pinion.teeth, self.wheel.teeth), both)
+            of_pinion = cut_parameters(CylindricalGear, self.geometry, self.pinion) | tips
+            of_ring = cut_parameters(RingGear, self.geometry, self.wheel) | tips | {"cutter": cut_by}
             for values, shift in ((of_pinion, shifts[0]), (of_ring, shifts[1])):
                 values["helix_angle"] *= sign
                 values["profile_shift"] = shift or 0.0
@@ -217,6 +235,7 @@ class InternalScene(CylindricalScene):
             ("", "pinion", "wheel (ring)"),
             ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
             ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
+            *rack_rows(mesh),
             *_diameter_rows(mesh),
             *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
             ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),

@@ -38,13 +38,6 @@ def needs(key: str, other: str, *, back: bool = False) -> Rule:
     return Rule((key, other), complain)
 
 
-def one_tip(alteration: float | None, diameter: float | None) -> str | None:
-    """What is wrong where the tip is given twice."""
-    if alteration is None or diameter is None:
-        return None
-    return f"found {alteration:g} beside tip_diameter_mm = {diameter:g}; give one of them"
-
-
 @dataclass(frozen=True, kw_only=True)
 class MeasuredSection(BlankGearSection):
     """Section of an external gear or a ring whose tooth thickness is given or measured."""

@@ -6,17 +6,19 @@ unit of the last printed digit, or a whole one where the report cuts digits off.
 
 The reports of this stage and of the first one print how their rings are measured, without allowance and at both ends of
 the tolerance DIN 3967 cd25: spans between the flanks over k spaces, measures between two balls, generating profile
-shifts, form circles that pinion-type cutters of 30 and 36 teeth leave, and roots as the basic rack would. Profile
-shifts are printed with four digits, which leaves what follows from them uncertain by as much as half a unit of the
-fourth moves it.
+shifts, tip alterations, form circles that pinion-type cutters of 30 and 36 teeth leave, and roots as the basic rack
+would. Profile shifts are printed with four digits, which leaves what follows from them uncertain by as much as half a
+unit of the fourth moves it.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 from math import radians, sin, tan
 from pathlib import Path
 from typing import NamedTuple
 
 from loaded_tca.gears import PinionCutter, RingGear
+from loaded_tca.gears.tips import computed_tip_alteration
 from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
 from loaded_tca.scene import read_scene
 from validation.table import Row
@@ -101,6 +103,27 @@ def _measures(stage: str, printed: _Printed) -> list[Row]:
     ]
 
 
+TIPS = {
+    "stage 1, sun and planet": ((19, 17), (0.6170, 0.8021), 45.0, 863.0, -10.861),
+    "stage 1, planet and ring": ((17, -56), (0.8021, -0.5013), 45.0, 863.0, 0.0),
+    "stage 2, sun and planet": ((18, 36), (0.3890, 0.5039), 21.0, 584.0, -1.750),
+    "stage 2, planet and ring": ((36, -93), (0.5039, 0.1171), 21.0, 584.0, 0.0),
+}
+"""Teeth, profile shifts, module, centre distance, and the tip alteration that is printed [mm]; of rings none."""
+
+
+def _tips() -> Iterator[Row]:
+    """Computed tip alterations k m_n; the tolerance is half a digit and what both digits of the shifts leave."""
+    for name, (teeth, shifts, module, distance, printed) in TIPS.items():
+        obtained = module * computed_tip_alteration(
+            teeth, shifts, module, pressure_angle=ANGLE, centre_distance=distance
+        )
+        allowed = 0.5001e-3 + module * 1e-4
+        yield Row(
+            MEASURES, REPORTS, f"{name}: tip alteration k m_n [mm]", printed, obtained, allowed / abs(printed or 1.0)
+        )
+
+
 def rows() -> list[Row]:
     """Diameters and contact ratio of the pair."""
     mesh = read_scene(SCENE).mesh()
@@ -126,4 +149,4 @@ def rows() -> list[Row]:
     of_pair = [
         Row(CASE, SOURCE, name, printed, obtained, digits / printed) for name, printed, obtained, digits in values
     ]
-    return [*of_pair, *(row for stage, printed in RINGS.items() for row in _measures(stage, printed))]
+    return [*of_pair, *_tips(), *(row for stage, printed in RINGS.items() for row in _measures(stage, printed))]
