@@ -2489,6 +2489,20 @@ FAULTS = (
         "for one in (gear, gear)]\n    moduli",
         "scene/test_tools.py::test_tool_of_the_pair_given_for_each_gear_is_the_same_pair",
     ),
+    Fault(
+        "protuberance: the tip of the tool stands out by s_pr instead of s_pr/cos(alpha_n)",
+        "gears/cylindrical.py",
+        "flank_end += self.residual_undercut / cos(self.pressure_angle)",
+        "flank_end += self.residual_undercut",
+        "gears/test_protuberance.py::test_root_is_what_the_tool_leaves_as_it_rolls",
+    ),
+    Fault(
+        "protuberance: tangents of the fillet below a notch are those of the tool",
+        "gears/protuberance.py",
+        "around = tangent[1] + radius",
+        "around = tangent[1] + 0.0 * radius",
+        "gears/test_protuberance.py::test_notch_begins_at_the_form_circle_and_fades_into_the_fillet",
+    ),
 )
 
 

@@ -18,6 +18,12 @@ from numpy.typing import NDArray
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks, topping_check
 from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.protuberance import (
+    flank_after_protuberance,
+    protuberance_checks,
+    tangent_without_step,
+    without_step,
+)
 from loaded_tca.gears.tooth_measures import LARGEST_ALLOWANCE, MeasuredGear
 from loaded_tca.roots import find_root
 
@@ -62,6 +68,10 @@ class CylindricalGear(MeasuredGear):
         h_aP/m_n of the basic rack.
     topping : bool
         Whether the tool cuts the tips, too: they follow x_E instead of x.
+    protuberance, grinding_stock : float [mm]
+        pr and q of a tool before grinding, along the normal of the flank; the basic rack is that of the ground gear.
+    protuberance_angle : float [rad], optional
+        alpha_pr of the flank of the protuberance; None: half the pressure angle.
 
     Raises
     ------
@@ -97,6 +107,9 @@ class CylindricalGear(MeasuredGear):
     tip_alteration_coefficient: float = 0.0
     addendum_coefficient: float = 1.0
     topping: bool = False
+    protuberance: float = 0.0
+    grinding_stock: float = 0.0
+    protuberance_angle: float | None = None
 
     def __post_init__(self) -> None:
         positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient", "addendum_coefficient"
@@ -121,6 +134,7 @@ class CylindricalGear(MeasuredGear):
                 "give one of them",
             ),
             topping_check(self),
+            *protuberance_checks(self),
             owner=self.name,
         )
         dedendum, deepest = self.dedendum_coefficient, pi / 4.0 / tan(self.pressure_angle)
@@ -192,6 +206,7 @@ class CylindricalGear(MeasuredGear):
         """Tip rounding rho_fP of the basic rack, at most the full rounding of its tip [mm]."""
         sine, cosine = sin(self.pressure_angle), cos(self.pressure_angle)
         tip_half_width = pi / 4.0 - self.dedendum_coefficient * sine / cosine
+        tip_half_width += self.residual_undercut / (self.normal_module * cosine)
         full_rounding = tip_half_width * cosine / (1.0 - sine)
         return self.normal_module * min(self.root_radius_coefficient, full_rounding)
 
@@ -209,6 +224,23 @@ class CylindricalGear(MeasuredGear):
         return self.reference_radius * sine - depth / sine
 
     @property
+    def residual_undercut(self) -> float:
+        """s_pr = pr - q of ground flanks; negative: the depth of the notch that grinding leaves [mm]."""
+        return self.protuberance - self.grinding_stock
+
+    @property
+    def least_slope(self) -> float:
+        """Angle of the normal of the tool's last flank before its rounding: alpha_pr of a protuberance [rad]."""
+        if self.residual_undercut <= 0.0:
+            return self.pressure_angle
+        return 0.5 * self.pressure_angle if self.protuberance_angle is None else self.protuberance_angle
+
+    @property
+    def meets_in_corner(self) -> bool:
+        """Whether flank and fillet meet in a corner, at an undercut."""
+        return self.is_undercut or self.residual_undercut > 0.0
+
+    @property
     def is_undercut(self) -> bool:
         """Whether the rounded tip of the rack cuts into the involute."""
         return self.rack_form_roll_length < 0.0
@@ -223,7 +255,7 @@ class CylindricalGear(MeasuredGear):
     @cached_property
     def form_radius(self) -> float:
         """r_Ff = d_Ff/2, where fillet and involute meet; never inside the base circle [mm]."""
-        if not self.is_undercut:
+        if not self.meets_in_corner:
             return self.radius_at_roll_length(self.rack_form_roll_length)
         return max(self.base_radius, float(self._fillet(self._fillet_start)[0]))
 
@@ -240,7 +272,10 @@ class CylindricalGear(MeasuredGear):
         radius, half_thickness_angle : (points,) [mm], (points,) [rad]
             Polar coordinates about the gear's axis, the angle counted from the middle of the tooth.
         """
-        return self._fillet(np.linspace(self._fillet_start, 0.5 * pi, points))
+        radius, angle = self._fillet(np.linspace(self._fillet_start, 0.5 * pi, points))
+        if self.residual_undercut < 0.0:
+            angle = without_step(radius, angle, self._step)
+        return radius, angle
 
     def root_fillet_tangent(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Unit tangents of :meth:`root_fillet`, towards the root circle.
@@ -259,19 +294,28 @@ class CylindricalGear(MeasuredGear):
         """
         slope = np.linspace(self._fillet_start, 0.5 * pi, points)
         offset, above = self._offset_and_height(slope)
-        leaning = cos(self.helix_angle) / np.tan(slope)
+        leaning = cos(self.helix_angle) / np.tan(np.maximum(slope, self.least_slope))
         normal = np.stack([leaning * offset - self.reference_radius - above, leaning * self.reference_radius])
         inward, sideways = normal / np.linalg.norm(normal, axis=0)
+        if self.residual_undercut < 0.0:
+            return tangent_without_step(*self._fillet(slope), (-sideways, -inward), self._step)
         return -sideways, -inward
+
+    @property
+    def _step(self) -> float:
+        """Angle by which the fillet of the tool begins in front of the ground flank, at a notch [rad]."""
+        return -self.cut_into_flank(self._fillet_start)
 
     def _offset_and_height(self, slope: Any) -> tuple[Any, Any]:
         """Where a point of the rack's rounding cuts: beside and above the pitch point [mm]."""
+        normal = np.maximum(slope, self.least_slope)
         above = (
             self.normal_module * self.generating_profile_shift
             - self.rack_form_depth
-            - self.rack_tip_radius * (np.sin(slope) - sin(self.pressure_angle))
+            - self.rack_tip_radius * (np.sin(normal) - sin(self.pressure_angle))
+            + self.normal_module * (normal - slope) * cos(self.least_slope)
         )
-        return -above * cos(self.helix_angle) * np.cos(slope) / np.sin(slope), above
+        return -above * cos(self.helix_angle) * np.cos(normal) / np.sin(normal), above
 
     def _fillet(self, slope: float | NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Radius and half thickness angle that a point of the rack's rounding cuts.
@@ -279,10 +323,14 @@ class CylindricalGear(MeasuredGear):
         ``slope`` is the angle of its normal to the rack's reference line in the normal section, from alpha_n
         (end of the straight flank) to pi/2 (tip). The circle of the normal section, stretched by 1/cos(beta),
         is an ellipse in the transverse one; its point cuts when the transverse normal meets the pitch point.
+        Of a protuberance slopes below alpha_pr count the length of its straight flank, in modules.
         """
         rounding, twist = self.rack_tip_radius, cos(self.helix_angle)
         flank_end = pi / 4.0 * self.normal_module - self.rack_form_depth * tan(self.pressure_angle)
-        along = (flank_end + rounding * (np.cos(slope) - cos(self.pressure_angle))) / twist
+        flank_end += self.residual_undercut / cos(self.pressure_angle)
+        normal = np.maximum(slope, self.least_slope)
+        straight = self.normal_module * (normal - slope) * sin(self.least_slope)
+        along = (flank_end + straight + rounding * (np.cos(normal) - cos(self.pressure_angle))) / twist
         offset, above = self._offset_and_height(slope)
         space = np.arctan2(offset, self.reference_radius + above) - (offset - along) / self.reference_radius
         return np.hypot(self.reference_radius + above, offset), pi / self.teeth - space
@@ -295,18 +343,20 @@ class CylindricalGear(MeasuredGear):
         undercut is so slight that rounding hides it.
         """
         flank_end = self.pressure_angle
-        if not self.is_undercut or self._above_base(flank_end) <= 0.0 or self._cut_into_flank(flank_end) >= 0.0:
+        if self.residual_undercut > 0.0 and self.cut_into_flank(flank_end) > 0.0:
+            return flank_after_protuberance(self)
+        if not self.is_undercut or self._above_base(flank_end) <= 0.0 or self.cut_into_flank(flank_end) >= 0.0:
             return flank_end
         at_base = find_root(self._above_base, flank_end, 0.5 * pi)
-        if self._cut_into_flank(at_base) <= 0.0:
+        if self.cut_into_flank(at_base) <= 0.0:
             return at_base
-        return find_root(self._cut_into_flank, flank_end, at_base)
+        return find_root(self.cut_into_flank, flank_end, at_base)
 
     def _above_base(self, slope: float) -> float:
         """Height of a point of the fillet above the base circle [mm]."""
         return float(self._fillet(slope)[0]) - self.base_radius
 
-    def _cut_into_flank(self, slope: float) -> float:
+    def cut_into_flank(self, slope: float) -> float:
         """Angle by which the fillet lies behind the involute; negative: in front of it, in the space."""
         radius, half_thickness_angle = self._fillet(slope)
         tangent = sqrt(max(0.0, (float(radius) / self.base_radius) ** 2 - 1.0))

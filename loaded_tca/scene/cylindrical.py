@@ -23,7 +23,7 @@ from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.parse import family
 from loaded_tca.scene.section import Rule, Section, subsection
-from loaded_tca.scene.sections import DRIVING, SENSE, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
+from loaded_tca.scene.sections import DRIVING, SENSE, AMOUNT_um, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
 from loaded_tca.scene.thickness import as_measured, thickness_rows
 from loaded_tca.scene.tools import (
@@ -34,6 +34,8 @@ from loaded_tca.scene.tools import (
     TIP_SHORTENING,
     CutSection,
     cut_parameters,
+    needs_protuberance,
+    needs_stock,
     rack_rows,
     shortening,
 )
@@ -88,8 +90,23 @@ class GearSection(CutSection):
         "0, or what leaves no backlash",
     )
 
+    protuberance_um: float = key(
+        AMOUNT_um, "protuberance pr of the tool before grinding, along the normal of its flank; needs a stock", 0.0
+    )
+    grinding_stock_um: float = key(
+        AMOUNT_um,
+        "stock q that this tool leaves for grinding; above pr, a notch is left. Basic rack and thickness are those of "
+        "the ground gear",
+        0.0,
+    )
+    protuberance_angle_deg: float | None = key(
+        Number(0.5, 44.0), "angle alpha_pr of the flank of the protuberance", None, "half the pressure angle"
+    )
+
     rules: ClassVar[tuple[Rule, ...]] = (
         *CutSection.rules,
+        Rule(("protuberance_um", "grinding_stock_um"), needs_stock),
+        Rule(("protuberance_angle_deg", "protuberance_um"), needs_protuberance),
         below("bore_diameter_mm", "tip_diameter_mm"),
         below("modifications.tip_relief_start_mm", "tip_diameter_mm"),
         below("modifications.root_relief_start_mm", "tip_diameter_mm"),
@@ -243,6 +260,17 @@ class CylindricalScene(BlankScene):
         return pinion, wheel
 
     @property
+    def grinding_notches(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Depths of the notches that grinding leaves at both roots, and the roundings of the tools [mm]."""
+        pinion, wheel = (
+            (max(0.0, -gear.residual_undercut), gear.rack_tip_radius)
+            if isinstance(gear, CylindricalGear)
+            else (0.0, 0.0)
+            for gear in (self.mesh().pinion, self.mesh().wheel)
+        )
+        return pinion, wheel
+
+    @property
     def pairs_in_contact(self) -> float:
         """The total contact ratio."""
         return self.mesh().total_contact_ratio
@@ -389,6 +417,7 @@ def _root_section(mesh: InvoluteMesh, gear: CylindricalGear | RingGear) -> iso63
             pressure_angle=gear.pressure_angle,
             dedendum_coefficient=dedendum,
             root_radius_coefficient=radius,
+            residual_undercut=0.0 if isinstance(gear, RingGear) else max(0.0, gear.residual_undercut) / module,
         )
     except (InputError, GeometryError):
         return None

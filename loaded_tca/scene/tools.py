@@ -98,6 +98,21 @@ def _shortened_once(shortening: str, *own: Any) -> str | None:
     return None
 
 
+def needs_stock(protuberance: float, stock: float) -> str | None:
+    """What is wrong with a protuberance that no grinding follows."""
+    if protuberance > 0.0 and stock == 0.0:
+        return (
+            f"found {protuberance:g} beside grinding_stock_um = 0; give the stock that it makes room for: without one "
+            "it would cut into the flank"
+        )
+    return None
+
+
+def needs_protuberance(angle: float | None, protuberance: float) -> str | None:
+    """What is wrong with the angle of a protuberance that is not there."""
+    return None if angle is None or protuberance > 0.0 else f"found {angle:g}; it needs protuberance_um above 0"
+
+
 SHORTENED_ONCE = Rule(
     (
         "pair.tip_shortening",
@@ -140,11 +155,20 @@ def shortening(geometry: Geometry, teeth: tuple[int, int], shifts: tuple[float, 
 def rack_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
     """Basic racks of both gears, where one of them is not that of ISO 53, profile A."""
     gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
-    racks = [_rack(gear) for gear in gears]
-    if all(rack == PROFILE_A for rack in racks):
-        return []
-    cells = (" / ".join(FULL if value == inf else f"{value:.6g}" for value in rack) for rack in racks)
-    return [("basic rack: h_aP / h_fP / rho_fP [m_n]", *cells)]
+    racks, rows = [_rack(gear) for gear in gears], []
+    if any(rack != PROFILE_A for rack in racks):
+        cells = (" / ".join(FULL if value == inf else f"{value:.6g}" for value in rack) for rack in racks)
+        rows.append(("basic rack: h_aP / h_fP / rho_fP [m_n]", *cells))
+    tools = [gear if isinstance(gear, CylindricalGear) and gear.grinding_stock else None for gear in gears]
+    if any(tools):
+        cells = (_protuberance(gear) if gear else "-" for gear in tools)
+        rows.append(("protuberance pr / stock q / undercut s_pr [um]", *cells))
+    return rows
+
+
+def _protuberance(gear: CylindricalGear) -> str:
+    values = gear.protuberance, gear.grinding_stock, gear.residual_undercut
+    return " / ".join(f"{1e3 * value:z.6g}" for value in values)
 
 
 def _rack(gear: CylindricalGear | RingGear) -> tuple[float, float, float]:

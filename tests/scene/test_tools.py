@@ -1,12 +1,18 @@
 """Tools of each gear in scenes: racks of their own, tips, and keys as other programs spell them."""
 
+from math import cos, pi, radians, sin, tan
+
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca import InputError, parse_scene, read_scene
+from loaded_tca import AccuracyWarning, InputError, parse_scene, read_scene
+from loaded_tca.reference.iso6336_3 import fillet_section, root_section
+from loaded_tca.results.gear_warnings import warn_of_gears
 from tests.refusals import refused_calls
 from tests.samples.internal_pairs import SCENE
 from tests.samples.results import SCENES
+
+ANGLE = radians(20.0)
 
 
 def scene(**changes):
@@ -73,6 +79,31 @@ def test_topping_follows_the_allowance():
     assert_allclose(scene().mesh().pinion.tip_radius - mesh.pinion.tip_radius, 0.03 / 0.36397023, rtol=1e-7)
 
 
+def test_protuberance_and_stock_shape_the_root_of_a_scene():
+    own = scene(pinion__protuberance_um=120.0, pinion__grinding_stock_um=80.0, pinion__protuberance_angle_deg=8.0)
+    gear = own.mesh().pinion
+    assert_allclose([gear.protuberance, gear.grinding_stock], [0.12, 0.08])
+    rows = {name: cells for name, *cells in own.geometry_rows()}
+    assert rows["protuberance pr / stock q / undercut s_pr [um]"] == ["120 / 80 / 40", "-"]
+    assert own.grinding_notches[0][0] == 0.0
+    assert own.root_factors[0][0] > scene().root_factors[0][0]  # the root is thinner by the undercut
+    assert parse_scene(own.to_toml()) == own
+
+
+def test_form_factor_of_an_undercut_is_that_of_a_rack_so_much_wider():
+    """E of ISO 6336-3 grows with s_pr/cos(alpha_n) as with the width that a smaller dedendum leaves."""
+    wide = root_section(34, 0.0, 36.0, 1.6, residual_undercut=0.02, dedendum_coefficient=1.25)
+    gap = 0.25 * pi - 1.25 * tan(ANGLE) - (0.38 * (1.0 - sin(ANGLE)) - 0.02) / cos(ANGLE)
+    assert_allclose(wide.thickness, fillet_section(gap, 0.38 - 1.25, 0.38, 34)[1], rtol=1e-12)
+
+
+def test_notch_of_grinding_is_warned_of():
+    own = scene(wheel__protuberance_um=20.0, wheel__grinding_stock_um=60.0, analysis__compliance="contact")
+    with pytest.warns(AccuracyWarning, match=r"grinding notch: wheel: the stock for grinding is 40 um above") as caught:
+        warn_of_gears(own, own.pair())
+    assert len(caught) == 1
+
+
 @pytest.mark.parametrize(
     ("path", "meant"),
     [
@@ -98,6 +129,22 @@ def test_bevel_gears_have_their_own_name_for_an_addendum():
 
 
 test_tools_refuse = refused_calls(
+    (
+        lambda: scene(pinion__protuberance_um=100.0),
+        "^pinion.protuberance_um: found 100 beside grinding_stock_um = 0; give the stock",
+    ),
+    (
+        lambda: scene(pinion__protuberance_angle_deg=10.0),
+        "^pinion.protuberance_angle_deg: found 10; it needs protuberance_um above 0",
+    ),
+    (
+        lambda: scene(pinion__protuberance_um=100.0, pinion__grinding_stock_um=900.0).mesh(),
+        "^pinion: grinding_stock: 0.9 mm is not from 0 to a quarter of a module",
+    ),
+    (
+        lambda: internal(wheel__protuberance_um=100.0),
+        "^wheel.protuberance_um: unknown key",
+    ),
     (
         lambda: scene(pinion__tip_diameter_mm=110.0, pinion__addendum_coefficient=1.1),
         "^pinion.tip_diameter_mm: found 110 beside addendum_coefficient = 1.1; give one of them",
