@@ -2503,6 +2503,20 @@ FAULTS = (
         "around = tangent[1] + 0.0 * radius",
         "gears/test_protuberance.py::test_notch_begins_at_the_form_circle_and_fades_into_the_fillet",
     ),
+    Fault(
+        "chamfers: the mating gear is touched beyond the tip form circle",
+        "gears/cylindrical_mesh.py",
+        "return self.line_of_action - mating.roll_length(mating.tip_form_radius)",
+        "return self.line_of_action - mating.roll_length(mating.tip_radius)",
+        "gears/test_chamfer.py::test_chamfers_shorten_the_path_of_contact_as_shorter_tips_do",
+    ),
+    Fault(
+        "chamfers: flanks in contact reach to the tip circle",
+        "tooth/families.py",
+        "radii = gear.form_radius, gear.tip_form_radius",
+        "radii = gear.form_radius, gear.tip_radius",
+        "scene/test_tools.py::test_chamfer_ends_flank_and_active_profile",
+    ),
 )
 
 

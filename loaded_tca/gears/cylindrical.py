@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.errors import GeometryError, InputError, require
+from loaded_tca.gears.chamfer import chamfer_checks, check_chamfer
 from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks, topping_check
 from loaded_tca.gears.involute import inverse_involute, involute
 from loaded_tca.gears.protuberance import (
@@ -72,6 +73,10 @@ class CylindricalGear(MeasuredGear):
         pr and q of a tool before grinding, along the normal of the flank; the basic rack is that of the ground gear.
     protuberance_angle : float [rad], optional
         alpha_pr of the flank of the protuberance; None: half the pressure angle.
+    tip_chamfer : float [mm]
+        Height of the chamfers of the tip edges, along the radius: the flank ends at :attr:`tip_form_radius`.
+    tip_chamfer_angle : float [rad], optional
+        Between chamfer and middle of the tooth; None: 45 degrees.
 
     Raises
     ------
@@ -110,6 +115,8 @@ class CylindricalGear(MeasuredGear):
     protuberance: float = 0.0
     grinding_stock: float = 0.0
     protuberance_angle: float | None = None
+    tip_chamfer: float = 0.0
+    tip_chamfer_angle: float | None = None
 
     def __post_init__(self) -> None:
         positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient", "addendum_coefficient"
@@ -135,6 +142,7 @@ class CylindricalGear(MeasuredGear):
             ),
             topping_check(self),
             *protuberance_checks(self),
+            *chamfer_checks(self),
             owner=self.name,
         )
         dedendum, deepest = self.dedendum_coefficient, pi / 4.0 / tan(self.pressure_angle)
@@ -168,6 +176,7 @@ class CylindricalGear(MeasuredGear):
             raise GeometryError(
                 f"{tip} lies inside the form circle, diameter {2.0 * self.form_radius:.4f} mm: no flank left"
             )
+        check_chamfer(self)
 
     @property
     def tip_radius(self) -> float:

@@ -74,6 +74,10 @@ class InvoluteGear:
             """abs(r_a) [mm]."""
 
         @property
+        def tip_form_radius(self) -> float:
+            """abs(r_Fa), where the flank ends [mm]."""
+
+        @property
         def form_radius(self) -> float:
             """abs(r_Ff), where fillet and involute meet [mm]."""
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, require
+from loaded_tca.gears.chamfer import chamfer_checks, check_chamfer
 from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks, topping_check
 from loaded_tca.gears.involute import inverse_involute, involute
 from loaded_tca.gears.tooth_measures import LARGEST_ALLOWANCE, MeasuredGear
@@ -106,6 +107,10 @@ class RingGear(MeasuredGear):
         h_aP/m_n of the basic rack.
     topping : bool
         Whether the tool cuts the tips, too: they follow x_E instead of x.
+    tip_chamfer : float [mm]
+        Height of the chamfers of the tip edges, along the radius: the flank ends at :attr:`tip_form_radius`.
+    tip_chamfer_angle : float [rad], optional
+        Between chamfer and middle of the tooth; None: 45 degrees.
 
     Raises
     ------
@@ -142,6 +147,8 @@ class RingGear(MeasuredGear):
     tip_alteration_coefficient: float = 0.0
     addendum_coefficient: float = 1.0
     topping: bool = False
+    tip_chamfer: float = 0.0
+    tip_chamfer_angle: float | None = None
 
     def __post_init__(self) -> None:
         positive = "normal_module", "face_width", "tip_diameter", "root_diameter", "dedendum_coefficient"
@@ -166,6 +173,7 @@ class RingGear(MeasuredGear):
                 "give one of them",
             ),
             topping_check(self),
+            *chamfer_checks(self),
             owner=self.name,
         )
         if self.cutter is not None:
@@ -206,6 +214,7 @@ class RingGear(MeasuredGear):
                 f"{self.name}: no flank is left between the tip circle, diameter {2.0 * self.tip_radius:.4f} mm, and "
                 f"the form circle, diameter {2.0 * self.form_radius:.4f} mm"
             )
+        check_chamfer(self)
 
     def _check_feed(self, cutter: PinionCutter) -> None:
         """Refuse a cutter that has no place in this ring."""

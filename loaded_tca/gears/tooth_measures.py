@@ -28,6 +28,8 @@ class MeasuredGear(InvoluteGear):
     addendum_coefficient: float
     tip_alteration_coefficient: float
     topping: bool
+    tip_chamfer: float
+    tip_chamfer_angle: float | None
 
     if TYPE_CHECKING:  # a property of each gear
 
@@ -50,6 +52,11 @@ class MeasuredGear(InvoluteGear):
         if self.topping:
             return self.addendum_coefficient + self.generating_profile_shift
         return self.addendum_coefficient + self.profile_shift + self.tip_alteration_coefficient
+
+    @property
+    def tip_form_radius(self) -> float:
+        """abs(r_Fa), where the flank ends: at the chamfer, or at the tip [mm]."""
+        return self.tip_radius - _side(self) * self.tip_chamfer
 
     @property
     def tooth_thickness(self) -> float:
@@ -282,7 +289,7 @@ def _opposite(gear: MeasuredGear) -> float:
 
 def _touches(gear: MeasuredGear, radius: float, what: str) -> tuple[bool, str]:
     """Check of a contact point: on the flank, between form and tip circle."""
-    low, high = sorted((gear.form_radius, gear.tip_radius))
+    low, high = sorted((gear.form_radius, gear.tip_form_radius))
     place = f"at diameter {2.0 * radius:.6g} mm" if radius > 0.0 else "below the base circle"
     flank = f"the flanks reach from {2.0 * low:.6g} to {2.0 * high:.6g} mm"
     return low <= radius <= high, f"{what} touches no flank: it would be {place}, and {flank}"

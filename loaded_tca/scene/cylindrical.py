@@ -33,6 +33,7 @@ from loaded_tca.scene.tools import (
     SHORTENED_ONCE,
     TIP_SHORTENING,
     CutSection,
+    chamfer_rows,
     cut_parameters,
     needs_protuberance,
     needs_stock,
@@ -90,14 +91,18 @@ class GearSection(CutSection):
         "0, or what leaves no backlash",
     )
 
-    protuberance_um: float = key(
-        AMOUNT_um, "protuberance pr of the tool before grinding, along the normal of its flank; needs a stock", 0.0
+    protuberance_um: float | None = key(
+        AMOUNT_um,
+        "protuberance pr of the tool before grinding, along the normal of its flank; needs a stock",
+        None,
+        "0",
     )
-    grinding_stock_um: float = key(
+    grinding_stock_um: float | None = key(
         AMOUNT_um,
         "stock q that this tool leaves for grinding; above pr, a notch is left. Basic rack and thickness are those of "
         "the ground gear",
-        0.0,
+        None,
+        "0",
     )
     protuberance_angle_deg: float | None = key(
         Number(0.5, 44.0), "angle alpha_pr of the flank of the protuberance", None, "half the pressure angle"
@@ -362,6 +367,7 @@ class CylindricalScene(BlankScene):
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
             *rack_rows(mesh),
             *_diameter_rows(mesh),
+            *chamfer_rows(mesh),
             *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
             ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),
         ]
@@ -411,7 +417,7 @@ def _root_section(mesh: InvoluteMesh, gear: CylindricalGear | RingGear) -> iso63
         return iso6336_3.root_section(
             gear.teeth,
             shift,
-            2.0 * gear.tip_radius / module,
+            2.0 * gear.tip_form_radius / module,
             mesh.transverse_contact_ratio,
             helix_angle=gear.helix_angle,
             pressure_angle=gear.pressure_angle,

@@ -21,7 +21,7 @@ from loaded_tca.scene.parse import variant
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.sections import DIAMETER_mm, below
 from loaded_tca.scene.thickness import as_measured, thickness_rows
-from loaded_tca.scene.tools import SHORTENED_ONCE, CutSection, cut_parameters, rack_rows, shortening
+from loaded_tca.scene.tools import SHORTENED_ONCE, CutSection, chamfer_rows, cut_parameters, rack_rows, shortening
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,7 +216,7 @@ class InternalScene(CylindricalScene):
         """Return centre distance, contact ratios, diameters, and the three interferences with their room."""
         mesh = self.mesh()
         pinion, ring, path = mesh.pinion, mesh.ring, mesh.path_of_contact
-        ring_tip = ring.roll_length(ring.tip_radius) - (path.T1 - path.T2)
+        ring_tip = ring.roll_length(ring.tip_form_radius) - (path.T1 - path.T2)
         shifts = pinion.profile_shift + ring.profile_shift, mesh.profile_shift_sum_without_backlash
         return [
             ("working centre distance |a_w| [mm]", f"{mesh.working_centre_distance:z.4f}"),
@@ -237,6 +237,7 @@ class InternalScene(CylindricalScene):
             ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
             *rack_rows(mesh),
             *_diameter_rows(mesh),
+            *chamfer_rows(mesh),
             *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
             ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),
         ]

@@ -7,6 +7,7 @@ from math import inf, radians
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
+from loaded_tca.gears.chamfer import chamfered_land
 from loaded_tca.gears.tips import computed_tip_alteration
 from loaded_tca.scene.build import parameters_of
 from loaded_tca.scene.keys import Choice, Either, Number, above_zero, key
@@ -48,6 +49,16 @@ def _topped(topping: bool, alteration: float | None) -> str | None:
     return None
 
 
+def _one_edge(chamfer: float, rounding: float) -> str | None:
+    if chamfer > 0.0 and rounding > 0.0:
+        return f"found {chamfer:g} beside tip_rounding_mm = {rounding:g}; give one of them: each ends the flank"
+    return None
+
+
+def _needs_chamfer(angle: float | None, chamfer: float) -> str | None:
+    return None if angle is None or chamfer > 0.0 else f"found {angle:g}; it needs tip_chamfer_mm above 0"
+
+
 @dataclass(frozen=True, kw_only=True)
 class CutSection(MeasuredSection):
     """Section of an external gear or a ring with a basic rack and a tip of its own."""
@@ -76,9 +87,19 @@ class CutSection(MeasuredSection):
         "whether the tool cuts the tips, too, which then follow the thickness: k m_n = A_sn/(2 tan(alpha_n))",
         False,
     )
+    tip_chamfer_mm: float = key(
+        Number(0.0, 1000.0),
+        "height of chamfers of both tip edges along the radius, below a module: the flank ends so far below the tip",
+        0.0,
+    )
+    tip_chamfer_angle_deg: float | None = key(
+        Number(1.0, 89.0), "angle between chamfer and middle of the tooth", None, "45"
+    )
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *MeasuredSection.rules,
+        Rule(("tip_chamfer_mm", "tip_rounding_mm"), _one_edge),
+        Rule(("tip_chamfer_angle_deg", "tip_chamfer_mm"), _needs_chamfer),
         Rule(("tip_diameter_mm", "tip_alteration_coefficient", "addendum_coefficient", "topping"), _tip_once),
         Rule(("topping", "tip_alteration_coefficient"), _topped),
     )
@@ -98,19 +119,19 @@ def _shortened_once(shortening: str, *own: Any) -> str | None:
     return None
 
 
-def needs_stock(protuberance: float, stock: float) -> str | None:
+def needs_stock(protuberance: float | None, stock: float | None) -> str | None:
     """What is wrong with a protuberance that no grinding follows."""
-    if protuberance > 0.0 and stock == 0.0:
+    if protuberance and not stock:
         return (
-            f"found {protuberance:g} beside grinding_stock_um = 0; give the stock that it makes room for: without one "
+            f"found {protuberance:g} without grinding_stock_um; give the stock that it makes room for: without one "
             "it would cut into the flank"
         )
     return None
 
 
-def needs_protuberance(angle: float | None, protuberance: float) -> str | None:
+def needs_protuberance(angle: float | None, protuberance: float | None) -> str | None:
     """What is wrong with the angle of a protuberance that is not there."""
-    return None if angle is None or protuberance > 0.0 else f"found {angle:g}; it needs protuberance_um above 0"
+    return None if angle is None or protuberance else f"found {angle:g}; it needs protuberance_um above 0"
 
 
 SHORTENED_ONCE = Rule(
@@ -164,6 +185,18 @@ def rack_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
         cells = (_protuberance(gear) if gear else "-" for gear in tools)
         rows.append(("protuberance pr / stock q / undercut s_pr [um]", *cells))
     return rows
+
+
+def chamfer_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
+    """Tip form circles and lands of tips that are chamfered."""
+    gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
+    if not any(gear.tip_chamfer for gear in gears):
+        return []
+    lands = (f"{chamfered_land(gear):z.4f}" if gear.tip_chamfer else "-" for gear in gears)
+    return [
+        ("tip form diameter d_Fa [mm]", *(f"{2.0 * gear.tip_form_radius:z.4f}" for gear in gears)),
+        ("tip land between chamfers [mm]", *lands),
+    ]
 
 
 def _protuberance(gear: CylindricalGear) -> str:

@@ -104,6 +104,18 @@ def test_notch_of_grinding_is_warned_of():
     assert len(caught) == 1
 
 
+def test_chamfer_ends_flank_and_active_profile():
+    own = scene(pinion__tip_chamfer_mm=0.3, pinion__tip_chamfer_angle_deg=40.0)
+    mesh = own.mesh()
+    end = scene().mesh().pinion.tip_radius - 0.3
+    highest = own.pair().pinion.flank.grid(3, 3)[0].max()
+    assert_allclose([mesh.pinion_active_profile.end_radius, highest], end, rtol=1e-9)
+    rows = {name: cells for name, *cells in own.geometry_rows()}
+    assert rows["tip form diameter d_Fa [mm]"][0] == f"{2.0 * end:.4f}"
+    assert rows["tip land between chamfers [mm]"][1] == "-"
+    assert parse_scene(own.to_toml()) == own
+
+
 @pytest.mark.parametrize(
     ("path", "meant"),
     [
@@ -131,7 +143,7 @@ def test_bevel_gears_have_their_own_name_for_an_addendum():
 test_tools_refuse = refused_calls(
     (
         lambda: scene(pinion__protuberance_um=100.0),
-        "^pinion.protuberance_um: found 100 beside grinding_stock_um = 0; give the stock",
+        "^pinion.protuberance_um: found 100 without grinding_stock_um; give the stock",
     ),
     (
         lambda: scene(pinion__protuberance_angle_deg=10.0),
@@ -140,6 +152,14 @@ test_tools_refuse = refused_calls(
     (
         lambda: scene(pinion__protuberance_um=100.0, pinion__grinding_stock_um=900.0).mesh(),
         "^pinion: grinding_stock: 0.9 mm is not from 0 to a quarter of a module",
+    ),
+    (
+        lambda: scene(pinion__tip_chamfer_mm=0.3, pinion__tip_rounding_mm=0.2),
+        "^pinion.tip_chamfer_mm: found 0.3 beside tip_rounding_mm = 0.2; give one of them",
+    ),
+    (
+        lambda: scene(pinion__tip_chamfer_angle_deg=40.0),
+        "^pinion.tip_chamfer_angle_deg: found 40; it needs tip_chamfer_mm above 0",
     ),
     (
         lambda: internal(wheel__protuberance_um=100.0),
