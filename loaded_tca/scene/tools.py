@@ -178,12 +178,12 @@ def rack_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
     gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
     racks, rows = [_rack(gear) for gear in gears], []
     if any(rack != PROFILE_A for rack in racks):
-        cells = (" / ".join(FULL if value == inf else f"{value:.6g}" for value in rack) for rack in racks)
-        rows.append(("basic rack: h_aP / h_fP / rho_fP [m_n]", *cells))
+        cells = ("/".join(FULL if value == inf else f"{value:.6g}" for value in rack) for rack in racks)
+        rows.append(("basic rack: h_aP/h_fP/rho_fP [m_n]", *cells))
     tools = [gear if isinstance(gear, CylindricalGear) and gear.grinding_stock else None for gear in gears]
     if any(tools):
         cells = (_protuberance(gear) if gear else "-" for gear in tools)
-        rows.append(("protuberance pr / stock q / undercut s_pr [um]", *cells))
+        rows.append(("protuberance pr/stock q/undercut s_pr [um]", *cells))
     return rows
 
 
@@ -201,8 +201,11 @@ def chamfer_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
 
 def _protuberance(gear: CylindricalGear) -> str:
     values = gear.protuberance, gear.grinding_stock, gear.residual_undercut
-    return " / ".join(f"{1e3 * value:z.6g}" for value in values)
+    return "/".join(f"{1e3 * value:z.6g}" for value in values)
 
 
 def _rack(gear: CylindricalGear | RingGear) -> tuple[float, float, float]:
+    """h_aP, h_fP and rho_fP over the module; of a ring with a cutter the rounding of that."""
+    if isinstance(gear, RingGear) and gear.cutter is not None:
+        return gear.addendum_coefficient, gear.dedendum_coefficient, gear.cutter.tip_radius_coefficient
     return gear.addendum_coefficient, gear.dedendum_coefficient, gear.root_radius_coefficient

@@ -37,7 +37,7 @@ def test_tool_of_a_gear_comes_before_that_of_the_pair():
     )
     assert wheel == scene().mesh().wheel
     rows = {name: cells for name, *cells in own.geometry_rows()}
-    assert rows["basic rack: h_aP / h_fP / rho_fP [m_n]"] == ["1.1 / 1.4 / 0.25", "1 / 1.25 / 0.38"]
+    assert rows["basic rack: h_aP/h_fP/rho_fP [m_n]"] == ["1.1/1.4/0.25", "1/1.25/0.38"]
     assert not any(name.startswith("basic rack") for name, *_ in scene().geometry_rows())
     assert parse_scene(own.to_toml()) == own
 
@@ -55,7 +55,7 @@ def test_tool_of_the_pair_given_for_each_gear_is_the_same_pair():
 
 def test_full_root_radius_is_the_largest_that_fits():
     rows = {name: cells for name, *cells in scene(pair__root_radius_coefficient="full").geometry_rows()}
-    assert rows["basic rack: h_aP / h_fP / rho_fP [m_n]"][0] == "1 / 1.25 / full"
+    assert rows["basic rack: h_aP/h_fP/rho_fP [m_n]"][0] == "1/1.25/full"
     assert internal(wheel__root_radius_coefficient="full").mesh().ring.root_radius_coefficient == float("inf")
 
 
@@ -84,7 +84,7 @@ def test_protuberance_and_stock_shape_the_root_of_a_scene():
     gear = own.mesh().pinion
     assert_allclose([gear.protuberance, gear.grinding_stock], [0.12, 0.08])
     rows = {name: cells for name, *cells in own.geometry_rows()}
-    assert rows["protuberance pr / stock q / undercut s_pr [um]"] == ["120 / 80 / 40", "-"]
+    assert rows["protuberance pr/stock q/undercut s_pr [um]"] == ["120/80/40", "-"]
     assert own.grinding_notches[0][0] == 0.0
     assert own.root_factors[0][0] > scene().root_factors[0][0]  # the root is thinner by the undercut
     assert parse_scene(own.to_toml()) == own
