@@ -202,6 +202,13 @@ FILLET = Kind(
     "the mating gear's tip touches where the flank ends and the fillet begins",
     "tip diameters, profile shifts, or the cutter; `check` tells the diameters",
 )
+NOTCH = Kind(
+    "grinding notch: {gear}: the stock for grinding is {depth:.3g} um above the protuberance of its tool: a notch so "
+    "deep is left at the root form circle, by which ISO 6336-3 raises Y_S by {percent:.2g} % if it is as round as the "
+    "tip of the tool",
+    "teeth bend and roots are stressed without the notch, which no element resolves; safeties of roots leave it out",
+    "a protuberance above the stock",
+)
 BACKLASH = Kind(
     "negative backlash: teeth are thicker than the spaces of the mating gear, so that whole gears jam, while the "
     "analysis has the contact of one flank of each",

@@ -322,7 +322,7 @@ def zeros_as_none(subject: Subject) -> Off:
         if own.support is None and own.shaft is None:
             changes[f"{gear}.support.compliance"] = [[0.0] * 6] * 6
         if getattr(own, "thickness_allowance_um", 0.0) is None:
-            changes[f"{gear}.thickness_allowance_um"] = 0.0
+            changes |= {f"{gear}.thickness_allowance_um": 0.0, f"{gear}.tip_chamfer_mm": own.tip_chamfer_mm}
     return difference(subject.result, analysed(scene.with_changes(changes)), SAME_TORQUE)
 
 

@@ -86,6 +86,33 @@ def _shorter_tips(rng: np.random.Generator, scene: Scene) -> Scene:
     return scene.with_changes({f"{gear}.tip_alteration_coefficient": float(rng.uniform(-0.2, 0.0)) for gear in GEARS})
 
 
+def _own_racks(rng: np.random.Generator, scene: Scene) -> Scene:
+    """A rack of its own for each gear; a ring's is deeper alone."""
+    changes = {f"{gear}.dedendum_coefficient": float(rng.uniform(1.2, 1.4)) for gear in GEARS}
+    for gear in GEARS[: 1 if scene.wheel.teeth < 0 else 2]:
+        changes[f"{gear}.root_radius_coefficient"] = float(rng.uniform(0.2, 0.4))
+        changes[f"{gear}.addendum_coefficient"] = float(rng.uniform(0.9, 1.0))
+    return scene.with_changes(changes)
+
+
+def _protuberance(rng: np.random.Generator, scene: Scene) -> Scene:
+    """An undercut of a hundredth of a module that grinding leaves of one gear, or of both."""
+    module = 1e3 * scene.pair().module  # um
+    stock = {
+        f"{gear}.grinding_stock_um": float(module * rng.uniform(0.01, 0.02)) for gear in GEARS[: rng.integers(1, 3)]
+    }
+    more = {key.replace("grinding_stock", "protuberance"): value + 0.01 * module for key, value in stock.items()}
+    return scene.with_changes(stock | more)
+
+
+def _tip_chamfer(rng: np.random.Generator, scene: Scene) -> Scene:
+    gear = str(rng.choice(GEARS))
+    height = float(scene.pair().module * rng.uniform(0.03, 0.1))
+    return scene.with_changes(
+        {f"{gear}.tip_chamfer_mm": height, f"{gear}.tip_chamfer_angle_deg": float(rng.uniform(45.0, 60.0))}
+    )
+
+
 def _shaft_angle(rng: np.random.Generator, scene: Scene) -> Scene:
     return scene.with_changes({"pair.shaft_angle_deg": float(rng.uniform(60.0, 115.0))})
 
@@ -343,6 +370,9 @@ FEATURES = (
     Feature("unlike faces", CYLINDRICAL, 0.3, _unlike_faces),
     Feature("centre distance", CYLINDRICAL, 0.15, _other_centre_distance),
     Feature("shorter tips", EXTERNAL, 0.15, _shorter_tips),
+    Feature("own racks", CYLINDRICAL, 0.1, _own_racks),
+    Feature("protuberance", EXTERNAL, 0.1, _protuberance),
+    Feature("tip chamfer", CYLINDRICAL, 0.1, _tip_chamfer),
     Feature("shaft angle", BEVEL, 0.3, _shaft_angle),
     Feature("blank", BEVEL, 0.2, _blank),
     Feature("thickness allowances", CYLINDRICAL, 0.15, _thinner_teeth),

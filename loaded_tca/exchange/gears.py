@@ -268,30 +268,31 @@ def _pressure_angle(reading: Reading, stage: Stage, flanks: list[Component | Non
 
 
 def _rack(reading: Reading, stage: Stage, flanks: list[Component | None], module: float) -> dict[str, float]:
-    """Dedendum and root radius of the basic rack: the addendum and the tip radius of the pinion's tool."""
-    racks: list[tuple[Component, dict[str, float]]] = []
-    for gear, flank in zip(stage.gears, flanks, strict=True):
-        for tool in tools_of(reading, gear, flank)[:1]:
-            rack = {}
-            dedendum = _per_module(
-                reading, tool, module, "addendum_coefficient_reference_profile", "addendum_reference_profile"
-            )
-            radius = _per_module(reading, tool, module, "tip_radius_factor", "tip_radius")
-            if dedendum is not None:
-                rack["dedendum_coefficient"] = dedendum
-            if radius is not None and tool.type == "rack_shaped_tool":
-                rack["root_radius_coefficient"] = radius
-            racks.append((gear, rack))
-    if not racks:
-        return {}
-    first = racks[0][1]
-    for gear, rack in racks[1:]:
-        if any(abs(rack[name] - first[name]) > ALIKE for name in rack.keys() & first.keys()):
-            tool = tools_of(reading, gear, flanks[stage.gears.index(gear)])[0]
-            reading.leave(
-                tool, f"its profile differs from that of {racks[0][0]}; a scene has one basic rack, the latter"
-            )
-    return first
+    """Basic rack of the pair: that of the first gear that has a tool."""
+    racks = (_rack_of(reading, gear, flank, module) for gear, flank in zip(stage.gears, flanks, strict=True))
+    return next((rack for rack in racks if rack is not None), {})
+
+
+def _rack_of(reading: Reading, gear: Component, flank: Component | None, module: float) -> dict[str, float] | None:
+    """Dedendum and root radius of the rack of a gear: addendum and tip radius of its tool; None where it has none."""
+    for tool in tools_of(reading, gear, flank)[:1]:
+        rack = {}
+        dedendum = _per_module(
+            reading, tool, module, "addendum_coefficient_reference_profile", "addendum_reference_profile"
+        )
+        radius = _per_module(reading, tool, module, "tip_radius_factor", "tip_radius")
+        if dedendum is not None:
+            rack["dedendum_coefficient"] = dedendum
+        if radius is not None and tool.type == "rack_shaped_tool":
+            rack["root_radius_coefficient"] = radius
+        return rack
+    return None
+
+
+def _own_rack(reading: Reading, gear: Component, flank: Component | None, pair: dict[str, Any]) -> dict[str, float]:
+    """What the rack of a gear has other than that of the pair."""
+    rack = _rack_of(reading, gear, flank, pair["normal_module_mm"]) or {}
+    return {name: value for name, value in rack.items() if abs(value - pair.get(name, value)) > ALIKE}
 
 
 def _per_module(reading: Reading, component: Component, module: float, factor: str, length: str) -> float | None:
@@ -332,7 +333,9 @@ def gear_section(
     if ring and section.get("profile_shift"):
         reading.note(f"{component}: a positive profile shift of the ring thickens its teeth, as in ISO 21771")
     section |= _tip(reading, component, None if ring else flank)
-    if ring and (root := reading.number(component, "root_diameter", LENGTH)) is not None:
+    if not ring:
+        section |= _own_rack(reading, component, flank, pair)
+    elif (root := reading.number(component, "root_diameter", LENGTH)) is not None:
         section["root_diameter_mm"] = abs(root)
     if ring:
         section |= _cutter(reading, component, flank)
@@ -359,14 +362,14 @@ def _profile_shift(reading: Reading, flank: Component | None, module: float, ang
 
 
 def _tip(reading: Reading, gear: Component, flank: Component | None) -> dict[str, float]:
-    """Tip diameter, or what the addendum of the basic profile differs from 1."""
+    """Tip diameter, or the addendum of the basic profile where it is not 1."""
     diameter = reading.number(gear, "tip_diameter", LENGTH)
     if diameter is not None:
         return {"tip_diameter_mm": abs(diameter)}
     addendum = None if flank is None else reading.number(flank, "addendum_coefficient_basic_profile")
     if addendum is None or addendum == 1.0:
         return {}
-    return {"tip_alteration_coefficient": addendum - 1.0}
+    return {"addendum_coefficient": addendum}
 
 
 def _cutter(reading: Reading, gear: Component, flank: Component | None) -> dict[str, Any]:

@@ -49,6 +49,12 @@ def face_check(face_width: float, length: float, name: str) -> tuple[bool, str]:
     return not short, f"face_width: {face_width} mm is below {LEAST_FACE:g} {name}, {plain(least)} mm"
 
 
+def topping_check(gear: Any) -> tuple[bool, str]:
+    """Check of a tool that cuts the tips, too: nothing else says where they are."""
+    free = gear.tip_diameter is None and gear.tip_alteration_coefficient == 0.0
+    return free or not gear.topping, "topping: true beside a tip_diameter or a tip_alteration_coefficient"
+
+
 def half_turn_checks(**angles: float | None) -> Iterator[tuple[bool, str]]:
     """Checks of angles, where they are given: each lies between 0 and 180 deg."""
     for key, angle in angles.items():

@@ -16,14 +16,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears import tooth_measures
-from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks
-from loaded_tca.gears.involute import InvoluteGear, inverse_involute, involute
+from loaded_tca.gears.chamfer import chamfer_checks, check_chamfer
+from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks, topping_check
+from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.protuberance import (
+    flank_after_protuberance,
+    protuberance_checks,
+    tangent_without_step,
+    without_step,
+)
+from loaded_tca.gears.tooth_measures import LARGEST_ALLOWANCE, MeasuredGear
 from loaded_tca.roots import find_root
 
 
 @dataclass(frozen=True)
-class CylindricalGear(InvoluteGear):
+class CylindricalGear(MeasuredGear):
     """External spur or helical gear, cut by the basic rack of ISO 53.
 
     The rounded tip of the rack shapes the fillet; where the asked radius does not fit on that tip, the tip is
@@ -44,11 +51,11 @@ class CylindricalGear(InvoluteGear):
     profile_shift : float
         Coefficient x, in normal modules.
     tip_diameter : float [mm], optional
-        d_a; None: d + 2 m_n (1 + x + k).
+        d_a; None: d + 2 m_n (h_aP/m_n + x + k).
     dedendum_coefficient : float
         h_fP/m_n of the basic rack.
     root_radius_coefficient : float
-        rho_fP/m_n of the basic rack.
+        rho_fP/m_n of the basic rack; inf: its tip is fully rounded.
     bore_diameter : float [mm], optional
         For the compliance of the body.
     name : str
@@ -58,6 +65,18 @@ class CylindricalGear(InvoluteGear):
         half a module: the rack cuts with x_E (:attr:`generating_profile_shift`), and flanks and root follow it.
     tip_alteration_coefficient : float
         k, negative where the tip is shortened; 0 beside a tip diameter.
+    addendum_coefficient : float
+        h_aP/m_n of the basic rack.
+    topping : bool
+        Whether the tool cuts the tips, too: they follow x_E instead of x.
+    protuberance, grinding_stock : float [mm]
+        pr and q of a tool before grinding, along the normal of the flank; the basic rack is that of the ground gear.
+    protuberance_angle : float [rad], optional
+        alpha_pr of the flank of the protuberance; None: half the pressure angle.
+    tip_chamfer : float [mm]
+        Height of the chamfers of the tip edges, along the radius: the flank ends at :attr:`tip_form_radius`.
+    tip_chamfer_angle : float [rad], optional
+        Between chamfer and middle of the tooth; None: 45 degrees.
 
     Raises
     ------
@@ -91,9 +110,16 @@ class CylindricalGear(InvoluteGear):
     name: str = "gear"
     thickness_allowance: float = 0.0
     tip_alteration_coefficient: float = 0.0
+    addendum_coefficient: float = 1.0
+    topping: bool = False
+    protuberance: float = 0.0
+    grinding_stock: float = 0.0
+    protuberance_angle: float | None = None
+    tip_chamfer: float = 0.0
+    tip_chamfer_angle: float | None = None
 
     def __post_init__(self) -> None:
-        positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient"
+        positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient", "addendum_coefficient"
         finite = "profile_shift", "thickness_allowance", "tip_alteration_coefficient"
         rounding = self.root_radius_coefficient
         require(
@@ -102,11 +128,11 @@ class CylindricalGear(InvoluteGear):
             bore_check(self.bore_diameter),
             spiral_check("helix_angle", self.helix_angle),
             face_check(self.face_width, self.normal_module, "normal_module"),
-            (0.0 <= rounding < inf, f"root_radius_coefficient: {rounding} is negative or not finite"),
+            (0.0 <= rounding <= inf, f"root_radius_coefficient: {rounding} is negative or no number"),
             owner=self.name,
         )
         allowance, alteration = self.thickness_allowance, self.tip_alteration_coefficient
-        largest = tooth_measures.LARGEST_ALLOWANCE * self.normal_module
+        largest = LARGEST_ALLOWANCE * self.normal_module
         require(
             (abs(allowance) <= largest, f"thickness_allowance: {allowance:.6g} mm is not within {largest:.6g} mm"),
             (
@@ -114,6 +140,9 @@ class CylindricalGear(InvoluteGear):
                 f"tip_alteration_coefficient: {alteration:g} beside a tip_diameter of {self.tip_diameter} mm; "
                 "give one of them",
             ),
+            topping_check(self),
+            *protuberance_checks(self),
+            *chamfer_checks(self),
             owner=self.name,
         )
         dedendum, deepest = self.dedendum_coefficient, pi / 4.0 / tan(self.pressure_angle)
@@ -147,23 +176,20 @@ class CylindricalGear(InvoluteGear):
             raise GeometryError(
                 f"{tip} lies inside the form circle, diameter {2.0 * self.form_radius:.4f} mm: no flank left"
             )
+        check_chamfer(self)
 
     @property
     def tip_radius(self) -> float:
         """r_a = d_a/2 [mm]."""
         if self.tip_diameter is not None:
             return 0.5 * self.tip_diameter
-        return self.reference_radius + self.normal_module * (1.0 + self.profile_shift + self.tip_alteration_coefficient)
+        return self.reference_radius + self.normal_module * self.addendum
 
     @property
     def tip_alteration(self) -> float:
-        """Tip alteration k m_n = r_a - r - m_n (1 + x), negative for a shortened tooth [mm]."""
-        return self.tip_radius - self.reference_radius - self.normal_module * (1.0 + self.profile_shift)
-
-    @property
-    def generating_profile_shift(self) -> float:
-        """x_E = x + A_sn/(2 m_n tan(alpha_n)), with which the rack cuts (ISO 21771, 7.4)."""
-        return self.profile_shift + 0.5 * self.thickness_allowance / (self.normal_module * tan(self.pressure_angle))
+        """Tip alteration k m_n = r_a - r - m_n (h_aP/m_n + x), negative for a shortened tooth [mm]."""
+        nominal = self.addendum_coefficient + self.profile_shift
+        return self.tip_radius - self.reference_radius - self.normal_module * nominal
 
     @property
     def root_radius(self) -> float:
@@ -176,11 +202,6 @@ class CylindricalGear(InvoluteGear):
         return self.base_radius / cos(inverse_involute(self.half_thickness_angle_at_base))
 
     @property
-    def tooth_thickness(self) -> float:
-        """Transverse tooth thickness s_t at the reference cylinder, an arc [mm]."""
-        return self.transverse_module * (0.5 * pi + 2.0 * self.generating_profile_shift * tan(self.pressure_angle))
-
-    @property
     def half_thickness_angle_at_base(self) -> float:
         """Half tooth thickness angle at the base circle, psi_b = s_t/(2 r) + inv(alpha_t) [rad]."""
         return 0.5 * self.tooth_thickness / self.reference_radius + involute(self.transverse_pressure_angle)
@@ -190,42 +211,11 @@ class CylindricalGear(InvoluteGear):
         return 2.0 * radius * (self.half_thickness_angle_at_base - self.involute_at(radius))
 
     @property
-    def normal_tooth_thickness(self) -> float:
-        """s_n = s_t cos(beta) at the reference cylinder, an arc [mm]."""
-        return self.tooth_thickness * cos(self.helix_angle)
-
-    @property
-    def span_teeth(self) -> int:
-        """Number of teeth k that a span measurement is best taken over; it touches nearest to d + 2 x m_n."""
-        return tooth_measures.span_teeth(self)
-
-    def span_measurement(self, teeth: int | None = None) -> float:
-        """Span W_k over teeth, :attr:`span_teeth` by default [mm]; InputError where it touches no flank.
-
-        Examples
-        --------
-        >>> gear = CylindricalGear(teeth=25, normal_module=2.0, face_width=20.0)
-        >>> gear.span_teeth, round(gear.span_measurement(), 4)
-        (3, 15.4609)
-        """
-        return tooth_measures.span_measurement(self, self.span_teeth if teeth is None else teeth)
-
-    def ball_measurement(self, diameter: float) -> float:
-        """Measure M_dK over two balls of a diameter in opposite spaces [mm]; InputError where they touch no flank.
-
-        Examples
-        --------
-        >>> gear = CylindricalGear(teeth=20, normal_module=2.0, face_width=20.0)
-        >>> round(gear.ball_measurement(3.5), 4)
-        44.9293
-        """
-        return tooth_measures.ball_measurement(self, diameter)
-
-    @property
     def rack_tip_radius(self) -> float:
         """Tip rounding rho_fP of the basic rack, at most the full rounding of its tip [mm]."""
         sine, cosine = sin(self.pressure_angle), cos(self.pressure_angle)
         tip_half_width = pi / 4.0 - self.dedendum_coefficient * sine / cosine
+        tip_half_width += self.residual_undercut / (self.normal_module * cosine)
         full_rounding = tip_half_width * cosine / (1.0 - sine)
         return self.normal_module * min(self.root_radius_coefficient, full_rounding)
 
@@ -243,6 +233,23 @@ class CylindricalGear(InvoluteGear):
         return self.reference_radius * sine - depth / sine
 
     @property
+    def residual_undercut(self) -> float:
+        """s_pr = pr - q of ground flanks; negative: the depth of the notch that grinding leaves [mm]."""
+        return self.protuberance - self.grinding_stock
+
+    @property
+    def least_slope(self) -> float:
+        """Angle of the normal of the tool's last flank before its rounding: alpha_pr of a protuberance [rad]."""
+        if self.residual_undercut <= 0.0:
+            return self.pressure_angle
+        return 0.5 * self.pressure_angle if self.protuberance_angle is None else self.protuberance_angle
+
+    @property
+    def meets_in_corner(self) -> bool:
+        """Whether flank and fillet meet in a corner, at an undercut."""
+        return self.is_undercut or self.residual_undercut > 0.0
+
+    @property
     def is_undercut(self) -> bool:
         """Whether the rounded tip of the rack cuts into the involute."""
         return self.rack_form_roll_length < 0.0
@@ -257,7 +264,7 @@ class CylindricalGear(InvoluteGear):
     @cached_property
     def form_radius(self) -> float:
         """r_Ff = d_Ff/2, where fillet and involute meet; never inside the base circle [mm]."""
-        if not self.is_undercut:
+        if not self.meets_in_corner:
             return self.radius_at_roll_length(self.rack_form_roll_length)
         return max(self.base_radius, float(self._fillet(self._fillet_start)[0]))
 
@@ -274,7 +281,10 @@ class CylindricalGear(InvoluteGear):
         radius, half_thickness_angle : (points,) [mm], (points,) [rad]
             Polar coordinates about the gear's axis, the angle counted from the middle of the tooth.
         """
-        return self._fillet(np.linspace(self._fillet_start, 0.5 * pi, points))
+        radius, angle = self._fillet(np.linspace(self._fillet_start, 0.5 * pi, points))
+        if self.residual_undercut < 0.0:
+            angle = without_step(radius, angle, self._step)
+        return radius, angle
 
     def root_fillet_tangent(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Unit tangents of :meth:`root_fillet`, towards the root circle.
@@ -293,19 +303,28 @@ class CylindricalGear(InvoluteGear):
         """
         slope = np.linspace(self._fillet_start, 0.5 * pi, points)
         offset, above = self._offset_and_height(slope)
-        leaning = cos(self.helix_angle) / np.tan(slope)
+        leaning = cos(self.helix_angle) / np.tan(np.maximum(slope, self.least_slope))
         normal = np.stack([leaning * offset - self.reference_radius - above, leaning * self.reference_radius])
         inward, sideways = normal / np.linalg.norm(normal, axis=0)
+        if self.residual_undercut < 0.0:
+            return tangent_without_step(*self._fillet(slope), (-sideways, -inward), self._step)
         return -sideways, -inward
+
+    @property
+    def _step(self) -> float:
+        """Angle by which the fillet of the tool begins in front of the ground flank, at a notch [rad]."""
+        return -self.cut_into_flank(self._fillet_start)
 
     def _offset_and_height(self, slope: Any) -> tuple[Any, Any]:
         """Where a point of the rack's rounding cuts: beside and above the pitch point [mm]."""
+        normal = np.maximum(slope, self.least_slope)
         above = (
             self.normal_module * self.generating_profile_shift
             - self.rack_form_depth
-            - self.rack_tip_radius * (np.sin(slope) - sin(self.pressure_angle))
+            - self.rack_tip_radius * (np.sin(normal) - sin(self.pressure_angle))
+            + self.normal_module * (normal - slope) * cos(self.least_slope)
         )
-        return -above * cos(self.helix_angle) * np.cos(slope) / np.sin(slope), above
+        return -above * cos(self.helix_angle) * np.cos(normal) / np.sin(normal), above
 
     def _fillet(self, slope: float | NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Radius and half thickness angle that a point of the rack's rounding cuts.
@@ -313,10 +332,14 @@ class CylindricalGear(InvoluteGear):
         ``slope`` is the angle of its normal to the rack's reference line in the normal section, from alpha_n
         (end of the straight flank) to pi/2 (tip). The circle of the normal section, stretched by 1/cos(beta),
         is an ellipse in the transverse one; its point cuts when the transverse normal meets the pitch point.
+        Of a protuberance slopes below alpha_pr count the length of its straight flank, in modules.
         """
         rounding, twist = self.rack_tip_radius, cos(self.helix_angle)
         flank_end = pi / 4.0 * self.normal_module - self.rack_form_depth * tan(self.pressure_angle)
-        along = (flank_end + rounding * (np.cos(slope) - cos(self.pressure_angle))) / twist
+        flank_end += self.residual_undercut / cos(self.pressure_angle)
+        normal = np.maximum(slope, self.least_slope)
+        straight = self.normal_module * (normal - slope) * sin(self.least_slope)
+        along = (flank_end + straight + rounding * (np.cos(normal) - cos(self.pressure_angle))) / twist
         offset, above = self._offset_and_height(slope)
         space = np.arctan2(offset, self.reference_radius + above) - (offset - along) / self.reference_radius
         return np.hypot(self.reference_radius + above, offset), pi / self.teeth - space
@@ -329,18 +352,20 @@ class CylindricalGear(InvoluteGear):
         undercut is so slight that rounding hides it.
         """
         flank_end = self.pressure_angle
-        if not self.is_undercut or self._above_base(flank_end) <= 0.0 or self._cut_into_flank(flank_end) >= 0.0:
+        if self.residual_undercut > 0.0 and self.cut_into_flank(flank_end) > 0.0:
+            return flank_after_protuberance(self)
+        if not self.is_undercut or self._above_base(flank_end) <= 0.0 or self.cut_into_flank(flank_end) >= 0.0:
             return flank_end
         at_base = find_root(self._above_base, flank_end, 0.5 * pi)
-        if self._cut_into_flank(at_base) <= 0.0:
+        if self.cut_into_flank(at_base) <= 0.0:
             return at_base
-        return find_root(self._cut_into_flank, flank_end, at_base)
+        return find_root(self.cut_into_flank, flank_end, at_base)
 
     def _above_base(self, slope: float) -> float:
         """Height of a point of the fillet above the base circle [mm]."""
         return float(self._fillet(slope)[0]) - self.base_radius
 
-    def _cut_into_flank(self, slope: float) -> float:
+    def cut_into_flank(self, slope: float) -> float:
         """Angle by which the fillet lies behind the involute; negative: in front of it, in the space."""
         radius, half_thickness_angle = self._fillet(slope)
         tangent = sqrt(max(0.0, (float(radius) / self.base_radius) ** 2 - 1.0))

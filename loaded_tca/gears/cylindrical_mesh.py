@@ -31,7 +31,8 @@ class ActiveProfile:
     Parameters
     ----------
     start_radius, end_radius : float [mm]
-        d_Nf/2, where the mating gear's tip ends on this flank, or the form circle if larger; d_Na/2, the own tip.
+        d_Nf/2, where the mating gear's tip ends on this flank, or the form circle if larger; d_Na/2, the own tip form
+        circle.
     start_roll_length, end_roll_length : float [mm]
         The same as lengths on the line of action.
     fillet_interference : bool
@@ -165,7 +166,7 @@ class CylindricalMesh(InvoluteMesh):
 
     def _roll_length_at_tip_of(self, mating: CylindricalGear) -> float:
         """Roll length on a gear where the tip of its mating gear touches; negative beyond the base circle [mm]."""
-        return self.line_of_action - mating.roll_length(mating.tip_radius)
+        return self.line_of_action - mating.roll_length(mating.tip_form_radius)
 
     @property
     def base_distance(self) -> float:
@@ -243,9 +244,9 @@ class CylindricalMesh(InvoluteMesh):
         start = max(form, wanted)
         return ActiveProfile(
             start_radius=gear.radius_at_roll_length(start),
-            end_radius=gear.tip_radius,
+            end_radius=gear.tip_form_radius,
             start_roll_length=start,
-            end_roll_length=gear.roll_length(gear.tip_radius),
+            end_roll_length=gear.roll_length(gear.tip_form_radius),
             fillet_interference=wanted < form,
         )
 

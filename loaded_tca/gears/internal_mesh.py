@@ -113,10 +113,11 @@ class InternalMesh(InvoluteMesh):
         """Refuse a ring whose tip leaves the line of action, and flanks that do not meet on it."""
         pinion, ring = self.pinion, self.ring
         if self.involute_interference:
+            beyond = self.line_of_action - ring.roll_length(ring.tip_form_radius)
             least = ring.radius_at_roll_length(self.line_of_action)
             raise GeometryError(
-                f"involute interference: the tip of the {ring.name}, diameter {2.0 * ring.tip_radius:.4f} mm, lies "
-                f"{self.line_of_action - ring.roll_length(ring.tip_radius):.4f} mm beyond the base circle of the "
+                f"involute interference: the tip of the {ring.name}, diameter {2.0 * ring.tip_form_radius:.4f} mm, "
+                f"lies {beyond:.4f} mm beyond the base circle of the "
                 f"{pinion.name} on the line of action; a tip_diameter of the ring of {2.0 * least:.4f} mm or more "
                 "avoids it"
             )
@@ -143,7 +144,7 @@ class InternalMesh(InvoluteMesh):
     @property
     def _ring_tip_roll(self) -> float:
         """Roll length on the pinion where the tip of the ring touches; negative beyond the base circle [mm]."""
-        return self.ring.roll_length(self.ring.tip_radius) - self.line_of_action
+        return self.ring.roll_length(self.ring.tip_form_radius) - self.line_of_action
 
     @property
     def _profile_shift_sum(self) -> float:
@@ -198,7 +199,7 @@ class InternalMesh(InvoluteMesh):
         pinion, ring = self.pinion, self.ring
         below_form = (
             self._ring_tip_roll - pinion.roll_length(pinion.form_radius),
-            ring.roll_length(ring.form_radius) - self.line_of_action - pinion.roll_length(pinion.tip_radius),
+            ring.roll_length(ring.form_radius) - self.line_of_action - pinion.roll_length(pinion.tip_form_radius),
         )
         return Room(self.backlash, below_form, self.tip_clearances)
 
@@ -327,9 +328,9 @@ class InternalMesh(InvoluteMesh):
         start = max(form, wanted)
         return ActiveProfile(
             start_radius=pinion.radius_at_roll_length(start),
-            end_radius=pinion.tip_radius,
+            end_radius=pinion.tip_form_radius,
             start_roll_length=start,
-            end_roll_length=pinion.roll_length(pinion.tip_radius),
+            end_roll_length=pinion.roll_length(pinion.tip_form_radius),
             fillet_interference=wanted < form,
         )
 
@@ -338,13 +339,13 @@ class InternalMesh(InvoluteMesh):
         """Part of the ring's flank that the pinion uses; it starts at the larger diameter, towards the root."""
         ring = self.ring
         form = ring.roll_length(ring.form_radius)
-        wanted = self.pinion.roll_length(self.pinion.tip_radius) + self.line_of_action
+        wanted = self.pinion.roll_length(self.pinion.tip_form_radius) + self.line_of_action
         start = min(form, wanted)
         return ActiveProfile(
             start_radius=ring.radius_at_roll_length(start),
-            end_radius=ring.tip_radius,
+            end_radius=ring.tip_form_radius,
             start_roll_length=start,
-            end_roll_length=ring.roll_length(ring.tip_radius),
+            end_roll_length=ring.roll_length(ring.tip_form_radius),
             fillet_interference=wanted > form,
         )
 

@@ -65,12 +65,17 @@ class InvoluteGear:
     pressure_angle: float
     helix_angle: float
     profile_shift: float
+    dedendum_coefficient: float
 
     if TYPE_CHECKING:  # a property of each gear
 
         @property
         def tip_radius(self) -> float:
             """abs(r_a) [mm]."""
+
+        @property
+        def tip_form_radius(self) -> float:
+            """abs(r_Fa), where the flank ends [mm]."""
 
         @property
         def form_radius(self) -> float:

@@ -17,8 +17,10 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, require
-from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks
-from loaded_tca.gears.involute import InvoluteGear, inverse_involute, involute
+from loaded_tca.gears.chamfer import chamfer_checks, check_chamfer
+from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks, topping_check
+from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.tooth_measures import LARGEST_ALLOWANCE, MeasuredGear
 from loaded_tca.roots import find_root
 
 OUTSIDE_MODULES = 7.0
@@ -64,7 +66,7 @@ class PinionCutter:
 
 
 @dataclass(frozen=True)
-class RingGear(InvoluteGear):
+class RingGear(MeasuredGear):
     """Internal spur or helical gear, with fillets that are arcs or cut by a pinion-type cutter.
 
     Parameters
@@ -82,19 +84,33 @@ class RingGear(InvoluteGear):
     profile_shift : float
         Coefficient x with the sign of ISO 21771, in normal modules.
     tip_diameter : float [mm], optional
-        abs(d_a); None: abs(d) - 2 m_n (1 + x).
+        abs(d_a); None: abs(d) - 2 m_n (h_aP/m_n + x + k).
     root_diameter : float [mm], optional
-        abs(d_f); None: abs(d) + 2 m_n (h_fP/m_n - x).
+        abs(d_f); None: abs(d) + 2 m_n (h_fP/m_n - x_E), or what a cutter that is made for the ring without allowance
+        leaves of one with it.
     dedendum_coefficient : float
         h_fP/m_n of the basic rack.
     root_radius_coefficient : float
-        Radius of arcs at the root in normal modules, where there is no cutter; at most the one that fits.
+        Radius of arcs at the root in normal modules, where there is no cutter; at most the one that fits, inf: that.
     outer_diameter : float [mm], optional
         Held rigid where teeth bend; None: seven normal modules beyond the root on each side.
     cutter : PinionCutter, optional
         Shapes the fillets; None: arcs.
     name : str
         What messages call this gear.
+    thickness_allowance : float [mm]
+        A_sn of the tooth thickness in the normal section at the reference cylinder, negative for thinner teeth, at most
+        half a module: the ring is cut with x_E (:attr:`generating_profile_shift`), and flanks and root follow it.
+    tip_alteration_coefficient : float
+        k, negative where the tip is shortened; 0 beside a tip diameter.
+    addendum_coefficient : float
+        h_aP/m_n of the basic rack.
+    topping : bool
+        Whether the tool cuts the tips, too: they follow x_E instead of x.
+    tip_chamfer : float [mm]
+        Height of the chamfers of the tip edges, along the radius: the flank ends at :attr:`tip_form_radius`.
+    tip_chamfer_angle : float [rad], optional
+        Between chamfer and middle of the tooth; None: 45 degrees.
 
     Raises
     ------
@@ -127,19 +143,41 @@ class RingGear(InvoluteGear):
     outer_diameter: float | None = None
     cutter: PinionCutter | None = None
     name: str = "ring"
+    thickness_allowance: float = 0.0
+    tip_alteration_coefficient: float = 0.0
+    addendum_coefficient: float = 1.0
+    topping: bool = False
+    tip_chamfer: float = 0.0
+    tip_chamfer_angle: float | None = None
 
     def __post_init__(self) -> None:
         positive = "normal_module", "face_width", "tip_diameter", "root_diameter", "dedendum_coefficient"
+        finite = "profile_shift", "thickness_allowance", "tip_alteration_coefficient"
         teeth, rounding = real(self.teeth), self.root_radius_coefficient
         whole = -inf < teeth <= -3 and teeth == int(teeth)
         require(
             (whole, f"teeth: {self.teeth} is not a whole number up to -3; those of a ring gear count negative"),
-            *input_checks(self, (*positive, "outer_diameter"), finite=("profile_shift",)),
+            *input_checks(self, (*positive, "addendum_coefficient", "outer_diameter"), finite),
             spiral_check("helix_angle", self.helix_angle),
             face_check(self.face_width, self.normal_module, "normal_module"),
-            (0.0 <= rounding < inf, f"root_radius_coefficient: {rounding} is negative or not finite"),
+            (0.0 <= rounding <= inf, f"root_radius_coefficient: {rounding} is negative or no number"),
             owner=self.name,
         )
+        allowance, largest = self.thickness_allowance, LARGEST_ALLOWANCE * self.normal_module
+        alteration = self.tip_alteration_coefficient
+        require(
+            (abs(allowance) <= largest, f"thickness_allowance: {allowance:.6g} mm is not within {largest:.6g} mm"),
+            (
+                alteration == 0.0 or self.tip_diameter is None,
+                f"tip_alteration_coefficient: {alteration:g} beside a tip_diameter of {self.tip_diameter} mm; "
+                "give one of them",
+            ),
+            topping_check(self),
+            *chamfer_checks(self),
+            owner=self.name,
+        )
+        if self.cutter is not None:
+            self._check_feed(self.cutter)
         tip, root = 2.0 * self.tip_radius, 2.0 * self.root_radius
         base, outside = 2.0 * self.base_radius, 2.0 * self.outer_radius
         require(
@@ -170,29 +208,33 @@ class RingGear(InvoluteGear):
                 "root_diameter or profile_shift"
             )
         if self.cutter is not None:
-            self._check_cutter(self.cutter)
+            self._check_cutter()
         if not self.tip_radius < self.form_radius:
             raise GeometryError(
                 f"{self.name}: no flank is left between the tip circle, diameter {2.0 * self.tip_radius:.4f} mm, and "
                 f"the form circle, diameter {2.0 * self.form_radius:.4f} mm"
             )
+        check_chamfer(self)
 
-    def _check_cutter(self, cutter: PinionCutter) -> None:
-        """Refuse a cutter that cannot cut this ring."""
+    def _check_feed(self, cutter: PinionCutter) -> None:
+        """Refuse a cutter that has no place in this ring."""
         more = cutter.teeth < self.tooth_count
         require(
             (more, f"cutter.teeth: {cutter.teeth} is not below {self.tooth_count}, the teeth of the ring"),
             owner=self.name,
         )
-        sum_of_shifts = self.profile_shift + cutter.profile_shift
-        require(
-            (
-                self._cutting_involute > 0.0,
-                f"profile_shift: {self.profile_shift:.6g} of the ring and {cutter.profile_shift:.6g} of the cutter, "
-                f"together {sum_of_shifts:.6g}, leave no working pressure angle of ring and cutter",
-            ),
-            owner=self.name,
-        )
+        for shift in (self.profile_shift, self.generating_profile_shift):
+            require(
+                (
+                    self._cutting_involute(shift) > 0.0,
+                    f"profile_shift: {shift:.6g} of the ring and {cutter.profile_shift:.6g} of the cutter, together "
+                    f"{shift + cutter.profile_shift:.6g}, leave no working pressure angle of ring and cutter",
+                ),
+                owner=self.name,
+            )
+
+    def _check_cutter(self) -> None:
+        """Refuse a cutter that cannot cut this ring."""
         tip, base = self._cutter_tip_radius, self._cutter_base_radius
         if not self._cutter_rounding_centre(SHARPEST * self.normal_module)[0] > base:
             raise GeometryError(
@@ -216,19 +258,27 @@ class RingGear(InvoluteGear):
         """abs(r_a) = abs(d_a)/2 [mm]."""
         if self.tip_diameter is not None:
             return 0.5 * self.tip_diameter
-        return self.reference_radius - self.normal_module * (1.0 + self.profile_shift)
+        return self.reference_radius - self.normal_module * self.addendum
 
     @property
     def tip_alteration(self) -> float:
-        """Tip alteration k m_n = abs(r) - abs(r_a) - m_n (1 + x), negative for a shortened tooth [mm]."""
-        return self.reference_radius - self.tip_radius - self.normal_module * (1.0 + self.profile_shift)
+        """Tip alteration k m_n = abs(r) - abs(r_a) - m_n (h_aP/m_n + x), negative for a shortened tooth [mm]."""
+        nominal = self.addendum_coefficient + self.profile_shift
+        return self.reference_radius - self.tip_radius - self.normal_module * nominal
 
     @property
     def root_radius(self) -> float:
-        """abs(r_f) = abs(r) + m_n (h_fP/m_n - x), or as given [mm]."""
+        """abs(r_f) = abs(r) + m_n (h_fP/m_n - x_E), or as given [mm].
+
+        A cutter has the tip circle that the ring without allowance asks for, and goes deeper where there is one.
+        """
         if self.root_diameter is not None:
             return 0.5 * self.root_diameter
-        return self.reference_radius + self.normal_module * (self.dedendum_coefficient - self.profile_shift)
+        if self.cutter is None or self.thickness_allowance == 0.0:
+            depth = self.dedendum_coefficient - self.generating_profile_shift
+            return self.reference_radius + self.normal_module * depth
+        nominal = self.reference_radius + self.normal_module * (self.dedendum_coefficient - self.profile_shift)
+        return nominal + self._cutting_distance - self._distance_of_cutter(self.profile_shift)
 
     @property
     def outer_radius(self) -> float:
@@ -236,11 +286,6 @@ class RingGear(InvoluteGear):
         if self.outer_diameter is not None:
             return 0.5 * self.outer_diameter
         return self.root_radius + OUTSIDE_MODULES * self.normal_module
-
-    @property
-    def tooth_thickness(self) -> float:
-        """Transverse tooth thickness s_t at the reference cylinder, an arc [mm]."""
-        return self.transverse_module * (0.5 * pi + 2.0 * self.profile_shift * tan(self.pressure_angle))
 
     @property
     def half_thickness_angle_at_base(self) -> float:
@@ -273,7 +318,7 @@ class RingGear(InvoluteGear):
         """Radius of the arcs at the root, or of the rounding of the cutter's tip, at most what fits [mm]."""
         cutter = self.cutter
         coefficient = self.root_radius_coefficient if cutter is None else cutter.tip_radius_coefficient
-        wanted, least = self.normal_module * max(coefficient, SHARPEST), self.normal_module * SHARPEST
+        wanted, least = self.normal_module * min(max(coefficient, SHARPEST), pi), self.normal_module * SHARPEST
         angle_of = self._arc_centre if cutter is None else self._cutter_rounding_centre
 
         def room(radius: float) -> float:
@@ -371,18 +416,17 @@ class RingGear(InvoluteGear):
 
         return back(*(centre + self.fillet_radius * normal)), back(*normal)
 
-    @property
-    def _cutting_involute(self) -> float:
-        """inv(alpha_w0) of ring and cutter without backlash [rad]."""
+    def _cutting_involute(self, shift: float) -> float:
+        """inv(alpha_w0) of a ring of a profile shift and the cutter, without backlash [rad]."""
         assert self.cutter is not None
-        shifts = self.profile_shift + self.cutter.profile_shift
+        shifts = shift + self.cutter.profile_shift
         teeth = self.tooth_count - self.cutter.teeth
         return involute(self.transverse_pressure_angle) - 2.0 * shifts * tan(self.pressure_angle) / teeth
 
     @cached_property
     def _cutting_angle(self) -> float:
         """alpha_w0 [rad]."""
-        return inverse_involute(self._cutting_involute)
+        return inverse_involute(self._cutting_involute(self.generating_profile_shift))
 
     @property
     def _cutter_base_radius(self) -> float:
@@ -393,6 +437,10 @@ class RingGear(InvoluteGear):
     def _cutting_distance(self) -> float:
         """abs(a_0) between the axes of ring and cutter [mm]."""
         return (self.base_radius - self._cutter_base_radius) / cos(self._cutting_angle)
+
+    def _distance_of_cutter(self, shift: float) -> float:
+        """abs(a_0) of a ring of another profile shift [mm]."""
+        return (self.base_radius - self._cutter_base_radius) / cos(inverse_involute(self._cutting_involute(shift)))
 
     @property
     def _cutter_tip_radius(self) -> float:

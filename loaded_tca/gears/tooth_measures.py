@@ -2,6 +2,9 @@
 
 Lengths are in mm, angles in rad. The allowance A_sn is how much thicker than nominal a tooth is in the normal section
 at the reference cylinder: negative, with backlash.
+
+Rings are measured from inside: over the spaces of a ring with straight teeth, and between balls. With the sign of the
+number of teeth, s = +1 of an external gear and -1 of a ring, both have the same equations.
 """
 
 from __future__ import annotations
@@ -10,47 +13,132 @@ from math import acos, cos, hypot, inf, pi, sin, sqrt, tan
 from typing import TYPE_CHECKING
 
 from loaded_tca.errors import InputError, require
-from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.involute import InvoluteGear, inverse_involute, involute
 from loaded_tca.plain import plain
-
-if TYPE_CHECKING:
-    from loaded_tca.gears.cylindrical import CylindricalGear
 
 LARGEST_ALLOWANCE = 0.5
 """Of either sign, over the module: a third of the thickness of a tooth. Measured over another number of teeth a span
 differs by a base pitch, 3 modules."""
 
 
-def span_teeth(gear: CylindricalGear) -> int:
+class MeasuredGear(InvoluteGear):
+    """Gear whose tooth thickness is measured: an external gear or a ring with an allowance A_sn."""
+
+    thickness_allowance: float
+    addendum_coefficient: float
+    tip_alteration_coefficient: float
+    topping: bool
+    tip_chamfer: float
+    tip_chamfer_angle: float | None
+
+    if TYPE_CHECKING:  # a property of each gear
+
+        @property
+        def root_radius(self) -> float:
+            """abs(r_f) [mm]."""
+
+        @property
+        def half_thickness_angle_at_base(self) -> float:
+            """Half tooth thickness angle at the base circle [rad]."""
+
+    @property
+    def generating_profile_shift(self) -> float:
+        """x_E = x + A_sn/(2 m_n tan(alpha_n)), with which the teeth are cut (ISO 21771, 7.4)."""
+        return self.profile_shift + 0.5 * self.thickness_allowance / (self.normal_module * tan(self.pressure_angle))
+
+    @property
+    def addendum(self) -> float:
+        """Height of the tip above the reference circle where no tip diameter is given, h_aP/m_n + x + k [m_n]."""
+        if self.topping:
+            return self.addendum_coefficient + self.generating_profile_shift
+        return self.addendum_coefficient + self.profile_shift + self.tip_alteration_coefficient
+
+    @property
+    def tip_form_radius(self) -> float:
+        """abs(r_Fa), where the flank ends: at the chamfer, or at the tip [mm]."""
+        return self.tip_radius - _side(self) * self.tip_chamfer
+
+    @property
+    def tooth_thickness(self) -> float:
+        """Transverse tooth thickness s_t at the reference cylinder, an arc [mm]."""
+        return self.transverse_module * (0.5 * pi + 2.0 * self.generating_profile_shift * tan(self.pressure_angle))
+
+    @property
+    def normal_tooth_thickness(self) -> float:
+        """s_n = s_t cos(beta) at the reference cylinder, an arc [mm]."""
+        return self.tooth_thickness * cos(self.helix_angle)
+
+    @property
+    def span_teeth(self) -> int:
+        """Number of teeth k that a span is best taken over, of spaces of a ring; it touches nearest to d + 2 x m_n."""
+        return span_teeth(self)
+
+    def span_measurement(self, teeth: int | None = None) -> float:
+        """Span W_k over teeth or spaces, :attr:`span_teeth` by default [mm]; InputError where it touches no flank.
+
+        Examples
+        --------
+        >>> from loaded_tca.gears import CylindricalGear
+        >>> gear = CylindricalGear(teeth=25, normal_module=2.0, face_width=20.0)
+        >>> gear.span_teeth, round(gear.span_measurement(), 4)
+        (3, 15.4609)
+        """
+        return span_measurement(self, self.span_teeth if teeth is None else teeth)
+
+    def ball_measurement(self, diameter: float) -> float:
+        """Measure M_dK over two balls in opposite spaces, of a ring between them [mm]; InputError off the flanks.
+
+        Examples
+        --------
+        >>> from loaded_tca.gears import CylindricalGear, RingGear
+        >>> gear = CylindricalGear(teeth=20, normal_module=2.0, face_width=20.0)
+        >>> round(gear.ball_measurement(3.5), 4)
+        44.9293
+        >>> round(RingGear(teeth=-60, normal_module=3.0, face_width=20.0).ball_measurement(5.0), 4)
+        173.2626
+        """
+        return ball_measurement(self, diameter)
+
+
+def _side(gear: MeasuredGear) -> int:
+    """+1 of an external gear, -1 of a ring, which is measured from inside."""
+    return 1 if gear.teeth > 0 else -1
+
+
+def span_teeth(gear: MeasuredGear) -> int:
     r"""Number of teeth k over which a span touches the flanks nearest to the diameter d + 2 x m_n.
 
     .. math:: k = \frac{z}{\pi}\left(\frac{\tan\alpha_v}{\cos^2\beta_b} - \frac{2 x}{z} \tan\alpha_n
               - \mathrm{inv}\,\alpha_t\right) + \frac{1}{2},\qquad \cos\alpha_v = \frac{d_b}{d + 2 x m_n}
 
-    rounded to a whole number, at least 1.
+    rounded to a whole number, at least 1. Of a ring, with positive numbers of teeth and diameters, x counts with a
+    minus.
 
     References
     ----------
     DIN 3960:1987 and DIN 21773:2014, span measurement.
     """
-    touched = max(gear.base_radius, gear.reference_radius + gear.profile_shift * gear.normal_module)
+    touched = max(gear.base_radius, gear.reference_radius + _side(gear) * gear.profile_shift * gear.normal_module)
     tangent = gear.roll_length(touched) / gear.base_radius
     shift = 2.0 * gear.profile_shift / gear.teeth * tan(gear.pressure_angle)
     turn = tangent / cos(gear.base_helix_angle) ** 2 - shift - involute(gear.transverse_pressure_angle)
-    return max(1, round(gear.teeth / pi * turn + 0.5))
+    return max(1, round(gear.tooth_count / pi * turn + 0.5))
 
 
-def span_measurement(gear: CylindricalGear, teeth: int) -> float:
+def span_measurement(gear: MeasuredGear, teeth: int) -> float:
     r"""Span W_k between parallel planes that touch the outer flanks of k teeth [mm].
 
-    .. math:: W_k = m_n \cos\alpha_n \left(\pi (k - 1/2) + z\,\mathrm{inv}\,\alpha_t\right)
-              + 2 x_E m_n \sin\alpha_n
+    .. math:: W_k = m_n \cos\alpha_n \left(\pi (k - 1/2) + \lvert z\rvert\,\mathrm{inv}\,\alpha_t\right)
+              + 2 s x_E m_n \sin\alpha_n
+
+    Of a ring (s = -1) with straight teeth: between the flanks that face each other over k spaces, along their common
+    normal. Helical flanks of a ring are hollow along that normal: they have none.
 
     Raises
     ------
     InputError
-        If k is no number of teeth, the planes touch beside the flanks, or the span is longer than the face of a
-        helical gear lets it be.
+        If k is no number of teeth, the planes touch beside the flanks, the span is longer than the face of a helical
+        gear lets it be, or the ring is helical.
 
     References
     ----------
@@ -70,13 +158,13 @@ def span_measurement(gear: CylindricalGear, teeth: int) -> float:
     return span
 
 
-def allowance_of_span(gear: CylindricalGear, span: float, teeth: int) -> float:
+def allowance_of_span(gear: MeasuredGear, span: float, teeth: int) -> float:
     """Allowance A_sn of a gear whose span over k teeth is measured [mm]; that of ``gear`` itself does not count.
 
     Raises
     ------
     InputError
-        If k is no number of teeth, or the allowance is above half a module.
+        If k is no number of teeth, the allowance is above half a module, or the ring is helical.
 
     Examples
     --------
@@ -86,29 +174,37 @@ def allowance_of_span(gear: CylindricalGear, span: float, teeth: int) -> float:
     -40
     """
     nominal = _span(gear, teeth, gear.profile_shift)
-    allowance = (span - nominal) / cos(gear.pressure_angle)
+    allowance = _side(gear) * (span - nominal) / cos(gear.pressure_angle)
     return _allowance(gear, allowance, f"span_measurement: {span:.6g} mm over {teeth} teeth", nominal)
 
 
-def _span(gear: CylindricalGear, teeth: int, shift: float) -> float:
+def _span(gear: MeasuredGear, teeth: int, shift: float) -> float:
     """W_k of any profile shift."""
     whole = teeth == int(teeth) if abs(teeth) < inf else False
+    most = gear.tooth_count - 1
     require(
-        (whole and 1 <= teeth < gear.teeth, f"span_teeth: {teeth} is not a whole number from 1 to {gear.teeth - 1}"),
+        (whole and 1 <= teeth <= most, f"span_teeth: {teeth} is not a whole number from 1 to {most}"),
+        (
+            gear.teeth > 0 or gear.helix_angle == 0.0,
+            "span_measurement: no span touches the helical teeth of a ring, which are hollow; measure between balls",
+        ),
         owner=gear.name,
     )
-    pitches = pi * (teeth - 0.5) + gear.teeth * involute(gear.transverse_pressure_angle)
-    return gear.normal_module * (cos(gear.pressure_angle) * pitches + 2.0 * shift * sin(gear.pressure_angle))
+    pitches = pi * (teeth - 0.5) + gear.tooth_count * involute(gear.transverse_pressure_angle)
+    thicker = 2.0 * _side(gear) * shift * sin(gear.pressure_angle)
+    return gear.normal_module * (cos(gear.pressure_angle) * pitches + thicker)
 
 
-def ball_measurement(gear: CylindricalGear, diameter: float) -> float:
-    r"""Measure M_dK over two balls in spaces that are as opposite as the teeth let them [mm].
+def ball_measurement(gear: MeasuredGear, diameter: float) -> float:
+    r"""Measure M_dK over two balls in spaces that are as opposite as the teeth let them [mm]; of a ring between them.
 
-    .. math:: \mathrm{inv}\,\alpha_K = \psi_b + \frac{D_M}{z m_n \cos\alpha_n} - \frac{\pi}{z},\qquad
-              M_{dK} = \frac{d_b}{\cos\alpha_K} \cos\delta + D_M
+    .. math:: \mathrm{inv}\,\alpha_K = s \left(\psi_b + \frac{D_M}{\lvert z\rvert m_n \cos\alpha_n}
+              - \frac{\pi}{\lvert z\rvert}\right),\qquad
+              M_{dK} = \frac{d_b}{\cos\alpha_K} \cos\delta + s D_M
 
-    with delta = 0 for an even number of teeth, pi/(2 z) for an odd one, and :math:`\psi_b = s_t/d +
-    \mathrm{inv}\,\alpha_t` of the teeth with their allowance.
+    with s = 1 of an external gear and -1 of a ring, delta = 0 for an even number of teeth, pi/(2 z) for an odd one, and
+    :math:`\psi_b = s_t/d + s\,\mathrm{inv}\,\alpha_t` of the teeth with their allowance. Pins have the same measure
+    between straight teeth of a ring; in helical ones they touch at their ends.
 
     Raises
     ------
@@ -119,20 +215,21 @@ def ball_measurement(gear: CylindricalGear, diameter: float) -> float:
     ----------
     ISO 21771:2007; DIN 21773:2014.
     """
-    centre = _ball_centre(gear, diameter)
+    centre, side = _ball_centre(gear, diameter), _side(gear)
     tangent = sqrt((centre - gear.base_radius) * (centre + gear.base_radius))
-    contact = tangent - 0.5 * diameter * cos(gear.base_helix_angle)
+    contact = tangent - 0.5 * side * diameter * cos(gear.base_helix_angle)
     what = f"ball_diameter: a ball of {diameter:.6g} mm"
     require(_touches(gear, hypot(gear.base_radius, contact) if contact > 0.0 else 0.0, what), owner=gear.name)
+    room = side * (centre - gear.root_radius), side * (centre - gear.tip_radius)
     require(
-        (centre - 0.5 * diameter > gear.root_radius, f"{what} rests on the root and not on the flanks"),
-        (centre + 0.5 * diameter > gear.tip_radius, f"{what} does not stand out of the tips"),
+        (room[0] > 0.5 * diameter, f"{what} rests on the root and not on the flanks"),
+        (room[1] > -0.5 * diameter, f"{what} does not stand out of the tips"),
         owner=gear.name,
     )
-    return 2.0 * centre * _opposite(gear) + diameter
+    return 2.0 * centre * _opposite(gear) + side * diameter
 
 
-def allowance_of_balls(gear: CylindricalGear, measurement: float, diameter: float) -> float:
+def allowance_of_balls(gear: MeasuredGear, measurement: float, diameter: float) -> float:
     """Allowance A_sn of a gear that is measured over two balls [mm]; that of ``gear`` itself does not count.
 
     Raises
@@ -147,8 +244,9 @@ def allowance_of_balls(gear: CylindricalGear, measurement: float, diameter: floa
     >>> round(1e3 * allowance_of_balls(gear, 44.8395, 3.5))  # um
     -40
     """
-    centre = 0.5 * (measurement - diameter) / _opposite(gear)
-    what = f"ball_measurement: {measurement:.6g} mm over balls of {diameter:.6g} mm"
+    side, between = _side(gear), "over" if gear.teeth > 0 else "between"
+    centre = 0.5 * (measurement - side * diameter) / _opposite(gear)
+    what = f"ball_measurement: {measurement:.6g} mm {between} balls of {diameter:.6g} mm"
     require(
         (0.0 < diameter < inf, f"ball_diameter: {diameter} mm is not positive and finite"),
         (
@@ -158,44 +256,46 @@ def allowance_of_balls(gear: CylindricalGear, measurement: float, diameter: floa
         owner=gear.name,
     )
     widening = _half_angle_of_ball(gear, diameter)
-    half = involute(acos(gear.base_radius / centre)) - widening + pi / gear.teeth
+    half = side * involute(acos(gear.base_radius / centre)) - widening + pi / gear.tooth_count
     nominal = gear.half_thickness_angle_at_base - gear.thickness_allowance / (
         2.0 * gear.reference_radius * cos(gear.helix_angle)
     )
     allowance = 2.0 * gear.reference_radius * cos(gear.helix_angle) * (half - nominal)
-    value = nominal + widening - pi / gear.teeth
-    expected = 2.0 * gear.base_radius / cos(inverse_involute(max(0.0, value))) * _opposite(gear) + diameter
+    value = side * (nominal + widening - pi / gear.tooth_count)
+    expected = 2.0 * gear.base_radius / cos(inverse_involute(max(0.0, value))) * _opposite(gear) + side * diameter
     return _allowance(gear, allowance, what, expected)
 
 
-def _ball_centre(gear: CylindricalGear, diameter: float) -> float:
+def _ball_centre(gear: MeasuredGear, diameter: float) -> float:
     """Radius of the centres of balls that touch both flanks of their space."""
     require((0.0 < diameter < inf, f"ball_diameter: {diameter} mm is not positive and finite"), owner=gear.name)
-    value = gear.half_thickness_angle_at_base + _half_angle_of_ball(gear, diameter) - pi / gear.teeth
+    angle = gear.half_thickness_angle_at_base + _half_angle_of_ball(gear, diameter) - pi / gear.tooth_count
+    value = _side(gear) * angle
     if value <= 0.0:
-        raise InputError(f"{gear.name}: ball_diameter: a ball of {diameter:.6g} mm falls between the flanks")
+        fate = "falls between the flanks" if gear.teeth > 0 else "does not go between the flanks"
+        raise InputError(f"{gear.name}: ball_diameter: a ball of {diameter:.6g} mm {fate}")
     return gear.base_radius / cos(inverse_involute(value))
 
 
-def _half_angle_of_ball(gear: CylindricalGear, diameter: float) -> float:
+def _half_angle_of_ball(gear: MeasuredGear, diameter: float) -> float:
     """Angle by which a ball moves its contact from its centre, on the base circle: D_M/(z m_n cos(alpha_n))."""
-    return diameter / (gear.teeth * gear.normal_module * cos(gear.pressure_angle))
+    return diameter / (gear.tooth_count * gear.normal_module * cos(gear.pressure_angle))
 
 
-def _opposite(gear: CylindricalGear) -> float:
+def _opposite(gear: MeasuredGear) -> float:
     """What remains of the radius across the axis where no two spaces are opposite."""
-    return 1.0 if gear.teeth % 2 == 0 else cos(0.5 * pi / gear.teeth)
+    return 1.0 if gear.teeth % 2 == 0 else cos(0.5 * pi / gear.tooth_count)
 
 
-def _touches(gear: CylindricalGear, radius: float, what: str) -> tuple[bool, str]:
+def _touches(gear: MeasuredGear, radius: float, what: str) -> tuple[bool, str]:
     """Check of a contact point: on the flank, between form and tip circle."""
-    low, high = gear.form_radius, gear.tip_radius
+    low, high = sorted((gear.form_radius, gear.tip_form_radius))
     place = f"at diameter {2.0 * radius:.6g} mm" if radius > 0.0 else "below the base circle"
     flank = f"the flanks reach from {2.0 * low:.6g} to {2.0 * high:.6g} mm"
     return low <= radius <= high, f"{what} touches no flank: it would be {place}, and {flank}"
 
 
-def _allowance(gear: CylindricalGear, allowance: float, what: str, nominal: float) -> float:
+def _allowance(gear: MeasuredGear, allowance: float, what: str, nominal: float) -> float:
     """Return an allowance that can be one."""
     largest, sense = LARGEST_ALLOWANCE * gear.normal_module, "thicker" if allowance > 0.0 else "thinner"
     require(

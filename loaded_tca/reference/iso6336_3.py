@@ -158,11 +158,13 @@ def root_section(
     pressure_angle: float = radians(20.0),
     dedendum_coefficient: float = 1.25,
     root_radius_coefficient: float = 0.38,
+    residual_undercut: float = 0.0,
 ) -> RootSection:
-    r"""Critical section of a gear without protuberance, cut by a rack; of a ring by the rack of its cutter.
+    r"""Critical section of a gear cut by a rack; of a ring by the rack of its cutter.
 
     .. math::
-        E = \frac{\pi}{4} - h_{fP} \tan\alpha_n - \varrho_{fP}\,\frac{1 - \sin\alpha_n}{\cos\alpha_n},\quad
+        E = \frac{\pi}{4} - h_{fP} \tan\alpha_n + \frac{s_{pr}}{\cos\alpha_n}
+            - \varrho_{fP}\,\frac{1 - \sin\alpha_n}{\cos\alpha_n},\quad
         G = \varrho_{fP} - h_{fP} + x,\quad
         H = \frac{2}{z_n} \left(\frac{\pi}{2} - E\right) - T,\quad
         \vartheta = \frac{2 G}{z_n} \tan\vartheta - H
@@ -187,6 +189,8 @@ def root_section(
         beta, alpha_n.
     dedendum_coefficient, root_radius_coefficient : float
         h_fP/m_n, rho_fP/m_n of the rack; of a ring rho_fPv/m_n of ``cut_root_radius``.
+    residual_undercut : float
+        s_pr/m_n = (pr - q)/m_n that grinding leaves of a protuberance.
 
     Raises
     ------
@@ -224,11 +228,12 @@ def root_section(
         (0.0 < tip_diameter < inf, f"tip_diameter: {tip_diameter} is not positive and finite"),
         (0.0 < dedendum_coefficient < inf, f"dedendum_coefficient: {dedendum_coefficient} is not positive and finite"),
         (0.0 < root_radius_coefficient < inf, f"root_radius_coefficient: {root_radius_coefficient} is not positive"),
+        (abs(residual_undercut) < 0.25, f"residual_undercut: {residual_undercut} is not within a quarter of a module"),
     )
     rho, tangent = root_radius_coefficient, _TANGENT if teeth > 0 else _RING_TANGENT
     z = copysign(virtual_teeth(abs(teeth), helix_angle, pressure_angle), teeth)
     gap = 0.25 * pi - dedendum_coefficient * tan(pressure_angle)
-    gap -= rho * (1.0 - sin(pressure_angle)) / cos(pressure_angle)
+    gap -= (rho * (1.0 - sin(pressure_angle)) - residual_undercut) / cos(pressure_angle)
     angle, thickness, radius, below = fillet_section(gap, rho - dedendum_coefficient + profile_shift, rho, z)
     diameter, load_angle, half = _single_contact(
         teeth, z, profile_shift, tip_diameter, transverse_contact_ratio, helix_angle, pressure_angle

@@ -9,6 +9,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS
 from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.errors import give_accuracy_warning
+from loaded_tca.gears.protuberance import notch_factor
 from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.scene.section import values_of
@@ -56,6 +57,7 @@ def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = Fals
         *_short_path(scene),
         *_odd_inputs(scene),
         *_small_clearances(scene, pair),
+        *_notches(scene),
     ]:
         give_accuracy_warning(sentence, stacklevel=3)
     if scene.has_pitch_deviations and not whole_revolution:
@@ -123,6 +125,15 @@ def questions(scene: Scene) -> list[str]:
                 kinds.ODD_INPUT.sentence(key="load.pinion_torque_Nm", value=1e-3 * torque, unit="N m", what=what)
             )
     return sentences
+
+
+def _notches(scene: Scene) -> list[str]:
+    """Sentences on the notches that grinding leaves at roots."""
+    return [
+        kinds.NOTCH.sentence(gear=gear, depth=1e3 * depth, percent=100.0 * (notch_factor(depth, radius) - 1.0))
+        for gear, (depth, radius) in zip(GEARS, scene.grinding_notches, strict=False)
+        if depth > 0.0
+    ]
 
 
 def _small_clearances(scene: Scene, pair: GearPair) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Literal
@@ -17,15 +17,29 @@ from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, cylindrical_pa
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
 from loaded_tca.reference.iso1328 import flank_tolerances
-from loaded_tca.scene.blank import BlankGearSection, BlankScene
-from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
-from loaded_tca.scene.keys import Choice, Number, Whole, above_zero, key
+from loaded_tca.scene.blank import BlankScene
+from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
+from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.parse import family
 from loaded_tca.scene.section import Rule, Section, subsection
-from loaded_tca.scene.sections import DRIVING, SENSE, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
+from loaded_tca.scene.sections import DRIVING, SENSE, AMOUNT_um, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
-from loaded_tca.scene.thickness import as_measured, needs, one_thickness, one_tip, thickness_rows
+from loaded_tca.scene.thickness import as_measured, thickness_rows
+from loaded_tca.scene.tools import (
+    ADDENDUM,
+    DEDENDUM,
+    ROOT_RADIUS,
+    SHORTENED_ONCE,
+    TIP_SHORTENING,
+    CutSection,
+    chamfer_rows,
+    cut_parameters,
+    needs_protuberance,
+    needs_stock,
+    rack_rows,
+    shortening,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,14 +61,26 @@ class Geometry(Pair):
     sense: Literal["positive", "negative"] = key(
         SENSE, "sense of rotation; negative: the pinion turns the other way and pushes with its other flank", "positive"
     )
-    dedendum_coefficient: float = key(
-        above_zero(5.0), "dedendum of the basic rack (ISO 53 profile A) in modules, h_fP/m_n", 1.25
+    addendum_coefficient: float = key(
+        ADDENDUM, "addendum of the basic rack in modules, h_aP/m_n; each gear may have its own", 1.0
     )
-    root_radius_coefficient: float = key(Number(0.0, 1.0), "root radius of the basic rack in modules, rho_fP/m_n", 0.38)
+    dedendum_coefficient: float = key(
+        DEDENDUM, "dedendum of the basic rack (ISO 53 profile A) in modules, h_fP/m_n; likewise", 1.25
+    )
+    root_radius_coefficient: float | str = key(
+        ROOT_RADIUS,
+        'root radius of the basic rack in modules, rho_fP/m_n, or "full", the largest that fits; likewise',
+        0.38,
+    )
+    tip_shortening: str = key(
+        TIP_SHORTENING,
+        '"computed": both tips are altered by k m_n = a - a_d - m_n (x1 + x2) (ISO 21771) where that shortens them',
+        "none",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
-class GearSection(BlankGearSection):
+class GearSection(CutSection):
     """[pinion], [wheel] of cylindrical gears."""
 
     profile_shift: float | None = key(  # type: ignore[assignment]
@@ -64,33 +90,28 @@ class GearSection(BlankGearSection):
         None,
         "0, or what leaves no backlash",
     )
-    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a", None, "d + 2 m_n (1 + x + k)")
-    tip_alteration_coefficient: float | None = key(
-        Number(-2.0, 1.0),
-        "tip alteration coefficient k, negative for a shortened tip, instead of `tip_diameter_mm`",
+
+    protuberance_um: float | None = key(
+        AMOUNT_um,
+        "protuberance pr of the tool before grinding, along the normal of its flank; needs a stock",
         None,
         "0",
     )
-    thickness_allowance_um: float | None = key(
-        SLOPE_um,
-        "allowance A_sn of the tooth thickness in the normal section at the reference circle, negative for thinner "
-        "teeth, up to half a module: flanks and root are cut with x_E",
+    grinding_stock_um: float | None = key(
+        AMOUNT_um,
+        "stock q that this tool leaves for grinding; above pr, a notch is left. Basic rack and thickness are those of "
+        "the ground gear",
         None,
         "0",
     )
-    span_measurement_mm: float | None = key(DIAMETER_mm, "or span W_k of these teeth", None, "not measured")
-    span_teeth: int | None = key(
-        Whole(1, 10000), "number of teeth k of the span", None, "touches nearest to d + 2 x m_n"
+    protuberance_angle_deg: float | None = key(
+        Number(0.5, 44.0), "angle alpha_pr of the flank of the protuberance", None, "half the pressure angle"
     )
-    ball_measurement_mm: float | None = key(DIAMETER_mm, "or measure M_dK over two balls", None, "not measured")
-    ball_diameter_mm: float | None = key(DIAMETER_mm, "diameter D_M of the balls", None, "of `ball_measurement_mm`")
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        *BlankGearSection.rules,
-        Rule(("tip_alteration_coefficient", "tip_diameter_mm"), one_tip),
-        Rule(("thickness_allowance_um", "span_measurement_mm", "ball_measurement_mm"), one_thickness),
-        needs("span_teeth", "span_measurement_mm"),
-        needs("ball_diameter_mm", "ball_measurement_mm", back=True),
+        *CutSection.rules,
+        Rule(("protuberance_um", "grinding_stock_um"), needs_stock),
+        Rule(("protuberance_angle_deg", "protuberance_um"), needs_protuberance),
         below("bore_diameter_mm", "tip_diameter_mm"),
         below("modifications.tip_relief_start_mm", "tip_diameter_mm"),
         below("modifications.root_relief_start_mm", "tip_diameter_mm"),
@@ -149,6 +170,7 @@ class CylindricalScene(BlankScene):
     """
 
     vh_keys: ClassVar[tuple[str, str]] = ("mounting.in_plane_deg", "mounting.out_of_plane_deg")
+    rules: ClassVar[tuple[Rule, ...]] = (*BlankScene.rules, SHORTENED_ONCE)
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
@@ -163,20 +185,23 @@ class CylindricalScene(BlankScene):
     def _mesh(self) -> CylindricalMesh:
         """The macro geometry, which every number of the standards asks for again."""
 
-        def gear(own: GearSection, sign: int, name: str, shift: float | None) -> CylindricalGear:
-            values = parameters_of(CylindricalGear, self.geometry, own)
-            values["helix_angle"] *= sign
-            values["profile_shift"] = shift or 0.0
-            return as_measured(CylindricalGear(**values, name=name), own)
+        def gears(shifts: Sequence[float | None]) -> Iterator[CylindricalGear]:
+            both = shifts[0] or 0.0, shifts[1] or 0.0
+            tips = shortening(self.geometry, (self.pinion.teeth, self.wheel.teeth), both)
+            for own, sign, name, shift in zip(sections, self.hand_signs, names, both, strict=True):
+                values = cut_parameters(CylindricalGear, self.geometry, own) | tips
+                values["helix_angle"] *= sign
+                values["profile_shift"] = shift
+                yield as_measured(CylindricalGear(**values, name=name), own)
 
         sections, names, distance = (self.pinion, self.wheel), ("pinion", "wheel"), self.geometry.centre_distance_mm
         shifts = [own.profile_shift for own in sections]
-        pinion, wheel = map(gear, sections, self.hand_signs, names, shifts)
+        pinion, wheel = gears(shifts)
         if distance is not None and shifts.count(None) == 1:
             rest = profile_shift_sum(pinion, wheel, distance) - sum(shift for shift in shifts if shift is not None)
             shifts = [rest if shift is None else shift for shift in shifts]
             try:
-                pinion, wheel = map(gear, sections, self.hand_signs, names, shifts)
+                pinion, wheel = gears(shifts)
             except (InputError, GeometryError) as error:
                 error.add_note(
                     f"pair.centre_distance_mm = {distance:g} and the profile shift that is given ask for {rest:.4f} on "
@@ -237,6 +262,17 @@ class CylindricalScene(BlankScene):
         """Clearances c of both roots and the mating gear's tip, the error of the centre distance included."""
         error = self.mounting.centre_distance_error_mm
         pinion, wheel = (clearance + error for clearance in self.mesh().tip_clearances)
+        return pinion, wheel
+
+    @property
+    def grinding_notches(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Depths of the notches that grinding leaves at both roots, and the roundings of the tools [mm]."""
+        pinion, wheel = (
+            (max(0.0, -gear.residual_undercut), gear.rack_tip_radius)
+            if isinstance(gear, CylindricalGear)
+            else (0.0, 0.0)
+            for gear in (self.mesh().pinion, self.mesh().wheel)
+        )
         return pinion, wheel
 
     @property
@@ -329,7 +365,9 @@ class CylindricalScene(BlankScene):
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
             ("profile shift x", f"{mesh.pinion.profile_shift:z.4f}", f"{mesh.wheel.profile_shift:z.4f}"),
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
+            *rack_rows(mesh),
             *_diameter_rows(mesh),
+            *chamfer_rows(mesh),
             *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
             ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),
         ]
@@ -367,7 +405,7 @@ class CylindricalScene(BlankScene):
 
 def _root_section(mesh: InvoluteMesh, gear: CylindricalGear | RingGear) -> iso6336_3.RootSection | None:
     """Critical section of a gear after ISO 6336-3; None where the standard has none."""
-    module, dedendum, shift = gear.normal_module, gear.dedendum_coefficient, gear.profile_shift
+    module, dedendum, shift = gear.normal_module, gear.dedendum_coefficient, gear.generating_profile_shift
     try:
         if isinstance(gear, RingGear):
             dedendum = (gear.root_radius - gear.reference_radius) / module + shift
@@ -375,16 +413,17 @@ def _root_section(mesh: InvoluteMesh, gear: CylindricalGear | RingGear) -> iso63
             if gear.cutter is not None:
                 radius = iso6336_3.cut_root_radius(radius, dedendum, gear.cutter.teeth, gear.cutter.profile_shift)
         else:
-            shift, radius = gear.generating_profile_shift, gear.rack_tip_radius / module
+            radius = gear.rack_tip_radius / module
         return iso6336_3.root_section(
             gear.teeth,
             shift,
-            2.0 * gear.tip_radius / module,
+            2.0 * gear.tip_form_radius / module,
             mesh.transverse_contact_ratio,
             helix_angle=gear.helix_angle,
             pressure_angle=gear.pressure_angle,
             dedendum_coefficient=dedendum,
             root_radius_coefficient=radius,
+            residual_undercut=0.0 if isinstance(gear, RingGear) else max(0.0, gear.residual_undercut) / module,
         )
     except (InputError, GeometryError):
         return None

@@ -13,7 +13,6 @@ from loaded_tca.gears.cylindrical_mesh import ROUNDING
 from loaded_tca.gears.internal_mesh import internal_interferences, internal_profile_shift_sum
 from loaded_tca.pairs.cylindrical import internal_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
-from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
 from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
 from loaded_tca.scene.keys import Choice, Number, Whole, key
@@ -21,7 +20,8 @@ from loaded_tca.scene.model import Hand, Row, Scene
 from loaded_tca.scene.parse import variant
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.sections import DIAMETER_mm, below
-from loaded_tca.scene.thickness import as_measured
+from loaded_tca.scene.thickness import as_measured, thickness_rows
+from loaded_tca.scene.tools import SHORTENED_ONCE, CutSection, chamfer_rows, cut_parameters, rack_rows, shortening
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,8 +46,20 @@ def _above(larger_key: str, smaller_key: str) -> Rule:
     return Rule((larger_key, smaller_key), complain)
 
 
+def _one_root(dedendum: float | None, diameter: float | None) -> str | None:
+    if dedendum is None or diameter is None:
+        return None
+    return f"found {dedendum:g} beside root_diameter_mm = {diameter:g}; give one of them: each says where the root is"
+
+
+def _one_fillet(radius: float | str | None, cutter: CutterSection | None) -> str | None:
+    if radius is None or cutter is None:
+        return None
+    return f"found {radius} beside [wheel.cutter], whose tip_radius_coefficient shapes the fillets; give one of them"
+
+
 @dataclass(frozen=True, kw_only=True)
-class RingSection(BlankGearSection):
+class RingSection(CutSection):
     """[wheel] of an internal pair: a ring gear."""
 
     teeth: int = key(Whole(-10000, -3), "number of teeth z2 of the ring, negative as in ISO 21771")
@@ -61,8 +73,8 @@ class RingSection(BlankGearSection):
         None,
         "0, or what leaves no backlash",
     )
-    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a, positive", None, "d - 2 m_n (1 + x)")
-    root_diameter_mm: float | None = key(DIAMETER_mm, "root diameter d_f, positive", None, "d + 2 m_n (h_fP - x)")
+    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a, positive", None, "d - 2 m_n (h_aP + x + k)")
+    root_diameter_mm: float | None = key(DIAMETER_mm, "root diameter d_f, positive", None, "d + 2 m_n (h_fP - x_E)")
     outer_diameter_mm: float | None = key(
         DIAMETER_mm, "outer diameter, held rigid where teeth bend", None, "root diameter + 14 m_n"
     )
@@ -71,7 +83,9 @@ class RingSection(BlankGearSection):
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        *BlankGearSection.rules,
+        *CutSection.rules,
+        Rule(("dedendum_coefficient", "root_diameter_mm"), _one_root),
+        Rule(("root_radius_coefficient", "cutter"), _one_fillet),
         rule(
             ("bore_diameter_mm",),
             lambda bore: bore is None,
@@ -126,6 +140,7 @@ class InternalScene(CylindricalScene):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *Scene.rules,
+        SHORTENED_ONCE,
         Rule(("wheel.hand", "pinion.hand"), _same_hands),
         Rule(
             ("wheel.teeth", "pinion.teeth"),
@@ -163,13 +178,15 @@ class InternalScene(CylindricalScene):
         cut_by = None if cutter is None else PinionCutter(**parameters_of(PinionCutter, cutter))
 
         def gears(shifts: list[float | None]) -> tuple[CylindricalGear, RingGear]:
-            of_pinion = parameters_of(CylindricalGear, self.geometry, self.pinion)
-            of_ring = parameters_of(RingGear, self.geometry, self.wheel) | {"cutter": cut_by}
+            both = shifts[0] or 0.0, shifts[1] or 0.0
+            tips = shortening(self.geometry, (self.pinion.teeth, self.wheel.teeth), both)
+            of_pinion = cut_parameters(CylindricalGear, self.geometry, self.pinion) | tips
+            of_ring = cut_parameters(RingGear, self.geometry, self.wheel) | tips | {"cutter": cut_by}
             for values, shift in ((of_pinion, shifts[0]), (of_ring, shifts[1])):
                 values["helix_angle"] *= sign
                 values["profile_shift"] = shift or 0.0
             pinion = as_measured(CylindricalGear(**of_pinion, name="pinion"), self.pinion)
-            return pinion, RingGear(**of_ring, name="wheel")
+            return pinion, as_measured(RingGear(**of_ring, name="wheel"), self.wheel)
 
         shifts = [self.pinion.profile_shift, self.wheel.profile_shift]
         pinion, ring = gears(shifts)
@@ -199,7 +216,7 @@ class InternalScene(CylindricalScene):
         """Return centre distance, contact ratios, diameters, and the three interferences with their room."""
         mesh = self.mesh()
         pinion, ring, path = mesh.pinion, mesh.ring, mesh.path_of_contact
-        ring_tip = ring.roll_length(ring.tip_radius) - (path.T1 - path.T2)
+        ring_tip = ring.roll_length(ring.tip_form_radius) - (path.T1 - path.T2)
         shifts = pinion.profile_shift + ring.profile_shift, mesh.profile_shift_sum_without_backlash
         return [
             ("working centre distance |a_w| [mm]", f"{mesh.working_centre_distance:z.4f}"),
@@ -218,7 +235,10 @@ class InternalScene(CylindricalScene):
             ("", "pinion", "wheel (ring)"),
             ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
             ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
+            *rack_rows(mesh),
             *_diameter_rows(mesh),
+            *chamfer_rows(mesh),
+            *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
             ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),
         ]
 

@@ -398,6 +398,11 @@ class Scene(WithStandards, ABC):
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm], a cell for each."""
 
+    @property
+    def grinding_notches(self) -> Sequence[tuple[float, float]]:
+        """Depths of the notches that grinding leaves at the roots of both gears, and roundings of the tools [mm]."""
+        return ()
+
     @abstractmethod
     def interferences(self) -> Sequence[str]:
         """Return sentences on what jams the whole gears, which the contact of one flank of each does not notice.

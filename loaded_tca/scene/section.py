@@ -15,6 +15,7 @@ from typing import Any, ClassVar, TypeVar
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import is_place
 from loaded_tca.scene.keys import Key, did_you_mean, nearest, shown, shown_key
+from loaded_tca.scene.spellings import key_meant_by
 
 SectionType = TypeVar("SectionType", bound="Section")
 
@@ -237,8 +238,9 @@ def _unknown(
     elsewhere = _homes(whole) if unknown and whole is not None else {}
     for name in unknown[:MOST_UNKNOWN_KEYS]:
         near = nearest(name, homes) or ""
+        spelled = key_meant_by(name, homes) or key_meant_by(name, elsewhere)
         own = set(name.split("_")) <= set(near.split("_"))  # but for a word: "shaft_angle_error_deg"
-        meant = (not own and elsewhere.get(name)) or homes.get(near)
+        meant = (not own and elsewhere.get(name)) or homes.get(spelled or near) or elsewhere.get(spelled or "")
         allowed = shorten(", ".join(known), LONGEST_LIST, placeholder=" ...")
         hint = did_you_mean(meant) or f"; allowed {allowed}"
         yield f"{place}{shown_key(name)}: unknown key{hint}"

@@ -105,11 +105,12 @@ def _single_stiffness(mesh: InvoluteMesh, materials: tuple[Material, Material]) 
     (first, of_first), (second, of_second) = sorted(
         zip(virtual, shifts, strict=True), key=lambda gear: (gear[0], -gear[1])
     )
+    racks = [iso6336.basic_rack_factor(one.dedendum_coefficient, one.pressure_angle) for one in (gear, mesh.wheel)]
     moduli = [material.youngs_modulus for material in materials]
     return iso6336.single_stiffness(
         iso6336.theoretical_single_stiffness((first, second), (of_first, of_second)),
         gear.helix_angle,
-        basic_rack_factor=iso6336.basic_rack_factor(gear.dedendum_coefficient, gear.pressure_angle),
+        basic_rack_factor=0.5 * sum(racks),
         youngs_modulus=2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]),
     )
 

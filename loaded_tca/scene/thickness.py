@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
-from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
 from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
+from loaded_tca.scene.blank import BlankGearSection
+from loaded_tca.scene.keys import Whole, key
 from loaded_tca.scene.section import Rule
+from loaded_tca.scene.sections import DIAMETER_mm, SLOPE_um
 
 if TYPE_CHECKING:
-    from loaded_tca.scene.cylindrical import GearSection
     from loaded_tca.scene.model import Row
 
 
@@ -36,14 +38,46 @@ def needs(key: str, other: str, *, back: bool = False) -> Rule:
     return Rule((key, other), complain)
 
 
-def one_tip(alteration: float | None, diameter: float | None) -> str | None:
-    """What is wrong where the tip is given twice."""
-    if alteration is None or diameter is None:
-        return None
-    return f"found {alteration:g} beside tip_diameter_mm = {diameter:g}; give one of them"
+@dataclass(frozen=True, kw_only=True)
+class MeasuredSection(BlankGearSection):
+    """Section of an external gear or a ring whose tooth thickness is given or measured."""
+
+    thickness_allowance_um: float | None = key(
+        SLOPE_um,
+        "allowance A_sn of the tooth thickness in the normal section at the reference circle, negative for thinner "
+        "teeth, up to half a module: flanks and root are cut with x_E",
+        None,
+        "0",
+    )
+    span_measurement_mm: float | None = key(
+        DIAMETER_mm,
+        "or span W_k of these teeth; of a ring, whose teeth must be straight, between the flanks over k spaces",
+        None,
+        "not measured",
+    )
+    span_teeth: int | None = key(
+        Whole(1, 10000), "number of teeth k of the span, of spaces of a ring", None, "touches nearest to d + 2 x m_n"
+    )
+    ball_measurement_mm: float | None = key(
+        DIAMETER_mm,
+        "or measure M_dK over two balls, between them in a ring; the same over pins if teeth are straight",
+        None,
+        "not measured",
+    )
+    ball_diameter_mm: float | None = key(DIAMETER_mm, "diameter D_M of the balls", None, "of `ball_measurement_mm`")
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *BlankGearSection.rules,
+        Rule(("thickness_allowance_um", "span_measurement_mm", "ball_measurement_mm"), one_thickness),
+        needs("span_teeth", "span_measurement_mm"),
+        needs("ball_diameter_mm", "ball_measurement_mm", back=True),
+    )
 
 
-def as_measured(gear: CylindricalGear, own: GearSection) -> CylindricalGear:
+GearType = TypeVar("GearType", CylindricalGear, RingGear)
+
+
+def as_measured(gear: GearType, own: MeasuredSection) -> GearType:
     """Gear with the thickness of its teeth that a span or balls tell, if they do."""
     if own.span_measurement_mm is not None:
         teeth = own.span_teeth or gear.span_teeth
@@ -58,14 +92,15 @@ def as_measured(gear: CylindricalGear, own: GearSection) -> CylindricalGear:
     return gear
 
 
-def thickness_rows(mesh: CylindricalMesh, balls: Sequence[float | None]) -> list[Row]:
+def thickness_rows(mesh: CylindricalMesh | InternalMesh, balls: Sequence[float | None]) -> list[Row]:
     """Tooth thickness of both gears and how it is measured; "-" where a span touches no flank."""
-    gears = mesh.pinion, mesh.wheel
+    gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
+    internal = isinstance(mesh, InternalMesh)
     alterations = (round(gear.tip_alteration / gear.normal_module, 4) for gear in gears)
     rows = [
         ("tip alteration coefficient k", *(f"{one:z.4f}" for one in alterations)),
         ("tooth thickness s_n [mm]", *(f"{gear.normal_tooth_thickness:z.4f}" for gear in gears)),
-        ("span W_k over k teeth [mm]", *map(_span, gears)),
+        (f"span W_k over k teeth{' (spaces)' if internal else ''} [mm]", *map(_span, gears)),
     ]
     if any(gear.thickness_allowance for gear in gears):
         rows[1:1] = [
@@ -74,11 +109,11 @@ def thickness_rows(mesh: CylindricalMesh, balls: Sequence[float | None]) -> list
         ]
     if any(balls):
         measures = (f"{g.ball_measurement(size):z.4f}" if size else "-" for g, size in zip(gears, balls, strict=True))
-        rows.append(("measure over balls M_dK [mm]", *measures))
+        rows.append((f"measure over {'(between) ' if internal else ''}balls M_dK [mm]", *measures))
     return rows
 
 
-def _span(gear: CylindricalGear) -> str:
+def _span(gear: CylindricalGear | RingGear) -> str:
     """Span over the usual number of teeth, and that number."""
     teeth = gear.span_teeth
     try:

@@ -24,6 +24,7 @@ from loaded_tca.scene.parse import toml_lines
 from loaded_tca.scene.rating import ANALYSIS, LOAD_FACTOR, RatingSection
 from loaded_tca.scene.section import Rule, Section, as_table, check, contents, key_at, made, replaced_by, subsection
 from loaded_tca.scene.sections import FACTOR, Analysis, DIAMETER_mm, ElasticMaterial, LubricantSection
+from loaded_tca.scene.tools import ADDENDUM, DEDENDUM, ROOT_RADIUS
 from loaded_tca.stages.kinematics import spacing_problems
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
@@ -154,8 +155,15 @@ class StageGeometry(Section):
     centre_distance_mm: float | None = key(
         DIAMETER_mm, "centre distance of sun and planets", None, "follows from the profile shifts, without backlash"
     )
-    dedendum_coefficient: float = key(above_zero(5.0), "dedendum of the basic rack in modules, h_fP/m_n", 1.25)
-    root_radius_coefficient: float = key(Number(0.0, 1.0), "root radius of the basic rack in modules, rho_fP/m_n", 0.38)
+    addendum_coefficient: float = key(
+        ADDENDUM, "addendum of the basic rack in modules, h_aP/m_n; each gear may have its own", 1.0
+    )
+    dedendum_coefficient: float = key(DEDENDUM, "dedendum of the basic rack in modules, h_fP/m_n; likewise", 1.25)
+    root_radius_coefficient: float | str = key(
+        ROOT_RADIUS,
+        'root radius of the basic rack in modules, rho_fP/m_n, or "full", the largest that fits; likewise',
+        0.38,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -210,7 +210,7 @@ class InvoluteTooth(ToothGeometry):
     def nominal(self, side: int) -> Flank:
         """Involute flank of a side."""
         gear = self.gear
-        radii = gear.form_radius, gear.tip_radius
+        radii = gear.form_radius, gear.tip_form_radius
         return self.flank(gear.base_radius, gear.base_helix_angle, side, self.working_radius, radii, gear.face_width)
 
     def modified(self, nominal: Flank) -> Flank:

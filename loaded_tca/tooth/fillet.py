@@ -374,7 +374,7 @@ class CutRoot(Protocol):
     """A gear whose fillets are the curves that its cutter leaves, as :class:`CylindricalGear` has them."""
 
     @property
-    def is_undercut(self) -> bool:
+    def meets_in_corner(self) -> bool:
         """Whether flank and fillet meet in a corner."""
 
     def root_fillet(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -411,7 +411,7 @@ class RackFillet(Fillet):
         turn = angle[:, None] + (np.arctan2(top[:, 1], top[:, 0]) - angle[0])
         tangents = turned(np.stack(self.gear.root_fillet_tangent(count), axis=-1)[:, None], turn)
         points = polar(radius[:, None], turn)
-        if not self.gear.is_undercut:
+        if not self.gear.meets_in_corner:
             points, tangents = _with_slope(points, tangents, slope)
         points[0] = top
         return FilletCurve(start, points, tangents)

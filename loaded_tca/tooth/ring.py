@@ -92,7 +92,7 @@ class _ImageOfRoot:
 
     gear: RingGear
 
-    is_undercut = False
+    meets_in_corner = False
 
     def root_fillet(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Radii of the image [mm], and angles from the middle of the tooth [rad]."""

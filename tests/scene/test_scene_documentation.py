@@ -15,7 +15,7 @@ PAGE = (ROOT / "docs" / "guide" / "scene_files.md").read_text(encoding="utf-8")
 
 
 def test_shortest_scenes_are_scenes():
-    cylindrical, bevel, blank, face_milled, _ = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    cylindrical, bevel, blank, face_milled, *_ = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     assert parse_scene(cylindrical).hands[0] == "right"
     assert parse_scene(bevel).contact_sides == ("concave", "convex")
     rest = "[pinion]" + bevel.partition("[pinion]")[2]
@@ -36,7 +36,9 @@ def test_every_kind_of_default_is_described():
     text = describe_keys()
     assert "| `teeth` | a whole number from 3 to 10000 | **required** | number of teeth z |" in text
     assert "| `profile_shift` | a number from -5 to 5 | `0.0` | profile shift coefficient x |" in text
-    assert "| `tip_diameter_mm` | a number above 0, up to 100000 | d + 2 m_n (1 + x + k) | tip diameter d_a |" in text
+    assert (
+        "| `tip_diameter_mm` | a number above 0, up to 100000 | d + 2 m_n (h_aP + x + k) | tip diameter d_a |" in text
+    )
 
 
 def test_scene_made_without_a_file_is_one():
@@ -60,13 +62,18 @@ def test_reference_describes_each_section_once_for_each_family():
 
 def test_measured_gear_of_the_guide_has_the_allowance_that_it_says():
     """The high-speed stage of the 5 MW gearbox, whose report has the span 154.045 mm at A_sn = -0.130 mm."""
-    *_, measured = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    *_, measured, tools = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     common = 'pair = { type = "cylindrical", normal_module_mm = 14.0, helix_angle_deg = 10.0 }\n'
     rest = "[wheel]\nteeth = 95\nface_width_mm = 360.0\nprofile_shift = 0.6691\n[load]\npinion_torque_Nm = 1000.0\n"
     material = "[material]\nyoungs_modulus_MPa = 206000.0\npoisson_ratio = 0.3\n"
     gear = parse_scene(common + measured + rest + material).mesh().pinion
     assert round(gear.thickness_allowance, 3) == -0.130
     assert round(2.0 * gear.tip_radius, 2) == 380.75
+    text = (ROOT / "examples" / "scenes" / "helical.toml").read_text(encoding="utf-8")
+    for section in re.split(r"\n(?=\[)", tools.strip()):
+        header, _, keys = section.partition("\n")
+        text = text.replace(header, f"{header}\n{keys}", 1)
+    assert parse_scene(text).mesh().pinion.dedendum_coefficient == 1.4
 
 
 @pytest.mark.thorough

@@ -103,7 +103,7 @@ test_thickness_keys_refuse = refused_calls(
     ),
     (
         lambda: scene(pinion__tip_diameter_mm=111.0, pinion__tip_alteration_coefficient=-0.1),
-        "^pinion.tip_alteration_coefficient: found -0.1 beside tip_diameter_mm = 111; give one of them",
+        "^pinion.tip_diameter_mm: found 111 beside tip_alteration_coefficient = -0.1; give one of them",
     ),
     (
         lambda: scene(pinion__span_measurement_mm=41.4, pinion__span_teeth=4).mesh(),

@@ -1,0 +1,52 @@
+"""Keys of scenes as other programs, standards and drawings spell them, for messages about unknown keys."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Container
+
+SPELLINGS = {
+    "normal_module_mm": "m mn module modulemm",
+    "pressure_angle_deg": "alpha alphan alfn alphanormal pressureangle",
+    "helix_angle_deg": "beta helixangle",
+    "centre_distance_mm": "a aw centredistance centerdistance centerdistancemm",
+    "teeth": "z z1 z2 numberofteeth nteeth numteeth",
+    "face_width_mm": "b b1 b2 facewidth",
+    "profile_shift": "x x1 x2 xn profileshiftcoefficient addendummodification addendummodificationcoefficient",
+    "tip_diameter_mm": "da da1 da2 outsidediameter tipdiameter",
+    "root_diameter_mm": "df df1 df2 rootdiameter",
+    "bore_diameter_mm": "di innerdiameter bore",
+    "addendum_coefficient": "hap hap1 hap2 hapstar hastar addendum addendumfactor",
+    "addendum_factor": "hap khap addendum addendumcoefficient",
+    "dedendum_coefficient": "hfp hfp1 hfp2 hfpstar hfstar dedendum dedendumfactor",
+    "dedendum_factor": "hfp khfp dedendum dedendumcoefficient",
+    "root_radius_coefficient": "rhofp rofp rhofpstar rhof filletradius rootradius rootradiusfactor",
+    "tip_alteration_coefficient": "k kstar tipalteration tipshortening",
+    "tip_shortening": "k kstar",
+    "thickness_allowance_um": "as asn ase asi asne asni tooththicknessallowance",
+    "span_measurement_mm": "w wk span basetangentlength",
+    "ball_measurement_mm": "md mdk mdr overballs overpins betweenballs betweenpins mop mbp",
+    "ball_diameter_mm": "dm dmeff pindiameter",
+    "youngs_modulus_MPa": "e emod youngsmodulus elasticmodulus",
+    "poisson_ratio": "nu poisson poissonsratio",
+    "pinion_torque_Nm": "t t1 torque piniontorque",
+    "tip_relief_um": "ca caa calphaa tiprelief",
+    "root_relief_um": "cf calphaf rootrelief",
+    "lead_crowning_um": "cb cbeta crowning leadcrowning",
+    "profile_crowning_um": "calpha barrelling profilecrowning",
+    "helix_slope_um": "chb chbeta",
+    "profile_slope_um": "cha chalpha",
+}
+"""Key -> spellings, without signs, spaces and capitals; one may stand for several keys, of which a scene has one."""
+
+
+def key_meant_by(name: str, keys: Container[str]) -> str | None:
+    """Key that a spelling of another program stands for, the first of ``keys``; None where it is no such spelling.
+
+    Examples
+    --------
+    >>> key_meant_by("haP*", ["teeth", "addendum_coefficient"]), key_meant_by("h_fP", ["dedendum_factor"])
+    ('addendum_coefficient', 'dedendum_factor')
+    """
+    plain = re.sub(r"[^a-z0-9]", "", name[:60].lower())
+    return next((key for key, spellings in SPELLINGS.items() if key in keys and plain in spellings.split()), None)

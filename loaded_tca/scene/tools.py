@@ -1,0 +1,211 @@
+"""Tools of cylindrical gears in scenes: the basic rack of each gear, its tip, and what belongs to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, radians
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
+from loaded_tca.gears.chamfer import chamfered_land
+from loaded_tca.gears.tips import computed_tip_alteration
+from loaded_tca.scene.build import parameters_of
+from loaded_tca.scene.keys import Choice, Either, Number, above_zero, key
+from loaded_tca.scene.section import Rule
+from loaded_tca.scene.sections import DIAMETER_mm
+from loaded_tca.scene.thickness import MeasuredSection
+
+if TYPE_CHECKING:
+    from loaded_tca.scene.cylindrical import Geometry
+    from loaded_tca.scene.model import Row
+
+ADDENDUM = Number(0.1, 5.0)
+DEDENDUM = above_zero(5.0)
+FULL = "full"
+ROOT_RADIUS = Either((Choice((FULL,)), Number(0.0, 1.0)))
+TIP_SHORTENING = Choice(("none", "computed"))
+PROFILE_A = 1.0, 1.25, 0.38
+"""h_aP, h_fP and rho_fP of ISO 53, profile A, over the module."""
+
+
+def _tip_once(
+    diameter: float | None, alteration: float | None, addendum: float | None, topping: bool | None
+) -> str | None:
+    """What is wrong where the tip is given twice."""
+    others = {
+        "tip_alteration_coefficient": alteration,
+        "addendum_coefficient": addendum,
+        "topping": "true" if topping else None,
+    }
+    given = [f"{name} = {value}" for name, value in others.items() if value is not None]
+    if diameter is not None and given:
+        return f"found {diameter:g} beside {' and '.join(given)}; give one of them: each says where the tip is"
+    return None
+
+
+def _topped(topping: bool, alteration: float | None) -> str | None:
+    if topping and alteration is not None:
+        return f"found true beside tip_alteration_coefficient = {alteration:g}; give one of them: each cuts the tip"
+    return None
+
+
+def _one_edge(chamfer: float, rounding: float) -> str | None:
+    if chamfer > 0.0 and rounding > 0.0:
+        return f"found {chamfer:g} beside tip_rounding_mm = {rounding:g}; give one of them: each ends the flank"
+    return None
+
+
+def _needs_chamfer(angle: float | None, chamfer: float) -> str | None:
+    return None if angle is None or chamfer > 0.0 else f"found {angle:g}; it needs tip_chamfer_mm above 0"
+
+
+@dataclass(frozen=True, kw_only=True)
+class CutSection(MeasuredSection):
+    """Section of an external gear or a ring with a basic rack and a tip of its own."""
+
+    tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a", None, "d + 2 m_n (h_aP + x + k)")
+    tip_alteration_coefficient: float | None = key(
+        Number(-2.0, 1.0),
+        "tip alteration coefficient k, negative for a shortened tip, instead of `tip_diameter_mm`",
+        None,
+        "0, or as `pair.tip_shortening` has it",
+    )
+    addendum_coefficient: float | None = key(
+        ADDENDUM, "addendum of the basic rack of this gear in modules, h_aP/m_n", None, "that of [pair]"
+    )
+    dedendum_coefficient: float | None = key(
+        DEDENDUM, "dedendum of the basic rack of this gear in modules, h_fP/m_n", None, "that of [pair]"
+    )
+    root_radius_coefficient: float | str | None = key(
+        ROOT_RADIUS,
+        'root radius of the basic rack of this gear in modules, rho_fP/m_n; "full": the largest that fits',
+        None,
+        "that of [pair]",
+    )
+    topping: bool = key(
+        Choice((False, True)),
+        "whether the tool cuts the tips, too, which then follow the thickness: k m_n = A_sn/(2 tan(alpha_n))",
+        False,
+    )
+    tip_chamfer_mm: float = key(
+        Number(0.0, 1000.0),
+        "height of chamfers of both tip edges along the radius, below a module: the flank ends so far below the tip",
+        0.0,
+    )
+    tip_chamfer_angle_deg: float | None = key(
+        Number(1.0, 89.0), "angle between chamfer and middle of the tooth", None, "45"
+    )
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *MeasuredSection.rules,
+        Rule(("tip_chamfer_mm", "tip_rounding_mm"), _one_edge),
+        Rule(("tip_chamfer_angle_deg", "tip_chamfer_mm"), _needs_chamfer),
+        Rule(("tip_diameter_mm", "tip_alteration_coefficient", "addendum_coefficient", "topping"), _tip_once),
+        Rule(("topping", "tip_alteration_coefficient"), _topped),
+    )
+
+
+def _shortened_once(shortening: str, *own: Any) -> str | None:
+    """What is wrong where the tips of a pair with a computed shortening are given; ``own``: of pinion and wheel."""
+    names = "tip_diameter_mm", "tip_alteration_coefficient", "topping"
+    given = [
+        f"{gear}.{name} = {'true' if value is True else value}"
+        for gear, values in zip(("pinion", "wheel"), (own[:3], own[3:]), strict=True)
+        for name, value in zip(names, values, strict=True)
+        if value is not None and value is not False
+    ]
+    if shortening == "computed" and given:
+        return f'found "computed" beside {" and ".join(given)}; give one of them: each says where tips are'
+    return None
+
+
+def needs_stock(protuberance: float | None, stock: float | None) -> str | None:
+    """What is wrong with a protuberance that no grinding follows."""
+    if protuberance and not stock:
+        return (
+            f"found {protuberance:g} without grinding_stock_um; give the stock that it makes room for: without one "
+            "it would cut into the flank"
+        )
+    return None
+
+
+def needs_protuberance(angle: float | None, protuberance: float | None) -> str | None:
+    """What is wrong with the angle of a protuberance that is not there."""
+    return None if angle is None or protuberance else f"found {angle:g}; it needs protuberance_um above 0"
+
+
+SHORTENED_ONCE = Rule(
+    (
+        "pair.tip_shortening",
+        *(
+            f"{gear}.{name}"
+            for gear in ("pinion", "wheel")
+            for name in ("tip_diameter_mm", "tip_alteration_coefficient", "topping")
+        ),
+    ),
+    _shortened_once,
+)
+"""Rule of scenes: a computed tip shortening stands alone."""
+
+
+def cut_parameters(gear: type, geometry: Geometry, own: CutSection) -> dict[str, Any]:
+    """Values that a gear takes of the section of the pair and its own, in mm and rad; its own tool comes first."""
+    values = parameters_of(gear, geometry, own)
+    if values["root_radius_coefficient"] == FULL:
+        values["root_radius_coefficient"] = inf
+    if own.tip_diameter_mm is not None:
+        values["addendum_coefficient"] = 1.0  # of the rack of ISO 53, from which k of a given tip counts
+    return values
+
+
+def shortening(geometry: Geometry, teeth: tuple[int, int], shifts: tuple[float, float]) -> dict[str, float]:
+    """Tip alteration of both gears where the scene has it computed, as a parameter of gears."""
+    if geometry.tip_shortening != "computed":
+        return {}
+    coefficient = computed_tip_alteration(
+        teeth,
+        shifts,
+        geometry.normal_module_mm,
+        pressure_angle=radians(geometry.pressure_angle_deg),
+        helix_angle=radians(geometry.helix_angle_deg),
+        centre_distance=geometry.centre_distance_mm,
+    )
+    return {"tip_alteration_coefficient": coefficient}
+
+
+def rack_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
+    """Basic racks of both gears, where one of them is not that of ISO 53, profile A."""
+    gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
+    racks, rows = [_rack(gear) for gear in gears], []
+    if any(rack != PROFILE_A for rack in racks):
+        cells = ("/".join(FULL if value == inf else f"{value:.6g}" for value in rack) for rack in racks)
+        rows.append(("basic rack: h_aP/h_fP/rho_fP [m_n]", *cells))
+    tools = [gear if isinstance(gear, CylindricalGear) and gear.grinding_stock else None for gear in gears]
+    if any(tools):
+        cells = (_protuberance(gear) if gear else "-" for gear in tools)
+        rows.append(("protuberance pr/stock q/undercut s_pr [um]", *cells))
+    return rows
+
+
+def chamfer_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
+    """Tip form circles and lands of tips that are chamfered."""
+    gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
+    if not any(gear.tip_chamfer for gear in gears):
+        return []
+    lands = (f"{chamfered_land(gear):z.4f}" if gear.tip_chamfer else "-" for gear in gears)
+    return [
+        ("tip form diameter d_Fa [mm]", *(f"{2.0 * gear.tip_form_radius:z.4f}" for gear in gears)),
+        ("tip land between chamfers [mm]", *lands),
+    ]
+
+
+def _protuberance(gear: CylindricalGear) -> str:
+    values = gear.protuberance, gear.grinding_stock, gear.residual_undercut
+    return "/".join(f"{1e3 * value:z.6g}" for value in values)
+
+
+def _rack(gear: CylindricalGear | RingGear) -> tuple[float, float, float]:
+    """h_aP, h_fP and rho_fP over the module; of a ring with a cutter the rounding of that."""
+    if isinstance(gear, RingGear) and gear.cutter is not None:
+        return gear.addendum_coefficient, gear.dedendum_coefficient, gear.cutter.tip_radius_coefficient
+    return gear.addendum_coefficient, gear.dedendum_coefficient, gear.root_radius_coefficient
