@@ -2468,6 +2468,13 @@ FAULTS = (
         "",
         "plots/test_layout.py::test_ticks_measured_once_at_a_place_draw_the_same_picture",
     ),
+    Fault(
+        "Symbols in double precision that single ones are made of displace what the next large solve takes",
+        "contact/convolution.py",
+        "8 * box[0] * (box[1] // 2 + 1) > MOST_BESIDE and",
+        "False and",
+        "contact/test_convolution.py::test_large_symbols_in_double_that_others_are_made_of_are_not_kept",
+    ),
 )
 
 
