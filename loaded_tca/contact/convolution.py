@@ -29,7 +29,9 @@ Window = tuple[slice, slice]
 Rows = Indices | slice
 ALL = slice(None)
 
-CACHE_BYTES = 192 * 2**20
+CACHE_BYTES = 256 * 2**20
+# Symbols in double precision that others are made of are kept up to this; larger ones would displace the others.
+MOST_BESIDE = 2**24
 # Fewer points of a transform than this are not worth a second thread.
 THREADED_POINTS = 2**17
 # A piece of a transform, with its part of the kernel, should stay in the cache of a core.
@@ -382,10 +384,18 @@ def _kernels(kind: str, box: tuple[int, int], aspects: ArrayLike, dtype: str) ->
         elif dtype == "float64":
             made = _love_kernels(box, new_aspects)
         else:
-            made = _kernels(kind, box, new_aspects, "float64").astype(dtype)
+            made = _in_double(box, new_aspects).astype(dtype)
         for key, kernel in zip(missing, made, strict=True):
             kept[key] = _cache.keep(key, kernel if len(made) == 1 else kernel.copy())
     return np.stack([kept[key] for key in keys]) if len(keys) > 1 else kept[keys[0]][None]
+
+
+def _in_double(box: tuple[int, int], aspects: Sequence[float]) -> Array:
+    """Symbols of the convolution in double precision, of which others are made, as :func:`_kernels` has them."""
+    kept = [_cache.find(("love", box, aspect, "float64")) for aspect in aspects]
+    if 8 * box[0] * (box[1] // 2 + 1) > MOST_BESIDE and any(kernel is None for kernel in kept):
+        return _love_kernels(box, aspects)
+    return _kernels("love", box, aspects, "float64")
 
 
 def _love_kernels(box: tuple[int, int], aspects: Sequence[float]) -> Array:
@@ -401,6 +411,6 @@ def _love_kernels(box: tuple[int, int], aspects: Sequence[float]) -> Array:
 
 def _inverse_kernels(box: tuple[int, int], aspects: Sequence[float], dtype: str) -> Array:
     """Reciprocal of the transform of the wrapped coefficients, over the number of points of the box."""
-    transformed = _kernels("love", box, aspects, "float64") * (box[0] * box[1])
+    transformed = _in_double(box, aspects) * (box[0] * box[1])
     floor = transformed.max(axis=(1, 2), keepdims=True) * np.finfo(np.float32).eps
     return np.asarray(1.0 / (np.maximum(transformed, floor) * (box[0] * box[1])), dtype=dtype)

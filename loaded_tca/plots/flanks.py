@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -37,8 +38,6 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 
-ToPicture = Callable[[Array], Array]
-"""Takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a flank."""
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"
 BEGIN_OF_ARC: dict[str, Any] = {"color": "black", "linestyle": "--", "linewidth": 0.6}
 MOST_AREAS = 7
@@ -50,6 +49,19 @@ LEAST_SEEN = 0.01
 """Part of the height of a flank from which an area of it is seen."""
 FINENESS = (129, 33)
 """Points along the profile and lengthwise from which the outline of a flank is drawn."""
+
+
+@dataclass(frozen=True)
+class ToPicture:
+    """Takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a gear's flank."""
+
+    pair: GearPair
+    gear: GearName
+
+    def __call__(self, points: Array) -> Array:
+        """Return the places of points."""
+        on_flank = (self.pair.on_pinion, self.pair.on_wheel)[GEARS.index(self.gear)]
+        return np.stack(getattr(self.pair, self.gear).flank.frame.to_picture(*on_flank(points)), axis=-1)
 
 
 def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
@@ -264,7 +276,7 @@ def both_flanks(
     scene, pair = result.scene, result.gear_pair
     panels = figure.subplots(len(draw), 2, squeeze=False, sharex="col", sharey="col")
 
-    sides = ((pair.pinion.flank, picture_of(pair, "pinion")), (pair.wheel.flank, picture_of(pair, "wheel")))
+    sides = ((pair.pinion.flank, ToPicture(pair, "pinion")), (pair.wheel.flank, ToPicture(pair, "wheel")))
     described = zip(panels.T, scene.flank_names, scene.active_starts(), sides, strict=True)
     for column, name, start, (flank, to_picture) in described:
         for axes, draw_on in zip(column, draw, strict=True):
@@ -279,7 +291,7 @@ def draw_on_pinion(axes: Axes, result: CycleNumbers, draw: Callable[[Axes, ToPic
     """The pinion's flank alone, with what is drawn on it; see :func:`both_flanks`."""
     pair, scene = result.gear_pair, result.scene
     about = scene.flank_names[0], pair.pinion.flank, scene.active_starts()[0]
-    _draw_on_flank(axes, draw, picture_of(pair, "pinion"), *about)
+    _draw_on_flank(axes, draw, ToPicture(pair, "pinion"), *about)
 
 
 def _draw_on_flank(
@@ -293,13 +305,6 @@ def _draw_on_flank(
     outline = _draw_flank(axes, name, flank, start)
     for drawn in draw(axes, to_picture):
         drawn.set_clip_path(outline)
-
-
-def picture_of(pair: GearPair, gear: GearName) -> ToPicture:
-    """What takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a gear's flank."""
-    on_flank = (pair.on_pinion, pair.on_wheel)[GEARS.index(gear)]
-    frame = getattr(pair, gear).flank.frame
-    return lambda points: np.stack(frame.to_picture(*on_flank(points)), axis=-1)
 
 
 def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:

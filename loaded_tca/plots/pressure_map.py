@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterator
 from functools import partial
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from matplotlib import colormaps
@@ -419,17 +420,28 @@ def _ridge(one: PressureMap) -> tuple[Array, Array]:
     return one.origin + x[:, None] * one.axes[0] + y[:, None] * one.axes[1], height
 
 
+_KEPT: WeakKeyDictionary[MeshCycle, dict[tuple[object, ...], tuple[Array, Array]]] = WeakKeyDictionary()
+"""What flanks see, which several pictures draw, by results; and by torque, gear and corners of the picture."""
+
+
 def pressure_seen(
     result: MeshCycle, torque: int, to_picture: ToPicture, low: Array, high: Array
 ) -> tuple[Array, Array]:
     """Highest pressure that each place of a flank sees, NaN where none, on fields between two corners of a picture.
 
-    Borders (2, n + 1) of the fields come first, in the units of the picture.
+    Borders (2, n + 1) of the fields come first, in the units of the picture. Both are kept with the result.
     """
-    field = (high - low) / FIELDS
-    highest = np.zeros((FIELDS, FIELDS))
+    kept, key = _KEPT.setdefault(result, {}), (torque, to_picture.gear, *low, *high)
+    if key not in kept:
+        kept[key] = np.linspace(low, high, FIELDS + 1).T, _highest_seen(result, torque, to_picture, low, high)
+    return kept[key]
+
+
+def _highest_seen(result: MeshCycle, torque: int, to_picture: ToPicture, low: Array, high: Array) -> Array:
+    """The pressure (FIELDS, FIELDS) of ``pressure_seen``."""
+    field, highest = (high - low) / FIELDS, np.zeros((FIELDS, FIELDS))
     for places, pressure in _passing(result, torque, to_picture, field):
         column, row = np.floor((places - low) / field).astype(int).T
         inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
         np.maximum.at(highest, (row[inside], column[inside]), pressure[inside])
-    return np.linspace(low, high, FIELDS + 1).T, np.where(highest > 0.0, highest, np.nan)
+    return np.where(highest > 0.0, highest, np.nan)

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import io
 import math
+import struct
 import textwrap
+import zlib
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -63,6 +65,10 @@ TITLE, NOTE = "title", "note"
 DOTS_PER_INCH = 120
 LARGEST_PICTURE = 300_000
 """Bytes above which a PNG file has a palette."""
+PNG_SIGNATURE, COLOUR_OF_PIXELS, COLOUR_OF_PALETTE, METRES_PER_INCH = b"\x89PNG\r\n\x1a\n", 2, 3, 0.0254
+"""Of the format: its first bytes, its types of colour, and its unit of length."""
+PACKING = 3
+"""Level of compression: of 16 pictures 1 takes 8 % more bytes in 0.85 of the time, 6 takes 10 % less in 2.4 times."""
 FAST_TEXT: Any = {"text.hinting": "no_hinting"}
 """Letters as they are, not moved onto pixels: a tenth of the time of a picture, and even spaces."""
 
@@ -82,26 +88,48 @@ def png_of(figure: Figure) -> bytes:
         canvas.draw()  # once: savefig would draw the figure to lay it out, and then again
     figure.set_dpi(shown)
     pixels = np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])  # figures let nothing shine through
-    content = _png_content(Image.fromarray(pixels))
-    return content if len(content) <= LARGEST_PICTURE else _png_content(_with_palette(pixels))
+    content = _png_content(pixels)
+    return content if len(content) <= LARGEST_PICTURE else _png_content(*_with_palette(pixels))
 
 
-def _png_content(picture: Image.Image) -> bytes:
-    content = io.BytesIO()
-    picture.save(content, "png", compress_level=3, dpi=(DOTS_PER_INCH, DOTS_PER_INCH))
-    return content.getvalue()
+def _png_content(pixels: NDArray[np.uint8], palette: NDArray[np.uint8] | None = None) -> bytes:
+    """PNG of pixels (m, n, 3), or of their places (m, n) in a palette (256, 3).
 
-
-def _with_palette(pixels: NDArray[np.uint8]) -> Image.Image:
-    """Picture of 256 colours, a quarter of the bytes, of pixels (m, n, 3) with tens of thousands of them.
-
-    Colours that differ in their two lowest bits alone are one: the choice among the 44,000 of antialiased lines took
-    0.28 s, among those left 0.1 s. Steps show in a bar of colours, not in what is drawn.
+    Rows are not filtered: Pillow tries four filters on each, takes three times as long, and letters and curves take as
+    many bytes with them as without.
     """
-    picture = Image.fromarray(pixels & np.uint8(0xFC)).quantize(256, dither=Image.Dither.NONE)
-    palette = np.array(picture.getpalette(), dtype=np.uint8)
-    picture.putpalette((palette | (palette >> 6)).tolist())  # 252 is white again
-    return picture
+    rows = pixels.reshape(len(pixels), -1)
+    kind = COLOUR_OF_PIXELS if palette is None else COLOUR_OF_PALETTE
+    dots = round(DOTS_PER_INCH / METRES_PER_INCH)
+    parts = [
+        (b"IHDR", struct.pack(">2I5B", pixels.shape[1], pixels.shape[0], 8, kind, 0, 0, 0)),
+        (b"pHYs", struct.pack(">2IB", dots, dots, 1)),
+        (b"PLTE", b"" if palette is None else palette.tobytes()),
+        (b"IDAT", zlib.compress(np.pad(rows, ((0, 0), (1, 0))).tobytes(), PACKING)),
+        (b"IEND", b""),
+    ]
+    chunks = [
+        struct.pack(">I", len(part)) + name + part + struct.pack(">I", zlib.crc32(part, zlib.crc32(name)))
+        for name, part in parts
+        if part or name != b"PLTE"
+    ]
+    return b"".join([PNG_SIGNATURE, *chunks])
+
+
+def _with_palette(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """Places (m, n) of pixels (m, n, 3) in a palette of their 256 colours, and the palette (256, 3).
+
+    A quarter of the bytes where antialiased lines have tens of thousands of colours. The octree takes a tenth of the
+    time of Pillow's median cut, and its colours are nearer: 2 of 255 off in the mean and 35 at most, of 3 and 66. The
+    ground, as at the first corner, keeps its colour.
+    """
+    picture = Image.fromarray(pixels).quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    palette = np.zeros((256, 3), dtype=np.uint8)
+    colours = np.array(picture.getpalette(), dtype=np.uint8).reshape(-1, 3)
+    palette[: len(colours)] = colours
+    places = np.asarray(picture)
+    palette[places[0, 0]] = pixels[0, 0]
+    return places, palette
 
 
 def pdf_of(figure: Figure) -> bytes:

@@ -30,7 +30,7 @@ from loaded_tca.flank_maps.pattern import ContactPattern
 from loaded_tca.flank_maps.vh_check import BEYOND, VHCheck
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.plain import plain
-from loaded_tca.plots.flanks import FINENESS, loaded_maps, picture_of
+from loaded_tca.plots.flanks import FINENESS, ToPicture, loaded_maps
 from loaded_tca.plots.pressure_map import pressure_seen
 from loaded_tca.plots.study_panels import told_of_variants
 from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, chosen_torque, label_of, load, write_title
@@ -192,7 +192,7 @@ def _set_legend(figure: Figure, dot: str, on_edge: bool, frame: FlankFrame) -> N
 def _draw_loaded_cell(axes: Axes, result: MeshCycle, torque: int, gear: GearName, scale: Normalize) -> None:
     """The flank with the highest pressure that each of its places sees, and the centre of all forces."""
     pair = result.gear_pair
-    flank, to_picture = (pair.pinion if gear == "pinion" else pair.wheel).flank, picture_of(pair, gear)
+    flank, to_picture = (pair.pinion if gear == "pinion" else pair.wheel).flank, ToPicture(pair, gear)
     x, y = flank.frame.to_picture(*flank.grid(*FINENESS))
     (outline,) = axes.fill(*_around(x, y), color=NOT_REACHED, zorder=0)
     maps = loaded_maps(result, torque)

@@ -7,7 +7,7 @@ from itertools import count
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import threads
 from loaded_tca.contact import convolution
@@ -118,6 +118,18 @@ def test_cache_stays_bounded(monkeypatch, rng):
 
 def _centre_displacement(n):
     return float(convolved(np.ones((n, n)), 1.0, threads=2)[n // 2, n // 2])
+
+
+def test_large_symbols_in_double_that_others_are_made_of_are_not_kept(monkeypatch):
+    """They would displace what the next solve takes; what is made of them is the same."""
+    kept, made = [], []
+    for most in (convolution.MOST_BESIDE, 1000):
+        monkeypatch.setattr(convolution, "MOST_BESIDE", most)
+        monkeypatch.setattr(convolution, "_cache", convolution._Cache())
+        made += [convolution._kernels(kind, (64, 64), [1.0], "float32") for kind in ("love", "inverse")]
+        kept.append({key[-1] for key in convolution._cache.items})
+    assert kept == [{"float32", "float64"}, {"float32"}]
+    assert_array_equal(made[:2], made[2:])
 
 
 def test_threads_of_one_process_do_not_disturb_each_other():

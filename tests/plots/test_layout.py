@@ -68,14 +68,19 @@ def test_estimates_are_near_what_is_measured():
 
 
 def test_ticks_measured_once_at_a_place_draw_the_same_picture(monkeypatch):
-    """Ticks depend on where a panel lies and on its limits, those of a colour bar and of a second scale, too."""
+    """Ticks depend on where a panel lies and on its limits, those of a colour bar and of a second scale, too.
+
+    So does whether their marks are copied or made, and their grid has what was asked of it.
+    """
     pictures = []
-    for names in (layout.MEASURED_AGAIN, ()):
+    for names, copied in ((layout.MEASURED_AGAIN, layout.COPY_OF_TICK), ((), "_nothing")):
         monkeypatch.setattr(layout, "MEASURED_AGAIN", names)
+        monkeypatch.setattr(layout, "COPY_OF_TICK", copied)
         figure = Figure(figsize=(3.0, 2.0), layout="constrained")
         axes = figure.add_subplot(ylabel="stress")
         figure.colorbar(axes.pcolormesh(np.arange(12.0).reshape(3, 4)))
         axes.secondary_yaxis("right", functions=(lambda x: 2.0 * x, lambda x: 0.5 * x))
+        axes.grid(alpha=0.3)
         canvas = FigureCanvasAgg(figure)
         with estimated_at_first(figure):
             canvas.draw()
@@ -89,4 +94,6 @@ def test_figures_measure_as_before_afterwards():
     with pytest.raises(RuntimeError), estimated_at_first(figure):
         raise RuntimeError
     assert not any("get_tightbbox" in vars(axes) for axes in figure.axes)
-    assert not any(name in vars(axes.xaxis) for name in layout.MEASURED_AGAIN for axes in figure.axes)
+    assert not any(
+        name in vars(axes.xaxis) for name in (*layout.MEASURED_AGAIN, layout.COPY_OF_TICK) for axes in figure.axes
+    )

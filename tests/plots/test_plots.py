@@ -27,7 +27,8 @@ from loaded_tca.plots import (
     png_of,
     save_figure,
 )
-from loaded_tca.plots.flanks import CELLS_OF_SPIKES
+from loaded_tca.plots.flanks import CELLS_OF_SPIKES, ToPicture
+from loaded_tca.plots.pressure_map import pressure_seen
 from loaded_tca.plots.style import LARGEST_PICTURE, over_a_stretch
 from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.subsurface import stress_below
@@ -89,6 +90,15 @@ def test_picture_of_few_colours_keeps_each():
     picture = Image.open(io.BytesIO(png_of(figure)))
     assert (picture.mode, picture.getcolors()) == ("RGB", [(240 * 240, (0x12, 0xAB, 0x37))])
     assert picture.info["dpi"] == pytest.approx((120.0, 120.0), abs=0.1)  # stored in dots per metre
+
+
+def test_each_flank_has_the_pressure_that_it_sees_and_keeps_it():
+    """In one frame the wheel, which is larger, carries load farther from its axis; fields are computed once."""
+    low, high = np.array([-20.0, 0.0]), np.array([20.0, 200.0])
+    pictures = [ToPicture(result().gear_pair, gear) for gear in ("pinion", "wheel")]
+    pinion, wheel = (pressure_seen(result(), 0, to_picture, low, high)[1] for to_picture in pictures)
+    assert np.argmax(np.isfinite(wheel).any(axis=1)) > np.argmax(np.isfinite(pinion).any(axis=1))
+    assert pressure_seen(result(), 0, pictures[1], low, high)[1] is wheel
 
 
 @pytest.mark.quick_cases("no load")

@@ -16,7 +16,7 @@ from loaded_tca.plots import (
     plot_transmission_error_band,
     save_figure,
 )
-from loaded_tca.plots.flanks import picture_of
+from loaded_tca.plots.flanks import ToPicture
 from loaded_tca.plots.sensitivities import removal_weights
 from loaded_tca.results import key_figure_slopes
 from loaded_tca.results.key_figures import mean_over_a_pitch
@@ -153,7 +153,7 @@ def test_removal_over_a_whole_flank_counts_as_much_as_its_height(gear):
     base = one.result.gear_pair.base_radii[gear == "wheel"]
     middle = 2.0 * math.hypot(base, 0.36 * base)
     low, high = np.array([-14.0, middle - 9.0]), np.array([14.0, middle + 9.0])
-    borders, weights = removal_weights(one, 0, picture_of(one.result.gear_pair, gear), low, high)
+    borders, weights = removal_weights(one, 0, ToPicture(one.result.gear_pair, gear), low, high)
     diameter = 0.5 * (borders[1][1:] + borders[1][:-1])
     arc = 0.25 * diameter / base  # ds/d(diameter)
     total = (weights * arc[:, None]).sum() * np.diff(borders[0])[0] * np.diff(borders[1])[0]

@@ -18,7 +18,7 @@ BASE = 512
 HEAD = "code | threads | grid | least time [s] | time per cell [us] | over that at 512 x 512 | memory per cell [bytes]"
 
 BEYOND = """Above 1024 x 1024 the fields exceed the cache of the processor; at 4096 x 4096 the coefficients exceed
-what is kept for the next solve (192 MiB), which computes them anew.
+what is kept for the next solve (256 MiB), which computes them anew.
 """
 
 
