@@ -2238,7 +2238,7 @@ FAULTS = (
     Fault(
         "the largest tension decides of a root, whatever its stress ratio",
         "rating/roots.py",
-        "use[some] = largest[some] / local_root_factors(inputs, gear, ratio, some[0])[1].strength",
+        "use[some] = largest[some] / local_root_factors(inputs, gear, ratio[some], some[0])[1].strength",
         "use[some] = largest[some]",
         "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
     ),
@@ -2460,6 +2460,13 @@ FAULTS = (
         "np.minimum(AVERAGED_OVER * module / step, end - first)",
         "(end - first)",
         "tribology/test_slices.py::test_line_load_is_the_mean_over_a_quarter_module_as_far_as_the_contact_goes",
+    ),
+    Fault(
+        "rating: places of less tension that are reversed more are left out",
+        "rating/roots.py",
+        "tops * (bounds[0] / bounds[1])",
+        "tops * (bounds[1] / bounds[1])",
+        "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
     ),
 )
 

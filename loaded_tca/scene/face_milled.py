@@ -5,6 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import cos, degrees, isclose, radians
 from typing import Any, ClassVar, Literal
 
@@ -293,6 +294,11 @@ class FaceMilledScene(SpiralScene):
 
     def mesh(self) -> FaceMilledMesh:
         """Return blanks, machine settings and cutters of both gears."""
+        return self._mesh
+
+    @cached_property
+    def _mesh(self) -> FaceMilledMesh:
+        """The same, which ratings and warnings ask for again."""
         shaft_angle, offset = radians(self.geometry.shaft_angle_deg), self.geometry.offset_mm
 
         def gears(angles: tuple[float, float]) -> tuple[FaceMilledGear, FaceMilledGear]:
