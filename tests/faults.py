@@ -2468,6 +2468,13 @@ FAULTS = (
         "tops * (bounds[1] / bounds[1])",
         "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
     ),
+    Fault(
+        "designs: a cap on the pressure lowers the utilisation of flanks",
+        "studies/design_figures.py",
+        '        del figures["flank_utilisation"]',
+        "        pass",
+        "rating/test_utilisation.py::test_pressure_under_a_cap_is_held_against_no_strength",
+    ),
 )
 
 
