@@ -65,6 +65,7 @@ MICROMETRES = 1.0 / UNITS["um"].factor
 """Per millimetre."""
 
 
+@functools.lru_cache(maxsize=4096)
 def ending_of(name: str) -> str:
     """Unit at the end of a name, as it is written there; nothing where it has none."""
     return next((ending for ending in UNITS if name.endswith(f"_{ending}")), "")

@@ -215,10 +215,10 @@ FAULTS = (
         "tribology/test_tribology.py::test_torques_of_friction_do_the_friction_power",
     ),
     Fault(
-        "tribology: slices beside the ends of a grid have twice their line load",
-        "tribology/slices.py",
-        "force[carrying] / dy,",
-        "force[carrying] / dy * (1.0 + one.beside_end.any(axis=0)[carrying]),",
+        "tribology: slices have twice their line load",
+        "tribology/contact_slices.py",
+        "averaged, force / step)",
+        "averaged, 2.0 * force / step)",
         "tribology/test_slices.py::test_pressure_of_slices_is_that_of_cells_where_contacts_keep_off_edges",
     ),
     Fault(
@@ -2238,7 +2238,7 @@ FAULTS = (
     Fault(
         "the largest tension decides of a root, whatever its stress ratio",
         "rating/roots.py",
-        "use[some] = largest[some] / local_root_factors(inputs, gear, ratio, some[0])[1].strength",
+        "use[some] = largest[some] / local_root_factors(inputs, gear, ratio[some], some[0])[1].strength",
         "use[some] = largest[some]",
         "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
     ),
@@ -2393,9 +2393,9 @@ FAULTS = (
     ),
     Fault(
         "rating: a cap on the pressure makes flanks safer",
-        "rating/solved.py",
-        "        pressure[torque] = sweep.elastic_pressure[worst]",
-        "        pressure[torque] = sweep.pressure[worst]",
+        "tribology/contact_slices.py",
+        "        pressure=pressure[worst],",
+        "        pressure=np.minimum(pressure[worst], slices.result.gear_pair.max_pressure or np.inf),",
         "rating/test_rating.py::test_surface_that_yields_is_rated_by_its_line_load",
     ),
     Fault(
@@ -2621,6 +2621,34 @@ FAULTS = (
         "8 * box[0] * (box[1] // 2 + 1) > MOST_BESIDE and",
         "False and",
         "contact/test_convolution.py::test_large_symbols_in_double_that_others_are_made_of_are_not_kept",
+    ),
+    Fault(
+        "tribology: line load at edges is the mean over the whole contact",
+        "tribology/contact_slices.py",
+        "np.minimum(AVERAGED_OVER * module / step, end - first)",
+        "(end - first)",
+        "tribology/test_slices.py::test_line_load_is_the_mean_over_a_quarter_module_as_far_as_the_contact_goes",
+    ),
+    Fault(
+        "rating: places of less tension that are reversed more are left out",
+        "rating/roots.py",
+        "tops * (bounds[0] / bounds[1])",
+        "tops * (bounds[1] / bounds[1])",
+        "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
+    ),
+    Fault(
+        "designs: a cap on the pressure lowers the utilisation of flanks",
+        "studies/design_figures.py",
+        '        del figures["flank_utilisation"]',
+        "        pass",
+        "rating/test_utilisation.py::test_pressure_under_a_cap_is_held_against_no_strength",
+    ),
+    Fault(
+        "ascents go to and fro over the start of an arc",
+        "unloaded/reduced.py",
+        "good = ((after >= before[owner]) & moved)",
+        "good = (after >= before[owner])",
+        "unloaded/test_rounded_edges.py::test_ascents_pass_the_start_of_an_arc_where_the_curvature_jumps",
     ),
 )
 

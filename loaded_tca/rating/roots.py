@@ -60,6 +60,10 @@ LEAST_MEAN_STRESS_FACTOR = 0.45
 """Y_M is above it for any material and R down to -1.2: less tension than this part of the largest never decides."""
 
 
+ROUNDING = 1e-9
+"""Of strengths, by which places that decide alike are not left out."""
+
+
 def stress_ratio(largest: Array, smallest: Array) -> Array:
     """R of the extremes of a turn; 0 where no tension is."""
     return np.divide(smallest, largest, out=np.zeros(largest.shape), where=largest > 0.0)
@@ -89,21 +93,27 @@ class Deciding(NamedTuple):
 def deciding_places(inputs: CommonInputs, gear: int) -> Deciding:
     """Places of the smallest strength over tension of the root of one gear.
 
-    That is not the largest tension where stress is reversed more beside it.
+    That is not the largest tension where stress is reversed more beside it: strength falls with the stress ratio, so
+    that a place decides only where its tension, over the strength at the lowest ratio, comes up to the largest one's.
     """
     result, stress = inputs.result, inputs.result.root_stress[gear]
     largest = np.where(stress.largest > 0.0, stress.largest, 0.0)  # NaN: not evaluated
     tops = largest.reshape(len(largest), -1).max(axis=1)
-    some = np.nonzero(largest > LEAST_MEAN_STRESS_FACTOR * tops[:, None, None, None])
-    ratio = stress_ratio(largest[some], stress.smallest[some])
+    ratio, every = stress_ratio(largest, stress.smallest), np.arange(len(tops))
+    tense = largest > LEAST_MEAN_STRESS_FACTOR * tops[:, None, None, None]
+    lowest = np.where(tense, ratio, 0.0).reshape(len(tops), -1).min(axis=1)
+    at_top = ratio.reshape(len(tops), -1)[every, largest.reshape(len(tops), -1).argmax(axis=1)]
+    bounds = local_root_factors(inputs, gear, np.array([lowest, at_top]), every)[1].strength
+    reached = tops * (bounds[0] / bounds[1]) * (1.0 - ROUNDING)
+    some = np.nonzero(tense & (largest >= reached[:, None, None, None]))
     use = np.zeros(largest.shape)
-    use[some] = largest[some] / local_root_factors(inputs, gear, ratio, some[0])[1].strength
+    use[some] = largest[some] / local_root_factors(inputs, gear, ratio[some], some[0])[1].strength
     flat = use.reshape(len(use), -1).argmax(axis=1)
-    place = np.arange(len(use)), *np.unravel_index(flat, use.shape[1:])
+    place = every, *np.unravel_index(flat, use.shape[1:])
     above = np.nanmax(result.root_tension[..., gear], axis=1) / tops
     return Deciding(
         largest[place] * above,
-        stress_ratio(largest[place], stress.smallest[place]),
+        ratio[place],
         stress.tangent_angle[place[1:]],
         stress.point[(*place[1:], 2)],
     )

@@ -32,7 +32,7 @@ from loaded_tca.results.sensitivities import NEWTON_MILLIMETRES, TORQUE, Sensiti
 from loaded_tca.results.slice_pressure import largest_slice_pressures
 from loaded_tca.scene.rating import ANALYSIS
 from loaded_tca.separation.pair_change import value_at
-from loaded_tca.tribology.slices import slices_of
+from loaded_tca.tribology.contact_slices import largest_pressures
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -122,13 +122,11 @@ def _under(sensitivities: Sensitivities, torque: int) -> tuple[Sensitivities, in
 def _pressure_slopes(sensitivities: Sensitivities) -> Array:
     """Relative derivatives (t, keys) of the pressure of the slice that decides, which stays where it is."""
     result = sensitivities.result
-    sweep, count = slices_of(result), len(result.torque)
-    slopes = np.zeros((count, len(sensitivities.keys)))
-    for torque in range(count):
-        worst = sweep.deciding(torque)
+    largest = largest_pressures(result)
+    slopes = np.zeros((len(result.torque), len(sensitivities.keys)))
+    for torque, place in enumerate(zip(largest.position.tolist(), largest.column.tolist(), strict=True)):
         under, row = _under(sensitivities, torque)
-        place = row, int(sweep.position[worst]), int(sweep.column[worst])
-        slopes[torque] = _of_contact(under, place)
+        slopes[torque] = _of_contact(under, (row, *place))
     return slopes
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array, Indices, Mask
 from loaded_tca.rating.roots import deciding_places
 from loaded_tca.results.key_figures import mean_over_a_pitch, span_of
-from loaded_tca.tribology.slices import slices_of
+from loaded_tca.tribology.contact_slices import largest_pressures
 
 if TYPE_CHECKING:
     from loaded_tca.rating.inputs import CommonInputs
@@ -153,9 +153,13 @@ def solved_loads(inputs: CommonInputs) -> SolvedLoads:
     """Loads of a result under the torques that it was solved for, each once, ascending."""
     result = inputs.result
     _, order = np.unique(np.asarray(result.torque), return_index=True)
-    pressure, places, at_edge = _largest_pressures(result)
+    largest = largest_pressures(result)
     whole = replace(
-        solved_factors(result), pressure=pressure, places=places, at_edge=at_edge, excitation=_excitation(result)
+        solved_factors(result),
+        pressure=largest.pressure,
+        places=np.stack([largest.radius.T, largest.axial.T]),
+        at_edge=largest.at_edge,
+        excitation=_excitation(result),
     )
     if inputs.scene.analysis.root_stress:
         alone = replace(inputs, cases=inputs.cases.alone(np.asarray(result.torque)))
@@ -180,16 +184,3 @@ def _excitation(result: CycleNumbers) -> dict[str, Array]:
         "transmission_error_span": result.um_per_rad * np.array(spans),
         "transmission_error_order_1": result.um_per_rad * result.harmonics(1)[:, 0],
     }
-
-
-def _largest_pressures(result: CycleNumbers) -> tuple[Array, Array, Mask]:
-    """Largest elastic pressure of slices under each torque (t,), its places (2, t, 2), whether they lie at an edge."""
-    sweep, count = slices_of(result), len(result.torque)
-    pressure, places, at_edge = np.full(count, np.nan), np.full((2, count, 2), np.nan), np.zeros(count, dtype=bool)
-    for torque in range(count):
-        worst = sweep.deciding(torque)
-        pressure[torque] = sweep.elastic_pressure[worst]
-        places[0, torque] = sweep.radius[worst], sweep.wheel_radius[worst]
-        places[1, torque] = sweep.axial[worst], sweep.wheel_axial[worst]
-        at_edge[torque] = sweep.on_edge[worst]
-    return pressure, places, at_edge

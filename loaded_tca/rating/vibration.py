@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import inf, nan, pi
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,7 @@ PER_VOLUME = 1e-9
 """Of a density in kg/m3: kg/mm3."""
 
 
+@lru_cache(maxsize=16)
 def full_second_moment(gear: CylindricalGear) -> float:
     """Polar second moment of area of the transverse section of a gear without a bore, its teeth with it [mm^4].
 

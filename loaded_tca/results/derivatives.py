@@ -99,8 +99,9 @@ def _contacts_of_maps(pair: GearPair, firsts: Sequence[ToothPair], maps: Sequenc
     """Contacts that maps have grown from, at the middles of the ways of pairs that load turns from first contact."""
     if not firsts:
         return []
-    angles = [angles_through(pair, one.contact, m.origin)[0] for one, m in zip(firsts, maps, strict=True)]
-    path = trace_near(pair, [one.contact for one in firsts], angles)
+    near = np.array([(one.contact.pinion_angle, one.contact.wheel_angle) for one in firsts]).T
+    angles = angles_through(pair, near, np.array([one.origin for one in maps]))[0]
+    path = trace_near(pair, [one.contact for one in firsts], angles.tolist())
     return [one.at_middle(path[n]).contact for n, one in enumerate(firsts)]
 
 

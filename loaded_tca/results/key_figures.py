@@ -204,7 +204,10 @@ class UnderTorque(Row):
 
     @property
     def face_load_factor_error(self) -> float:
-        """By how much K_Hbeta is too low without free edges; NaN where free edges soften the face ends."""
+        """By how much K_Hbeta is too low without free edges; NaN with them.
+
+        They keep the line load at the ends finite: the law of half-spaces in ``face_load_factor_error`` does not hold.
+        """
         if self.result.scene.analysis.free_edges:
             return math.nan
         return face_load_factor_error(self.result.gear_pair, self.result.path, self.result.maps[self.row])

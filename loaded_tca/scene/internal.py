@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
 from loaded_tca.errors import GeometryError, require
@@ -173,6 +174,11 @@ class InternalScene(CylindricalScene):
 
     def mesh(self) -> InternalMesh:  # type: ignore[override]
         """Return the macro geometry: diameters, contact ratios, path of contact."""
+        return self._mesh
+
+    @cached_property
+    def _mesh(self) -> InternalMesh:  # type: ignore[override]
+        """The macro geometry, kept as that of external pairs is."""
         distance, sign = self.geometry.centre_distance_mm, self.hand_signs[0]
         cutter = self.wheel.cutter
         cut_by = None if cutter is None else PinionCutter(**parameters_of(PinionCutter, cutter))

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, Mask
-from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.base import Flank, Jet
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.unloaded import ContactPoint
 
@@ -118,14 +118,23 @@ class NormalGap:
     """
 
     def __init__(self, pair: GearPair, contact: ContactPoint | Sequence[ContactPoint], axes: Array) -> None:
-        self.pair = pair
         contacts = [contact] if isinstance(contact, ContactPoint) else contact
-        axes, points = axes.reshape(-1, 3, 3), np.array([one.point for one in contacts])
-        angles = np.array([(one.pinion_angle, one.wheel_angle) for one in contacts])
+        angles = np.array([(one.pinion_angle, one.wheel_angle) for one in contacts]).T
+        self._stand(pair, np.array([one.point for one in contacts]), angles, axes.reshape(-1, 3, 3))
+
+    @classmethod
+    def at_angles(cls, pair: GearPair, points: Array, angles: Array, axes: Array) -> NormalGap:
+        """Gap about points (n, 3) [mm] at angles of both gears (2, n) [rad], along axes (n, 3, 3)."""
+        gap = cls.__new__(cls)
+        gap._stand(pair, points, angles, axes)
+        return gap
+
+    def _stand(self, pair: GearPair, points: Array, angles: Array, axes: Array) -> None:
         in_wheel, origins = pair.wheel_axes.T, points[:, None] - pair.wheel_origin  # a product for each contact
+        self.pair = pair
         self._views: tuple[tuple[Flank, Array, Array, Array], ...] = (
-            (pair.pinion.flank, points, axes, pair.sense * angles[:, 0]),
-            (pair.wheel.flank, (origins @ in_wheel)[:, 0], axes @ in_wheel, -pair.sense * angles[:, 1]),
+            (pair.pinion.flank, points, axes, pair.sense * angles[0]),
+            (pair.wheel.flank, (origins @ in_wheel)[:, 0], axes @ in_wheel, -pair.sense * angles[1]),
         )
         self._size = sum(pair.base_radii)
         self._rounding = STEP_ROUNDING * self._size
@@ -171,7 +180,7 @@ class NormalGap:
         for ray, met in zip(rays, self._meetings(rays)[0], strict=True):
             point = np.stack([o + met.height * n for o, n in zip(ray.start, ray.normal, strict=True)], axis=-1)
             basis = cylindrical_basis(np.arctan2(point[..., 1], point[..., 0]))
-            gradient = (_theta_less_flank(ray.flank, met.rho, met.z)[0][..., None, :] @ basis)[..., 0, :]
+            gradient = (_gradient(ray.flank, met.rho, met.z)[..., None, :] @ basis)[..., 0, :]
             steep = sum(gradient[..., part] * n for part, n in enumerate(ray.normal))
             parts = point.reshape(*shape, 3), met.rho.reshape(shape), met.z.reshape(shape)
             both.append(FlankPoints(*parts, gradient.reshape(*shape, 3), np.asarray(steep).reshape(shape)))
@@ -190,13 +199,14 @@ class NormalGap:
         bends = []
         for rays, (_, _, axes, _) in zip(self._rays(x, y), self._views, strict=True):
             met = self._meet(rays)
-            at_x, at_y = (part + met.height * n for part, n in zip(rays.start[:2], rays.normal[:2], strict=True))
-            basis = cylindrical_basis(np.arctan2(at_y, at_x))
-            gradient, hessian = _theta_less_flank(rays.flank, met.rho, met.z)
-            across, out = ((basis @ axes[:, None, row, :, None])[..., 0] for row in (0, 2))
-            steep = (gradient * out).sum(axis=-1)
-            tangent = across - ((gradient * across).sum(axis=-1) / steep)[..., None] * out
-            bends.append(-np.einsum("...i,...ij,...j", tangent, hessian, tangent) / steep)
+            cosine, sine = (
+                (part + met.height * n) / met.rho for part, n in zip(rays.start[:2], rays.normal[:2], strict=True)
+            )
+            across, out = (
+                (a * cosine + b * sine, b * cosine - a * sine, c)
+                for a, b, c in np.moveaxis(axes[:, (0, 2), :, None], 0, 2)
+            )
+            bends.append(_bend(rays.flank.theta(met.rho, met.z), met.rho, across, out))
         return np.asarray(bends[1] - bends[0]).reshape(np.broadcast_shapes(x.shape, y.shape))
 
     def _rays(self, x: Array, y: Array) -> list[_Rays]:
@@ -266,12 +276,20 @@ class NormalGap:
         return _Meeting(height, np.sqrt(x * x + y * y), z, length, settled | (length <= NO_MORE * self._rounding))
 
 
-def _theta_less_flank(flank: Flank, rho: Array, z: Array) -> tuple[Array, Array]:
-    """Gradient (..., 3) and Hessian (..., 3, 3) of theta - Theta(rho, z) along e_rho, e_theta, e_z."""
-    jet, shape = flank.theta(rho, z), np.shape(rho)
-    gradient, hessian = np.zeros((*shape, 3)), np.zeros((*shape, 3, 3))
+def _gradient(flank: Flank, rho: Array, z: Array) -> Array:
+    """Gradient (..., 3) of theta - Theta(rho, z) along e_rho, e_theta, e_z."""
+    jet, gradient = flank.theta(rho, z), np.zeros((*np.shape(rho), 3))
     gradient[..., 0], gradient[..., 1], gradient[..., 2] = -jet.rho, 1.0 / rho, -jet.z
-    hessian[..., 0, 0], hessian[..., 2, 2], hessian[..., 1, 1] = -jet.rho_rho, -jet.z_z, -jet.rho / rho
-    hessian[..., 0, 1] = hessian[..., 1, 0] = -1.0 / rho**2
-    hessian[..., 0, 2] = hessian[..., 2, 0] = -jet.rho_z
-    return gradient, hessian
+    return gradient
+
+
+def _bend(jet: Jet, rho: Array, across: tuple[Array, ...], out: tuple[Array, ...]) -> Array:
+    """Second derivative of the height of a flank by x; directions of x and the normal along e_rho, e_theta, e_z.
+
+    Those of theta - Theta(rho, z) = 0, whose second derivatives along e_theta are those of cylindrical coordinates.
+    """
+    steep, slope = (each[1] / rho - jet.rho * each[0] - jet.z * each[2] for each in (out, across))
+    along_rho, along_theta, along_z = (a - (slope / steep) * b for a, b in zip(across, out, strict=True))
+    of_flank = along_rho**2 * jet.rho_rho + 2.0 * along_rho * along_z * jet.rho_z + along_z**2 * jet.z_z
+    of_circle = along_theta**2 * jet.rho / rho + 2.0 * along_rho * along_theta / rho**2
+    return np.asarray((of_flank + of_circle) / steep)

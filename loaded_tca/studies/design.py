@@ -31,7 +31,6 @@ from loaded_tca.results.files import DESIGN, variables_of
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
-from loaded_tca.scene.rating import is_rated
 from loaded_tca.studies.design_figures import (
     FIGURES,
     SMOOTHING,
@@ -39,6 +38,7 @@ from loaded_tca.studies.design_figures import (
     FigureOfStrength,
     Limit,
     Objective,
+    figures_of_strength,
     mean_pressure_norm,
     root_tension_norm,
 )
@@ -389,8 +389,8 @@ def _analysed(scene: Scene) -> dict[str, Any]:
 
 def _utilisations(scene: Scene, result: MeshCycle, figures: Mapping[str, Any]) -> dict[str, Array]:
     """Utilisations of the strength by the analysis, where the scene has strengths, [rating] and enough positions."""
-    of_strength = {name: one for name, one in FIGURES.items() if isinstance(one, FigureOfStrength)}
-    if not is_rated(scene) or len(result.path) < FEWEST_RATED:
+    of_strength = figures_of_strength(scene)
+    if not of_strength or len(result.path) < FEWEST_RATED:
         return {}
     factors = [utilisation_of(scene, torque) for torque in result.torque.tolist()]
     return {

@@ -26,6 +26,8 @@ from loaded_tca.results.figure_slopes import EXPONENT, pressure_norm
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.root_stress import root_stress_of_gear, stress_at_extreme
+from loaded_tca.scene import Scene
+from loaded_tca.scene.rating import is_rated
 from loaded_tca.tribology.tribology import FEWEST
 
 SMOOTHING = 0.01
@@ -314,6 +316,19 @@ FIGURES: dict[str, FigureOfErrors | FigureOfForces | FigureOfStrength] = {
     },
 }
 """Name, which ends in the unit -> figure of a design under one torque with one sample."""
+
+
+def figures_of_strength(scene: Scene) -> dict[str, FigureOfStrength]:
+    """Utilisations that a scene has: with strengths and [rating]; of flanks that no cap keeps from showing their load.
+
+    Strengths of flanks are pressures of elastic surfaces, which those under a cap are below.
+    """
+    if not is_rated(scene):
+        return {}
+    figures = {name: figure for name, figure in FIGURES.items() if isinstance(figure, FigureOfStrength)}
+    if any(material.max_pressure_MPa is not None for material in scene.materials):
+        del figures["flank_utilisation"]
+    return figures
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,13 @@ from loaded_tca.rating.utilisation import utilisation_of
 from loaded_tca.scene import Scene
 from loaded_tca.scene.rating import is_rated
 from loaded_tca.separation.pair_change import value_at
-from loaded_tca.studies.design_figures import FIGURES, SMOOTHING, FigureOfErrors, FigureOfStrength
+from loaded_tca.studies.design_figures import (
+    FIGURES,
+    SMOOTHING,
+    FigureOfErrors,
+    FigureOfStrength,
+    figures_of_strength,
+)
 from loaded_tca.studies.study import (
     Distribution,
     deviations_of,
@@ -159,8 +165,10 @@ class DesignModel:
     def figures(self) -> tuple[str, ...]:
         """Those of ``FIGURES`` that the scene has: of roots with ``analysis.root_stress``, of strength with it."""
         known = {name: one for name, one in FIGURES.items() if one.fewest_positions <= self.scene.analysis.positions}
-        if not is_rated(self.scene):
-            known = {name: one for name, one in known.items() if not isinstance(one, FigureOfStrength)}
+        of_strength = figures_of_strength(self.scene)
+        known = {
+            name: one for name, one in known.items() if name in of_strength or not isinstance(one, FigureOfStrength)
+        }
         return tuple(name for name, one in known.items() if not one.is_of_roots or self.roots)
 
     def require_figure(self, argument: str, name: Any) -> None:
@@ -168,6 +176,8 @@ class DesignModel:
         figure, way = FIGURES.get(str(name)), ""
         if isinstance(figure, FigureOfStrength) and not is_rated(self.scene):
             way = "; utilisation needs strengths of both gears and [rating]"
+        elif isinstance(figure, FigureOfStrength) and name not in figures_of_strength(self.scene):
+            way = f"; {name} needs the pressure of elastic flanks: max_pressure_MPa caps it, limit {figure.stress}"
         elif figure is not None and figure.is_of_roots:
             way = "; root tension needs analysis.root_stress = true"
         elif figure is not None and figure.fewest_positions:

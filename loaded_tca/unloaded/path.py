@@ -187,21 +187,19 @@ def trace_near(pair: GearPair, contacts: Sequence[ContactPoint], pinion_angles: 
     return _path(pair, phi1, touch_near(pair, phi1, *places.T))
 
 
-def angles_through(pair: GearPair, contact: ContactPoint, point: Array) -> tuple[float, float]:
-    """Angles of pinion and wheel [rad] at which a point (3,) [mm] of the fixed frame lies on both their flanks.
+def angles_through(pair: GearPair, near: Array, points: Array) -> Array:
+    """Angles (2, m) of pinion and wheel [rad] at which points (m, 3) [mm] of the fixed frame lie on both their flanks.
 
-    They are those next to the angles of a contact.
+    They are the next ones to the angles ``near`` (2, m), those of a contact.
     """
-    in_wheel, angles = pair.wheel_axes @ (point - pair.wheel_origin), []
-    views = (
-        (pair.pinion.flank, point, pair.sense, contact.pinion_angle),
-        (pair.wheel.flank, in_wheel, -pair.sense, contact.wheel_angle),
-    )
-    for flank, (x, y, z), sense, near in views:
-        theta = float(flank.theta(np.array([math.hypot(x, y)]), np.array([z])).value[0])
-        turned = sense * (math.atan2(y, x) - theta)
-        angles.append(near + math.remainder(turned - near, 2.0 * math.pi))
-    return angles[0], angles[1]
+    in_wheel, origins = pair.wheel_axes.T, points[:, None] - pair.wheel_origin  # a product for each point
+    views = (pair.pinion.flank, points, pair.sense), (pair.wheel.flank, (origins @ in_wheel)[:, 0], -pair.sense)
+    turned = [
+        sense * (np.arctan2(place[:, 1], place[:, 0]) - flank.theta(np.hypot(*place[:, :2].T), place[:, 2]).value)
+        for flank, place, sense in views
+    ]
+    beside = np.array(turned) - near
+    return np.asarray(near + (beside - 2.0 * math.pi * np.round(beside / (2.0 * math.pi))))
 
 
 def require_contact(contact: ContactPoint) -> None:

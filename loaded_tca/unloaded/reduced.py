@@ -317,7 +317,10 @@ def _advance(
             part = owner[astray]
             trial[astray] = _back_to_ridge(field.restricted(part), phi1[part], trial[astray], multipliers[part], scale)
             after[astray], _ = merit(part, trial[astray])
-        good = (after >= before[owner]).reshape(len(rows), -1)
+        # where the curvature jumps, as at the start of an arc, corrections may lead back to the point itself
+        way, asked = np.abs(trial - points[owner]).max(axis=-1), np.abs(step[owner]).max(axis=-1)
+        moved = way >= HARDLY * np.tile(shares, len(rows)) * asked
+        good = ((after >= before[owner]) & moved).reshape(len(rows), -1)
         first, accepted = good.argmax(axis=1), good.any(axis=1)
         result[rows[accepted]] = trial.reshape(len(rows), -1, 2)[accepted, first[accepted]]
         share[rows[accepted]] = shares[first[accepted]]

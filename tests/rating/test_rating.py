@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
 from loaded_tca.rating.inputs import inputs_of
+from loaded_tca.tribology.contact_slices import largest_pressures
 from loaded_tca.tribology.slices import slices_of
 from tests.samples.rating import HARD, RATED, solved
 
@@ -164,9 +165,9 @@ def test_summary_and_figures_have_both_gears():
 
 
 def test_pressure_at_an_edge_is_told(monkeypatch):
-    slices = slices_of(solved())
-    at_edge = replace(slices, on_edge=np.ones_like(slices.on_edge))
-    monkeypatch.setattr("loaded_tca.rating.solved.slices_of", lambda _: at_edge)
+    largest = largest_pressures(solved())
+    at_edge = replace(largest, at_edge=np.ones_like(largest.at_edge))
+    monkeypatch.setattr("loaded_tca.rating.solved.largest_pressures", lambda _: at_edge)
     with pytest.warns(AccuracyWarning, match="rating: the largest pressure"):
         solved().rating()
 

@@ -34,3 +34,11 @@ def test_designs_of_scenes_without_strengths_have_no_utilisation():
     assert "flank_utilisation" not in model.figures
     with pytest.raises(InputError, match="utilisation needs strengths of both gears and"):
         model.require_figure("figure", "flank_utilisation")
+
+
+def test_pressure_under_a_cap_is_held_against_no_strength():
+    scene = solved(**{"analysis.root_stress": False, "material.max_pressure_MPa": 300.0}).scene
+    model = DesignModel(scene, {"pinion.modifications.lead_crowning_um": (0.0, 10.0)}, cells=(4, 4))
+    assert "pressure_MPa" in model.figures
+    with pytest.raises(InputError, match=r"needs the pressure of elastic flanks: max_pressure_MPa caps it"):
+        model.require_figure("figure", "flank_utilisation")

@@ -7,10 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from loaded_tca.loaded.line_load import AVERAGED_OVER, stretch_parts
 from loaded_tca.material import Material
 from loaded_tca.pairs.kinematics import surface_motions
 from loaded_tca.reference.hertz import line_contact
-from loaded_tca.tribology.slices import _of_map, slices_of
+from loaded_tca.tribology.contact_slices import _averaged
+from loaded_tca.tribology.slices import _moving, slices_of
 from tests.samples.tribology import FAMILIES, known, shared
 
 
@@ -44,6 +46,21 @@ def test_pressure_of_slices_is_that_of_cells_where_contacts_keep_off_edges(name)
     loaded = result.normal_force[0] > 0.0
     smooth = ~rough[loaded]
     assert_allclose(peaks[smooth], result.peak_pressure[0][loaded][smooth], rtol=0.06)
+
+
+def test_line_load_is_the_mean_over_a_quarter_module_as_far_as_the_contact_goes():
+    """By the part of each slice that lies within the length, of contacts of unlike slices, ends and gaps."""
+    forces = np.array([[0.0, 2.0, 7.0, 0.0, 3.0, 1.0], [5.0, 1.0, 0.0, 0.0, 0.0, 0.0]])
+    for force, step, line_load in zip(
+        forces, (0.3, 0.5), _averaged(forces, np.array([[0.3], [0.5]]), 4.0), strict=True
+    ):
+        loaded, borders = np.flatnonzero(force), step * np.arange(7)
+        ends = borders[loaded[0]], borders[loaded[-1] + 1]
+        length = min(AVERAGED_OVER * 4.0, ends[1] - ends[0])
+        middles = borders[loaded] + 0.5 * step
+        covered = np.minimum(middles + 0.5 * length, ends[1]) - np.maximum(middles - 0.5 * length, ends[0])
+        expected = stretch_parts(borders, middles, length) @ force / covered
+        assert_allclose(line_load[loaded], expected, rtol=1e-13)  # rounding of sums of six numbers
 
 
 @pytest.mark.thorough
@@ -102,12 +119,12 @@ def test_a_material_that_conducts_better_stays_cooler():
 def test_teeth_on_axes_that_cross_at_a_distance_slide_along_their_contacts_too():
     """As those of hypoids: the velocity between both bodies in the tangent plane, each turning about its own axis."""
     wheel = SimpleNamespace(axes=Rotation.from_euler("x", 90.0, degrees=True).as_matrix(), origin=[5.0, 40.0, -8.0])
-    pair = SimpleNamespace(sense=1, ratio=0.3, module=2.0, wheel_axes=wheel.axes, wheel_origin=np.array(wheel.origin))
+    pair = SimpleNamespace(sense=1, ratio=0.3, wheel_axes=wheel.axes, wheel_origin=np.array(wheel.origin))
     origin, axes = np.array([20.0, 6.0, 30.0]), Rotation.from_euler("xyz", [0.4, 1.1, 0.3]).as_matrix()
     first, second = surface_motions(pair, origin[None], axes[None])
     x, y = np.array([-0.1, 0.0, 0.1]), np.array([-2.0, 0.0, 2.0])
-    one = SimpleNamespace(x=x, y=y, spacing=(0.1, 2.0), pressure=np.ones((3, 3)), slice_force=np.ones(3))
-    slices = _of_map(pair, one, (first, second, first.less(second, 0.3)), 0, rough=False, edge=False)
+    one = SimpleNamespace(x=x, y=y, spacing=(0.1, 2.0), pressure=np.ones((3, 3)))
+    slices = _moving(pair, one, (np.arange(3), np.zeros(3)), (first, second, first.less(second, 0.3)), 0)
     points = origin + y[:, None] * axes[1]
     between = np.cross([0.0, 0.0, 1.0], points) - 0.3 * np.cross(-wheel.axes[2], points - wheel.origin)
     along = between @ axes[1]
