@@ -59,6 +59,9 @@ def test_the_hypoid_scene_has_the_printed_virtual_gears_of_sample_2():
     for name, value in values.items():
         assert_allclose(value, printed[name], rtol=FOUR_DIGITS, err_msg=name)
     assert sheet.notes == ()
+    # the report has 22.252 and 20 deg on the coast side; settings make them within 0.02 deg
+    coast = sheet.coast_pair
+    assert_allclose(np.degrees([coast.pressure_angle, coast.effective_pressure_angle]), [22.252, 20.0], atol=0.03)
 
 
 def test_stresses_are_nominal_ones_times_load_factors():
