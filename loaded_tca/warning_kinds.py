@@ -326,6 +326,12 @@ RATED_AT_EDGE = Kind(
     "it is that of a line contact with the mean load over a quarter module, and rises towards a sharp edge: indicative",
     "tip or end relief, or an edge with a radius; safeties after ISO 6336 do not depend on it",
 )
+ABOVE_STATIC_STRENGTH = Kind(
+    "rating: {where}: the stress {stress:.0f} MPa is above the static strength {strength:.0f} MPa under {torque}, "
+    "where the standard ends",
+    "the first load cycle may yield or break a tooth, so that safeties there are no measure of a life, which is 0",
+    "a smaller torque or `operation.application_factor`, other allowable stresses, or a larger pair",
+)
 SPECTRUM_BETWEEN = Kind(
     "rating: the damage of the spectrum may be wrong by {change:.1%}, since stresses are interpolated between {count} "
     "torques that were solved",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,10 +13,11 @@ from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.rating.bevel import BevelInputs, bevel_evaluated, bevel_inputs_of
 from loaded_tca.rating.evaluate import Evaluated, evaluated
 from loaded_tca.rating.inputs import CommonInputs, Duty, RatingInputs, inputs_of
-from loaded_tca.rating.lives import lives_of
-from loaded_tca.rating.rating import Rating
+from loaded_tca.rating.lives import Endurances, lives_of
+from loaded_tca.rating.rating import WORDS, Rating
 from loaded_tca.rating.solved import solved_loads
 from loaded_tca.rating.spectrum import SpectrumRating, of_spectrum
+from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.spiral import SpiralScene
 
 if TYPE_CHECKING:
@@ -44,6 +46,7 @@ def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -
     arrays, endurances, notes = _evaluated(inputs)
     arrays |= lives_of(cases, endurances, inputs.cycles_per_hour)
     sentences = [kinds.RATED_AT_EDGE.sentence()] if inputs.loads.at_edge.any() else []
+    sentences += _above_static(inputs, endurances)
     kind: type[Rating] = Rating
     if cases.is_spectrum:
         kind = SpectrumRating
@@ -54,6 +57,21 @@ def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
     return kind(result, dataset, inputs, endurances, notes)
+
+
+def _above_static(inputs: CommonInputs, endurances: Endurances) -> Iterator[str]:
+    """Sentence of the case of each kind of failure of each gear that is the farthest above the static strength."""
+    for mode, both in endurances.items():
+        for gear, each in zip(GEARS, both, strict=True):
+            worst = int((over := each.over_static()).argmax())
+            if over[worst] > 1.0:
+                stress = float(each.stress[worst])
+                yield kinds.ABOVE_STATIC_STRENGTH.sentence(
+                    where=f"{WORDS[mode]}, {gear}",
+                    stress=stress,
+                    strength=stress / float(over[worst]),
+                    torque=f"{shown_torque(inputs.torque[worst])} at the pinion",
+                )
 
 
 def _evaluated(inputs: CommonInputs) -> Evaluated:

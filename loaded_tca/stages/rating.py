@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError, give_accuracy_warning, noted_accuracy_warnings
+from loaded_tca.errors import InputError, give_accuracy_warning
 from loaded_tca.rating import Rating, rating_of
 from loaded_tca.rating.inputs import Duty, missing_sections
 from loaded_tca.rating.lives import MODES
@@ -195,8 +195,12 @@ def stage_rating_of(result: StageResult, *, warn: bool = True) -> StageRating:
     assert stage.rating is not None
     given = stage.rating.mesh_load_factor
     factor = result.mesh_load_factor if given == ANALYSIS else np.full(len(result.torque), float(given))
-    with noted_accuracy_warnings(given=False) as warned:
-        ratings = _of_meshes(result, factor)
+    ratings = _of_meshes(result, factor)
+    warned = (
+        words_of(gears, sentence)
+        for gears, rating in zip(MESHES.values(), ratings, strict=True)
+        for sentence in rating.warnings or ()
+    )
     sentences = list(dict.fromkeys(warned))
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
@@ -233,11 +237,13 @@ def _of_meshes(result: StageResult, factor: Array) -> tuple[Rating, Rating]:
         of_sun = rating_of(
             cycles[0],
             duty=Duty(factor, (planets, 1), mean_stress_factors=(None, mean), stress_ratios=(None, at_sun)),
+            warn=False,
         )
     with in_words_of(RING_MESH):
         of_ring = rating_of(
             cycles[1],
             duty=Duty(factor, (1, planets), True, mean_stress_factors=(mean, None), stress_ratios=(at_ring, None)),
+            warn=False,
         )
     return of_sun, of_ring
 
