@@ -124,6 +124,13 @@ STRIPS_ALIKE = Kind(
     "that: of an aligned pair it rises to either side",
     "analyses on both sides, or a Monte Carlo study; not the spread to first order",
 )
+CONTACTS_ALIKE = Kind(
+    "{figure}: another contact decides but for {lacking:.1g}; beyond the kink there derivatives are others by up to "
+    "{size:.0%} ({key}; {count} of {keys} keys)",
+    "local safeties are those of the largest pressure and root tension of all positions, and beyond the change by "
+    "which another contact has the largest they follow that",
+    "analyses on both sides, or more positions; not the spread to first order",
+)
 ANOTHER_POSITION = Kind(
     "{figure}: its derivatives end within a tolerance: beyond a change by {change:+.2g} {unit} another position is "
     "the highest or lowest, and they are others by {size:.0%} ({key}; {count} of {keys} keys)",

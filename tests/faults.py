@@ -2489,6 +2489,27 @@ FAULTS = (
         "        sentence\n        for gears, rating",
         "stages/test_stage_rating.py::test_planets_of_cast_iron_have_seven_tenths",
     ),
+    Fault(
+        "ratings: derivatives hold the pressure that decides",
+        "rating/slopes.py",
+        'growth["pressure"] = solved.pressure[:, None] * ',
+        'growth["pressure"] = 0.0 * ',
+        "rating/test_slopes.py::test_local_safeties_fall_with_the_torque_as_the_pressure",
+    ),
+    Fault(
+        "ratings: contacts that decide alike are told where their derivatives differ by twice",
+        "rating/slopes.py",
+        "if (sizes > TOLD).any():",
+        "if (sizes > 1.0).any():",
+        "rating/test_slopes.py::test_contacts_that_decide_nearly_alike_are_told",
+    ),
+    Fault(
+        "ratings: derivatives hold K_Hbeta",
+        "rating/slopes.py",
+        "np.where(above, sensitivities.face_load_factor[rows], 0.0)",
+        "np.where(above, 0.0, sensitivities.face_load_factor[rows])",
+        "rating/test_slopes.py::test_bins_between_solved_torques_follow_them",
+    ),
 )
 
 

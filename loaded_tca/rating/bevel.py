@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -65,6 +65,10 @@ class BevelInputs(CommonInputs):
     def root_section(self, place: int) -> RootSection:
         """Critical section of the pinion, 0, or the wheel, 1, after ISO 10300-3."""
         return self.sheet.root_section(place)
+
+    def of_scene(self, scene: Any, **changes: Any) -> Self:
+        """The same of another scene of the same gears, with changes of other fields."""
+        return replace(self, scene=scene, sheet=bevel_sheet(scene), **changes)
 
     @property
     def mean_force(self) -> Array:

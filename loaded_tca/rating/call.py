@@ -42,13 +42,11 @@ def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -
     """
     with_factors = bevel_inputs_of(result) if isinstance(result.scene, SpiralScene) else inputs_of(result, duty)
     inputs = replace(with_factors, solved=solved_loads(with_factors))
-    cases = inputs.cases
-    arrays, endurances, notes = _evaluated(inputs)
-    arrays |= lives_of(cases, endurances, inputs.cycles_per_hour)
+    arrays, endurances, notes = numbers_of(inputs)
     sentences = [kinds.RATED_AT_EDGE.sentence()] if inputs.loads.at_edge.any() else []
     sentences += _above_static(inputs, endurances)
     kind: type[Rating] = Rating
-    if cases.is_spectrum:
+    if inputs.cases.is_spectrum:
         kind = SpectrumRating
         more, remarks, warned = of_spectrum(inputs, arrays, _evaluated)
         arrays, notes, sentences = arrays | more, (*notes, *remarks), [*sentences, *warned]
@@ -72,6 +70,12 @@ def _above_static(inputs: CommonInputs, endurances: Endurances) -> Iterator[str]
                     strength=stress / float(over[worst]),
                     torque=f"{shown_torque(inputs.torque[worst])} at the pinion",
                 )
+
+
+def numbers_of(inputs: CommonInputs) -> Evaluated:
+    """Numbers with damage and lives, endurances and notes, after the standard of the gears."""
+    arrays, endurances, notes = _evaluated(inputs)
+    return arrays | lives_of(inputs.cases, endurances, inputs.cycles_per_hour), endurances, notes
 
 
 def _evaluated(inputs: CommonInputs) -> Evaluated:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from loaded_tca.arrays import GEARS, Array
+from loaded_tca.errors import InputError
 from loaded_tca.rating.findings import findings
 from loaded_tca.rating.inputs import CommonInputs
 from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurances
@@ -200,7 +201,7 @@ class Rating(Result):
         return sentences
 
     def sensitivities(self, keys: Sequence[str]) -> xarray.Dataset:
-        """Return the derivatives of the safeties with respect to keys of the scene.
+        """Return the derivatives of safeties, damage and lives with respect to keys of the scene.
 
         They follow from those of pressure, root tension and K_Hbeta by the chain rule; see
         :mod:`loaded_tca.rating.slopes`, which says what is held.
@@ -214,21 +215,27 @@ class Rating(Result):
         -------
         xarray.Dataset
             ``flank_safety``, ``root_safety``, ``local_flank_safety`` and, with root stress, ``local_root_safety`` over
-            case, gear and key [1 per unit of the key]; NaN of flanks where the slice that decides yields.
+            case, gear and key, ``damage`` and ``life_hours`` over kinds of failure, too; under a load spectrum also
+            ``spectrum_safety`` and ``miner_sum`` [1, or h, per unit of the key]. NaN where the number is infinite, and
+            of flanks where the slice that decides yields.
 
         Raises
         ------
         InputError
-            As :meth:`loaded_tca.MeshCycle.sensitivities`, of bevel and hypoid pairs, and of load spectra.
+            As :meth:`loaded_tca.MeshCycle.sensitivities`, and of the torque of a load spectrum.
 
         Warns
         -----
         AccuracyWarning
-            Likewise.
+            Likewise; where another contact decides as much, and where the pressure that decides has derivatives that
+            are less exact.
         """
         from loaded_tca.rating.slopes import rating_slopes
+        from loaded_tca.results.sensitivities import TORQUE
 
-        return rating_slopes(self, keys)
+        if self.inputs.cases.is_spectrum and TORQUE in keys:
+            raise InputError(f"{TORQUE}: a load spectrum has the torques of its bins; allowed are other keys")
+        return rating_slopes(self, self.result.sensitivities(keys))
 
     def figure_arrays(self) -> dict[str, Array]:
         """Return the key figures as arrays (case,) by their names; of what all bins do together the same for each."""
