@@ -2510,6 +2510,13 @@ FAULTS = (
         "np.where(above, 0.0, sensitivities.face_load_factor[rows])",
         "rating/test_slopes.py::test_bins_between_solved_torques_follow_them",
     ),
+    Fault(
+        "stages: the rating of an older stage stays beside a new one that has none",
+        "output/other_results.py",
+        "{**result.contents(), **tables, **more}, outdated)",
+        "{**result.contents(), **tables, **more})",
+        "test_cli_rating.py::test_stage_is_rated_as_it_is_analysed",
+    ),
 )
 
 
