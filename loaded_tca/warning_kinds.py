@@ -131,6 +131,12 @@ CONTACTS_ALIKE = Kind(
     "which another contact has the largest they follow that",
     "analyses on both sides, or more positions; not the spread to first order",
 )
+TRANSVERSE_HELD = Kind(
+    "rating: derivatives hold K_Halpha of the analysis, on which safeties after the standard depend",
+    "it is the largest line load of the mesh over the mean one and moves with reliefs and crownings; pressures and "
+    "root tensions of local safeties do not depend on it",
+    'analyses on both sides; `transverse_load_factor = "method B"` or a number; local safeties',
+)
 ANOTHER_POSITION = Kind(
     "{figure}: its derivatives end within a tolerance: beyond a change by {change:+.2g} {unit} another position is "
     "the highest or lowest, and they are others by {size:.0%} ({key}; {count} of {keys} keys)",

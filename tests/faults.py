@@ -2517,6 +2517,27 @@ FAULTS = (
         "{**result.contents(), **tables, **more})",
         "test_cli_rating.py::test_stage_is_rated_as_it_is_analysed",
     ),
+    Fault(
+        "bevel ratings: K_Halpha of the analysis leaves out the share of the standard",
+        "rating/bevel.py",
+        "inputs.loads.transverse_load_factor / share, 1.0",
+        "inputs.loads.transverse_load_factor / 1.0, 1.0",
+        "rating/test_bevel.py::test_transverse_load_factor_of_the_analysis_is_the_largest_share_over_that_of_the_standard",
+    ),
+    Fault(
+        "bevel ratings: derivatives hold the largest share",
+        "rating/slopes.py",
+        "_share_slopes(sensitivities)[rows]",
+        "0.0 * _share_slopes(sensitivities)[rows]",
+        "rating/test_slopes.py::test_transverse_load_factor_of_bevel_pairs_follows_the_largest_share",
+    ),
+    Fault(
+        "ratings: derivatives do not tell that K_Halpha is held",
+        "rating/slopes.py",
+        "if held and (rating.K_Halpha ==",
+        "if not held and (rating.K_Halpha ==",
+        "rating/test_slopes.py::test_transverse_load_factor_of_cylindrical_pairs_is_held",
+    ),
 )
 
 

@@ -18,7 +18,8 @@ and of a spectrum with the damage :math:`D_i(S \sigma_i)` of its bins, whose sum
 .. math::
     \frac{d \ln S}{da} = -\frac{\sum_i D_i'\, \sigma_i\, d \ln \sigma_i/da}{\sum_i D_i'\, \sigma_i} .
 
-Held are the slice, the root's place and stress ratio, and K_Halpha of the analysis.
+Held are the slice, the root's place and stress ratio, and K_Halpha of the analysis of cylindrical pairs; that of bevel
+pairs follows the largest share of a tooth pair.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, give_accuracy_warning
 from loaded_tca.rating.call import numbers_of
+from loaded_tca.rating.inputs import RatingInputs
 from loaded_tca.results.derivatives import JoinedSensitivities
 from loaded_tca.results.face_slopes import AS_LARGE, TOLD
 from loaded_tca.results.gap_growth import curvature_growth
@@ -62,6 +64,9 @@ def rating_slopes(rating: Rating, sensitivities: Sensitivities) -> xarray.Datase
 
     inputs, keys = rating.inputs, sensitivities.keys
     growth = _growth(inputs, sensitivities)
+    held = isinstance(inputs, RatingInputs) and inputs.rating.transverse_load_factor == ANALYSIS
+    if held and (rating.K_Halpha == inputs.loads.transverse_load_factor).any():  # not at a bound of the standard
+        give_accuracy_warning(kinds.TRANSVERSE_HELD.sentence(), stacklevel=4)
     columns = []
     for number, key in enumerate(keys):
         part = {name: slopes[..., number] for name, slopes in growth.items()}
@@ -84,12 +89,21 @@ def _growth(inputs: CommonInputs, sensitivities: Sensitivities) -> dict[str, Arr
     if inputs.rating.face_load_factor == ANALYSIS:
         above = solved.face_load_factor[:, None] > 1.0
         growth["face_load_factor"] = np.where(above, sensitivities.face_load_factor[rows], 0.0)
+    if inputs.rating.transverse_load_factor == ANALYSIS and not isinstance(inputs, RatingInputs):
+        growth["transverse_load_factor"] = _share_slopes(sensitivities)[rows]
     if solved.root_tension is not None:
         assert solved.largest_root_tension is not None
         relative = _tension_slopes(sensitivities)[rows]
         growth["root_tension"] = solved.root_tension[..., None] * relative
         growth["largest_root_tension"] = solved.largest_root_tension[..., None] * relative
     return growth
+
+
+def _share_slopes(sensitivities: Sensitivities) -> Array:
+    """Derivatives (t, keys) of the largest share of a tooth pair in the load, at the position that has it."""
+    shares, slopes = np.nan_to_num(sensitivities.result.load_share), sensitivities.load_share
+    flat = shares.reshape(len(shares), -1).argmax(axis=1)
+    return np.nan_to_num(slopes.reshape(len(slopes), -1, slopes.shape[-1])[np.arange(len(flat)), flat])
 
 
 def _at(inputs: CommonInputs, key: str, sign: float, growth: dict[str, Array]) -> tuple[dict[str, Array], float]:

@@ -90,6 +90,9 @@ HEAVY = {"operation.application_factor": 1.6, "rating.required_flank_safety": 1.
 """All stresses lie on the first slopes of their curves, so that damage is one power of them."""
 
 
+LIFE = {"rating.life_hours": 60.0, "load.pinion_torque_Nm": 200.0}
+
+
 @cache
 def of_spectrum():
     """The spur pair under three bins, of which the middle one was not solved, and its derivatives."""
@@ -160,6 +163,32 @@ def test_safeties_of_bevel_pairs_follow_the_face_load_factor_and_the_torque():
     # over the torque times K_v K_Hbeta K_Halpha, all of which fall with it, and by less than it grows
     exponent = found.root_safety.sel(key=TORQUE).values * 1e-3 * rated.torque[:, None] / rated.root_safety
     assert ((exponent > -1.0) & (exponent < 0.0)).all()
+
+
+def test_transverse_load_factor_of_bevel_pairs_follows_the_largest_share():
+    _, growth, _ = of_bevels()
+    by_share = {"rating.transverse_load_factor": "analysis", "rating.dynamic_factor": "given"}
+    with noted_accuracy_warnings(given=False):
+        rated = bevel_solved(**by_share).rating()
+        found = rating_slopes.rating_slopes(rated, growth)
+    shares = np.nan_to_num(rated.result.load_share[0])
+    place = np.unravel_index(shares.argmax(), shares.shape)
+    assert rated.K_Halpha[0] > 1.0
+    relative = np.nan_to_num(growth.load_share[0][place]) / shares[place]
+    # K_Hbeta is given: S_F falls with the torque, of the first key not at all, and with the share
+    expected = -relative - [0.0, 1e3 / rated.torque[0]]
+    assert_allclose(found.root_safety[0, 0] / rated.root_safety[0, 0], expected, rtol=1e-6, atol=1e-12)
+
+
+def test_transverse_load_factor_of_cylindrical_pairs_is_held():
+    whole, growth = of_spectrum()[0].result, of_spectrum()[1]
+    scene = whole.scene.with_changes({"load.case": None, "rating.transverse_load_factor": "analysis"} | LIFE)
+    for factor, count in ((1.05, 1), (9.0, 0)):  # within the bounds of the standard, and above them
+        ones = 0.0 * whole.dataset["transverse_load_factor"]
+        rated = replace(whole, scene=scene, dataset=whole.dataset.assign(transverse_load_factor=ones + factor)).rating()
+        with noted_accuracy_warnings(given=False) as told:
+            rating_slopes.rating_slopes(rated, growth)
+        assert sum(sentence.startswith("rating: derivatives hold K_Halpha") for sentence in told) == count
 
 
 def test_contacts_that_decide_nearly_alike_are_told():
