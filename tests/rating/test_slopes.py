@@ -203,8 +203,9 @@ def test_contacts_that_decide_nearly_alike_are_told():
 def test_safeties_follow_the_torque_as_ratings_do():
     cycle = result(**{"analysis.torques_Nm": tuple(np.linspace(120.0, 160.0, 9))})
     rated = replace(cycle, scene=cycle.scene.with_changes(RATED).with_changes(METHOD_B)).rating()
-    with coarsely():
+    with coarsely(), noted_accuracy_warnings(given=False) as told:
         found = rated.sensitivities([TORQUE])
+    assert any("another contact decides but for" in sentence for sentence in told)  # from 145 N m on
     for name in SAFETIES:
         values = rated.values(name)
         # steps of 5 N m, grids made anew, places of roots that are discrete; from 145 N m on another position decides
