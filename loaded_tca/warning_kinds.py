@@ -124,6 +124,19 @@ STRIPS_ALIKE = Kind(
     "that: of an aligned pair it rises to either side",
     "analyses on both sides, or a Monte Carlo study; not the spread to first order",
 )
+CONTACTS_ALIKE = Kind(
+    "{figure}: another contact decides but for {lacking:.1g}; beyond the kink there derivatives are others by up to "
+    "{size:.0%} ({key}; {count} of {keys} keys)",
+    "local safeties are those of the largest pressure and root tension of all positions, and beyond the change by "
+    "which another contact has the largest they follow that",
+    "analyses on both sides, or more positions; not the spread to first order",
+)
+TRANSVERSE_HELD = Kind(
+    "rating: derivatives hold K_Halpha of the analysis, on which safeties after the standard depend",
+    "it is the largest line load of the mesh over the mean one and moves with reliefs and crownings; pressures and "
+    "root tensions of local safeties do not depend on it",
+    'analyses on both sides; `transverse_load_factor = "method B"` or a number; local safeties',
+)
 ANOTHER_POSITION = Kind(
     "{figure}: its derivatives end within a tolerance: beyond a change by {change:+.2g} {unit} another position is "
     "the highest or lowest, and they are others by {size:.0%} ({key}; {count} of {keys} keys)",
@@ -332,6 +345,12 @@ RATED_AT_EDGE = Kind(
     "rating: the largest pressure that the local safety of flanks follows from lies at an edge of a flank",
     "it is that of a line contact with the mean load over a quarter module, and rises towards a sharp edge: indicative",
     "tip or end relief, or an edge with a radius; safeties after ISO 6336 do not depend on it",
+)
+ABOVE_STATIC_STRENGTH = Kind(
+    "rating: {where}: the stress {stress:.0f} MPa is above the static strength {strength:.0f} MPa under {torque}, "
+    "where the standard ends",
+    "the first load cycle may yield or break a tooth, so that safeties there are no measure of a life, which is 0",
+    "a smaller torque or `operation.application_factor`, other allowable stresses, or a larger pair",
 )
 SPECTRUM_BETWEEN = Kind(
     "rating: the damage of the spectrum may be wrong by {change:.1%}, since stresses are interpolated between {count} "

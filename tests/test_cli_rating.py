@@ -107,3 +107,26 @@ def test_command_rates_the_stage_of_a_directory(run, stage):
     code, _, errors = run("rating", stage, "--set", "sun.teeth=21")
     assert code == 2
     assert any("--set sun.teeth: an analysis depends on it; allowed keys of [sun.strength]" in line for line in errors)
+
+
+@pytest.mark.usefixtures("blank_pictures")
+@pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
+def test_stage_is_rated_as_it_is_analysed(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("loaded_tca.stages.analyse_stage", lambda stage, **_: replace(analysed()[0], stage=stage))
+    bare = analysed()[0].stage
+    stages = {
+        "rated": bare.with_changes(SECTIONS),
+        "unfit": bare.with_changes(SECTIONS | {"lubricant": None}),
+        "bare": bare,
+    }
+    said = {}
+    for name, one in stages.items():
+        Path(f"{name}.toml").write_text(one.to_toml(), encoding="utf-8")
+        code, said[name], _ = run("stage", f"{name}.toml", "--out", "out")
+        assert code == 0
+        # files of the rating before do not stay beside a stage that has none
+        assert Path("out/rating.json").exists() == Path("out/rating.csv").exists() == (name == "rated")
+    assert "sun | planet | ring" in said["rated"]
+    assert "no rating: lubricant: missing; the strength of flanks depends on" in said["unfit"]
+    assert "rating" not in said["bare"]

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from loaded_tca.scene import Scene
     from loaded_tca.scene.double_helical import DoubleHelicalScene
     from loaded_tca.stages import StageResult
+    from loaded_tca.stages.rating import StageRating
 
 # The modules that compute and draw take most of a second to import: each command imports what it needs.
 
@@ -167,13 +168,12 @@ def tribology(options: argparse.Namespace) -> None:
 
 def rating(options: argparse.Namespace) -> None:
     """Write safeties and lives of a result with all factors and pictures, and show the table."""
-    from loaded_tca.output.other_results import write_rating
     from loaded_tca.stages.result import STAGE_FILE
 
     if result_file(options.result).name == STAGE_FILE:
         stage, directory = _changed_stage(options)
         of_stage = stage.rating()
-        print_summary(of_stage.summary(), write_rating(of_stage, directory))
+        print_summary(of_stage.summary(), _rating_files(of_stage, directory))
         return
     result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
     rated = result.rating()
@@ -193,18 +193,20 @@ def _changed_stage(options: argparse.Namespace) -> tuple[StageResult, Path]:
     return replace(result, stage=result.stage.with_changes(changes)) if changes else result, directory
 
 
-def _rating_files(rated: Rating, directory: Path) -> tuple[Path, ...]:
-    """Write a rating with its pictures; those of an older one that it does not have go."""
+def _rating_files(rated: Rating | StageRating, directory: Path) -> tuple[Path, ...]:
+    """Write a rating, of a pair with its pictures; those of an older one that it does not have go."""
     from loaded_tca.output.other_results import write_rating
     from loaded_tca.plots import RATING_PICTURES, png_of, rating_figures
+    from loaded_tca.rating import Rating
 
-    pictures = {f"{name}.png": png_of(figure) for name, figure in rating_figures(rated).items()}
+    figures = rating_figures(rated) if isinstance(rated, Rating) else {}
+    pictures = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
     return write_rating(rated, directory, pictures, outdated=[f"{name}.png" for name in RATING_PICTURES])
 
 
-def _rated(result: MeshCycle, directory: Path) -> tuple[list[Path], str]:
-    """Files of the rating of a result whose scene has [rating], and its summary, or why it cannot be rated."""
-    if result.scene.rating is None:
+def _rated(result: MeshCycle | StageResult, directory: Path) -> tuple[list[Path], str]:
+    """Files of the rating of a result whose scene or stage has [rating], and its summary, or why it cannot be rated."""
+    if getattr(result, result.SUBJECT).rating is None:
         return [], ""
     try:
         rated = result.rating()
@@ -271,7 +273,7 @@ def _is_of_tribology(key: str) -> bool:
 
 def stage(options: argparse.Namespace) -> None:
     """Analyse a planetary stage, write everything into a directory, and show the summary."""
-    from loaded_tca.output.other_results import write_stage
+    from loaded_tca.output.other_results import RATING_FILES, write_stage
     from loaded_tca.plots import png_of, stage_figures
     from loaded_tca.stages import analyse_stage
     from loaded_tca.stages.analyse import expected_stage_effort, states_of
@@ -285,8 +287,10 @@ def stage(options: argparse.Namespace) -> None:
     with progress_bar(expected_stage_effort(asked), "states of both meshes", states) as progress:
         result = analyse_stage(asked, progress=progress)
     pictures = {f"{name}.png": png_of(figure) for name, figure in stage_figures(result).items()}
-    written = write_stage(result, directory, pictures)
-    print_summary(result.summary(), written)
+    written = write_stage(result, directory, pictures, outdated=RATING_FILES)
+    files, rating_text = _rated(result, directory)
+    summary = "\n\n".join(filter(None, (result.summary(), rating_text)))
+    print_summary(summary, [*written, *files])
 
 
 def plot(options: argparse.Namespace) -> None:

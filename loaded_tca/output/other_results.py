@@ -197,7 +197,9 @@ def spectrum_figures(rating: SpectrumRating) -> dict[str, Any]:
 
 
 @checked
-def write_stage(result: StageResult, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
+def write_stage(
+    result: StageResult, directory: FilePath, more: Mapping[str, Buffer] = {}, outdated: Iterable[str] = ()
+) -> tuple[Path, ...]:
     """Write a stage, its figures and its table, all files or none.
 
     Parameters
@@ -207,6 +209,8 @@ def write_stage(result: StageResult, directory: FilePath, more: Mapping[str, Buf
         Made if it does not exist.
     more : mapping of str to bytes
         Contents of files to write with these, by their names: pictures.
+    outdated : iterable of str
+        Names of files of an older result to remove, as those of its rating.
 
     Returns
     -------
@@ -219,7 +223,7 @@ def write_stage(result: StageResult, directory: FilePath, more: Mapping[str, Buf
         If they cannot be written.
     """
     tables = {"stage.json": stage_json(result).encode(), "stage.csv": csv_table(result.to_table()).encode()}
-    return replace_together(directory, {**result.contents(), **tables, **more})
+    return replace_together(directory, {**result.contents(), **tables, **more}, outdated)
 
 
 def stage_json(result: StageResult) -> str:

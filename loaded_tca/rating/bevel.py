@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -43,6 +43,9 @@ Arrays = dict[str, Array]
 STEEL_MODULUS = 206e3 / (2.0 * (1.0 - 0.3**2))
 """E* of two steel gears, whose stiffnesses the standard has [MPa]."""
 NEARLY = 0.05
+ALIKE = (
+    "K_Halpha: of the analysis, whose teeth are all alike: pitch deviations, for which method B has it, are not in it"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +68,10 @@ class BevelInputs(CommonInputs):
     def root_section(self, place: int) -> RootSection:
         """Critical section of the pinion, 0, or the wheel, 1, after ISO 10300-3."""
         return self.sheet.root_section(place)
+
+    def of_scene(self, scene: Any, **changes: Any) -> Self:
+        """The same of another scene of the same gears, with changes of other fields."""
+        return replace(self, scene=scene, sheet=bevel_sheet(scene), **changes)
 
     @property
     def mean_force(self) -> Array:
@@ -105,12 +112,6 @@ def bevel_inputs_of(result: CycleNumbers) -> BevelInputs:
     scene = result.scene
     assert isinstance(scene, SpiralScene)
     problems: list[str] = []
-    rating = scene.rating
-    if rating is not None and rating.transverse_load_factor == ANALYSIS:
-        problems.append(
-            'rating.transverse_load_factor: "analysis"; the analysis has no K_Halpha of bevel pairs, whose mean length '
-            f'of contact lines is not known: give "{METHOD_B}" or a number'
-        )
     try:
         sheet = bevel_sheet(scene)
         for place in range(len(GEARS)):
@@ -125,8 +126,8 @@ def bevel_inputs_of(result: CycleNumbers) -> BevelInputs:
 
 def bevel_evaluated(inputs: BevelInputs) -> Evaluated:
     """Numbers after ISO 10300, and by the local stresses."""
-    loads, notes = _load_factors(inputs)
     share = iso10300_2.load_sharing_factor(inputs.sheet.pair, inputs.rating.profile_crowning)
+    loads, notes = _load_factors(inputs, share**2)
     stresses, hypoid, held = _contact_stresses(inputs, loads, share)
     flanks = _flank_factors(inputs, hypoid)
     rated = of_flanks(inputs, flanks, stresses["sigma_H"])
@@ -152,8 +153,11 @@ def _pitch_deviation(inputs: BevelInputs) -> Array:
     return deviation - run_in(inputs, deviation)
 
 
-def _load_factors(inputs: BevelInputs) -> tuple[Arrays, tuple[str, ...]]:
-    """K_A, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (c,) by their names, and notes."""
+def _load_factors(inputs: BevelInputs, share: float) -> tuple[Arrays, tuple[str, ...]]:
+    """K_A, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (c,) by their names, and notes; ``share`` is Z_LS^2.
+
+    K_Halpha of the analysis is the largest share of a tooth pair in the load over that of the standard, from 1 on.
+    """
     wanted, sheet, ones = inputs.rating, inputs.sheet, np.ones(len(inputs.torque))
     application = inputs.operation.application_factor
     effective, whole = sheet.pair.widths
@@ -172,6 +176,9 @@ def _load_factors(inputs: BevelInputs) -> tuple[Arrays, tuple[str, ...]]:
             total_contact_ratio=sheet.pair.total_contact_ratio,
             relative_offset=2.0 * abs(sheet.offset) / sheet.mean_diameters[1],
         )
+    elif wanted.transverse_load_factor == ANALYSIS:
+        transverse = np.maximum(inputs.loads.transverse_load_factor / share, 1.0)
+        notes += (ALIKE,)
     else:
         transverse = ones * float(wanted.transverse_load_factor)
     curved = iso10300_1.lengthwise_curvature_factor(

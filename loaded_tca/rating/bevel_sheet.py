@@ -7,7 +7,7 @@ dedendum and thickness, so that the tooth is the one of the scene whatever it wa
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import cos, degrees, inf, pi, sin, tan
 
@@ -25,6 +25,7 @@ from loaded_tca.scene.spiral import Side, SpiralScene
 from loaded_tca.tooth.families import FILLET_RADIUS_COEFFICIENT
 
 _ROUNDING = 1e-9
+_OTHER: dict[Side, Side] = {"concave": "convex", "convex": "concave"}
 
 
 @dataclass(frozen=True)
@@ -100,6 +101,12 @@ class BevelSheet:
         return first, second
 
     @property
+    def coast_pair(self) -> VirtualPair:
+        """Virtual gears of the sides that are not loaded, whose alpha_e is alpha_n and alpha_lim together."""
+        pair, coast = self.pair, 2.0 * self.mean_pressure_angle - self.pair.pressure_angle
+        return replace(pair, pressure_angle=coast, limit_pressure_angle=-pair.limit_pressure_angle)
+
+    @property
     def wheel(self) -> int:
         """The gear with more teeth, 1 unless that is the one that the scene calls pinion."""
         return int(self.teeth[0] > self.teeth[1]) ^ 1
@@ -122,7 +129,7 @@ class BevelSheet:
         GeometryError
             If there is none.
         """
-        own, module = self.members[gear], self.pair.mean_normal_module
+        own, module, coast = self.members[gear], self.pair.mean_normal_module, self.coast_pair
         shift, thickness, depth = self._tooth(gear)
         room = self._room(gear)
         if room <= 0.0:
@@ -136,6 +143,7 @@ class BevelSheet:
             thickness_shift=thickness,
             pressure_angle=self.pair.pressure_angle,
             effective_pressure_angle=self.pair.effective_pressure_angle,
+            coast=(coast.normal_teeth[gear], self._angles(gear)[1]),
             generated=own.generated,
         )
 
@@ -151,10 +159,18 @@ class BevelSheet:
         thickness = 0.5 * own.thickness / module - 0.25 * pi - shift * tan(self.mean_pressure_angle)
         return shift, thickness, own.dedendum / module + shift
 
+    def _angles(self, gear: int) -> Both:
+        """Pressure angles of both sides of a gear's tool, first that of the loaded one: alpha_e of gears that roll."""
+        sides = self.pair, self.coast_pair
+        rolls = self.members[gear].generated
+        loaded, coast = (side.effective_pressure_angle if rolls else side.pressure_angle for side in sides)
+        return loaded, coast
+
     def _room(self, gear: int) -> float:
         """Largest edge radius that fits on the bottom of the slot, in mean normal modules."""
-        (_, thickness, depth), pressure = self._tooth(gear), self.pair.effective_pressure_angle
-        return (0.25 * pi - thickness - depth * tan(pressure)) * cos(pressure) / (1.0 - sin(pressure))
+        (_, thickness, depth), angles = self._tooth(gear), self._angles(gear)
+        bottom = 0.5 * pi - 2.0 * thickness - depth * sum(tan(each) for each in angles)
+        return bottom / sum((1.0 - sin(each)) / cos(each) for each in angles)
 
 
 def bevel_sheet(scene: SpiralScene) -> BevelSheet:
@@ -240,7 +256,8 @@ def _of_settings(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> BevelSheet:
         spirals = cones.rolling_spiral_angles((mesh.pinion.teeth, mesh.wheel.teeth))
         offsets, limit = (cones.axial_offset_angle, cones.offset_angle), limit_pressure_angle(cones, spirals)
     members = [_milled(gear, side, spiral) for gear, side, spiral in zip(mesh.gears, sides, spirals, strict=True)]
-    pressure = 0.5 * (flanks[0].angles.pressure + flanks[1].angles.pressure)
+    others = flanks_and_points(mesh, (_OTHER[sides[0]], _OTHER[sides[1]]))[0]
+    pressure, coast = (0.5 * (both[0].angles.pressure + both[1].angles.pressure) for both in (flanks, others))
     blades = [mesh.wheel.cutter.concave, mesh.wheel.cutter.convex]
     radius = 0.5 * sum(blade.point_radius for blade in blades if blade is not None)
     width, (first, second) = mesh.wheel.blank.face_width, members
@@ -251,7 +268,7 @@ def _of_settings(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> BevelSheet:
         if not member.edge_radius
     ]
     teeth = mesh.pinion.teeth, mesh.wheel.teeth
-    return BevelSheet((first, second), pair, teeth, width, pressure - limit, mesh.offset, radius, tuple(notes))
+    return BevelSheet((first, second), pair, teeth, width, 0.5 * (pressure + coast), mesh.offset, radius, tuple(notes))
 
 
 def _require_drive_side(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> None:

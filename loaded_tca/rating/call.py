@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,10 +13,11 @@ from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.rating.bevel import BevelInputs, bevel_evaluated, bevel_inputs_of
 from loaded_tca.rating.evaluate import Evaluated, evaluated
 from loaded_tca.rating.inputs import CommonInputs, Duty, RatingInputs, inputs_of
-from loaded_tca.rating.lives import lives_of
-from loaded_tca.rating.rating import Rating
+from loaded_tca.rating.lives import Endurances, lives_of
+from loaded_tca.rating.rating import WORDS, Rating
 from loaded_tca.rating.solved import solved_loads
 from loaded_tca.rating.spectrum import SpectrumRating, of_spectrum
+from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.spiral import SpiralScene
 
 if TYPE_CHECKING:
@@ -40,12 +42,11 @@ def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -
     """
     with_factors = bevel_inputs_of(result) if isinstance(result.scene, SpiralScene) else inputs_of(result, duty)
     inputs = replace(with_factors, solved=solved_loads(with_factors))
-    cases = inputs.cases
-    arrays, endurances, notes = _evaluated(inputs)
-    arrays |= lives_of(cases, endurances, inputs.cycles_per_hour)
+    arrays, endurances, notes = numbers_of(inputs)
     sentences = [kinds.RATED_AT_EDGE.sentence()] if inputs.loads.at_edge.any() else []
+    sentences += _above_static(inputs, endurances)
     kind: type[Rating] = Rating
-    if cases.is_spectrum:
+    if inputs.cases.is_spectrum:
         kind = SpectrumRating
         more, remarks, warned = of_spectrum(inputs, arrays, endurances, _evaluated)
         arrays, notes, sentences = arrays | more, (*notes, *remarks), [*sentences, *warned]
@@ -54,6 +55,27 @@ def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
     return kind(result, dataset, inputs, endurances, notes)
+
+
+def _above_static(inputs: CommonInputs, endurances: Endurances) -> Iterator[str]:
+    """Sentence of the case of each kind of failure of each gear that is the farthest above the static strength."""
+    for mode, both in endurances.items():
+        for gear, each in zip(GEARS, both, strict=True):
+            worst = int((over := each.over_static()).argmax())
+            if over[worst] > 1.0:
+                stress = float(each.stress[worst])
+                yield kinds.ABOVE_STATIC_STRENGTH.sentence(
+                    where=f"{WORDS[mode]}, {gear}",
+                    stress=stress,
+                    strength=stress / float(over[worst]),
+                    torque=f"{shown_torque(inputs.torque[worst])} at the pinion",
+                )
+
+
+def numbers_of(inputs: CommonInputs) -> Evaluated:
+    """Numbers with damage and lives, endurances and notes, after the standard of the gears."""
+    arrays, endurances, notes = _evaluated(inputs)
+    return arrays | lives_of(inputs.cases, endurances, inputs.cycles_per_hour), endurances, notes
 
 
 def _evaluated(inputs: CommonInputs) -> Evaluated:

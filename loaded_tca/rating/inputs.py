@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -115,6 +115,10 @@ class CommonInputs(ABC):
     def root_section(self, place: int) -> RootSection:
         """Critical section of the pinion, 0, or the wheel, 1, after the standard."""
 
+    @abstractmethod
+    def of_scene(self, scene: Any, **changes: Any) -> Self:
+        """The same of another scene of the same gears, with changes of other fields."""
+
     @property
     def cycles_per_hour(self) -> Array:
         """Load cycles of pinion and wheel in an hour of each case (c, 2)."""
@@ -149,6 +153,10 @@ class RatingInputs(CommonInputs):
         section = self.scene.root_sections[place]
         assert section is not None  # refused before
         return section
+
+    def of_scene(self, scene: Any, **changes: Any) -> Self:
+        """The same of another scene of the same gears, with changes of other fields."""
+        return replace(self, scene=scene, mesh=scene.mesh(), **changes)
 
     @cached_property
     def standard(self) -> ContactStandard:

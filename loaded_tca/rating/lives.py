@@ -56,6 +56,10 @@ class Endurance:
         known = np.isfinite(self.stress)
         return np.where(known, self.curve.life(np.where(known, self.required * self.stress, 0.0)), nan)
 
+    def over_static(self) -> Array:
+        """Stress of each case (c,) over the static strength; 0 where the stress is not known."""
+        return np.nan_to_num(self.stress, nan=0.0) / self.curve.stresses[0]
+
     def safety(self) -> float:
         """Safety on stress of all cases together, at which their damage is 1."""
         if not self.is_rated:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from loaded_tca.arrays import GEARS, Array
+from loaded_tca.errors import InputError
 from loaded_tca.rating.findings import findings
 from loaded_tca.rating.inputs import CommonInputs
 from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurances
@@ -37,17 +39,17 @@ def _of_column(head: str, row: Row) -> float:
     return float(row.result.figure_arrays()[head][row.row])
 
 
-def _figures(name: str, number: Number) -> dict[str, Figure]:
-    """Key figures of a number by their names: of a torque, of both gears, or of their kinds of failure."""
+def _figures(name: str, number: Number, gears: Sequence[str]) -> dict[str, Figure]:
+    """Key figures of a number by their names: of a torque, of its gears, or of their kinds of failure."""
     if number.dims == CASE:
         return figures_of({name: number})
     if number.dims == OF_GEARS:
-        labels = {_head(number.head(name), gear): (f"{number.text}, {gear}", name) for gear in GEARS}
+        labels = {_head(number.head(name), gear): (f"{number.text}, {gear}", name) for gear in gears}
     else:
         labels = {
             _head(number.head(name), gear, mode): (f"{WORDS[mode]}: {number.text}, {gear}", f"{mode}_safety")
             for mode in MODES
-            for gear in GEARS
+            for gear in gears
         }
     return {
         head: Figure(of=partial(_of_column, head), label=label, needs=needs) for head, (label, needs) in labels.items()
@@ -59,9 +61,9 @@ def _head(head: str, gear: str, mode: str = "") -> str:
     return "_".join(filter(None, (gear, mode, head)))
 
 
-def all_figures(numbers: Mapping[str, Number]) -> dict[str, Figure]:
+def all_figures(numbers: Mapping[str, Number], gears: Sequence[str] = GEARS) -> dict[str, Figure]:
     """Key figures under each torque, in the order of the summary."""
-    return {name: figure for each, number in numbers.items() for name, figure in _figures(each, number).items()}
+    return {name: figure for each, number in numbers.items() for name, figure in _figures(each, number, gears).items()}
 
 
 def rows_of(
@@ -87,8 +89,60 @@ def rows_of(
     return rows
 
 
+class OfCases(Result):
+    """Numbers of load cases, of their gears and kinds of failure, whose key figures have the names of these.
+
+    Attributes
+    ----------
+    MEMBERS : tuple of str
+        The gears.
+    """
+
+    KIND: ClassVar = RATING
+    WHAT: ClassVar = "a rating"
+    COORDINATES: ClassVar = ("torque",)
+    MEMBERS: ClassVar[tuple[str, ...]] = GEARS
+
+    @property
+    @abstractmethod
+    def modes(self) -> tuple[str, ...]:
+        """Kinds of failure that are rated."""
+
+    def figure_arrays(self) -> dict[str, Array]:
+        """Return the key figures as arrays (case,) by their names; of what all bins do together the same for each."""
+        columns, count = {}, len(self.torque)
+        for name, number in self.NUMBERS.items():
+            if not self.has(name):
+                continue
+            head = number.head(name)
+            values = number.factor(head) * self.values(name)
+            if number.dims == CASE:
+                columns[head] = values
+            elif number.dims == OF_GEARS:
+                columns |= {_head(head, gear): values[:, place] for place, gear in enumerate(self.MEMBERS)}
+            else:
+                whole = np.broadcast_to(values, (count, len(self.MEMBERS), len(self.modes)))
+                for n, mode in enumerate(self.modes):
+                    columns |= {_head(head, gear, mode): whole[:, place, n] for place, gear in enumerate(self.MEMBERS)}
+        return {head: np.asarray(values, dtype=float) for head, values in columns.items()}
+
+    def key_figures(self) -> tuple[dict[str, float], ...]:
+        """Return the figures of each load case, by names that end in their unit; NaN: not known."""
+        columns = self.figure_arrays()
+        rows = zip(*(values.tolist() for values in columns.values()), strict=True)
+        return tuple(dict(zip(columns, row, strict=True)) for row in rows)
+
+    def to_table(self) -> dict[str, Array]:
+        """Return all numbers as columns, a row for each load case, by names that end in their unit."""
+        return self.figure_arrays()
+
+    def stored(self) -> xarray.Dataset:
+        """The dataset as files have it: gears by their place in ``MEMBERS``, from 0; kinds of failure likewise."""
+        return self.dataset.drop_vars(["gear", "mode"]).assign_attrs(modes=" ".join(self.modes))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Rating(Result):
+class Rating(OfCases):
     """Safeties and lives of a result with all factors; every name of ``NUMBERS`` is an attribute.
 
     Without a load spectrum each torque of the result is a load case for itself, which lasts the whole life that is
@@ -108,12 +162,9 @@ class Rating(Result):
         What lies outside the ranges of the standard.
     """
 
-    KIND: ClassVar = RATING
-    WHAT: ClassVar = "a rating"
     TITLE: ClassVar = "Rating"
     NUMBERS: ClassVar = NUMBERS
     FIGURES: ClassVar = all_figures(NUMBERS)
-    COORDINATES: ClassVar = ("torque",)
 
     result: CycleNumbers
     dataset: xarray.Dataset
@@ -200,7 +251,7 @@ class Rating(Result):
         return sentences
 
     def sensitivities(self, keys: Sequence[str]) -> xarray.Dataset:
-        """Return the derivatives of the safeties with respect to keys of the scene.
+        """Return the derivatives of safeties, damage and lives with respect to keys of the scene.
 
         They follow from those of pressure, root tension and K_Hbeta by the chain rule; see
         :mod:`loaded_tca.rating.slopes`, which says what is held.
@@ -214,50 +265,24 @@ class Rating(Result):
         -------
         xarray.Dataset
             ``flank_safety``, ``root_safety``, ``local_flank_safety`` and, with root stress, ``local_root_safety`` over
-            case, gear and key [1 per unit of the key]; NaN of flanks where the slice that decides yields.
+            case, gear and key, ``damage`` and ``life_hours`` over kinds of failure, too; under a load spectrum also
+            ``spectrum_safety`` and ``miner_sum`` [1, or h, per unit of the key]. NaN where the number is infinite, and
+            of flanks where the slice that decides yields.
 
         Raises
         ------
         InputError
-            As :meth:`loaded_tca.MeshCycle.sensitivities`, of bevel and hypoid pairs, and of load spectra.
+            As :meth:`loaded_tca.MeshCycle.sensitivities`, and of the torque of a load spectrum.
 
         Warns
         -----
         AccuracyWarning
-            Likewise.
+            Likewise; where another contact decides as much, and where the pressure that decides has derivatives that
+            are less exact.
         """
         from loaded_tca.rating.slopes import rating_slopes
+        from loaded_tca.results.sensitivities import TORQUE
 
-        return rating_slopes(self, keys)
-
-    def figure_arrays(self) -> dict[str, Array]:
-        """Return the key figures as arrays (case,) by their names; of what all bins do together the same for each."""
-        columns, count = {}, len(self.torque)
-        for name, number in self.NUMBERS.items():
-            if not self.has(name):
-                continue
-            head = number.head(name)
-            values = number.factor(head) * self.values(name)
-            if number.dims == CASE:
-                columns[head] = values
-            elif number.dims == OF_GEARS:
-                columns |= {_head(head, gear): values[:, place] for place, gear in enumerate(GEARS)}
-            else:
-                whole = np.broadcast_to(values, (count, len(GEARS), len(self.modes)))
-                for n, mode in enumerate(self.modes):
-                    columns |= {_head(head, gear, mode): whole[:, place, n] for place, gear in enumerate(GEARS)}
-        return {head: np.asarray(values, dtype=float) for head, values in columns.items()}
-
-    def key_figures(self) -> tuple[dict[str, float], ...]:
-        """Return the figures of each load case, by names that end in their unit; NaN: not known."""
-        columns = self.figure_arrays()
-        rows = zip(*(values.tolist() for values in columns.values()), strict=True)
-        return tuple(dict(zip(columns, row, strict=True)) for row in rows)
-
-    def to_table(self) -> dict[str, Array]:
-        """Return all numbers as columns, a row for each load case, by names that end in their unit."""
-        return self.figure_arrays()
-
-    def stored(self) -> xarray.Dataset:
-        """The dataset as files have it: gears are 0, the pinion, and 1, the wheel; kinds of failure likewise."""
-        return self.dataset.drop_vars(["gear", "mode"]).assign_attrs(modes=" ".join(self.modes))
+        if self.inputs.cases.is_spectrum and TORQUE in keys:
+            raise InputError(f"{TORQUE}: a load spectrum has the torques of its bins; allowed are other keys")
+        return rating_slopes(self, self.result.sensitivities(keys))

@@ -1,17 +1,25 @@
-r"""Derivatives of safeties to keys of the scene: those of pressure, root tension and K_Hbeta by the chain rule.
+r"""Derivatives of safeties, damage and lives to keys of the scene, by the chain rule.
+
+Of what a rating takes of the analysis, K_Hbeta, the pressure p of the slice and the tension of the root that decide,
+derivatives follow from the solved contact problem, under each torque that was solved. All else is a closed form of
+these, of the key and of the torque: load factors, nominal stresses, strengths, under a load spectrum the stresses
+between the torques, Miner sums, lives, and the safety at which the sum is 1. It is evaluated twice, to both sides of
+the key with what the analysis gives moved along its derivatives, so that the difference is the total derivative. With
+factors that are given, under torques that stand for themselves,
 
 .. math::
-    \frac{d \ln S_H}{da} = -\tfrac12\,\frac{d}{da} \ln(T K_v K_{H\beta} K_{H\alpha}),\qquad
-    \frac{d \ln S_F}{da} = -\frac{d}{da} \ln(T K_v K_{F\beta} K_{F\alpha})
+    \frac{d \ln S_H}{da} = -\tfrac12\,\frac{d \ln K_{H\beta}}{da},\qquad
+    \frac{d \ln S_F}{da} = -\frac{d \ln K_{F\beta}}{da},\qquad
+    \frac{d \ln S_{H,local}}{da} = -\frac{d \ln p}{da},\qquad
+    \frac{d \ln S_{F,local}}{da} = -\frac{d \ln \sigma}{da}
+
+and of a spectrum with the damage :math:`D_i(S \sigma_i)` of its bins, whose sum is 1 at the safety S,
 
 .. math::
-    \frac{d \ln S_{H,local}}{da} = -\frac{d \ln p}{da} - \tfrac12\,\frac{d \ln K_v}{da},\qquad
-    \frac{d \ln S_{F,local}}{da} = -\frac{d \ln \sigma}{da} - \frac{d \ln K_v}{da}
+    \frac{d \ln S}{da} = -\frac{\sum_i D_i'\, \sigma_i\, d \ln \sigma_i/da}{\sum_i D_i'\, \sigma_i} .
 
-with the pressure p of the slice and the tension of the root that decide. Pressure, tension and K_Hbeta of the analysis
-follow from the solved contact problem; the factors of the standard are closed forms, differenced as K_Hbeta, the
-torque and the tip relief move with the key. Strengths do not depend on keys of the micro-geometry. Held are the slice,
-the root's place and stress ratio, and K_Halpha of the analysis.
+Held are the slice, the root's place and stress ratio, and K_Halpha of the analysis of cylindrical pairs; that of bevel
+pairs follows the largest share of a tooth pair.
 """
 
 from __future__ import annotations
@@ -21,15 +29,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, give_accuracy_warning
+from loaded_tca.rating.call import numbers_of
 from loaded_tca.rating.inputs import RatingInputs
-from loaded_tca.rating.loads import load_factors
-from loaded_tca.rating.solved import SolvedLoads
 from loaded_tca.results.derivatives import JoinedSensitivities
+from loaded_tca.results.face_slopes import AS_LARGE, TOLD
 from loaded_tca.results.gap_growth import curvature_growth
 from loaded_tca.results.sensitivities import NEWTON_MILLIMETRES, TORQUE, Sensitivities
 from loaded_tca.results.slice_pressure import largest_slice_pressures
+from loaded_tca.results.warnings import warn_of_contacts
 from loaded_tca.scene.rating import ANALYSIS
 from loaded_tca.separation.pair_change import value_at
 from loaded_tca.tribology.contact_slices import largest_pressures
@@ -39,75 +49,86 @@ if TYPE_CHECKING:
 
     import xarray
 
+    from loaded_tca.rating.inputs import CommonInputs
     from loaded_tca.rating.rating import Rating
 
 STEP = 1e-4
 """Of a key, over its value or its unit: closed forms are smooth, so that their differences have eight digits."""
 SAFETIES = "flank_safety", "root_safety", "local_flank_safety", "local_root_safety"
+DIFFERENTIATED = *SAFETIES, "damage", "life_hours", "miner_sum", "spectrum_safety"
 
 
-def rating_slopes(rating: Rating, keys: Sequence[str]) -> xarray.Dataset:
-    """Derivatives of the safeties of a rating; see :meth:`loaded_tca.rating.Rating.sensitivities`."""
+def rating_slopes(rating: Rating, sensitivities: Sensitivities) -> xarray.Dataset:
+    """Derivatives of the numbers of a rating by those of its result, see ``Rating.sensitivities``."""
     import xarray
 
-    inputs = rating.inputs
-    if not isinstance(inputs, RatingInputs):
-        raise InputError(f'pair.type: "{rating.scene.geometry.type}"; derivatives of safeties are of cylindrical pairs')
-    if inputs.cases.is_spectrum:
-        raise InputError(
-            "load.case: a load spectrum; derivatives of safeties are under torques that stand for themselves"
-        )
-    sensitivities = rating.result.sensitivities(keys)
-    factors = _factor_slopes(inputs, sensitivities)
-    torque = np.array([NEWTON_MILLIMETRES * (key == TORQUE) for key in keys]) / rating.torque[:, None]
-    dynamic = factors["K_v"]
-    relative = {
-        "flank_safety": -0.5 * (torque + dynamic + factors["K_Hbeta"] + factors["K_Halpha"])[:, None],
-        "root_safety": -(torque + dynamic + factors["K_Fbeta"] + factors["K_Falpha"])[:, None],
-        "local_flank_safety": -(_pressure_slopes(sensitivities) + 0.5 * dynamic)[:, None],
-    }
-    if rating.has("local_root_safety"):
-        relative["local_root_safety"] = -(_tension_slopes(sensitivities) + dynamic[:, None])
+    inputs, keys = rating.inputs, sensitivities.keys
+    growth = _growth(inputs, sensitivities)
+    held = isinstance(inputs, RatingInputs) and inputs.rating.transverse_load_factor == ANALYSIS
+    if held and (rating.K_Halpha == inputs.loads.transverse_load_factor).any():  # not at a bound of the standard
+        give_accuracy_warning(kinds.TRANSVERSE_HELD.sentence(), stacklevel=4)
+    columns = []
+    for number, key in enumerate(keys):
+        part = {name: slopes[..., number] for name, slopes in growth.items()}
+        sides = [_at(inputs, key, sign, part) for sign in (1.0, -1.0)]
+        columns.append({name: _difference(name, sides) for name in DIFFERENTIATED if rating.has(name)})
     arrays = {
-        name: (("case", "gear", "key"), rating.values(name)[..., None] * slopes) for name, slopes in relative.items()
+        name: ((*rating.NUMBERS[name].dims, "key"), np.stack([column[name] for column in columns], axis=-1))
+        for name in columns[0]
     }
-    coordinates = {"torque": ("case", rating.torque), "gear": [*GEARS], "key": list(keys)}
+    coordinates = {"torque": ("case", rating.torque), "gear": [*GEARS], "mode": [*rating.modes], "key": [*keys]}
     return xarray.Dataset(arrays, coordinates)
 
 
-def _factor_slopes(inputs: RatingInputs, sensitivities: Sensitivities) -> dict[str, Array]:
-    """Relative derivatives of the load factors of the standard, (t, keys), by their names."""
-    face = np.zeros((len(inputs.torque), len(sensitivities.keys)))
+def _growth(inputs: CommonInputs, sensitivities: Sensitivities) -> dict[str, Array]:
+    """Derivatives of the arrays of ``SolvedLoads`` (t, [gear,] keys), under the torques that it has, by their names."""
+    solved, result = inputs.solved, inputs.result
+    rows = [int(np.flatnonzero(np.asarray(result.torque) == torque)[0]) for torque in solved.torque]
+    growth = {"torque": np.array([[NEWTON_MILLIMETRES * (key == TORQUE) for key in sensitivities.keys]] * len(rows))}
+    growth["pressure"] = solved.pressure[:, None] * _pressure_slopes(sensitivities)[rows]
     if inputs.rating.face_load_factor == ANALYSIS:
-        face = np.where(inputs.result.face_load_factor[:, None] > 1.0, sensitivities.face_load_factor, 0.0)
-    columns = []
-    for number, key in enumerate(sensitivities.keys):
-        above, below = (_factors_at(inputs, key, sign, face[:, number]) for sign in (1.0, -1.0))
-        width = above[1] - below[1]
-        columns.append({name: (np.log(above[0][name]) - np.log(below[0][name])) / width for name in above[0]})
-    return {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}
+        above = solved.face_load_factor[:, None] > 1.0
+        growth["face_load_factor"] = np.where(above, sensitivities.face_load_factor[rows], 0.0)
+    if inputs.rating.transverse_load_factor == ANALYSIS and not isinstance(inputs, RatingInputs):
+        growth["transverse_load_factor"] = _share_slopes(sensitivities)[rows]
+    if solved.root_tension is not None:
+        assert solved.largest_root_tension is not None
+        relative = _tension_slopes(sensitivities)[rows]
+        growth["root_tension"] = solved.root_tension[..., None] * relative
+        growth["largest_root_tension"] = solved.largest_root_tension[..., None] * relative
+    return growth
 
 
-def _factors_at(inputs: RatingInputs, key: str, sign: float, face: Array) -> tuple[dict[str, Array], float]:
-    """Load factors with a key moved to one side, and how far; ``face`` are the derivatives of K_Hbeta (t,)."""
+def _share_slopes(sensitivities: Sensitivities) -> Array:
+    """Derivatives (t, keys) of the largest share of a tooth pair in the load, at the position that has it."""
+    shares, slopes = np.nan_to_num(sensitivities.result.load_share), sensitivities.load_share
+    flat = shares.reshape(len(shares), -1).argmax(axis=1)
+    return np.nan_to_num(slopes.reshape(len(slopes), -1, slopes.shape[-1])[np.arange(len(flat)), flat])
+
+
+def _at(inputs: CommonInputs, key: str, sign: float, growth: dict[str, Array]) -> tuple[dict[str, Array], float]:
+    """Numbers of the rating with a key moved to one side, and how far; ``growth``: derivatives of the solved loads."""
     scene: Any = inputs.scene
-    result, torque = inputs.result, 0.0
     value = 1e-3 * float(inputs.torque.max()) if key == TORQUE else value_at(scene, key)
     step = sign * STEP * (abs(value) or 1.0)
-    if key == TORQUE:
-        torque = NEWTON_MILLIMETRES * step
-    else:
+    if key != TORQUE:
         try:
             scene = scene.with_changes({key: value + step})
         except InputError:  # the end of its range: the difference is that to the other side
             step = 0.0
-    torques = inputs.torque + torque
-    solved = SolvedLoads.of_factors(
-        torques, result.face_load_factor + step * face, np.asarray(result.transverse_load_factor)
-    )
-    cases = replace(inputs.cases, torque=torques)
-    factors, _ = load_factors(replace(inputs, cases=cases, solved=solved, scene=scene, mesh=scene.mesh()))
-    return factors, step
+    moved: Any = {name: getattr(inputs.solved, name) + step * slopes for name, slopes in growth.items()}
+    cases = inputs.cases
+    if key == TORQUE:
+        cases = replace(cases, torque=cases.torque + NEWTON_MILLIMETRES * step)
+    numbers, _, _ = numbers_of(inputs.of_scene(scene, cases=cases, solved=replace(inputs.solved, **moved)))
+    return numbers, step
+
+
+def _difference(name: str, sides: Sequence[tuple[dict[str, Array], float]]) -> Array:
+    """Derivative of a number by its values on both sides of a key; NaN where one is not finite."""
+    (above, over), (below, under) = ((numbers[name], step) for numbers, step in sides)
+    finite = np.isfinite(above) & np.isfinite(below)
+    return np.where(finite, (np.where(finite, above, 0.0) - np.where(finite, below, 0.0)) / (over - under), np.nan)
 
 
 def _under(sensitivities: Sensitivities, torque: int) -> tuple[Sensitivities, int]:
@@ -122,12 +143,36 @@ def _under(sensitivities: Sensitivities, torque: int) -> tuple[Sensitivities, in
 def _pressure_slopes(sensitivities: Sensitivities) -> Array:
     """Relative derivatives (t, keys) of the pressure of the slice that decides, which stays where it is."""
     result = sensitivities.result
-    largest = largest_pressures(result)
-    slopes = np.zeros((len(result.torque), len(sensitivities.keys)))
-    for torque, place in enumerate(zip(largest.position.tolist(), largest.column.tolist(), strict=True)):
+    largest, count = largest_pressures(result), len(result.torque)
+    slopes = np.zeros((2, count, len(sensitivities.keys)))
+    deciding = np.zeros(result.load_share.shape, dtype=bool)
+    deciding[np.arange(count), largest.position[0], largest.column[0]] = True
+    for torque in range(count):
         under, row = _under(sensitivities, torque)
-        slopes[torque] = _of_contact(under, (row, *place))
-    return slopes
+        for number in range(2 if largest.lacking[torque] < AS_LARGE else 1):
+            place = row, int(largest.position[number, torque]), int(largest.column[number, torque])
+            slopes[number:, torque] = _of_contact(under, place)
+    _warn_of_kinks("local safety of flanks", sensitivities.keys, slopes, largest.lacking)
+    if any(key != TORQUE for key in sensitivities.keys):
+        marks = {
+            kinds.PEAK_SLOPES: sensitivities.at_corners,
+            kinds.PEAK_BESIDE_JUMP: sensitivities.beside_curvature_jumps,
+        }
+        for kind, places in marks.items():
+            warn_of_contacts(result, kind.sentence(), places & deciding, stacklevel=5)
+    return slopes[0]
+
+
+def _warn_of_kinks(figure: str, keys: Sequence[str], slopes: Array, lacking: Array) -> None:
+    """Tell where derivatives of the contact that decides, and of the next one (2, n, keys), differ; NaN: not known."""
+    first, second = np.nan_to_num(slopes)
+    largest = np.maximum(np.abs(first), np.abs(second)).clip(min=np.finfo(float).tiny)
+    sizes = (np.abs(second - first) / largest).max(axis=0)
+    if (sizes > TOLD).any():
+        worst = int(sizes.argmax())
+        words = {"key": keys[worst], "count": np.count_nonzero(sizes > TOLD), "keys": len(keys)}
+        sentence = kinds.CONTACTS_ALIKE.sentence(figure=figure, lacking=lacking.min(), size=sizes[worst], **words)
+        give_accuracy_warning(sentence, stacklevel=5)
 
 
 def _of_contact(under: Sensitivities, place: tuple[int, int, int]) -> Array:
@@ -151,6 +196,12 @@ def _of_contact(under: Sensitivities, place: tuple[int, int, int]) -> Array:
 def _tension_slopes(sensitivities: Sensitivities) -> Array:
     """Relative derivatives (t, gear, keys) of the largest root tension at the position that has it."""
     tension = np.nan_to_num(sensitivities.result.root_tension)
-    at = tension.argmax(axis=1)
-    rows, gears = np.ogrid[: at.shape[0], : at.shape[1]]
-    return np.asarray(sensitivities.root_tension[rows, at, gears] / tension[rows, at, gears][..., None])
+    order = tension.argsort(axis=1)
+    rows, gears = np.ogrid[: len(tension), : tension.shape[2]]
+    first, second = order[:, -1], order[:, -2]
+    largest = tension[rows, first, gears]
+    lacking = 1.0 - tension[rows, second, gears] / largest
+    second = np.where(lacking < AS_LARGE, second, first)
+    slopes = np.stack([sensitivities.root_tension[rows, at, gears] / largest[..., None] for at in (first, second)])
+    _warn_of_kinks("local safety of roots", sensitivities.keys, slopes.reshape(2, -1, slopes.shape[-1]), lacking)
+    return slopes[0]

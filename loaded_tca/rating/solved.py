@@ -11,6 +11,7 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array, Indices, Mask
 from loaded_tca.rating.roots import deciding_places
 from loaded_tca.results.key_figures import mean_over_a_pitch, span_of
+from loaded_tca.scene.spiral import SpiralScene
 from loaded_tca.tribology.contact_slices import largest_pressures
 
 if TYPE_CHECKING:
@@ -32,7 +33,9 @@ class SolvedLoads:
     ----------
     torque : (c,) array [N mm]
         Ascending, of those that were solved.
-    face_load_factor, transverse_load_factor : (c,) array
+    face_load_factor : (c,) array
+    transverse_load_factor : (c,) array
+        Of bevel pairs the largest share of a tooth pair in the load, which K_Halpha follows from by Z_LS.
     pressure : (c,) array [MPa]
         Largest pressure of an elastic line contact over all slices of all contacts, whatever the cap: strengths of
         flanks are such pressures.
@@ -143,10 +146,10 @@ class SolvedLoads:
 
 
 def solved_factors(result: CycleNumbers) -> SolvedLoads:
-    """Load factors of a result under its torques."""
-    return SolvedLoads.of_factors(
-        np.asarray(result.torque), np.asarray(result.face_load_factor), np.asarray(result.transverse_load_factor)
-    )
+    """Load factors of a result under its torques; of bevel pairs the largest share in place of K_Halpha."""
+    of_bevel = isinstance(result.scene, SpiralScene)
+    transverse = np.nanmax(result.load_share, axis=(1, 2)) if of_bevel else np.asarray(result.transverse_load_factor)
+    return SolvedLoads.of_factors(np.asarray(result.torque), np.asarray(result.face_load_factor), transverse)
 
 
 def solved_loads(inputs: CommonInputs) -> SolvedLoads:

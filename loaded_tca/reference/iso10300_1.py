@@ -5,7 +5,7 @@ touch along lines whose direction depends on the radius of the cutter too, and t
 larger. Lengths are in mm, angles in rad.
 
 Edition of 2023, whose text was not seen: formulas and their numbers are those of the open program ISO10300Calc
-(afuentesaz/AGMAStandards); every one that counts here gives the numbers that samples 1 to 3 of ISO/TR 10300-30:2024
+(afuentesaz/AGMAStandards); every one that counts here gives the numbers that samples 1 to 4 of ISO/TR 10300-30:2024
 print. Where that program leaves a sample, the formula here follows the sample: contact lines end at the ends of the
 zone of action, C_lb is the product that formula A.36 prints, C_v3 and C_v4 are those of ISO 6336-1, and pitch
 deviations count over b_v.

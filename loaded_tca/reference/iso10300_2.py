@@ -2,7 +2,7 @@
 
 Edition of 2023: the factor of bevel gears stands on the side of the strength, as Z_KP = 1.2 (the edition of 2014 has
 Z_K = 0.85 on that of the stress). Its text was not seen; formulas and their numbers as in ``iso10300_1``, checked
-against samples 1 to 3 of ISO/TR 10300-30:2024. Z_L, Z_v, Z_R and Z_W are those of ISO 6336-2 with rho_rel, the speed of
+against samples 1 to 4 of ISO/TR 10300-30:2024. Z_L, Z_v, Z_R and Z_W are those of ISO 6336-2 with rho_rel, the speed of
 the wheel and both roughnesses: Z_L, Z_v and Z_R have the printed numbers of the samples; Z_W of softer wheels and the
 S-N curves, which the standard takes of ISO 6336-5 and -6, are in no sample.
 """

@@ -2,7 +2,7 @@
 
 Load at the tip of the virtual gears in the normal section; the section of 30 degrees as in ISO 6336-3; factors for load
 sharing and for contact lines that lie across the tooth. Edition of 2023, whose text was not seen: formulas and their
-numbers as in ``iso10300_1``, checked against samples 1 to 3 of ISO/TR 10300-30:2024. What roots withstand has the
+numbers as in ``iso10300_1``, checked against samples 1 to 4 of ISO/TR 10300-30:2024. What roots withstand has the
 factors of ISO 6336-3 (``iso6336_3.root_factors``) with q_s and Y_Sa of here.
 """
 
@@ -29,6 +29,7 @@ def tip_section(
     thickness_shift: float,
     pressure_angle: float,
     effective_pressure_angle: float | None = None,
+    coast: tuple[float, float] | None = None,
     protuberance: float = 0.0,
     generated: bool = True,
 ) -> RootSection:
@@ -38,13 +39,13 @@ def tip_section(
         E = \frac{\pi}{4} - x_{sm} - h_{a0} \tan\alpha_e - \varrho_{a0} \frac{1 - \sin\alpha_e}{\cos\alpha_e}
             - s_{pr}, \qquad G = \varrho_{a0} - h_{a0} + x_{hm}
 
-    and on as :func:`loaded_tca.reference.iso6336_3.root_section`. Teeth of a wheel that is not generated have straight
-    flanks:
+    and on as :func:`loaded_tca.reference.iso6336_3.root_section`, with the mean chord s_Fn of both sides of the tooth.
+    Teeth of a wheel that is not generated have straight flanks, with the pressure angle alpha_n in E and
 
     .. math::
         s_{Fn} = \pi - 2 E - 2 \varrho_{a0} \cos 30°, \qquad
         h_{Fa} = h_{a0} - \tfrac12 \varrho_{a0} + h_{am} - x_{hm}
-                 - \left(\frac{\pi}{4} + x_{sm} - (h_{am} - x_{hm}) \tan\alpha\right) \tan\alpha
+                 - \left(\frac{\pi}{4} + x_{sm} - (h_{am} - x_{hm}) \tan\alpha_n\right) \tan\alpha_n
 
     Parameters
     ----------
@@ -58,6 +59,9 @@ def tip_section(
         x_hm; x_sm, with half the backlash in it where the tooth is thinner for that.
     pressure_angle, effective_pressure_angle : float [rad]
         alpha_n; alpha_e, the same unless it is given.
+    coast : (float, float) or None
+        Of the side that is not loaded: z_vn and the angle [rad], alpha_e of generated teeth and alpha_n of others; as
+        of the loaded side unless given.
     protuberance : float
         s_pr/m_mn.
     generated : bool
@@ -72,8 +76,8 @@ def tip_section(
 
     References
     ----------
-    ISO 10300-3:2023, formulas (6) to (17), (24) to (26). The straight tooth follows from its geometry; generated teeth
-    become it as their number grows.
+    ISO 10300-3:2023, formulas (6) to (26). The lever of the straight tooth follows from its geometry; it is formula
+    (22) where h_am - x_hm is m_mn. Generated teeth become it as their number grows.
 
     Examples
     --------
@@ -86,30 +90,37 @@ def tip_section(
     >>> round(section.form_factor, 3), round(section.stress_correction_factor, 3)
     (2.102, 1.988)
     """
-    alpha = pressure_angle if effective_pressure_angle is None else effective_pressure_angle
-    require_positive(teeth=teeth, tip_diameter=tip_diameter, tool_depth=tool_depth, edge_radius=edge_radius)
+    effective = pressure_angle if effective_pressure_angle is None else effective_pressure_angle
+    alpha = effective if generated else pressure_angle
+    coast_teeth, coast_angle = (teeth, alpha) if coast is None else coast
+    angles = {"pressure_angle": pressure_angle, "effective_pressure_angle": effective, "coast": coast_angle}
+    require_positive(
+        teeth=teeth, tip_diameter=tip_diameter, tool_depth=tool_depth, edge_radius=edge_radius, coast=coast_teeth
+    )
     require(
-        *(
-            (0.0 < each < 0.25 * pi, f"{name}: {each} rad is not between 0 and 45 deg")
-            for name, each in (("pressure_angle", pressure_angle), ("effective_pressure_angle", alpha))
-        ),
+        *((0.0 < each < 0.25 * pi, f"{name}: {each} rad is not between 0 and 45 deg") for name, each in angles.items()),
         (tool_depth > profile_shift, f"profile_shift: {profile_shift} leaves no dedendum below {tool_depth}"),
         (0.0 <= protuberance < 1.0, f"protuberance: {protuberance} m_mn; allowed 0 to below 1"),
     )
-    gap = 0.25 * pi - thickness_shift - tool_depth * tan(alpha) - protuberance
-    gap -= edge_radius * (1.0 - sin(alpha)) / cos(alpha)
-    if gap < -_ROUNDING:
+    middle = 0.25 * pi - thickness_shift - protuberance
+    gaps = [
+        middle - tool_depth * tan(each) - edge_radius * (1.0 - sin(each)) / cos(each) for each in (alpha, coast_angle)
+    ]
+    if sum(gaps) < -_ROUNDING:
         raise GeometryError(f"edge_radius: {edge_radius:.4g} m_mn does not fit on the bottom of the slot")
     if not generated:
         above = 0.5 * (tip_diameter - teeth) - profile_shift
         lever = tool_depth - 0.5 * edge_radius + above
         lever -= (0.25 * pi + thickness_shift - above * tan(alpha)) * tan(alpha)
-        thickness = pi - 2.0 * gap - sqrt(3.0) * edge_radius
+        thickness = pi - sum(gaps) - sqrt(3.0) * edge_radius
         return _section(thickness, lever, edge_radius, alpha, pressure_angle)
     base = teeth * cos(alpha)
     if tip_diameter <= base:
         raise GeometryError(f"tip_diameter: {tip_diameter:.4g} m_mn lies inside the base circle")
-    angle, thickness, radius, below = fillet_section(gap, edge_radius - tool_depth + profile_shift, edge_radius, teeth)
+    depth = edge_radius - tool_depth + profile_shift
+    angle, thickness, radius, below = fillet_section(gaps[0], depth, edge_radius, teeth)
+    if coast is not None:
+        thickness = 0.5 * (thickness + fillet_section(gaps[1], depth, edge_radius, coast_teeth)[1])
     at_tip = acos(base / tip_diameter)
     half = (0.5 * pi + 2.0 * (profile_shift * tan(alpha) + thickness_shift)) / teeth
     half += tan(alpha) - alpha - tan(at_tip) + at_tip

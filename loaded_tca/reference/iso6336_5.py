@@ -275,7 +275,8 @@ def converted_hardness(hardness: float, scale: str, wanted: str) -> float:
     inside = values[0] <= hardness <= values[-1] and target_vickers[0] <= middle <= target_vickers[-1]
     low, high = max(vickers[0], target_vickers[0]), min(vickers[-1], target_vickers[-1])
     ends = (float(np.interp(end, vickers, values)) for end in (low, high))
-    require((inside, f"hardness: {hardness} {scale}; allowed for {wanted}: " + " to ".join(f"{end:g}" for end in ends)))
+    allowed = " to ".join(f"{end:g}" for end in ends)
+    require((inside, f"hardness: {hardness} {scale}; allowed for conversion to {wanted}: {allowed} {scale}"))
     return float(np.interp(middle, target_vickers, targets))
 
 

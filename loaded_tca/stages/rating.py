@@ -4,25 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError, give_accuracy_warning, noted_accuracy_warnings
+from loaded_tca.errors import InputError, give_accuracy_warning
 from loaded_tca.rating import Rating, rating_of
 from loaded_tca.rating.inputs import Duty, missing_sections
-from loaded_tca.rating.lives import MODES
-from loaded_tca.rating.quantities import CASE, NUMBERS, OF_MODES
-from loaded_tca.rating.rating import NOT_COUNTED, WORDS, rows_of
+from loaded_tca.rating.quantities import CASE, NUMBERS
+from loaded_tca.rating.rating import NOT_COUNTED, OfCases, all_figures, rows_of
 from loaded_tca.rating.roots import REVERSED
 from loaded_tca.reference.iso6336_3_strength import mean_stress_sensitivities
 from loaded_tca.results import MeshCycle
-from loaded_tca.results.declared import Number, Row
-from loaded_tca.results.figure import Figure, Figures
-from loaded_tca.results.files import RATING
-from loaded_tca.results.result import Result
+from loaded_tca.results.declared import Number
+from loaded_tca.results.figure import Figures
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.rating import ANALYSIS, RatingSection, StrengthSection
 from loaded_tca.scene.section import contents
@@ -51,33 +47,8 @@ STAGE_RATING_NUMBERS: dict[str, Number] = {
 """Names in ``StageRating.dataset``: of a planet the worse one of both meshes counts."""
 
 
-def _of_member(name: str, factor: float, place: int | tuple[int, int], row: Row) -> float:
-    return factor * float(getattr(row, name)[place])
-
-
-def _figures(name: str, number: Number) -> dict[str, Figure]:
-    """Key figures of a number of the three gears by their names, and by their kinds of failure."""
-    head = number.head(name)
-    if number.dims == OF_MODES:
-        return {
-            f"{gear}_{mode}_{head}": Figure(
-                of=partial(_of_member, name, number.factor(head), (place, n)),
-                label=f"{WORDS[mode]}: {number.text}, {gear}",
-                needs=f"{mode}_safety",
-            )
-            for n, mode in enumerate(MODES)
-            for place, gear in enumerate(MEMBERS)
-        }
-    return {
-        f"{gear}_{head}": Figure(
-            of=partial(_of_member, name, number.factor(head), place), label=f"{number.text}, {gear}", needs=name
-        )
-        for place, gear in enumerate(MEMBERS)
-    }
-
-
 @dataclass(frozen=True, eq=False, repr=False)
-class StageRating(Result):
+class StageRating(OfCases):
     """Safeties and lives of a stage; every name of ``STAGE_RATING_NUMBERS`` is an attribute.
 
     Attributes
@@ -89,18 +60,11 @@ class StageRating(Result):
         Numbers with their units, over ``case``, each of a ``torque`` of the sun, and ``gear``: sun, planet, ring.
     """
 
-    KIND: ClassVar = RATING
-    WHAT: ClassVar = "a rating"
     TITLE: ClassVar = "Rating of a planetary stage"
     SUBJECT: ClassVar = "stage"
     NUMBERS: ClassVar = STAGE_RATING_NUMBERS
-    FIGURES: ClassVar = {
-        name: figure
-        for each, number in STAGE_RATING_NUMBERS.items()
-        if number.dims != CASE
-        for name, figure in _figures(each, number).items()
-    }
-    COORDINATES: ClassVar = ("torque",)
+    FIGURES: ClassVar = all_figures(STAGE_RATING_NUMBERS, MEMBERS)
+    MEMBERS: ClassVar = MEMBERS
 
     result: StageResult
     sun_mesh: Rating
@@ -117,6 +81,11 @@ class StageRating(Result):
         return self.result.stage
 
     @property
+    def modes(self) -> tuple[str, ...]:
+        """Kinds of failure that are rated."""
+        return self.sun_mesh.modes
+
+    @property
     def scope(self) -> str:
         """Speeds, hours and what is required, in words."""
         wanted, operation = self.stage.rating, self.stage.operation
@@ -128,17 +97,17 @@ class StageRating(Result):
             f"{wanted.required_flank_safety:g}, S_F {wanted.required_root_safety:g}; sun | planet | ring"
         )
 
-    def key_figures(self) -> tuple[dict[str, float], ...]:
-        """Return the figures for each torque: of the gears, and of the meshes, which begin with their names."""
-        rows = super().key_figures()
+    def figure_arrays(self) -> dict[str, Array]:
+        """Return the figures (torque,) of the gears, and of the meshes, which begin with their names."""
+        columns = super().figure_arrays()
         for mesh, gears in MESHES.items():
-            for row, of_mesh in zip(rows, getattr(self, mesh).key_figures(), strict=True):
-                row |= {f"{mesh}_{_renamed(name, gears)}": value for name, value in of_mesh.items()}
-        return rows
+            of_mesh: Rating = getattr(self, mesh)
+            columns |= {f"{mesh}_{_renamed(name, gears)}": values for name, values in of_mesh.figure_arrays().items()}
+        return columns
 
     def rows(self, figures: Sequence[Figures]) -> list[tuple[str, ...]]:
         """Lines of the summary: of the gears, then of both meshes with all factors."""
-        rows = rows_of(self, MEMBERS, self.sun_mesh.modes, figures)
+        rows = rows_of(self, MEMBERS, self.modes, figures)
         for (mesh, gears), whose in zip(MESHES.items(), WHOSE, strict=True):
             rating: Rating = getattr(self, mesh)
             rows.append((f"{gears['pinion']} and {gears['wheel']}, under {whose}", *("" for _ in figures)))
@@ -154,14 +123,6 @@ class StageRating(Result):
             if note != NOT_COUNTED
         ]
         return (*sentences, NOT_COUNTED)
-
-    def to_table(self) -> dict[str, Array]:
-        """Return all numbers as columns, a row for each torque, by names that end in their unit."""
-        return self.figure_arrays()
-
-    def stored(self) -> xarray.Dataset:
-        """The dataset as files have it: gears are 0, the sun, 1, a planet, 2, the ring; kinds of failure likewise."""
-        return self.dataset.drop_vars(["gear", "mode"]).assign_attrs(modes=" ".join(self.sun_mesh.modes))
 
 
 def _renamed(name: str, gears: dict[str, str]) -> str:
@@ -195,8 +156,12 @@ def stage_rating_of(result: StageResult, *, warn: bool = True) -> StageRating:
     assert stage.rating is not None
     given = stage.rating.mesh_load_factor
     factor = result.mesh_load_factor if given == ANALYSIS else np.full(len(result.torque), float(given))
-    with noted_accuracy_warnings(given=False) as warned:
-        ratings = _of_meshes(result, factor)
+    ratings = _of_meshes(result, factor)
+    warned = (
+        words_of(gears, sentence)
+        for gears, rating in zip(MESHES.values(), ratings, strict=True)
+        for sentence in rating.warnings or ()
+    )
     sentences = list(dict.fromkeys(warned))
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
@@ -233,11 +198,13 @@ def _of_meshes(result: StageResult, factor: Array) -> tuple[Rating, Rating]:
         of_sun = rating_of(
             cycles[0],
             duty=Duty(factor, (planets, 1), mean_stress_factors=(None, mean), stress_ratios=(None, at_sun)),
+            warn=False,
         )
     with in_words_of(RING_MESH):
         of_ring = rating_of(
             cycles[1],
             duty=Duty(factor, (1, planets), True, mean_stress_factors=(mean, None), stress_ratios=(at_ring, None)),
+            warn=False,
         )
     return of_sun, of_ring
 

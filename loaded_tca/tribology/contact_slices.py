@@ -194,8 +194,11 @@ class LargestPressures:
     ----------
     pressure : (t,) array [MPa]
         Of an elastic line contact, whatever the cap.
-    position, column : (t,) array of int
-        Indices of position and tooth pair.
+    position, column : (2, t) array of int
+        Indices of position and tooth pair of that contact, and of the other contact that comes next; the same one twice
+        where no other is loaded.
+    lacking : (t,) array
+        Part of the pressure by which the next contact has less; 1 without one.
     radius, axial : (2, t) array [mm]
         Middles of these slices on pinion and wheel.
     at_edge : (t,) array of bool
@@ -205,6 +208,7 @@ class LargestPressures:
     pressure: Array
     position: Indices
     column: Indices
+    lacking: Array
     radius: Array
     axial: Array
     at_edge: Mask
@@ -233,15 +237,22 @@ def largest_pressures(result: CycleNumbers) -> LargestPressures:
 
 def _largest(slices: ContactSlices) -> LargestPressures:
     pressure, torque = slices.elastic_pressure(slices.curvatures()), slices.places[slices.owner, 0]
-    by_torque = [np.flatnonzero(torque == number) for number in range(len(slices.result.torque))]
-    worst = np.array([some[np.nanargmax(pressure[some])] for some in by_torque])
-    points, owner = slices.points(worst), slices.owner[worst]
+    by_torque = [
+        np.flatnonzero((torque == number) & np.isfinite(pressure)) for number in range(len(slices.result.torque))
+    ]
+    worst = np.array([some[pressure[some].argmax()] for some in by_torque])
+    owner = slices.owner[worst]
+    others = [some[slices.owner[some] != one] for some, one in zip(by_torque, owner, strict=True)]
+    following = [some[pressure[some].argmax()] if some.size else one for some, one in zip(others, worst, strict=True)]
+    both = np.stack([worst, following])
+    points = slices.points(worst)
     wheel_radius, _, wheel_axial = slices.result.gear_pair.to_wheel(points)
-    _, position, column = slices.places[owner].T
+    _, position, column = np.moveaxis(slices.places[slices.owner[both]], -1, 0)
     return LargestPressures(
         pressure=pressure[worst],
         position=position,
         column=column,
+        lacking=np.where(both[1] == worst, 1.0, 1.0 - pressure[both[1]] / pressure[worst]),
         radius=np.stack([np.hypot(points[:, 0], points[:, 1]), wheel_radius]),
         axial=np.stack([points[:, 2], wheel_axial]),
         at_edge=np.array([slices.on_edge(m)[n - slices.starts[m]] for m, n in zip(owner, worst, strict=True)]),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
+from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError, noted_accuracy_warnings
 from loaded_tca.rating.inputs import inputs_of
 from loaded_tca.tribology.contact_slices import largest_pressures
 from loaded_tca.tribology.slices import slices_of
@@ -170,6 +170,22 @@ def test_pressure_at_an_edge_is_told(monkeypatch):
     monkeypatch.setattr("loaded_tca.rating.solved.largest_pressures", lambda _: at_edge)
     with pytest.warns(AccuracyWarning, match="rating: the largest pressure"):
         solved().rating()
+
+
+def test_stress_above_the_static_strength_is_told():
+    with noted_accuracy_warnings(given=False) as told:
+        rated = solved(**{"operation.application_factor": 12.0}).rating()
+    above = [one for one in told if one.startswith("rating: root, pinion: the stress ")]
+    assert above == [one for one in rated.warnings if one in above]
+    (sentence,) = above
+    strength = float(sentence.partition("static strength ")[2].partition(" MPa")[0])
+    assert f"the stress {rated.sigma_F[1, 0]:.0f} MPa is above" in sentence
+    assert "under 200 N m at the pinion" in sentence
+    # 2.5 sigma_FE of case-hardened teeth at 1e3 load cycles, Y_delta_relT static near 1 (ISO 6336-3)
+    assert_allclose(strength, 2.5 * 2.0 * rated.sigma_F_lim[1, 0], rtol=0.1)
+    assert strength < rated.sigma_F[1, 0]
+    assert rated.dataset.life_hours.sel(gear="pinion", mode="root")[1] == 0.0
+    assert solved().rating().warnings == ()
 
 
 REFUSED = [

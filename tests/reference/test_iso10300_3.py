@@ -46,6 +46,14 @@ def test_teeth_become_straight_as_their_number_grows():
     assert_allclose(rolled.stress_correction_factor, straight.stress_correction_factor, rtol=1e-5)
 
 
+def test_both_sides_of_a_tooth_share_its_chord():
+    steep = math.radians(22.0)
+    alone = [section(pressure_angle=each).thickness for each in (ANGLE, steep)]
+    both = section(coast=(24.0, steep))
+    assert_allclose(both.thickness, sum(alone) / 2.0, rtol=1e-12)
+    assert (both.lever, both.radius) == (section().lever, section().radius)  # those of the loaded side
+
+
 def test_thicker_teeth_have_less_stress():
     assert section(thickness_shift=0.1).form_factor < section(thickness_shift=0.0).form_factor
 
@@ -61,6 +69,14 @@ test_root_refuses = refused_calls(
     (
         lambda: section(tool_depth=0.0, pressure_angle=1.0),
         ("tool_depth: 0.0 is not positive and finite",),
+    ),
+    (
+        lambda: section(coast=(0.0, 1.0)),
+        ("coast: 0.0 is not positive and finite",),
+    ),
+    (
+        lambda: section(coast=(24.0, 1.0)),
+        ("coast: 1.0 rad is not between 0 and 45 deg",),
     ),
     (
         lambda: section(profile_shift=1.3, protuberance=1.0),

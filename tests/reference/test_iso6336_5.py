@@ -106,7 +106,10 @@ test_iso6336_5_refuses = refused_calls(
     (lambda: allowable_stresses("Eh", "MQ", 700.0, core="hard"), "core: 'hard'; allowed: '25 HRC'"),
     (lambda: named_material("42CrMo4", "MQ"), "hardness: not given; the stresses of 42CrMo4 depend on it"),
     (lambda: named_material("butter", "MQ"), "material: 'butter' is not known; allowed: 18CrNiMo7-6"),
-    (lambda: converted_hardness(70.0, "HRC", "HV"), r"hardness: 70.0 HRC; allowed for HV: 20.3 to 68"),
-    (lambda: converted_hardness(500.0, "HV", "HBW"), r"hardness: 500.0 HV; allowed for HBW: 0 to 450"),
+    (
+        lambda: converted_hardness(70.0, "HRC", "HV"),
+        r"hardness: 70.0 HRC; allowed for conversion to HV: 20.3 to 68 HRC",
+    ),
+    (lambda: converted_hardness(500.0, "HV", "HBW"), r"hardness: 500.0 HV; allowed for conversion to HBW: 0 to 450 HV"),
     (lambda: converted_hardness(-1.0, "HX", "HBW"), ("scale: 'HX'; allowed: HV, HBW, HRC", "hardness: -1.0 HX is not")),
 )

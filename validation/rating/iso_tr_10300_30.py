@@ -1,15 +1,18 @@
-"""Samples 1 to 3 of ISO/TR 10300-30:2024, method B1: every factor against the number that is printed.
+"""Samples 1 to 4 of ISO/TR 10300-30:2024, method B1: every factor against the number that is printed.
 
-Spiral bevel pair 14/39, hypoid pairs 13/42 (offset 15 mm) and 9/34 (31.75 mm, of an overlap ratio below 1); drive side.
+Spiral bevel pair 14/39, hypoid pairs 13/42 (offset 15 mm), 9/34 (31.75 mm, of an overlap ratio below 1) and 12/49
+(40 mm, whose wheel is not generated and whose sides have unlike effective pressure angles); drive side.
 Case-hardened, K_A 1.1, K_Hbeta-be 1.1, tools with edge radii of 0.8 and 1.2 mm, Z_NT and Y_NT 1. Inputs and printed
 numbers as the open program ISO10300Calc (afuentesaz/AGMAStandards, its self test) has them; the report was not seen.
-That program misses Z_LS of sample 2 and l_bm of sample 3, and calls the latter an error of the report: with contact
-lines that end at the ends of the zone of action both have their printed digits here.
+That program misses Z_LS of samples 2 and 4 and l_bm of sample 3, and calls the latter an error of the report: with
+contact lines that end at the ends of the zone of action all have their printed digits here.
 
-Not compared: K_v 1.000 of sample 3, which its own printed K of 0.589 contradicts, its N of 0.084 (0.0858 here), and
-K_Halpha* 0.900 of sample 2, where its deviation counts as mm; K_Halpha is 1 there for the offset alone.
+Not compared: K_v 1.000 of samples 3 and 4, which their own printed K of 0.589 and 0.238 contradict; N of 0.084 of
+sample 3 (0.0858 here); K_F0 1.082 of sample 4, whose lengthwise curve is that of face hobbing, which the inputs do not
+have; K_Halpha* 0.900 of sample 2, where its deviation counts as mm: K_Halpha is 1 there for the offset alone.
 """
 
+from dataclasses import replace
 from math import cos, radians, sin
 from typing import Any, NamedTuple
 
@@ -50,6 +53,8 @@ class Sample(NamedTuple):
     offset: float
     cutter_radius: float
     printed: dict[str, Any]
+    coast_pressure_angle: float | None = None  # alpha_nC
+    generated: bool = True  # the wheel
 
     @property
     def tangential_force(self) -> float:
@@ -71,7 +76,7 @@ class Sample(NamedTuple):
 
     def section(self, gear: int) -> RootSection:
         """Critical section of the pinion (0) or the wheel (1): tools with 0.8 and 1.2 mm edge radius."""
-        module = self.pair.mean_normal_module
+        module, generated = self.pair.mean_normal_module, self.generated or not gear
         return iso10300_3.tip_section(
             self.pair.normal_teeth[gear],
             self.pair.normal_tip_diameters[gear] / module,
@@ -81,7 +86,17 @@ class Sample(NamedTuple):
             thickness_shift=self.thickness_shifts[gear],
             pressure_angle=self.pair.pressure_angle,
             effective_pressure_angle=self.pair.effective_pressure_angle,
+            coast=self._coast(gear, generated=generated),
+            generated=generated,
         )
+
+    def _coast(self, gear: int, *, generated: bool) -> Both | None:
+        """z_vn and the pressure angle of the other side of a tooth."""
+        if self.coast_pressure_angle is None:
+            return None
+        limit = -self.pair.limit_pressure_angle
+        other = replace(self.pair, pressure_angle=self.coast_pressure_angle, limit_pressure_angle=limit)
+        return other.normal_teeth[gear], other.effective_pressure_angle if generated else other.pressure_angle
 
 
 def _pair(
@@ -144,7 +159,27 @@ SHORT = Sample(
         "sigma_FG": (1011.5, 997.9),
     },
 )  # fmt: skip
+FORMATE = Sample(
+    _pair(
+        (18.200, 71.360), (99.377, 343.151), (42.922, 30.0), (12.265, 12.922), (19.0, -1.731), 6.065,
+        (7.278, 4.852), 60.0,
+    ),
+    (99.377, 343.151), (12, 49), 3000e3, 800.0, 0.2, (0.031, -0.031), (7.278 + 6.368, 4.852 + 8.794), 150.0,
+    (8.0, 16.0), (1500.0, 480.0), 27.0, 40.0, 135.0,
+    {
+        "z_v": (13.872, 142.370), "z_vn": (24.958, 256.145), "d_van": (165.925, 1563.187), "widths": (49.260, 57.953),
+        "ratios": (1.171, 1.536), "l_bm": 36.210, "rho_rel": 28.394, "F_vmt": 66311.0, "F_n": 87200.2,
+        "K_Halpha": 1.0, "Z_M-B": 0.973, "Z_LS": 0.801, "Z_E": 191.646, "Z_L": 0.992, "Z_v": 0.975,
+        "Z_R": 0.951, "Z_Hyp": 0.944, "sigma_H0": 1375.3, "Y_eps": 0.625, "Y_BS": 1.358, "Y_LS": 0.641,
+        "Y_Fa": (2.357, 2.177), "Y_Sa": (1.904, 2.371), "q_s": (3.224, 5.947), "s_Fn": 13.077, "rho_F": 2.028,
+        "h_Fa": 12.090, "Y_R_relT": 0.972, "Y_delta_relT": (1.006, 1.026), "sigma_F0": (460.4, 529.7),
+        "sigma_FG": (928.9, 947.3),
+    },
+    coast_pressure_angle=radians(21.0),
+    generated=False,
+)  # fmt: skip
 SAMPLES = {"sample 1, bevel": BEVEL, "sample 2, hypoid": HYPOID, "sample 3, hypoid": SHORT}
+SAMPLES |= {"sample 4, hypoid with a wheel that is not generated": FORMATE}
 
 
 def obtained(sample: Sample) -> dict[str, Any]:
