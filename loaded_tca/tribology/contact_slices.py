@@ -142,7 +142,7 @@ def contact_slices(result: CycleNumbers) -> ContactSlices:
     loaded = [number for number, each in enumerate(sums) if each.any()]
     places = np.array([present[number][0] for number in loaded], dtype=int).reshape(-1, 3)
     maps = [present[number][1] for number in loaded]
-    longest = max((one.y.size for one in maps), default=0)
+    longest = max((one.y.size for one in maps), default=1)
     pressure, moment, y = np.zeros((3, len(maps), longest))
     for row, (number, one) in enumerate(zip(loaded, maps, strict=True)):
         cells = slice(one.y.size)
