@@ -1,7 +1,7 @@
 """Deliberate faults of the package, each with the test that has to fail with it.
 
 Run from the root of the repository: ``python -m tests.faults [WORD ...]``, all faults or those with a word in their
-description; four to five seconds of processor time each. Each is written into a copy of the package, where its test
+description; two to three seconds of processor time each. Each is written into a copy of the package, where its test
 is run; one that no test notices, or whose text is not there any more, makes the exit code 1. ``tests/test_faults.py``
 keeps the texts true.
 """
