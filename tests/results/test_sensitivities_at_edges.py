@@ -3,6 +3,7 @@
 import re
 import warnings
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -28,6 +29,7 @@ START = 177.0
 """Of a relief at the tip of the wheel of 57 teeth [mm]."""
 
 
+@cache
 def solved(name, cells, positions, **changes):
     """An analysis, and what a radian is at the wheel's base circle [um]."""
     wanted = {"analysis.cells": (cells, cells), "analysis.positions": positions, "analysis.torques_Nm": (130.0,)}
