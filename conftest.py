@@ -8,12 +8,14 @@ says: dozens of tests start processes, which would each compile the package.
 import atexit
 import os
 import shutil
+import sys
 import tempfile
 
 if "PYTEST_XDIST_WORKER" not in os.environ:  # workers inherit the folder of the session
     os.environ["LOADED_TCA_CACHE"] = tempfile.mkdtemp(prefix="loaded_tca-models-")
     atexit.register(shutil.rmtree, os.environ["LOADED_TCA_CACHE"], ignore_errors=True)
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 os.environ["LOADED_TCA_JOBS"] = "1"
 if int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")) > 1:  # read when BLAS is loaded, by numpy
     os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -59,10 +59,17 @@ def pytest_collection_modifyitems(items, config):
         config.stash[TESTS][item.nodeid.partition("[")[0]] |= not item.get_closest_marker("thorough")
 
 
-def pytest_collection_finish():
-    """Look for garbage seldom: what modules and tests hold stays."""
-    gc.collect()
-    gc.set_threshold(50_000, 20, 50)
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Look for garbage seldom, and not while tests are collected: what modules and tests hold stays."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.enable()
+        gc.collect()
+        gc.freeze()
+        gc.set_threshold(50_000, 20, 50)
 
 
 def pytest_configure():

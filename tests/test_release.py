@@ -32,20 +32,20 @@ def call(*command, cwd, silent=False):
     return done.stdout
 
 
-def build(folder, *options):
+def build(command, *arguments, cwd):
     """Archives built by the tools that are installed, without the network; ``dev`` of pyproject.toml has them."""
-    command = "import sys; from build.__main__ import main; sys.exit(main(sys.argv[1:]))"
     environment = os.environ | {"SOURCE_DATE_EPOCH": "1700000000"}
-    arguments = [sys.executable, "-c", command, "--no-isolation", *options, "--outdir", str(folder), str(ROOT)]
-    done = subprocess.run(arguments, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-c", command, *map(str, arguments)]
+    done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 @pytest.fixture(scope="module")
 def archives(tmp_path_factory):
-    """The source archive, and the wheel that is built of it."""
+    """Source archive and wheel of the working copy, by the hooks that tools for building call, in one process."""
     folder = tmp_path_factory.mktemp("dist")
-    build(folder)
+    hooks = "import sys; from hatchling.build import *; build_sdist(sys.argv[1]); build_wheel(sys.argv[1])"
+    build(hooks, folder, cwd=ROOT)
     names = sorted(path.name for path in folder.iterdir())
     assert names == [f"loaded_tca-{VERSION}-py3-none-any.whl", f"loaded_tca-{VERSION}.tar.gz"]
     return folder / names[1], folder / names[0]
@@ -67,8 +67,10 @@ def test_wheel_has_every_file_of_the_package_and_nothing_else(archives):
 
 @pytest.mark.thorough
 def test_wheel_of_the_source_archive_is_that_of_the_working_copy(archives, tmp_path):
-    build(tmp_path, "--wheel")
-    (wheel,) = tmp_path.iterdir()
+    """By the tool that makes a source archive and of it the wheel."""
+    command = "import sys; from build.__main__ import main; sys.exit(main(sys.argv[1:]))"
+    build(command, "--no-isolation", "--outdir", tmp_path, ROOT, cwd=tmp_path)
+    (wheel,) = tmp_path.glob("*.whl")
     assert contents(wheel) == contents(archives[1])
 
 

@@ -104,7 +104,7 @@ pinion_torque_Nm = 20.9
 positions = 4
 compliance = "contact"
 free_edges = false
-cells = [32, 48]
+cells = [16, 24]
 """
 MISALIGNMENT = "mounting.misalignment_um"
 

@@ -3,6 +3,7 @@
 import math
 import warnings
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from loaded_tca.loaded.line_load import SliceLoads, averaged_line_load
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.reference.hertz import point_contact
 from loaded_tca.results.sensitivities import TORQUE
-from loaded_tca.results.slice_pressure import largest_slice_pressures, rough_peaks
+from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures, rough_peaks
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import trace_contact
 from tests.samples.gear_pairs import sam_paper
@@ -279,3 +280,28 @@ def test_peak_where_an_edge_runs_along_the_contact_is_that_of_slices():
     assert contact.at_edge
     of_slices, peak = (find(pair, [under_pressure(contact)])[0] for find in (largest_slice_pressures, rough_peaks))
     assert peak.pressure == of_slices.pressure
+
+
+def test_derivative_of_a_peak_counts_what_forces_change_of_the_length_of_the_average():
+    """A contact shorter than the longest average, of an even curvature: its peak goes with the root of the line load.
+
+    Beside central differences by 1e-4 of each force, by which the length of the average goes with their scatter.
+    """
+    y = np.linspace(-0.4, 0.4, 41)
+    pressure = np.outer([0.5, 1.0, 0.5], np.maximum(1.0 - (y / 0.37) ** 2, 0.0))
+    grid = SimpleNamespace(x=np.array([-0.02, 0.0, 0.02]), y=y, spacing=(0.02, 0.02), cover=np.ones(pressure.shape))
+
+    def slices(slice_pressure):
+        return SliceLoads(8.0, grid, slice_pressure)
+
+    even = slices(pressure)
+    top = even.line_load.argmax()
+    peak = SlicePeak(1.0, (0.0, even.places[top]), 0.02, even, np.ones(even.places.size))
+    carrying = np.flatnonzero(even.force)[::6]
+    expected = []
+    for place in carrying:
+        step = 1e-4 * pressure * (np.arange(y.size) == place)
+        low, high = (slices(pressure + by * step).line_load.max() for by in (-1.0, 1.0))
+        expected.append(0.5 * (high - low) / (2e-4 * even.force[place]) / even.line_load[top])
+    # the largest line load is that at one of the borders of the slices; with the length held up to 2.9 times as much
+    assert_allclose(peak.slopes[carrying], expected, rtol=0.0, atol=3e-4 * np.abs(expected).max())

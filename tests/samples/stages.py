@@ -11,7 +11,7 @@ STAGE = Path(__file__).parents[2] / "examples" / "stages" / "helical_automotive.
 FEW = {
     "analysis.compliance": "contact",
     "analysis.free_edges": False,
-    "analysis.cells": [12, 16],
+    "analysis.cells": [8, 10],
     "analysis.positions": 5,
     "analysis.torques_Nm": [300.0],
 }

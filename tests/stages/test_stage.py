@@ -24,7 +24,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples" / "stages"
 QUICK = {
     "analysis.compliance": "contact",
     "analysis.free_edges": False,
-    "analysis.cells": [12, 16],
+    "analysis.cells": [8, 10],
     "analysis.accuracy": None,
 }
 TEXT = (EXAMPLES / "helical_automotive.toml").read_text(encoding="utf-8")

@@ -54,7 +54,7 @@ def beside():
     """A design, and those a step of 5e-4 um below and above it in each key: no cell enters or leaves between them."""
     with coarsely():
         one, x = (
-            model(scene=SCENE.with_changes({"analysis.root_stress": True} | RATED), tolerance=1e-11),
+            model(scene=SCENE.with_changes({"analysis.root_stress": True} | RATED), cells=(10, 16), tolerance=1e-11),
             np.array([5.3, 2.1, 9.0]),
         )
     steps = 5e-4 * np.eye(3)
@@ -427,7 +427,7 @@ test_a_search_that_cannot_be_is_refused = refusals(
 
 def test_a_limit_that_no_design_meets_is_told(monkeypatch):
     """Hertz's pressure of a line is above 500 MPa."""
-    monkeypatch.setattr(designs, "MOST_ITERATIONS", 8)
+    monkeypatch.setattr(designs, "MOST_ITERATIONS", FEW_STEPS)
     one = model(variables={CROWNING: (1.0, 12.0)}, scatter=None, cells=(8, 12), scene=COARSE)
     with pytest.raises(
         InputError, match=r"pressure_MPa: no design found meets 300; at the best one it is \d+.*lead_crow"
