@@ -56,9 +56,9 @@ GRIDS = 1e-2
 """Transmission error and share by grids: the accuracy that was asked for."""
 FROM_FILE = 1e-6
 """Files keep every digit; states that are solved again from them are solved to 1e-6."""
-NO_SHARE = 1e-6
+NO_SHARE = 1e-5
 """Change of a share within a key's tolerance below which its digits are not compared: a pair that carries alone has
-derivatives that are differences of numbers near 1."""
+derivatives that are differences of numbers near 1, rounded to 1e-12."""
 BALANCED = 1e-6
 """Forces of the last solutions balance the torque to the tolerance of the contact solver."""
 ENERGY = 0.01
