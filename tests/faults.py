@@ -2454,6 +2454,34 @@ FAULTS = (
         "set()",
         "test_cli_rating.py::test_command_rates_a_result_again_under_a_spectrum",
     ),
+    Fault(
+        "racks: kept models are found by parts of that radius",
+        "compliance/flexibility.py",
+        "size = float(np.ptp(nodes.outline, axis=(0, 1)).max())",
+        "size = float(np.nanmax(np.abs(nodes.points)))",
+        "compliance/test_rack_body.py",
+    ),
+    Fault(
+        "racks: a rack tilts about the axis of the gear that stands for it",
+        "pairs/rack.py",
+        "rack.radius * turn[:, 0]",
+        "rack.radius * np.eye(3)[0]",
+        "pairs/test_rack_pair.py",
+    ),
+    Fault(
+        "racks: the body is cut beside the modelled teeth",
+        "tooth/rack.py",
+        "return math.ceil(REACH * float(np.max(root - held)) / pitch)",
+        "return 1",
+        "compliance/test_rack_body.py",
+    ),
+    Fault(
+        "racks: the force along the rack is that on the path of contact",
+        "results/collect.py",
+        'np.asarray(arrays["torque"]) / per_angle',
+        'np.asarray(arrays["torque"]) / pair.base_radii[0]',
+        "scene/test_rack_scene.py",
+    ),
 )
 
 

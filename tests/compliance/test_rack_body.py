@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.body import ToothFrame, gear_nodes
+from loaded_tca.compliance.flexibility import key_of
 from loaded_tca.compliance.influence import gear_compliance
 from loaded_tca.compliance.layout import MeshDensity, RingLayout
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, Rack
@@ -67,3 +69,14 @@ def test_thickness_below_the_teeth_makes_a_rack_softer() -> None:
         softness.append(float(table.max()))
     assert softness[1] > softness[0]
     assert softness[2] == pytest.approx(0.5 * softness[0], rel=1e-6)  # single roundings of the radius are 1e-9 of teeth
+
+
+def test_kept_models_of_racks_differ_by_parts_of_their_teeth() -> None:
+    """Not by parts of the radius of the gear that stands for a rack, 3e6 mm."""
+    pinion = CylindricalGear(teeth=20, normal_module=3.0, face_width=20.0)
+    keys = set()
+    for addendum in (3.0, 3.0 + 2e-7):
+        rack = Rack(normal_module=3.0, face_width=20.0, height=12.0, addendum=addendum)
+        gear = rack_pair(pinion, rack).wheel
+        keys.add(key_of(ToothFrame(gear, gear_nodes(gear, COARSE))))
+    assert len(keys) == 2

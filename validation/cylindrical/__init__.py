@@ -5,5 +5,6 @@
 - ``sam_paper``: peak pressure of the crowned pairs of the SAM paper;
 - ``nrel_planet_ring``: geometry of a planet and a ring against a published report;
 - ``internal_hertz``: pressure of a crowned pinion in a ring against Hertz's point contact;
+- ``rack``: pressure of a crowned pinion on a rack against Hertz, and wheels of many teeth that tend to it;
 - ``line_contact``: pressure in the middle of unmodified pairs against Hertz's line contact.
 """
