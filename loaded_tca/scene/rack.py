@@ -144,10 +144,10 @@ class RackScene(CylindricalScene):
 
     @classmethod
     def describes(cls, table: Any) -> bool:
-        """Whether the wheel is a rack."""
+        """Whether the wheel is a rack, however that is spelled: the section says how."""
         wheel = table.get("wheel")
         teeth = wheel.get("teeth") if hasattr(wheel, "get") else getattr(wheel, "teeth", None)
-        return isinstance(teeth, str) and teeth == "rack"
+        return isinstance(teeth, str) and teeth.casefold() == "rack"
 
     @cached_property
     def rack(self) -> Rack:

@@ -110,7 +110,7 @@ def test_reliefs_of_the_rack_start_below_its_tip_line() -> None:
             2.0,
             "wheel.modifications.tip_relief_start_length_mm: found",
         ),
-        ("wheel.teeth", "racks", 'wheel.teeth: found "racks"; allowed'),
+        ("wheel.teeth", "Rack", 'wheel.teeth: found "Rack"; allowed "rack"'),
         ("wheel.height_mm", None, "wheel.height_mm: missing"),
     ],
 )
