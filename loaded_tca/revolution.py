@@ -135,6 +135,7 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
 
 
 def _asked(scene: Scene) -> RevolutionSection:
+    scene.require_turns("a whole revolution")
     return scene.revolution or RevolutionSection()
 
 

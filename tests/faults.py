@@ -2735,6 +2735,34 @@ FAULTS = (
         "if not held and (rating.K_Halpha ==",
         "rating/test_slopes.py::test_transverse_load_factor_of_cylindrical_pairs_is_held",
     ),
+    Fault(
+        "racks: kept models are found by parts of that radius",
+        "compliance/flexibility.py",
+        "size = float(np.ptp(nodes.outline, axis=(0, 1)).max())",
+        "size = float(np.nanmax(np.abs(nodes.points)))",
+        "compliance/test_rack_body.py::test_kept_models_of_racks_differ_by_parts_of_their_teeth",
+    ),
+    Fault(
+        "racks: a rack tilts about the axis of the gear that stands for it",
+        "pairs/rack.py",
+        "rack.radius * turn[:, 0]",
+        "rack.radius * np.eye(3)[0]",
+        "pairs/test_rack_pair.py::test_rack_tilts_about_its_reference_line",
+    ),
+    Fault(
+        "racks: the body is cut beside the modelled teeth",
+        "tooth/rack.py",
+        "return math.ceil(REACH * float(np.max(root - held)) / pitch)",
+        "return 1",
+        "compliance/test_rack_body.py::test_piece_of_a_ring_bends_as_the_ring",
+    ),
+    Fault(
+        "racks: the force along the rack is that on the path of contact",
+        "results/collect.py",
+        'np.asarray(arrays["torque"]) / per_angle',
+        'np.asarray(arrays["torque"]) / pair.base_radii[0]',
+        "scene/test_rack_scene.py::test_numbers_along_the_rack",
+    ),
 )
 
 

@@ -35,6 +35,7 @@ CASES = (
     "cylindrical.line_contact",
     "cylindrical.nrel_planet_ring",
     "cylindrical.internal_hertz",
+    "cylindrical.rack",
     "stages.planetary",
     "cylindrical.double_helical",
     "cylindrical.fzg_c14_geometry",

@@ -70,7 +70,8 @@ def gear_nodes(gear: Gear, density: MeshDensity, outline: int = 65) -> BodyNodes
     rim = np.maximum(radius, bore), np.minimum(radius, bore)  # of a ring the bore of its image is the outside
     growth = rim_growth(*rim, density, gear.form.teeth)
     core, cuts = CORE if gear.is_solid else 0, cuts_at_bore(*rim, density.rim, growth)
-    return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density, core, cuts, growth))
+    beyond = gear.form.held.pitches_beyond(*rim, gear.form.teeth)
+    return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density, core, cuts, growth, beyond))
 
 
 @dataclass(frozen=True, eq=False)

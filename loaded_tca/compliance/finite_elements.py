@@ -32,7 +32,7 @@ FACES = ((0, 0), (0, 2), (1, 0), (1, 2))
 QUADRATURE_ORDER = 4
 """Three points in each direction."""
 SAME_FORM = 1e-9
-"""Elements are of one kind if their nodes agree to this part of the size of the body: far above rounding."""
+"""Elements are of one kind if their nodes agree to this part of the largest of them: far above rounding."""
 
 
 def nodes_of(lowest: Indices, spans: Indices, offsets: Indices, columns: int) -> tuple[Indices, Indices]:
@@ -260,7 +260,8 @@ def discretise(
     first = frames[lowest[:, 0] % shape[0]]
     corners = np.einsum("nba,nkb->nka", _turn(first, d), kept_points[elements])
     onwards = np.remainder(frames[nodes[..., 0]] - first[:, None], 2.0 * math.pi)
-    form = (corners - corners[:, :1] * (np.arange(d) == 2)) / np.abs(corners).max()  # wherever it lies along the axis
+    form = corners - corners[:, :1] * (np.arange(d) == 2)  # wherever it lies along the axis
+    form /= np.ptp(corners, axis=1).max()
     form = np.concatenate([form, onwards[..., None]], axis=-1).reshape(len(form), -1)
     rounded = np.concatenate([np.rint(form / SAME_FORM).astype(int), hanging], axis=1)
     seen: dict[bytes, int] = {}

@@ -155,7 +155,7 @@ def local_flexibility(gear: Gear, density: MeshDensity = DENSITY) -> tuple[Array
     heights = local_heights(density)
     rows = first + np.rint(2 * density.flank * heights).astype(int)
     forces = [_Force.on_flank(mesh.points, flank[row - 2 : row + 3], middle[row], gear.material) for row in rows]
-    bore, held = mesh.number[:, 0], np.zeros((*mesh.points.shape, len(forces)))
+    bore, held = mesh.number[mesh.number[:, 0] >= 0, 0], np.zeros((*mesh.points.shape, len(forces)))
     held[bore] = np.stack([-force.field(mesh.points[bore])[0] for force in forces], axis=-1)
     held = held.reshape(-1, len(forces))
     factor, matrices = factorised(mesh, gear.material, bore)
@@ -232,7 +232,7 @@ LENGTHS_PER_LAYER = 2.0
 """Places across the face, over the layers of elements, and at least:"""
 LEAST_LENGTHS = 11
 SAME_OUTLINE = 1e-9
-"""Numbers are the same if they agree to this part of the size of the gear: far above rounding."""
+"""Numbers are the same if they agree to this part of the size of the tooth: far above rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -303,7 +303,7 @@ def key_of(frame: ToothFrame, places: FlankPlaces | None = None, what: str = "")
     """Digest of all that the flexibility of a gear's teeth depends on, or ``what`` else of forces at ``places``."""
     nodes, material = frame.nodes, frame.gear.material
     places = places or grid_of_places(frame)[-1]
-    size = float(np.nanmax(np.abs(nodes.points)))
+    size = float(np.ptp(nodes.outline, axis=(0, 1)).max())
     plain = frame.side, nodes.layout, float(material.youngs_modulus), float(material.poisson_ratio), f"{size:.9e}"
     digest = hashlib.sha256(f"{_programme()} {what}{plain}".encode())
     for lengths in (nodes.outline, nodes.points, places.point, places.depth):
@@ -313,8 +313,8 @@ def key_of(frame: ToothFrame, places: FlankPlaces | None = None, what: str = "")
 
 
 def _rounded(values: Array) -> bytes:
-    """Values of at most about 1 as whole numbers; 2 stands for a node that is none."""
-    whole = np.rint(np.nan_to_num(values, nan=2.0) / SAME_OUTLINE).astype(np.int64)
+    """Values over the size of the tooth as whole numbers; 0 stands for a node that is none."""
+    whole = np.rint(np.nan_to_num(values, nan=0.0) / SAME_OUTLINE).astype(np.int64)
     return f"{whole.shape}".encode() + whole.tobytes()
 
 

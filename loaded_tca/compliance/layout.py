@@ -107,7 +107,7 @@ class SectorLayout:
 
 @dataclass(frozen=True)
 class RingLayout:
-    """A whole ring of teeth.
+    """A whole ring of teeth, or a piece of it.
 
     Parameters
     ----------
@@ -119,6 +119,8 @@ class RingLayout:
         Layers that the lowest layer of the rim is cut into.
     growth : float
         Thickness of each layer of the rim over that of the one above, before the lowest is cut.
+    beyond : int, optional
+        Pitches of the rim on either side of the modelled teeth, after which the body ends; None: it closes to a ring.
     """
 
     teeth: int
@@ -126,6 +128,7 @@ class RingLayout:
     core: int = 0
     cuts: int = 1
     growth: float = 1.8
+    beyond: int | None = None
 
     @property
     def neighbours(self) -> int:
@@ -135,14 +138,20 @@ class RingLayout:
     @cached_property
     def sectors(self) -> tuple[SectorLayout, ...]:
         """Pitches in the sense of +theta, the resolved tooth first."""
-        near = self.neighbours
+        near, last = self.neighbours, self._last
+        numbers = range(self.teeth) if last is None else [*range(last + 2), *range(-last, 0)]
         layouts: list[SectorLayout] = []
-        for number in range(self.teeth):
-            away = min(number, self.teeth - number)
+        for number in numbers:
+            away = min(abs(number), self.teeth - number)
             density = self.density if number == 0 else self.density.coarse() if away <= near else None
             first = layouts[-1].first + 2 * layouts[-1].columns if layouts else 0
             layouts.append(SectorLayout(number if number <= self.teeth // 2 else number - self.teeth, first, density))
         return tuple(layouts)
+
+    @property
+    def _last(self) -> int | None:
+        """Number of the last pitch of a body that ends; the next one is the cut, without elements."""
+        return None if self.beyond is None else self.neighbours + self.beyond
 
     def sector(self, number: int) -> SectorLayout:
         """Sector of the tooth ``number``, counted in the sense of +theta; InputError if it has no tooth."""
@@ -227,7 +236,8 @@ class RingLayout:
         return np.concatenate([tooth, land]), ends
 
     def _elements_of(self, sector: SectorLayout) -> Indices:
-        rim = _block(sector.first, sector.columns, 0, self.base_row // 2)
+        is_cut = self._last is not None and sector.number > self._last
+        rim = _block(sector.first, 0 if is_cut else sector.columns, 0, self.base_row // 2)
         density = sector.density
         if density is None:
             return rim

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from loaded_tca.gears.hypoid_blank import HypoidBlank
     from loaded_tca.gears.internal_mesh import InternalMesh
     from loaded_tca.gears.pitch_cones import PitchConeParameters, pitch_cones_by_method_1
+    from loaded_tca.gears.rack import Rack, rack_mesh
     from loaded_tca.gears.ring import PinionCutter, RingGear
 else:
     __getattr__, __dir__ = lazy_names(__name__)
@@ -47,10 +48,12 @@ __all__ = [
     "MachineSettings",
     "PinionCutter",
     "PitchConeParameters",
+    "Rack",
     "RingGear",
     "bevel_mesh",
     "duplex_spread_blade",
     "pitch_cones_by_method_1",
+    "rack_mesh",
     "spread_blade",
     "transverse_profile",
 ]

@@ -103,10 +103,7 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     if wanted.root_stress:
         yield "root stress", "on"
     if wanted.without_bodies:
-        held = (
-            "bore and outside of the ring held rigid [mm]" if scene.wheel.teeth < 0 else "bores or journals held rigid"
-        )
-        yield held, *(f"{bore:z.4f}" for bore in pair.rigid_bores)
+        yield scene.held_row(pair)
 
 
 def _bearing_rows(scene: Scene) -> Iterator[Row]:

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from loaded_tca.pairs.gear import Gear
     from loaded_tca.pairs.gear_pair import Driving, GearPair, MatingTeeth, Sense, mating_teeth
     from loaded_tca.pairs.mean_point import MeanContact
+    from loaded_tca.pairs.rack import rack_pair
     from loaded_tca.pairs.synthesis import local_synthesis, mean_contact
 else:
     __getattr__, __dir__ = lazy_names(__name__)
@@ -30,4 +31,5 @@ __all__ = [
     "local_synthesis",
     "mating_teeth",
     "mean_contact",
+    "rack_pair",
 ]

@@ -11,9 +11,10 @@ from loaded_tca.plots import style
 from loaded_tca.plots.style import HEADROOM, HERTZ, NO_LOAD, loads, range_of_positions, torque_styles
 from loaded_tca.results.key_figures import ARCSEC, mean_over_a_pitch
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.units import MICROMETRES
 
-SMALLEST_SPAN_ARCSEC = 0.02
-"""Height of a transmission error axis below which a curve would be rounding."""
+SMALLEST_SPAN = 0.02
+"""Height [arcsec, or um along a rack] of a transmission error axis below which a curve would be rounding."""
 EDGE_HEADROOM = 1.15
 """How far above the curves the pressure at a sharp edge, which depends on the mesh, may draw the axis."""
 ROUNDED_EDGE = "p"
@@ -33,22 +34,24 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
     """
     figure = Figure(figsize=(8.0, 6.5), layout="constrained")
     absolute, about_mean = figure.subplots(2, 1, sharex=True)
+    along = result.scene.rack_radius
+    shown, unit = (ARCSEC, "arcsec") if along is None else (MICROMETRES * along, "µm along the rack")
     curves = [("unloaded", "black", ".", result.path.transmission_error)]
     curves += [(*style, result.transmission_error[torque]) for torque, *style in torque_styles(result)]
     angle = np.degrees(result.pinion_angle)
     for label, colour, marker, error in curves:
         mean = mean_over_a_pitch(error)
-        absolute.plot(angle, error * ARCSEC, color=colour, marker=marker, markersize=4.0, label=label)
-        about_mean.plot(angle, (error - mean) * ARCSEC, color=colour, marker=marker, markersize=4.0)
-    absolute.set_ylabel("transmission error [arcsec]")
-    about_mean.set_ylabel("transmission error\nless its mean [arcsec]")
+        absolute.plot(angle, error * shown, color=colour, marker=marker, markersize=4.0, label=label)
+        about_mean.plot(angle, (error - mean) * shown, color=colour, marker=marker, markersize=4.0)
+    absolute.set_ylabel(f"transmission error [{unit}]")
+    about_mean.set_ylabel(f"transmission error\nless its mean [{unit}]")
     about_mean.set_xlabel("pinion angle [deg]")
     figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
-    factor = result.wheel_base_radius * 1e3 / ARCSEC  # um per arcsec
+    factor = result.um_per_rad / shown  # um per unit
     for axes in (absolute, about_mean):
-        style.widen(axes, SMALLEST_SPAN_ARCSEC)
-        right = axes.secondary_yaxis("right", functions=(lambda arcsec: arcsec * factor, lambda um: um / factor))
-        right.set_ylabel("at the wheel's base circle [µm]")
+        style.widen(axes, SMALLEST_SPAN)
+        right = axes.secondary_yaxis("right", functions=(lambda value: value * factor, lambda um: um / factor))
+        right.set_ylabel("at the wheel's base circle [µm]" if along is None else "along the path of contact [µm]")
         axes.grid(alpha=0.3)
     style.set_title(figure, result, f"transmission error, {loads(result)}", range_of_positions(result))
     return figure

@@ -191,6 +191,7 @@ def inputs_of(result: CycleNumbers, duty: Duty = Duty()) -> RatingInputs:
     scene = result.scene
     if not isinstance(scene, CylindricalScene):
         raise InputError(f'pair.type: "{scene.geometry.type}"; ISO 6336 is for cylindrical pairs')
+    scene.require_turns("a rating")
     outside = [
         f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
     ]

@@ -96,6 +96,7 @@ def mesh_cycle(
         "load_share": share,
         "tooth_deflection": np.where(apart, math.nan, carried.tooth_deflection[..., order]),
     }
+    arrays |= rack_arrays(scene, pair, arrays)
     if roots:
         in_contact = ~np.isnan(arrays["normal_force"]).all(axis=-1)
         arrays |= root_stress_arrays(pair, roots, arrays["pair"].tolist(), in_contact, stacked, moved)
@@ -110,6 +111,18 @@ def mesh_cycle(
         maps=stacked,
         states=(scene, tuple(one.carried.states for one in cycles)),
     )
+
+
+def rack_arrays(scene: Scene, pair: GearPair, arrays: Mapping[str, Array]) -> dict[str, Array]:
+    """Arrays of a result whose wheel is a rack, by their names, from others; none of wheels."""
+    if (radius := scene.rack_radius) is None:
+        return {}
+    per_angle = pair.ratio * radius
+    return {
+        "rack_travel": per_angle * arrays["pinion_angle"],
+        "rack_transmission_error": radius * arrays["transmission_error"],
+        "rack_force": np.asarray(arrays["torque"]) / per_angle,
+    }
 
 
 def numbers_and_maps(

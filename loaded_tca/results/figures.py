@@ -33,7 +33,6 @@ from loaded_tca.results.figure import (
     slope_of_root_tension,
 )
 from loaded_tca.results.key_figures import (
-    ARCSEC,
     AXES,
     LOAD_ROW,
     ORDERS,
@@ -47,6 +46,7 @@ from loaded_tca.results.key_figures import (
     span_of,
 )
 from loaded_tca.results.root_stress import FACTORS, RIM_LABEL
+from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -192,7 +192,7 @@ FIGURES: dict[str, Figure] = {
     "hertz_length_there_mm": Figure(of=lambda under: 2.0 * under.smooth.number("hertz_semi_major")),
     "hertz_width_there_mm": Figure(of=lambda under: 2.0 * under.smooth.number("hertz_semi_minor")),
     "transmission_error_mean_arcsec": Figure(
-        of=lambda under: mean_over_a_pitch(under.transmission_error) * ARCSEC,
+        of=lambda under: mean_over_a_pitch(under.transmission_error) * under.arcsec,
         axis="mean transmission error",
         accuracy=of_bending,
     ),
@@ -205,7 +205,7 @@ FIGURES: dict[str, Figure] = {
         slope=Slope(1, "TE, mean", slope_of_mean_error),
     ),
     "transmission_error_span_arcsec": Figure(
-        of=lambda under: span_of(under.transmission_error, under.result.places_of_mesh) * ARCSEC,
+        of=lambda under: span_of(under.transmission_error, under.result.places_of_mesh) * under.arcsec,
         axis="peak-to-peak transmission error",
         accuracy=of_bending,
     ),
@@ -223,13 +223,13 @@ FIGURES: dict[str, Figure] = {
     ),
     **{f"transmission_error_order_{order}_um": _of_order(order) for order in range(1, ORDERS + 1)},
     "unloaded_transmission_error_mean_arcsec": Figure(
-        of=lambda under: mean_over_a_pitch(under.result.unloaded_transmission_error) * ARCSEC
+        of=lambda under: mean_over_a_pitch(under.result.unloaded_transmission_error) * under.arcsec
     ),
     "unloaded_transmission_error_mean_um": Figure(
         of=lambda under: mean_over_a_pitch(under.result.unloaded_transmission_error) * under.length
     ),
     "unloaded_transmission_error_span_arcsec": Figure(
-        of=lambda under: span_of(under.result.unloaded_transmission_error, under.result.places_of_mesh) * ARCSEC,
+        of=lambda under: span_of(under.result.unloaded_transmission_error, under.result.places_of_mesh) * under.arcsec,
         axis="peak-to-peak unloaded transmission error",
     ),
     "unloaded_transmission_error_span_um": Figure(
@@ -252,6 +252,22 @@ FIGURES: dict[str, Figure] = {
     ),
     "secant_stiffness_mean_N_per_mm_um": Figure(
         of=lambda under: mean_over_a_pitch(under.secant_stiffness), accuracy=of_bending
+    ),
+    "rack_transmission_error_mean_um": Figure(
+        of=lambda under: MICROMETRES * mean_over_a_pitch(under.rack_transmission_error),
+        axis="mean transmission error along the rack",
+        accuracy=of_bending,
+        is_compared=True,
+        label="transmission error along the rack, mean",
+        needs="rack_transmission_error",
+    ),
+    "rack_transmission_error_span_um": Figure(
+        of=lambda under: MICROMETRES * span_of(under.rack_transmission_error, under.result.places_of_mesh),
+        axis="peak-to-peak transmission error along the rack",
+        accuracy=of_bending,
+        is_compared=True,
+        label="transmission error along the rack, peak to peak",
+        needs="rack_transmission_error",
     ),
     "misalignment_mean_um": Figure(
         of=lambda under: mean_over_a_pitch(under.misalignment),
@@ -356,6 +372,10 @@ SUMMARY: tuple[Line, ...] = (
     Line(
         "  orders 1 | 2 | 3 of the tooth mesh [um]",
         tuple(f"transmission_error_order_{order}_um" for order in (1, 2, 3)),
+    ),
+    Line(
+        "transmission error along the rack, mean | peak to peak [um]",
+        ("rack_transmission_error_mean_um", "rack_transmission_error_span_um"),
     ),
     Line(
         "mesh stiffness, mean, tangent | secant [N/(mm um)]",

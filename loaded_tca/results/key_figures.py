@@ -181,6 +181,11 @@ class UnderTorque(Row):
         """Of a transmission error at the base circle of the wheel [um/rad]."""
         return self.result.um_per_rad
 
+    @property
+    def arcsec(self) -> float:
+        """Of a transmission error [arcsec/rad]; NaN where it is that of a gear that stands for a rack."""
+        return math.nan if self.result.has("rack_force") else ARCSEC
+
     @cached_property
     def harmonics(self) -> Array:
         """Amplitudes of the orders of the tooth mesh (ORDERS,) [rad]."""

@@ -286,6 +286,19 @@ IN_FILES: dict[str, Part] = {
 }
 """What a file has beside ``QUANTITIES``: the paths, that of the leading contact before those of the pairs; the maps."""
 
+RACK_QUANTITIES: dict[str, Part] = {
+    "rack_travel": (
+        ("position",),
+        "mm",
+        "travel of the rack without errors, r_1 phi1, from where tooth pair 0 touches at the pitch point",
+    ),
+    "rack_transmission_error": Number(
+        CYCLE, "mm", "loaded transmission error along the rack, absolute", column="rack_transmission_error_um"
+    ),
+    "rack_force": Number(("torque",), "N", "mean force along the rack, without friction", label="force along the rack"),
+}
+"""Numbers that a result has where the wheel is a rack; its rotations are those of the gear that stands for the rack."""
+
 ROOTS_ASKED = Asked(
     lambda scene, _: scene.analysis.root_stress, "the result has no root stress; set analysis.root_stress = true"
 )
@@ -298,12 +311,16 @@ SHAFT_ASKED = Asked(
 ROLLING_ASKED = Asked(  # which a file has where the scene does
     lambda *_: False, "the gear has no rolling bearings; type of [[{gear}.shaft.bearings]] gives them"
 )
-"""When a result has numbers of root stress, of supports, of shafts and of rolling bearings."""
+RACK_ASKED = Asked(
+    lambda scene, _: scene.rack_radius is not None, 'the wheel is no rack; wheel.teeth = "rack" makes it one'
+)
+"""When a result has numbers of root stress, of supports, of shafts, of rolling bearings and of racks."""
 OF_SUPPORTS = {
     **numbers(SUPPORT_QUANTITIES, SUPPORTS_ASKED),
     **numbers(BEARING_QUANTITIES, SHAFT_ASKED),
     **numbers(ROLLING_QUANTITIES, ROLLING_ASKED),
 }
 ROOT_STRESS = numbers(ROOT_PARTS, ROOTS_ASKED)
-CYCLE_NUMBERS = numbers(QUANTITIES) | OF_SUPPORTS | ROOT_STRESS
-"""All numbers of mesh cycles by their names: those that all have, of supports, of root stress."""
+OF_RACKS = numbers(RACK_QUANTITIES, RACK_ASKED)
+CYCLE_NUMBERS = numbers(QUANTITIES) | OF_SUPPORTS | ROOT_STRESS | OF_RACKS
+"""All numbers of mesh cycles by their names: those that all have, of supports, of root stress, of racks."""

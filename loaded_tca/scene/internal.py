@@ -213,6 +213,10 @@ class InternalScene(CylindricalScene):
             sense=sense,
         )
 
+    def held_row(self, pair: GearPair) -> Row:
+        """Return what is held rigid where teeth bend."""
+        return "bore and outside of the ring held rigid [mm]", *(f"{bore:z.4f}" for bore in pair.rigid_bores)
+
     def active_starts(self) -> tuple[float, float]:
         """Return where the active profiles start [mm]: roll lengths, that of the ring with a minus."""
         mesh = self.mesh()

@@ -371,6 +371,18 @@ class Scene(WithStandards, ABC):
         """
         return self.pair().rigid_bores if self.analysis.without_bodies else None
 
+    def held_row(self, pair: GearPair) -> Row:
+        """Return what is held rigid where teeth bend."""
+        return "bores or journals held rigid", *(f"{bore:z.4f}" for bore in pair.rigid_bores)
+
+    @property
+    def rack_radius(self) -> float | None:
+        """What turns rotations of the wheel into travels of the rack that it stands for [mm]; None of wheels."""
+        return None
+
+    def require_turns(self, where: str) -> None:
+        """Refuse what needs whole turns of both gears, said in words, where the wheel has none; it has."""
+
     @abstractmethod
     def active_starts(self) -> tuple[float, float]:
         """Return where the active profiles of pinion and wheel start, as ``Flank.profile_coordinate`` counts."""

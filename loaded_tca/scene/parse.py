@@ -175,7 +175,7 @@ def toml_table(text: str, source: str) -> dict[str, Any]:
 
 
 MODULES = {
-    "cylindrical": ("cylindrical", "double_helical", "internal"),
+    "cylindrical": ("cylindrical", "double_helical", "internal", "rack"),
     "straight_bevel": ("bevel",),
     "spiral_bevel": ("bevel",),
     "face_milled": ("face_milled", "blank_face_milled"),

@@ -51,6 +51,17 @@ class Held(ABC):
             If it leaves no rim below the teeth.
         """
 
+    def pitches_beyond(self, root: Array, held: Array, teeth: int) -> int | None:  # noqa: ARG002 (of whole rings)
+        """Pitches of the body that count beside the modelled teeth; None: the body is a whole ring.
+
+        Parameters
+        ----------
+        root, held : (k,) array [mm]
+            Radii of root circles and cylinder in sections.
+        teeth : int
+        """
+        return None
+
 
 @dataclass(frozen=True)
 class Bore(Held):

@@ -53,10 +53,10 @@ def test_reference_describes_each_section_once_for_each_family():
     assert len(set(titles)) == len(titles)
     for name in ("pinion", "mounting"):  # those of double helical gears, too
         assert sum(f"`[{name}]`" in title for title in titles) == len({*FAMILIES.values()}) + 1
-    assert sum("`[pair]`" in title for title in titles) == len({*FAMILIES.values()}) + 2  # and that by blanks
+    assert sum("`[pair]`" in title for title in titles) == len({*FAMILIES.values()}) + 3  # by blanks and of racks, too
     for name in ("pinion.modifications", "material", "load", "analysis", "wheel.cutter", "pair.blank", "pair.settings"):
         assert sum(f"`[{name}]`" in title for title in titles) == 1
-    assert sum("`[wheel]`" in title for title in titles) == 3  # of all, of double helical gears, of rings
+    assert sum("`[wheel]`" in title for title in titles) == 4  # of all, of double helical gears, of rings, of racks
     assert all(any(f"`{name}`" in title for title in titles) for name in FAMILIES)
 
 

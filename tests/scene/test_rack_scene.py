@@ -1,0 +1,140 @@
+"""Scenes of a pinion and a rack: from the file to results along the rack."""
+
+from __future__ import annotations
+
+import warnings
+from math import cos, pi, radians, sin, sqrt, tan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from loaded_tca import MeshCycle, Scene, analyse, analyse_revolution, read_scene
+from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
+
+EXAMPLE = read_scene(Path(__file__).parents[2] / "examples" / "scenes" / "rack_and_pinion.toml")
+SPUR = EXAMPLE.with_changes(
+    {
+        "pair.helix_angle_deg": 0.0,
+        "pinion.modifications": {},
+        "wheel.modifications": {},
+        "mounting": {},
+        "analysis": {"positions": 1, "cells": [8, 8], "compliance": "contact", "load_sharing": False},
+    }
+)
+"""A spur pinion on a rack without modifications: a line contact, in its middle position."""
+RADIUS, BASE = 30.0, 30.0 * cos(radians(20.0))
+
+
+def with_wheel(teeth: int) -> dict[str, Any]:
+    """Changes that put a wheel in the place of the rack."""
+    wheel = {"teeth": teeth, "face_width_mm": 29.0}
+    return {"pair": {"type": "cylindrical", "normal_module_mm": 3.0}, "wheel": wheel}
+
+
+def solved(scene: Scene) -> MeshCycle:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # of so few cells
+        return analyse(scene)
+
+
+def test_line_contact_at_the_pitch_point_is_that_of_a_plane_and_a_cylinder() -> None:
+    """Hertz, Johnson 1985, eq. 4.45: p0 = sqrt(F E*/(pi b rho)), with the curvature of the pinion alone.
+
+    The gear that stands for the rack adds z1/z2 = 1e-5 of it, of which pressures have half.
+    """
+    result = solved(SPUR)
+    modulus = 206000.0 / (2.0 * (1.0 - 0.3**2))
+    pressure = sqrt(250e3 / BASE * modulus / (pi * 29.0 * RADIUS * sin(radians(20.0))))
+    assert result.hertz_pressure[0, 0, 0] == pytest.approx(pressure, rel=1e-5)
+
+
+def test_wheels_of_more_and_more_teeth_tend_to_the_rack() -> None:
+    """The difference of their pressures goes with 1/z2: from 2500 to 10000 teeth it is a quarter, to 1 %."""
+    rack = float(solved(SPUR).hertz_pressure[0, 0, 0])
+    far, near = (
+        float(solved(SPUR.with_changes(with_wheel(teeth))).hertz_pressure[0, 0, 0]) - rack for teeth in (2500, 10000)
+    )
+    assert far / near == pytest.approx(4.0, rel=0.01)
+
+
+def test_numbers_along_the_rack() -> None:
+    """It travels r_1 phi1 and stays behind by e tan(alpha_t) without load, e apart; F = T/r_1."""
+    changes = {"pinion.modifications.lead_crowning_um": 5.0, "mounting.centre_distance_error_mm": 0.1}
+    result = solved(SPUR.with_changes(changes | {"analysis.positions": 3, "analysis.torques_Nm": [1e-3, 30.0]}))
+    assert result.rack_travel == pytest.approx(RADIUS * np.array([-pi / 20.0, 0.0, pi / 20.0]), abs=1e-9)
+    assert result.rack_force == pytest.approx([1.0 / RADIUS, 30e3 / RADIUS], rel=1e-12)
+    figures = result.key_figures()
+    assert figures[0]["rack_transmission_error_mean_um"] == pytest.approx(-100.0 * tan(radians(20.0)), abs=0.01)
+    along = cos(radians(20.0)) * figures[1]["rack_transmission_error_mean_um"]
+    assert along == pytest.approx(figures[1]["transmission_error_mean_um"], rel=1e-5)  # on the path of contact
+    assert np.isnan(figures[1]["transmission_error_mean_arcsec"])  # a rack does not turn
+    assert "transmission error along the rack, mean | peak to peak [um]" in result.summary()
+
+
+def test_profile_shift_follows_the_distance() -> None:
+    """Of a pinion without one of its own: what leaves no backlash but that of the allowance, 60 um."""
+    mesh = SPUR.with_changes({"pair.distance_mm": 30.9}).mesh()
+    assert mesh.pinion.profile_shift == pytest.approx(0.3, rel=1e-9)
+    assert mesh.backlash == pytest.approx(0.06, abs=1e-6)  # of 1e-5 of the shift, the limit
+
+
+def test_reliefs_of_the_rack_start_below_its_tip_line() -> None:
+    """Half the tip relief, where it is linear, is removed half way between start and tip line."""
+    changes = {"tip_relief_um": 20.0, "tip_relief_start_mm": 2.0, "tip_relief_form": "linear"}
+    scene = SPUR.with_changes({f"wheel.modifications.{key}": value for key, value in changes.items()})
+    flank = scene.pair().wheel
+    tip = scene.mesh().wheel.tip_radius
+    rho = tip - np.array([2.5, 1.0, 0.0])
+    angle = flank.flank.theta(rho, 0.0 * rho).value - flank.nominal_flank.theta(rho, 0.0 * rho).value
+    removed = np.abs(angle) * scene.mesh().wheel.base_radius
+    assert 1e3 * removed == pytest.approx([0.0, 10.0, 20.0], abs=1e-3)  # roundings of angles of 1e-6
+    with pytest.raises(InputError, match=r"wheel.modifications.tip_relief_start_mm: found 6; allowed below 5\.\d"):
+        scene.with_changes({"wheel.modifications.tip_relief_start_mm": 6.0}).pair()
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("pair.centre_distance_mm", 100.0, "pair.centre_distance_mm: found 100; a rack has no axis: give distance_mm"),
+        ("wheel.bore_diameter_mm", 20.0, "wheel.bore_diameter_mm: found; a rack has none"),
+        ("wheel.profile_shift", 0.1, "wheel.profile_shift: found; a rack has none: give pair.distance_mm"),
+        ("wheel.support", {"stiffness": np.eye(6).tolist()}, "wheel.support: found; a rack has none"),
+        ("wheel.pitch", {"runout_um": 5.0}, "wheel.pitch: found; a rack has none"),
+        ("pinion.pitch", {"runout_um": 5.0}, "pinion.pitch: found; a rack has none"),
+        ("revolution", {"pitches": 2}, "revolution: found; a rack has none"),
+        ("wheel.flank.form", "bspline", 'wheel.flank.form: found "bspline"; allowed "analytic"'),
+        (
+            "wheel.modifications.tip_relief_start_length_mm",
+            2.0,
+            "wheel.modifications.tip_relief_start_length_mm: found",
+        ),
+        ("wheel.teeth", "Rack", 'wheel.teeth: found "Rack"; allowed "rack"'),
+        ("wheel.height_mm", None, "wheel.height_mm: missing"),
+    ],
+)
+def test_what_a_rack_does_not_have_is_refused_by_its_key(key: str, value: Any, message: str) -> None:
+    with pytest.raises(InputError) as refused:
+        SPUR.with_changes({key: value})
+    assert any(problem.startswith(message) for problem in refused.value.problems), refused.value.problems
+
+
+def test_whole_revolutions_tolerances_and_numbers_of_wheels_are_refused() -> None:
+    with pytest.raises(InputError, match=r'wheel\.teeth: found "rack"; allowed a number of teeth'):
+        analyse_revolution(SPUR)
+    with pytest.raises(InputError, match=r'wheel\.teeth: found "rack"; ISO 1328-1'):
+        SPUR.scatter_of_class(6)
+    with pytest.raises(InputError, match=r'wheel\.teeth: found "rack"; ISO 1328-1'):
+        SPUR.pitch_tolerances(0, 6)
+    result = solved(SPUR.with_changes(with_wheel(40)))
+    with pytest.raises(InputError, match=r'wheel\.teeth: found "rack"; allowed a number of teeth in a rating'):
+        solved(SPUR).rating()
+    with pytest.raises(NotAskedError, match="rack_force: the wheel is no rack"):
+        _ = result.rack_force
+
+
+def test_example_is_the_rack_that_its_text_says() -> None:
+    """Its transverse pitch is 10 mm, and overview and file have it back."""
+    assert pi * 3.0 / cos(radians(EXAMPLE.geometry.helix_angle_deg)) == pytest.approx(10.0, abs=1e-4)
+    assert any("force along the rack" in row[0] for row in EXAMPLE.force_rows([1.0]))
