@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from loaded_tca.gears.internal_mesh import InternalMesh
     from loaded_tca.gears.pitch_cones import PitchConeParameters, pitch_cones_by_method_1
     from loaded_tca.gears.ring import PinionCutter, RingGear
+    from loaded_tca.gears.undercut import Undercut, undercuts
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
@@ -48,9 +49,11 @@ __all__ = [
     "PinionCutter",
     "PitchConeParameters",
     "RingGear",
+    "Undercut",
     "bevel_mesh",
     "duplex_spread_blade",
     "pitch_cones_by_method_1",
     "spread_blade",
     "transverse_profile",
+    "undercuts",
 ]

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Literal
 
-import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, RingGear
-from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
+from loaded_tca.gears.cylindrical_mesh import ROUNDING, interferences, profile_shift_sum
 from loaded_tca.gears.involute import InvoluteMesh
+from loaded_tca.gears.undercut import undercut_sentences
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
@@ -381,7 +381,7 @@ class CylindricalScene(BlankScene):
         ]
 
     def interferences(self) -> Sequence[str]:
-        """Return how the whole gears interfere at their centre distance, its error included.
+        """Return how the whole gears interfere at their centre distance, its error included, and what undercuts take.
 
         An error takes away backlash only where the centre distance and the profile shifts give some. Without, as by
         default, the teeth are nominal: the tolerances that thin them are not in the scene.
@@ -394,13 +394,9 @@ class CylindricalScene(BlankScene):
         try:
             mounted = replace(mesh, centre_distance=distance) if error else mesh
         except GeometryError as problem:
-            if error > 0.0 or distance <= mesh.pinion.base_radius + mesh.wheel.base_radius:
-                raise GeometryError(f"{place}: {problem}") from None
-            pinion, wheel = (clearance + error for clearance in mesh.tip_clearances)
-            room = Room(mesh.backlash_at(distance), (0.0, 0.0), (pinion, wheel))
-            sentences = interferences(room, module, place, nominal=nominal)
-            return [*sentences, kinds.FILLET.sentence(what=f"{problem} ({place})")]  # an undercut
-        return interferences(mounted.room, module, place, nominal=nominal)
+            raise GeometryError(f"{place}: {problem}") from None
+        jams = interferences(mounted.room, module, place, nominal=nominal)
+        return [*jams, *undercut_sentences(mounted, place)]
 
 
 def _root_section(mesh: InvoluteMesh, gear: CylindricalGear | RingGear) -> iso6336_3.RootSection | None:

@@ -11,6 +11,7 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears import CylindricalGear, InternalMesh, PinionCutter, RingGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING
 from loaded_tca.gears.internal_mesh import internal_interferences, internal_profile_shift_sum
+from loaded_tca.gears.undercut import undercut_sentences
 from loaded_tca.pairs.cylindrical import internal_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
@@ -256,7 +257,7 @@ class InternalScene(CylindricalScene):
             mounted = replace(mesh, centre_distance=distance) if error else mesh
         except GeometryError as problem:
             raise GeometryError(f"{place}: {problem}") from None
-        return internal_interferences(mounted, place, nominal=nominal)
+        return [*internal_interferences(mounted, place, nominal=nominal), *undercut_sentences(mounted, place)]
 
 
 def _room_cell(clearance: float) -> str:
