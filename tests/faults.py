@@ -2623,6 +2623,20 @@ FAULTS = (
         "        if rest is not None:\n            if rest < 1.0:",
         f"{UNDERCUT}::test_tip_in_an_undercut_fillet_interferes_and_one_that_turns_free_does_not",
     ),
+    Fault(
+        "in the picture of teeth in mesh the tooth of the wheel stands where that of the pinion does",
+        "plots/mesh.py",
+        "-side * angles[1]",
+        "side * angles[1]",
+        "plots/test_teeth_in_mesh.py::test_teeth_touch_at_the_pitch_point_and_overlap_nowhere",
+    ),
+    Fault(
+        "the picture of teeth in mesh shows the nominal centre distance, without its error",
+        "plots/mesh.py",
+        "mesh = scene.mounted_mesh()",
+        "mesh = scene.mesh()",
+        "plots/test_teeth_in_mesh.py::test_picture_has_its_numbers_with_units",
+    ),
 )
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS
-from loaded_tca.gears.chamfer import chamfered_land
+from loaded_tca.gears.chamfer import tip_half_angle
 from loaded_tca.gears.cylindrical import CylindricalGear
 
 if TYPE_CHECKING:
@@ -147,8 +147,7 @@ def fillet_room(mesh: CylindricalMesh | InternalMesh, which: int) -> float | Non
     axis = sign * mesh.working_centre_distance
     middle = angle - roll / gear.base_radius + gear.half_thickness_angle_at_base  # of the tooth, at that contact
     start, tip = mating.tip_form_radius, mating.tip_radius
-    land = 0.5 * (chamfered_land(mating) if mating.tip_chamfer else mating.tooth_thickness_at(tip)) / tip
-    inwards = 0.5 * mating.tooth_thickness_at(start) / start - land
+    inwards = 0.5 * mating.tooth_thickness_at(start) / start - tip_half_angle(mating)
     corners = {start: contact - axis, tip: tip * np.exp(1j * (np.angle(contact - axis) + sign * inwards))}
     fillet_radius, fillet_angle = gear.root_fillet(POINTS)
     rooms = []

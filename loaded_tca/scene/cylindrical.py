@@ -386,17 +386,39 @@ class CylindricalScene(BlankScene):
         An error takes away backlash only where the centre distance and the profile shifts give some. Without, as by
         default, the teeth are nominal: the tolerances that thin them are not in the scene.
         """
-        mesh, error = self.mesh(), self.mounting.centre_distance_error_mm
-        distance = mesh.working_centre_distance + error
-        place = f"at the {'mounted ' if error else ''}centre distance of {distance:z.4f} mm"
+        mesh, mounted = self.mesh(), self.mounted_mesh()
         module = mesh.pinion.normal_module
         nominal = abs(mesh.backlash) <= ROUNDING * module
+        jams = interferences(mounted.room, module, self._mounted_place, nominal=nominal)
+        return [*jams, *undercut_sentences(mounted, self._mounted_place)]
+
+    def mounted_mesh(self) -> CylindricalMesh:
+        """Return the macro geometry at the centre distance with its error.
+
+        Raises
+        ------
+        GeometryError
+            If the gears do not mesh there.
+        """
+        mesh = self.mesh()
         try:
-            mounted = replace(mesh, centre_distance=distance) if error else mesh
+            return replace(mesh, centre_distance=self._mounted_distance) if self._distance_error else mesh
         except GeometryError as problem:
-            raise GeometryError(f"{place}: {problem}") from None
-        jams = interferences(mounted.room, module, place, nominal=nominal)
-        return [*jams, *undercut_sentences(mounted, place)]
+            raise GeometryError(f"{self._mounted_place}: {problem}") from None
+
+    @property
+    def _distance_error(self) -> float:
+        """What the error of the centre distance adds to it [mm]."""
+        return self.mounting.centre_distance_error_mm
+
+    @property
+    def _mounted_distance(self) -> float:
+        return self.mesh().working_centre_distance + self._distance_error
+
+    @property
+    def _mounted_place(self) -> str:
+        """Where whole gears interfere, in words."""
+        return f"at the {'mounted ' if self._distance_error else ''}centre distance of {self._mounted_distance:z.4f} mm"
 
 
 def _root_section(mesh: InvoluteMesh, gear: CylindricalGear | RingGear) -> iso6336_3.RootSection | None:
