@@ -1,6 +1,6 @@
 """Undercut gears in the mesh: form circles of rolled racks, what is left of the path of contact, room of tips."""
 
-from math import cos, pi, radians, sin, sqrt, tan
+from math import cos, pi, radians, sin, sqrt
 
 import numpy as np
 import pytest
@@ -10,12 +10,10 @@ from loaded_tca.errors import GeometryError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
 from loaded_tca.gears.cylindrical_mesh import interferences
 from loaded_tca.gears.undercut import fillet_room, undercut_sentences, undercuts
-from loaded_tca.roots import find_root
+from validation.cylindrical.undercut import ROLLED, rolled_form_radius
 
 ANGLE = radians(20.0)
 SHARP = {"root_radius_coefficient": 0.0}
-ROLLED = 1e-8
-"""Of a radius: 2000 points along the rounding of a rack miss the deepest by the square of their distance."""
 
 
 def gear(teeth, module=1.0, **changes):
@@ -24,31 +22,6 @@ def gear(teeth, module=1.0, **changes):
 
 def mesh(*teeth, **changes):
     return CylindricalMesh(gear(teeth[0], name="pinion", **changes), gear(teeth[1], name="wheel"))
-
-
-def rolled_form_radius(teeth, *, helix_angle=0.0, rounding=0.38, shift=0.0, left=0.0):
-    """Where a rounded rack of module 1 that rolls on the reference circle leaves the involute of its flank.
-
-    Each point of its tip passes a radius twice; the half tooth that it leaves is the least of all. A protuberance of
-    half the pressure angle cuts by ``left`` into the ground flank.
-    """
-    angle, reference = np.arctan(tan(ANGLE) / cos(helix_angle)), 0.5 * teeth / cos(helix_angle)
-    least = ANGLE if left == 0.0 else 0.5 * ANGLE
-    normal, up = np.linspace(least, 0.5 * pi, 2000), np.linspace(0.0, 0.5 if left else 0.0, 2000)
-    beside = pi / 4.0 - 1.25 * tan(ANGLE) + (left + rounding * (sin(ANGLE) - 1.0)) / cos(ANGLE)
-    x = np.append(beside + rounding * np.cos(normal), beside + rounding * cos(least) + up * tan(least))
-    x /= cos(helix_angle)
-    y = np.append(-rounding * np.sin(normal), up - rounding * sin(least)) + reference + shift - (1.25 - rounding)
-    base, thickness = reference * cos(angle), (pi / 2.0 + 2.0 * shift * tan(ANGLE)) / cos(helix_angle)
-
-    def cut(radius):
-        across = np.sqrt(np.maximum(radius**2 - y**2, 0.0)) * np.array([[1.0], [-1.0]])
-        half = pi / teeth - np.arctan2(across, y) + (across - x) / reference
-        roll = sqrt((radius / base) ** 2 - 1.0)
-        flank = 0.5 * thickness / reference + tan(angle) - angle - (roll - np.arctan(roll))
-        return float(half[:, np.abs(y) < radius].min() - flank)
-
-    return find_root(cut, base * (1.0 + 1e-9), reference)
 
 
 @pytest.mark.parametrize(

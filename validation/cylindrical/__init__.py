@@ -6,5 +6,6 @@
 - ``nrel_planet_ring``: geometry of a planet and a ring, and how two rings are measured, against published reports;
 - ``internal_hertz``: pressure of a crowned pinion in a ring against Hertz's point contact;
 - ``double_helical``: halves of double helical pairs against one half, closed forms and balance along the axis;
+- ``undercut``: form circles and contact ratios of few teeth against a rack that is rolled point by point;
 - ``line_contact``: pressure in the middle of unmodified pairs against Hertz's line contact.
 """
