@@ -19,6 +19,7 @@ DOCS = Path(__file__).parent
 EXAMPLES = {
     "guide/hypoid_pair.png": "plot_hypoid_pair",
     "guide/study_heat_map.png": "plot_micro_geometry",
+    "guide/teeth_in_mesh.png": "plot_teeth_in_mesh",
     "guide/vh_check.png": "plot_vh_check",
     "guide/vh_under_load.png": "plot_vh_under_load",
     "how_it_works/contact_pattern.png": "plot_contact_pattern",

@@ -37,6 +37,7 @@ def main() -> None:
     check = vh_check(lambda v, h: BEVEL.with_changes({V: v, H: h}).pair(), STEPS, STEPS)
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
     drawn["measured_settings"] = plots.plot_measured_settings(fit_settings(CUT, [CONVEX], ["wheel.machine.radial_mm"]))
+    drawn["teeth_in_mesh"] = plots.plot_teeth_in_mesh(HELICAL)
     drawn["shafts"] = plots.plot_shafts(shaft_lines(read_scene(SCENES / "helical_on_shafts.toml")))
     on = read_scene(SCENES / "helical_on_rolling_bearings.toml").with_changes(FEW | {"analysis.torques_Nm": [40, 130]})
     on_bearings, rigid = analyse(on), analyse(on.on_rigid_supports())

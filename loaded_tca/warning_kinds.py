@@ -215,6 +215,15 @@ FILLET = Kind(
     "the mating gear's tip touches where the flank ends and the fillet begins",
     "tip diameters, profile shifts, or the cutter; `check` tells the diameters",
 )
+UNDERCUT = Kind(
+    "undercut: the trochoid of its fillet ends the flank of the {gear} at diameter {form:.4f} mm, where the tip of the "
+    "{mating} would use an involute down to {wanted:.4f} mm: {lost:.4f} mm of the path of contact are lost, {share:.1%}"
+    ", and the transverse contact ratio is {ratio:.4f} instead of {whole:.4f} ({place}); a profile_shift of "
+    "{shift:.4f} avoids it",
+    "the mating flank leaves the corner where flank and fillet meet, as it leaves a tip: contact begins later or ends "
+    "earlier, fewer teeth share the load, and the root below the corner is thin; all of it is in the numbers",
+    "more profile shift, more teeth, a larger pressure angle; nothing, if the contact ratio suffices",
+)
 NOTCH = Kind(
     "grinding notch: {gear}: the stock for grinding is {depth:.3g} um above the protuberance of its tool: a notch so "
     "deep is left at the root form circle, by which ISO 6336-3 raises Y_S by {percent:.2g} % if it is as round as the "

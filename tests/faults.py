@@ -33,6 +33,7 @@ class Fault(NamedTuple):
 
 ROWS = "studies/test_rows.py::test_malformed_row_costs_its_own_variant_and_no_other"
 BOXES = "separation/test_box.py"
+UNDERCUT = "gears/test_undercut.py"
 FREE_EDGES, ROUNDED = "edges/test_free.py", "edges/test_rounded.py"
 EDGE_GROWTH = "edges/test_free_growth.py::"
 AT_EDGES = "results/test_sensitivities_at_edges.py::"
@@ -2762,6 +2763,41 @@ FAULTS = (
         'np.asarray(arrays["torque"]) / per_angle',
         'np.asarray(arrays["torque"]) / pair.base_radii[0]',
         "scene/test_rack_scene.py::test_numbers_along_the_rack",
+    ),
+    Fault(
+        "an undercut counts what the mating tip would use below the base circle, where there is no involute, as lost",
+        "gears/undercut.py",
+        "wanted = max(0.0, roll)",
+        "wanted = roll",
+        f"{UNDERCUT}::test_path_of_contact_begins_where_the_rolled_rack_leaves_the_involute",
+    ),
+    Fault(
+        "the mating tip turns with the undercut gear instead of against it on its way through the fillet",
+        "gears/undercut.py",
+        "np.exp(1j * sign * turn * gear.teeth",
+        "np.exp(-1j * sign * turn * gear.teeth",
+        f"{UNDERCUT}::test_tip_has_the_room_that_the_rack_of_its_depth_leaves",
+    ),
+    Fault(
+        "a tip in an undercut fillet with room interferes all the same",
+        "gears/cylindrical_mesh.py",
+        "        if rest is not None:\n            if rest < -ROUNDING * module:",
+        "        if rest is not None:\n            if rest < 1.0:",
+        f"{UNDERCUT}::test_tip_in_an_undercut_fillet_interferes_and_one_that_turns_free_does_not",
+    ),
+    Fault(
+        "in the picture of teeth in mesh the tooth of the wheel stands where that of the pinion does",
+        "plots/mesh.py",
+        "-side * angles[1]",
+        "side * angles[1]",
+        "plots/test_teeth_in_mesh.py::test_teeth_touch_at_the_pitch_point_and_overlap_nowhere",
+    ),
+    Fault(
+        "the picture of teeth in mesh shows the nominal centre distance, without its error",
+        "plots/mesh.py",
+        "mesh = scene.mounted_mesh()",
+        "mesh = scene.mesh()",
+        "plots/test_teeth_in_mesh.py::test_picture_has_its_numbers_with_units",
     ),
 )
 

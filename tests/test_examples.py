@@ -47,6 +47,7 @@ EXPECTED = {
     "plot_monte_carlo": (1.0, 0.03),  # either sign of misalignment gathers the load; positions at 1 % of accuracy
     "plot_micro_geometry": (1.0, 1e-12),  # every step of crowning
     "plot_tip_relief_and_rounding": (-1.0 / 3.0, 0.01),  # the power of the radius: a pressed part much smaller than it
+    "plot_teeth_in_mesh": (1.0, 1e-12),  # the wheel reaches beyond T1, and the path ends at the pinion's tip
     "plot_tooth_3d": (1.0, 5e-3),  # the pressure laid on the flank carries the load
     "plot_measured_settings": (1.0, 0.02),  # the error that was made, with three standard deviations by noise
     "plot_bidirectional_start": (1.0, 1e-7),  # five equations and ease-off find the same contact
@@ -59,6 +60,7 @@ QUICK = (
     "plot_ease_off",
     "plot_measured_settings",
     "plot_bidirectional_start",
+    "plot_teeth_in_mesh",
 )
 """Of half a second. The others are analyses and pictures that the tests of their folders have on fewer cells."""
 

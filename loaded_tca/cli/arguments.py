@@ -60,6 +60,9 @@ docs/guide/measured_settings.md says more."""
 MEASURED = """Slopes, crownings and twist by least squares over the measured points, with their standard deviations, and
 the form deviations that they leave. Points, profile and helix lines are read as docs/guide/measured_flank.md says.
 FILE of --out is the scene with these modifications on a flank by its equations."""
+CHECK = """files in DIR, of cylindrical pairs:
+  teeth_in_mesh.png         teeth of both gears at the pitch point, path of contact, tip clearances and backlash
+and of stages teeth_in_mesh_sun.png and teeth_in_mesh_ring.png."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
 touch. Axes are those of each gear's own frame, which does not turn with it: z the axis of the gear, x to the pitch
 point, turns right-handed.
@@ -199,8 +202,9 @@ def command_line() -> argparse.ArgumentParser:
     _add_studies(command)
     _add_exchange(command)
     text = "read a scene or a stage and show its geometry, without computing a contact"
-    check = command("check", run_by.check, text, None)
+    check = command("check", run_by.check, text, CHECK)
     check.add_argument("scene", metavar="FILE.toml", help="scene file, or stage file")
+    check.add_argument("--out", metavar="DIR", type=_path, help="directory for the picture; default: none is drawn")
     _add_changes(check)
     return parser
 

@@ -562,24 +562,9 @@ def report(options: argparse.Namespace) -> None:
 
 def check(options: argparse.Namespace) -> None:
     """Show the geometry of a scene or of a stage."""
-    from loaded_tca.stages.files import is_stage_file
+    from loaded_tca.cli import check as overview
 
-    if is_stage_file(options.scene):
-        from loaded_tca.output.stage_overview import describe_stage
-
-        print(describe_stage(stage_of(options)))
-        return
-    from loaded_tca.scene.double_helical import DoubleHelicalScene
-
-    scene = scene_of(options)
-    if isinstance(scene, DoubleHelicalScene):
-        from loaded_tca.output.double_helical_overview import describe_double_helical
-
-        print(describe_double_helical(scene))
-    else:
-        from loaded_tca.output.overview import describe_scene
-
-        print(describe_scene(scene))
+    overview.check(options)
 
 
 def import_model(options: argparse.Namespace) -> None:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from loaded_tca.gears.pitch_cones import PitchConeParameters, pitch_cones_by_method_1
     from loaded_tca.gears.rack import Rack, rack_mesh
     from loaded_tca.gears.ring import PinionCutter, RingGear
+    from loaded_tca.gears.undercut import Undercut, undercuts
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
@@ -50,10 +51,12 @@ __all__ = [
     "PitchConeParameters",
     "Rack",
     "RingGear",
+    "Undercut",
     "bevel_mesh",
     "duplex_spread_blade",
     "pitch_cones_by_method_1",
     "rack_mesh",
     "spread_blade",
     "transverse_profile",
+    "undercuts",
 ]

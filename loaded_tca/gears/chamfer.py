@@ -42,6 +42,12 @@ def chamfered_land(gear: MeasuredGear) -> float:
     return 2.0 * tip * asin((y - length * sin(angle)) / tip)
 
 
+def tip_half_angle(gear: MeasuredGear) -> float:
+    """Half the angle of the tip between its corners, those of its chamfers where it has some [rad]."""
+    tip = gear.tip_radius
+    return 0.5 * (chamfered_land(gear) if gear.tip_chamfer else gear.tooth_thickness_at(tip)) / tip
+
+
 def check_chamfer(gear: MeasuredGear) -> None:
     """Refuse a chamfer that leaves no flank or no tip, or that stands out of the flank.
 

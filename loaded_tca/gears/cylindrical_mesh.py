@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil, inf, isfinite, pi, tan
+from math import inf, isfinite, pi, tan
 from typing import NamedTuple
 
 import loaded_tca.warning_kinds as kinds
@@ -18,10 +18,8 @@ from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.involute import InvoluteMesh, involute, working_pressure_angle
+from loaded_tca.gears.undercut import fillet_room
 from loaded_tca.plain import plain
-
-# In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
-_NEGLIGIBLE_UNDERCUT = 1e-4
 
 
 @dataclass(frozen=True)
@@ -106,7 +104,7 @@ class CylindricalMesh(InvoluteMesh):
     InputError
         If the gears do not fit each other.
     GeometryError
-        If the centre distance leaves no common flank, or an undercut takes away flank that the mating gear uses.
+        If the centre distance or undercuts leave no common flank.
 
     References
     ----------
@@ -135,8 +133,6 @@ class CylindricalMesh(InvoluteMesh):
             (isfinite(self.axial_offset), f"axial_offset: {self.axial_offset} mm is not finite"),
         )
         self._check_centre_distance()
-        self._check_undercut(first, second)
-        self._check_undercut(second, first)
         self.check_common_flank()
 
     def _check_centre_distance(self) -> None:
@@ -153,20 +149,14 @@ class CylindricalMesh(InvoluteMesh):
                 " the sum of the base radii"
             )
 
-    def _check_undercut(self, gear: CylindricalGear, mating: CylindricalGear) -> None:
-        """Refuse an undercut that takes away flank which the mating gear uses."""
-        wanted = gear.radius_at_roll_length(max(0.0, self._roll_length_at_tip_of(mating)))
-        if gear.is_undercut and gear.form_radius - wanted > _NEGLIGIBLE_UNDERCUT * gear.normal_module:
-            enough = ceil(1e4 * gear.smallest_profile_shift) / 1e4
-            raise GeometryError(
-                f"{gear.name}: undercut up to diameter {2.0 * gear.form_radius:.4f} mm, where the tip of the"
-                f" {mating.name} needs the flank down to {2.0 * wanted:.4f} mm; a profile_shift of at least"
-                f" {enough:.4f} avoids it"
-            )
-
     def _roll_length_at_tip_of(self, mating: CylindricalGear) -> float:
         """Roll length on a gear where the tip of its mating gear touches; negative beyond the base circle [mm]."""
         return self.line_of_action - mating.roll_length(mating.tip_form_radius)
+
+    @property
+    def mating_tip_rolls(self) -> tuple[float, float]:
+        """Roll lengths on pinion and wheel where the tip of the mating gear touches [mm]."""
+        return self._roll_length_at_tip_of(self.wheel), self._roll_length_at_tip_of(self.pinion)
 
     @property
     def base_distance(self) -> float:
@@ -214,11 +204,12 @@ class CylindricalMesh(InvoluteMesh):
     @property
     def room(self) -> Room:
         """Room that the whole gears leave each other."""
-        both_ways = (self.pinion, self.wheel), (self.wheel, self.pinion)
         pinion, wheel = (
-            self._roll_length_at_tip_of(mating) - gear.roll_length(gear.form_radius) for gear, mating in both_ways
+            roll - gear.roll_length(gear.form_radius)
+            for gear, roll in zip((self.pinion, self.wheel), self.mating_tip_rolls, strict=True)
         )
-        return Room(self.backlash, (pinion, wheel), self.tip_clearances)
+        in_fillet = fillet_room(self, 0), fillet_room(self, 1)
+        return Room(self.backlash, (pinion, wheel), self.tip_clearances, in_fillet)
 
     @property
     def tip_clearances(self) -> tuple[float, float]:
@@ -286,11 +277,15 @@ class Room(NamedTuple):
         How far the tip of the mating gear ends above the form circle of pinion and wheel, on the line of action.
     below_root : (float, float)
         How far above their roots.
+    in_fillet : (float or None, float or None)
+        Least room of that tip in the fillets of undercut gears, as of :func:`~loaded_tca.gears.undercut.fillet_room`;
+        None where it need not go there.
     """
 
     backlash: float
     below_form: tuple[float, float]
     below_root: tuple[float, float]
+    in_fillet: tuple[float | None, float | None] = (None, None)
 
 
 def interferences(room: Room, module: float, place: str, *, nominal: bool = False) -> Sequence[str]:
@@ -326,8 +321,12 @@ def _what_jams(room: Room, module: float, nominal: bool) -> Iterator[tuple[str, 
     """What interferes, and by how much."""
     if room.backlash < -ROUNDING * module and not nominal:
         yield kinds.BACKLASH.sentence(), f"{-room.backlash:.4f} mm"
-    for (name, mating), length in zip(BOTH_WAYS, room.below_form, strict=True):
-        if length < -ROUNDING * module:
+    for (name, mating), length, rest in zip(BOTH_WAYS, room.below_form, room.in_fillet, strict=True):
+        if rest is not None:
+            if rest < -ROUNDING * module:
+                what = f"the tip of the {mating} reaches into the undercut fillet of the {name}"
+                yield kinds.FILLET.sentence(what=what), f"{-rest:.4f} mm along its circle"
+        elif length < -ROUNDING * module:
             what = f"the tip of the {mating} reaches below the form circle of the {name}, where its flank ends"
             yield kinds.FILLET.sentence(what=what), f"{-length:.4f} mm on the line of action"
 

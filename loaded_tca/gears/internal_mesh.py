@@ -20,6 +20,7 @@ from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, ActiveProfile, PathOfContact, Room, interferences
 from loaded_tca.gears.involute import InvoluteMesh, involute, working_pressure_angle
 from loaded_tca.gears.ring import RingGear
+from loaded_tca.gears.undercut import fillet_room
 
 _EQUAL = 1e-12
 PROFILE_POINTS = 41
@@ -121,14 +122,6 @@ class InternalMesh(InvoluteMesh):
                 f"{pinion.name} on the line of action; a tip_diameter of the ring of {2.0 * least:.4f} mm or more "
                 "avoids it"
             )
-        if pinion.is_undercut and pinion.form_radius > pinion.radius_at_roll_length(max(0.0, self._ring_tip_roll)) * (
-            1.0 + 1e-6
-        ):
-            raise GeometryError(
-                f"{pinion.name}: undercut up to diameter {2.0 * pinion.form_radius:.4f} mm, where the tip of the "
-                f"{ring.name} needs the flank; a profile_shift of at least "
-                f"{pinion.smallest_profile_shift:.4f} avoids it"
-            )
         self.check_common_flank()
 
     @property
@@ -145,6 +138,11 @@ class InternalMesh(InvoluteMesh):
     def _ring_tip_roll(self) -> float:
         """Roll length on the pinion where the tip of the ring touches; negative beyond the base circle [mm]."""
         return self.ring.roll_length(self.ring.tip_form_radius) - self.line_of_action
+
+    @property
+    def mating_tip_rolls(self) -> tuple[float, float]:
+        """Roll lengths on pinion and ring where the tip of the mating gear touches [mm]."""
+        return self._ring_tip_roll, self.pinion.roll_length(self.pinion.tip_form_radius) + self.line_of_action
 
     @property
     def _profile_shift_sum(self) -> float:
@@ -201,7 +199,7 @@ class InternalMesh(InvoluteMesh):
             self._ring_tip_roll - pinion.roll_length(pinion.form_radius),
             ring.roll_length(ring.form_radius) - self.line_of_action - pinion.roll_length(pinion.tip_form_radius),
         )
-        return Room(self.backlash, below_form, self.tip_clearances)
+        return Room(self.backlash, below_form, self.tip_clearances, (fillet_room(self, 0), None))
 
     @property
     def tip_clearances(self) -> tuple[float, float]:

@@ -160,6 +160,10 @@ class InvoluteMesh:
             """Points on the line of action."""
 
         @property
+        def mating_tip_rolls(self) -> tuple[float, float]:
+            """Roll lengths on pinion and wheel where the tip of the mating gear touches [mm]."""
+
+        @property
         def base_distance(self) -> float:
             """Centre distance at which the base circles touch: abs(r_b2 + r_b1) with the signs of ISO 21771 [mm]."""
 

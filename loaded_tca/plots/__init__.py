@@ -26,6 +26,7 @@ from loaded_tca.plots.double_helical import (
 )
 from loaded_tca.plots.first_order import plot_first_order_scatter
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
+from loaded_tca.plots.mesh import plot_teeth_in_mesh
 from loaded_tca.plots.pressure_map import (
     plot_contact_patterns,
     plot_pressure_envelope,
@@ -177,6 +178,7 @@ __all__ = [
     "plot_study_scatter_matrix",
     "plot_subsurface",
     "plot_teeth",
+    "plot_teeth_in_mesh",
     "plot_tornado",
     "plot_transmission_error",
     "plot_transmission_error_band",

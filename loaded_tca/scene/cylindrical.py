@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Literal
 
-import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, RingGear
-from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences, profile_shift_sum
+from loaded_tca.gears.cylindrical_mesh import ROUNDING, interferences, profile_shift_sum
 from loaded_tca.gears.involute import InvoluteMesh
+from loaded_tca.gears.undercut import undercut_sentences
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
@@ -381,26 +381,44 @@ class CylindricalScene(BlankScene):
         ]
 
     def interferences(self) -> Sequence[str]:
-        """Return how the whole gears interfere at their centre distance, its error included.
+        """Return how the whole gears interfere at their centre distance, its error included, and what undercuts take.
 
         An error takes away backlash only where the centre distance and the profile shifts give some. Without, as by
         default, the teeth are nominal: the tolerances that thin them are not in the scene.
         """
-        mesh, error = self.mesh(), self.mounting.centre_distance_error_mm
-        distance = mesh.working_centre_distance + error
-        place = f"at the {'mounted ' if error else ''}centre distance of {distance:z.4f} mm"
+        mesh, mounted = self.mesh(), self.mounted_mesh()
         module = mesh.pinion.normal_module
         nominal = abs(mesh.backlash) <= ROUNDING * module
+        jams = interferences(mounted.room, module, self._mounted_place, nominal=nominal)
+        return [*jams, *undercut_sentences(mounted, self._mounted_place)]
+
+    def mounted_mesh(self) -> CylindricalMesh:
+        """Return the macro geometry at the centre distance with its error.
+
+        Raises
+        ------
+        GeometryError
+            If the gears do not mesh there.
+        """
+        mesh = self.mesh()
         try:
-            mounted = replace(mesh, centre_distance=distance) if error else mesh
+            return replace(mesh, centre_distance=self._mounted_distance) if self._distance_error else mesh
         except GeometryError as problem:
-            if error > 0.0 or distance <= mesh.pinion.base_radius + mesh.wheel.base_radius:
-                raise GeometryError(f"{place}: {problem}") from None
-            pinion, wheel = (clearance + error for clearance in mesh.tip_clearances)
-            room = Room(mesh.backlash_at(distance), (0.0, 0.0), (pinion, wheel))
-            sentences = interferences(room, module, place, nominal=nominal)
-            return [*sentences, kinds.FILLET.sentence(what=f"{problem} ({place})")]  # an undercut
-        return interferences(mounted.room, module, place, nominal=nominal)
+            raise GeometryError(f"{self._mounted_place}: {problem}") from None
+
+    @property
+    def _distance_error(self) -> float:
+        """What the error of the centre distance adds to it [mm]."""
+        return self.mounting.centre_distance_error_mm
+
+    @property
+    def _mounted_distance(self) -> float:
+        return self.mesh().working_centre_distance + self._distance_error
+
+    @property
+    def _mounted_place(self) -> str:
+        """Where whole gears interfere, in words."""
+        return f"at the {'mounted ' if self._distance_error else ''}centre distance of {self._mounted_distance:z.4f} mm"
 
 
 def _root_section(mesh: InvoluteMesh, gear: CylindricalGear | RingGear) -> iso6336_3.RootSection | None:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
-from loaded_tca.errors import GeometryError, require
+from loaded_tca.errors import require
 from loaded_tca.gears import CylindricalGear, InternalMesh, PinionCutter, RingGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING
 from loaded_tca.gears.internal_mesh import internal_interferences, internal_profile_shift_sum
+from loaded_tca.gears.undercut import undercut_sentences
 from loaded_tca.pairs.cylindrical import internal_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
@@ -257,16 +258,20 @@ class InternalScene(CylindricalScene):
 
         A positive error makes the centre distance of an internal pair smaller.
         """
-        mesh, error = self.mesh(), self.mounting.centre_distance_error_mm
-        distance = mesh.working_centre_distance - error
-        place = f"at the {'mounted ' if error else ''}centre distance of {distance:z.4f} mm"
+        mesh, mounted = self.mesh(), self.mounted_mesh()
         nominal = abs(mesh.backlash) <= ROUNDING * mesh.pinion.normal_module
+        jams = internal_interferences(mounted, self._mounted_place, nominal=nominal)
+        return [*jams, *undercut_sentences(mounted, self._mounted_place)]
+
+    def mounted_mesh(self) -> InternalMesh:  # type: ignore[override]
+        """Return the macro geometry at the centre distance with its error; errors as of external pairs."""
+        error, distance = self.mounting.centre_distance_error_mm, self._mounted_distance
         require((distance > 0.0, f"mounting.centre_distance_error_mm: found {error:g}; it leaves no centre distance"))
-        try:
-            mounted = replace(mesh, centre_distance=distance) if error else mesh
-        except GeometryError as problem:
-            raise GeometryError(f"{place}: {problem}") from None
-        return internal_interferences(mounted, place, nominal=nominal)
+        return super().mounted_mesh()  # type: ignore[return-value]
+
+    @property
+    def _distance_error(self) -> float:
+        return -self.mounting.centre_distance_error_mm
 
 
 def _room_cell(clearance: float) -> str:

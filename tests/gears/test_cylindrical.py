@@ -446,13 +446,6 @@ def test_mesh_refuses_gears_that_do_not_fit_and_tells_all():
     )
 
 
-def test_mesh_says_the_profile_shift_that_avoids_the_undercut():
-    with pytest.raises(GeometryError, match="a profile_shift of at least") as refused:
-        mesh(12, 40)
-    enough = float(str(refused.value).split("at least ")[1].split(" ")[0])
-    assert not mesh(12, 40, enough).pinion.is_undercut
-
-
 test_cylindrical_refuses = refused_calls(
     (inverse_involute, "has no angle between 0 and 90 deg", InputError, [-1e-9, inf, nan]),
     (
@@ -467,12 +460,6 @@ test_cylindrical_refuses = refused_calls(
     ),
     (lambda: mesh(40, 41, -0.9, -0.9), r"for the sum -1.8 no centre distance is without backlash; give a"),
     (lambda: mesh(30, 47, centre_distance=82.0), r"pinion and wheel: no common flank at centre distance 82 mm"),
-    (
-        lambda wheel_teeth: mesh(12, wheel_teeth),
-        r"pinion: undercut up to diameter 22.6054 mm, where the tip of the wheel",
-        [12, 17, 100],
-    ),
-    (lambda: mesh(40, 12), r"^wheel: undercut .* tip of the pinion"),
     error=GeometryError,
 )
 

@@ -100,7 +100,8 @@ def test_mounting_that_brings_a_tip_into_an_undercut_is_warned_of():
     undercut = {**PLAIN, "pinion.teeth": 12, "wheel.tip_diameter_mm": 174.6}
     assert sentences(spur(**undercut)) == []
     (tip,) = sentences(spur(**undercut, **{"mounting.centre_distance_error_mm": -0.2}))
-    assert tip.startswith("fillet interference: pinion: undercut up to diameter")
+    assert tip.startswith("undercut: the trochoid of its fillet ends the flank of the pinion at diameter")
+    assert "at the mounted centre distance of 103.3000 mm" in tip
 
 
 @pytest.mark.parametrize(

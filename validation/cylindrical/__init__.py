@@ -7,5 +7,6 @@
 - ``internal_hertz``: pressure of a crowned pinion in a ring against Hertz's point contact;
 - ``double_helical``: halves of double helical pairs against one half, closed forms and balance along the axis;
 - ``rack``: pressure of a crowned pinion on a rack against Hertz, and wheels of many teeth that tend to it;
+- ``undercut``: form circles and contact ratios of few teeth against a rack that is rolled point by point;
 - ``line_contact``: pressure in the middle of unmodified pairs against Hertz's line contact.
 """
