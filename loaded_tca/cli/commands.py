@@ -20,6 +20,7 @@ from loaded_tca.cli.inputs import (
     file_of_report,
     index_of_position,
     index_of_torque,
+    read_otherwise,
     require_result,
     result_file,
     result_of,
@@ -563,7 +564,7 @@ def check(options: argparse.Namespace) -> None:
     if is_stage_file(options.scene):
         from loaded_tca.output.stage_overview import describe_stage
 
-        print(describe_stage(stage_of(options)))
+        print(describe_stage(stage_of(options)), *read_otherwise(options.scene), sep="\n")
         return
     from loaded_tca.scene.double_helical import DoubleHelicalScene
 
@@ -571,11 +572,12 @@ def check(options: argparse.Namespace) -> None:
     if isinstance(scene, DoubleHelicalScene):
         from loaded_tca.output.double_helical_overview import describe_double_helical
 
-        print(describe_double_helical(scene))
+        described = describe_double_helical(scene)
     else:
         from loaded_tca.output.overview import describe_scene
 
-        print(describe_scene(scene))
+        described = describe_scene(scene)
+    print(described, *read_otherwise(options.scene), sep="\n")
 
 
 def import_model(options: argparse.Namespace) -> None:

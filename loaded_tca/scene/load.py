@@ -241,7 +241,7 @@ def _bins(table: Table) -> tuple[LoadCase, ...]:
             problems.append(f"{line}: more values than the header has columns")
             continue
         row = {name: _value(name, cell) for name, cell in zip(table.names, cells, strict=False) if cell}
-        values, wrong = check(LoadCase, row)
+        values, wrong, _ = check(LoadCase, row)
         problems += [f"{line}: {problem}" for problem in wrong]
         if not wrong:
             cases.append(made(LoadCase, values))
