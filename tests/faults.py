@@ -2601,6 +2601,41 @@ FAULTS = (
         "radii = gear.form_radius, gear.tip_radius",
         "scene/test_tools.py::test_chamfer_ends_flank_and_active_profile",
     ),
+    Fault(
+        "keys in inches: a metric value in a section of inches is read as one in inches",
+        "scene/written.py",
+        "if inches and values.get(key) is None}",
+        "if inches}",
+        "scene/test_written_keys.py::test_what_is_wrong_in_inches_is_told_in_inches",
+    ),
+    Fault(
+        "keys in inches: limits of a range are rounded past those of the key",
+        "scene/written.py",
+        "            limit = math.nextafter(limit, inside)",
+        "            return limit",
+        "scene/test_written_keys.py::test_every_key_with_a_unit_of_its_own_has_one_in_inches",
+    ),
+    Fault(
+        "keys in inches: factors of other keys in a message are converted as lengths",
+        "scene/written.py",
+        r'r"(?!/| (?:\w+_[a-z]|',
+        r'r"(?!/| (?:',
+        "scene/test_written_keys.py::test_numbers_in_units_of_their_own_stay_what_they_are",
+    ),
+    Fault(
+        "keys in inches: a transverse pitch keeps the helix angle that the change takes away",
+        "scene/section.py",
+        "    table |= {key.removeprefix(own): value for key, value in changes.items() if key.startswith(own)}",
+        "",
+        "scene/test_written_keys.py::test_changes_may_be_in_inches",
+    ),
+    Fault(
+        "studies in inches: the width of a distribution that is not written stays one millimetre",
+        "studies/read.py",
+        '"scale": parameters.get("scale", 1.0)}',
+        '"scale": parameters.get("scale")}',
+        "studies/test_read.py::test_study_of_a_drawing_in_inches_varies_the_metric_keys",
+    ),
 )
 
 

@@ -57,6 +57,7 @@ CASES = (
     "cylindrical.iso_tr_6336_30",
     "cylindrical.nrel_5mw_stage_3",
     "cylindrical.metric_gear_technology",
+    "cylindrical.inches",
     "loaded.limits",
     "loaded.revolution",
     "loaded.rolling_bearings",
