@@ -1735,14 +1735,14 @@ FAULTS = (
     Fault(
         "scenes: keys that say the same in several ways are not told apart in lists",
         "scene/section.py",
-        "section = entry.kind.section\n        else:\n            return ()",
-        "return ()\n        else:\n            return ()",
+        "section = entry.kind.section\n        else:\n            return None",
+        "return None\n        else:\n            return None",
         "scene/test_flank_form.py::test_another_file_takes_the_place_of_the_points_of_the_first",
     ),
     Fault(
         "scenes: the seed of a class stays behind where deviations are given",
         "scene/section.py",
-        "    others += [companion for other in others for companion in section.companions.get(other, ())]\n",
+        "    others += [companion for other in others for companion in inner.companions.get(other, ())]\n",
         "",
         "scene/test_pitch.py::test_deviations_of_one_key_take_the_place_of_those_of_another",
     ),

@@ -297,7 +297,9 @@ test_what_is_wrong_in_inches_is_told_in_inches = refusals(
 def test_numbers_in_units_of_their_own_stay_what_they_are():
     keys = {"bore_mm": Key(Number(0.0, 100.0), ""), "pin_um": Key(Number(0.0, 100.0), "")}
     writings = {name: in_inches(name, entry) for name, entry in keys.items()}
-    sentence = "found 25.4; 3 of them on 50.8 mm would touch: allowed below 12.7, up to 0.5 bore_mm = 12.7, pin_um = 254"
+    sentence = (
+        "found 25.4; 3 of them on 50.8 mm would touch: allowed below 12.7, up to 0.5 bore_mm = 12.7, pin_um = 254"
+    )
     assert as_written(sentence, "bore_mm", writings) == (
         "found 1; 3 of them on 50.8 mm would touch: allowed below 0.5, up to 0.5 bore_in = 0.5, pin_in = 0.01"
     )
