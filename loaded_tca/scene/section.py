@@ -16,12 +16,15 @@ from loaded_tca.errors import InputError
 from loaded_tca.input_files import is_place
 from loaded_tca.scene.keys import Key, did_you_mean, nearest, shown, shown_key
 from loaded_tca.scene.spellings import key_meant_by
-from loaded_tca.scene.written import Equivalents, Writing, WrittenTable, as_written, by_keys, writing_of
+from loaded_tca.scene.written import Equivalents, Writing, WrittenTable, as_written, by_keys, in_inches, writing_of
 
 SectionType = TypeVar("SectionType", bound="Section")
 
 MOST_UNKNOWN_KEYS = 20
 """Unknown keys told one by one; of the rest of a section only the number is told."""
+
+INCH_WORDS = "in", "inch", "inches", "lb", "lbs", "lbf", "ft", "psi", "ksi"
+"""Ends of unknown keys that mean a unit of drawings in inches."""
 
 LONGEST_LIST = 300
 """Characters of the names of keys that a message lists."""
@@ -263,6 +266,9 @@ def _unknown(
     known = entries(section)
     unknown = [name for name in value if name not in known]
     homes = {name: place + home for name, home in _homes(section).items()} if unknown else {}
+    if any(name.lower().endswith(INCH_WORDS) for name in unknown):
+        usual = {key: in_inches(key, entry) for key, entry in keys_of(section).items()}
+        homes |= {writing.name: place + writing.name for writing in usual.values() if writing}
     elsewhere = _homes(whole) if unknown and whole is not None else {}
     for name in unknown[:MOST_UNKNOWN_KEYS]:
         near = nearest(name, homes) or ""
@@ -435,4 +441,4 @@ def _homes(section: type[Section]) -> dict[str, str]:
     for name, (_, entry) in reversed(entries(section).items()):
         if isinstance(entry, Subsection):
             inner |= {key: f"{name}.{home}" for key, home in _homes(entry.section).items()}
-    return inner | {name: name for name in entries(section)}
+    return inner | {name: name for name in (*entries(section), *section.equivalents)}

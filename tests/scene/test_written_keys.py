@@ -4,15 +4,17 @@ import math
 
 import pytest
 
-from loaded_tca import parse_scene
+from loaded_tca import parse_scene, read_scene
+from loaded_tca.scene import scene_from_table
 from loaded_tca.scene.keys import Key, Number
 from loaded_tca.scene.parse import FAMILIES, VARIANTS
-from loaded_tca.scene.section import Subsection, Tables, entries, keys_of
+from loaded_tca.scene.section import Section, Subsection, Tables, as_table, contents, entries, keys_of
 from loaded_tca.scene.written import METRIC, as_written, in_inches, writing_of
 from loaded_tca.stages import read_stage
 from loaded_tca.stages.sections import Stage
 from loaded_tca.units import ending_of
 from tests.refusals import refusals
+from tests.samples.results import SCENES
 
 INCHES = """
 title = "Spur pair of 8 pitch"
@@ -304,6 +306,68 @@ def test_numbers_in_units_of_their_own_stay_what_they_are():
         "found 1; 3 of them on 50.8 mm would touch: allowed below 0.5, up to 0.5 bore_in = 0.5, pin_in = 0.01"
     )
     assert as_written("found 25.4 values; allowed 25.4 mm", "bore_mm", writings) == "found 25.4 values; allowed 25.4 mm"
+
+
+def in_inch_keys(section):
+    """The table of a section as a drawing in inches has it: every key that has a unit there."""
+    table = {}
+    for name, value in contents(section).items():
+        writing = in_inches(name, keys_of(type(section))[name]) if name in keys_of(type(section)) else None
+        if isinstance(value, Section):
+            table[name] = in_inch_keys(value)
+        elif isinstance(value, tuple) and value and isinstance(value[0], Section):
+            table[name] = [in_inch_keys(each) for each in value]
+        elif writing is None or value is None:
+            table[name] = value
+        else:
+            table[writing.name] = back(writing, value)
+    return table
+
+
+def back(writing, value):
+    return tuple(back(writing, each) for each in value) if isinstance(value, tuple) else writing.from_key(value)
+
+
+def leaves(value):
+    if isinstance(value, dict):
+        value = [each for item in sorted(value.items()) for each in item]
+    return [leaf for each in value for leaf in leaves(each)] if isinstance(value, list | tuple) else [value]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "helical_on_rolling_bearings",
+        "helical_on_supports",
+        "double_helical",
+        "planet_ring",
+        "spiral_bevel_blank",
+        "face_milled_blank",
+        "hypoid_13x42",
+        "rated_spectrum",
+        "revolution_helical",
+        "measured_flank",
+    ],
+)
+def test_scene_with_every_key_in_inches_is_the_same(name):
+    scene = read_scene(SCENES / f"{name}.toml")
+    table = in_inch_keys(scene)
+    again = scene_from_table(table)
+    assert type(again) is type(scene)
+    for one, other in zip(leaves(as_table(again)), leaves(as_table(scene)), strict=True):
+        # two roundings, of 1.1e-16 each
+        assert one == (pytest.approx(other, rel=1e-15, abs=0.0) if isinstance(other, float) else other)
+
+
+test_key_that_nobody_knows_is_answered_with_one_of_its_unit = refusals(
+    lambda text: parse_scene(text),
+    (
+        "[pair]\ntype = 'cylindrical'\ndiametral_pitch = 8",
+        'pitch: unknown key; did you mean "pair.diametral_pitch_per_inch"',
+    ),
+    ("[pair]\ntype = 'cylindrical'\nmt = 8", 'pair.mt: unknown key; did you mean "pair.transverse_module_mm"'),
+    ("[pair]\ntype = 'cylindrical'\n[pinion]\nface_width_inch = 1", 'did you mean "pinion.face_width_in"'),
+)
 
 
 def test_changes_may_be_in_inches():
