@@ -92,14 +92,11 @@ def as_files_write(options: argparse.Namespace) -> Iterator[None]:
             writings, _ = written_otherwise(options.scene)
         except (AttributeError, InputError):
             raise error from None
-        from loaded_tca.scene.written import as_written
+        from loaded_tca.scene.written import answered, as_written
 
         changed = dict(getattr(options, "set", ()))
         writings = {key: writing for key, writing in writings.items() if key not in changed}
-        problems = error.problems if isinstance(error, InputError) else (str(error),)
-        told = []
-        for head, colon, rest in (problem.partition(": ") for problem in problems):
-            told.append(as_written(head, "", writings) + colon + as_written(rest, head, writings))
+        told = answered(error.problems if isinstance(error, InputError) else (str(error),), writings)
         again = InputError(told) if isinstance(error, InputError) else GeometryError(told[0])
         for note in getattr(error, "__notes__", ()):
             again.add_note(as_written(note, "", writings))

@@ -38,6 +38,7 @@ from loaded_tca.scene.section import (
     replaced_by,
     rule,
     subsection,
+    told_as_written,
 )
 from loaded_tca.scene.sections import (
     Analysis,
@@ -455,7 +456,7 @@ class Scene(WithStandards, ABC):
 
             scene.with_changes({"analysis.cells": (32, 32)})
         """
-        changes = in_keys(self, changes)
+        changes, writings = in_keys(self, changes)
         # Sections without a change stay what they are, since they are checked; another family may have others.
         table = contents(self) if _OF_FAMILIES.isdisjoint(changes) else as_table(self)
         # What a file was read into, for one, gives way where another file is named.
@@ -469,7 +470,8 @@ class Scene(WithStandards, ABC):
                     inner = {str(n): one for n, one in enumerate(inner)}  # a list of tables: names are places
                 place[section] = place = dict(inner) if isinstance(inner, dict) else {}
             place[name] = value
-        return scene_from_table(table)
+        with told_as_written(writings):
+            return scene_from_table(table)
 
     def to_toml(self) -> str:
         """Return a scene file with every key; ``parse_scene`` makes the same scene of it."""

@@ -8,15 +8,25 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from textwrap import shorten
 from typing import Any, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import is_place
-from loaded_tca.scene.keys import Key, did_you_mean, nearest, shown, shown_key
+from loaded_tca.scene.keys import Key, List, did_you_mean, nearest, shown, shown_key
 from loaded_tca.scene.spellings import key_meant_by
-from loaded_tca.scene.written import Equivalents, Writing, WrittenTable, as_written, by_keys, in_inches, writing_of
+from loaded_tca.scene.written import (
+    Equivalents,
+    Writing,
+    WrittenTable,
+    answered,
+    as_written,
+    by_keys,
+    in_inches,
+    writing_of,
+)
 
 SectionType = TypeVar("SectionType", bound="Section")
 
@@ -391,6 +401,9 @@ def writing_at(scene: Section, path: str, changes: Mapping[str, Any] = {}) -> tu
     """
     *sections, name = path.split(".")
     section = _section_at(type(scene), sections)
+    if section is None and is_place(name):  # in a list of numbers, each as the list has them
+        path, writing = writing_at(scene, ".".join(sections), changes)
+        return f"{path}.{name}", writing
     if section is None or name in entries(section):
         return path, None
     around: Any = scene
@@ -406,8 +419,8 @@ def writing_at(scene: Section, path: str, changes: Mapping[str, Any] = {}) -> tu
     return path if writing is None else own + writing.key, writing
 
 
-def in_keys(scene: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return changes of a scene by the keys of its sections, as ``with_changes`` takes them from drawings.
+def in_keys(scene: Section, changes: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Writing]]:
+    """Return changes of a scene by the keys of its sections, and how they are written, where otherwise.
 
     Raises
     ------
@@ -415,12 +428,14 @@ def in_keys(scene: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
         With every value that is refused in the unit in which it is given, and every key that is given twice.
     """
     by_key: dict[str, Any] = {}
+    writings: dict[str, Writing] = {}
     problems: list[str] = []
     for path, value in changes.items():
         try:
             key, writing = writing_at(scene, path, changes)
-            if writing is not None and value is not None:
-                value = writing.read(key_at(type(scene), key), value)
+            if writing is not None:
+                writings[key] = writing
+                value = value if value is None else writing.read(_entry_at(type(scene), key), value)
         except InputError as error:
             problems += error.problems
             continue
@@ -432,7 +447,25 @@ def in_keys(scene: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
         by_key[key] = value
     if problems:
         raise InputError(problems)
-    return by_key
+    return by_key, writings
+
+
+def _entry_at(section: type[Section], path: str) -> Key:
+    """The key at a path, or that of the numbers of a list whose place the path ends with."""
+    *names, name = path.split(".")
+    if not is_place(name):
+        return key_at(section, path)
+    entry = key_at(section, ".".join(names))
+    return dataclasses.replace(entry, kind=entry.kind.kind) if isinstance(entry.kind, List) else entry
+
+
+@contextmanager
+def told_as_written(writings: Mapping[str, Writing]) -> Iterator[None]:
+    """Tell the problems of keys by the names and in the units in which they are changed."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(answered(error.problems, writings)) if writings else error from None
 
 
 def _homes(section: type[Section]) -> dict[str, str]:

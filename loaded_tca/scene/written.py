@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
@@ -242,6 +242,12 @@ def _is_in_inches(name: str, keys: Mapping[str, Key], equivalents: Equivalents) 
     if name in keys:
         return False if ending_of(name) in METRIC and keys[name].of_one_unit else None
     return True if writing_of(name, keys, equivalents) else None
+
+
+def answered(problems: Iterable[str], writings: Mapping[str, Writing]) -> list[str]:
+    """Problems, each with the path of a key in front, as they are told where keys are written otherwise."""
+    parts = [problem.partition(": ") for problem in problems]
+    return [as_written(head, "", writings) + colon + as_written(rest, head, writings) for head, colon, rest in parts]
 
 
 def as_written(sentence: str, head: str, writings: Mapping[str, Writing]) -> str:

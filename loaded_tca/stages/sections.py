@@ -34,6 +34,7 @@ from loaded_tca.scene.section import (
     made,
     replaced_by,
     subsection,
+    told_as_written,
 )
 from loaded_tca.scene.sections import FACTOR, Analysis, DIAMETER_mm, ElasticMaterial, LubricantSection
 from loaded_tca.scene.tools import ADDENDUM, DEDENDUM, ROOT_RADIUS
@@ -394,7 +395,7 @@ class Stage(Section):
         InputError
             Every problem at once, as for a file.
         """
-        changes = in_keys(self, changes)
+        changes, writings = in_keys(self, changes)
         table = as_table(self)
         of_planets = {path: value for path, value in changes.items() if PLACE.fullmatch(path)}
         for path, value in (dict.fromkeys(replaced_by(type(self), changes)) | dict(changes)).items():
@@ -417,7 +418,8 @@ class Stage(Section):
                 raise InputError(f"{path}: no such planet; allowed 0 to {len(values) - 1}")
             values[int(number)] = value
             own[name] = values
-        return stage_from_table(table)
+        with told_as_written(writings):
+            return stage_from_table(table)
 
     @classmethod
     def key_at(cls, path: str) -> Key:

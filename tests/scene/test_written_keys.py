@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from loaded_tca import parse_scene, read_scene
+from loaded_tca import InputError, parse_scene, read_scene
 from loaded_tca.scene import scene_from_table
 from loaded_tca.scene.keys import Key, Number
 from loaded_tca.scene.parse import FAMILIES, VARIANTS
@@ -400,6 +400,10 @@ test_changes_that_are_refused = refusals(
         ("^pair.diametral_pitch_per_inch: normal or transverse?",),
     ),
     ({"pinion.widht_in": 1}, ("^pinion.widht_in: unknown key",)),
+    (  # by a rule, with what the scene has already
+        {"pinion.tip_chamfer_in": 0.01, "pinion.tip_rounding_mm": 0.5},
+        ("^pinion.tip_chamfer_in: found 0.01 beside tip_rounding_mm = 0.5; give one of them: each ends the flank$",),
+    ),
 )
 
 
@@ -409,3 +413,6 @@ def test_stage_in_inches():
     changed = stage.with_changes({**changes, "pair.centre_distance_mm": None})
     assert (changed.sun.face_width_mm, changed.geometry.normal_module_mm) == (254.0, 20.0)
     assert changed.load.sun_torque_Nm == pytest.approx(135581.8, rel=SEVEN_DIGITS)
+    assert stage.with_changes({"stage.pin_tangential_in.0": 0.001}).stage.pin_tangential_um == (25.4, 0.0, 0.0)
+    with pytest.raises(InputError, match=r"^stage.pin_tangential_in.0: found 1; allowed a number from -0.3937"):
+        stage.with_changes({"stage.pin_tangential_in.0": 1})
