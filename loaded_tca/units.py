@@ -63,6 +63,19 @@ UNITS = {
 """Ending of a name -> unit; of several that fit, the first."""
 MICROMETRES = 1.0 / UNITS["um"].factor
 """Per millimetre."""
+INCHES = {
+    "lbf_in_per_rad": ("lbf in/rad", ("Nm_per_mrad",)),
+    "in_per_rad": ("in/rad", ("mm_per_rad",)),
+    "lbf_per_in": ("lbf/in", ("N_per_um",)),
+    "lbf_in": ("lbf in", ("Nm",)),
+    "lbf_ft": ("lbf ft", ("Nm",)),
+    "in": ("in", ("mm", "um")),
+    "uin": ("uin", ("um",)),
+    "lbf": ("lbf", ("N",)),
+    "psi": ("psi", ("MPa",)),
+    "ksi": ("ksi", ("MPa",)),
+}
+"""Endings of keys on drawings in inches -> unit, and the metric endings that it stands for; the usual ones first."""
 
 
 @functools.lru_cache(maxsize=4096)
@@ -136,8 +149,15 @@ PREFIXED: tuple[tuple[str, tuple[str, ...], str, dict[str, int]], ...] = (
     ("K", ("kelvin",), "1", {KELVIN: 1}),
 )
 """Units that take prefixes: symbol, names, size in base units, and what each is made of."""
+POUND = Fraction("0.45359237") * Fraction("9.80665")
+"""Force of a pound [N]: the international pound under standard gravity."""
 OTHERS: tuple[tuple[tuple[str, ...], Fraction, dict[str, int]], ...] = (
     (("in", "inch", "inches"), Fraction("0.0254"), {METRE: 1}),
+    (("uin", "microinch", "microinches"), Fraction("0.0254e-6"), {METRE: 1}),
+    (("ft", "foot", "feet"), Fraction("0.3048"), {METRE: 1}),
+    (("lbf",), POUND, {KILOGRAM: 1, METRE: 1, SECOND: -2}),
+    (("psi",), POUND / Fraction("0.0254") ** 2, {KILOGRAM: 1, METRE: -1, SECOND: -2}),
+    (("ksi",), 1000 * POUND / Fraction("0.0254") ** 2, {KILOGRAM: 1, METRE: -1, SECOND: -2}),
     (("micron", "microns"), Fraction("1e-6"), {METRE: 1}),
     (("Nmm",), Fraction("1e-3"), {KILOGRAM: 1, METRE: 2, SECOND: -2}),
     (("bar",), Fraction("1e5"), {KILOGRAM: 1, METRE: -1, SECOND: -2}),
@@ -179,10 +199,22 @@ def conversion(written: str, wanted: str) -> float | None:
     >>> conversion("\N{MICRO SIGN}m", "mm"), conversion("newton / millimeter ** 2", "MPa"), conversion("mm", "N")
     (0.001, 1.0, None)
     """
+    ratio = exact_conversion(written, wanted)
+    return None if ratio is None else float(ratio)
+
+
+def exact_conversion(written: str, wanted: str) -> Fraction | None:
+    """Factor as :func:`conversion` has it, as a ratio of whole numbers.
+
+    Examples
+    --------
+    >>> exact_conversion("in", "um"), exact_conversion("lbf/in", "N/um")
+    (Fraction(25400, 1), Fraction(35025367, 200000000000))
+    """
     size, of_wanted = (_size(unit[:LONGEST].translate(PLAIN).replace("**", "^").strip()) for unit in (written, wanted))
     if size is None or of_wanted is None or size[1] != of_wanted[1]:
         return None
-    return float(size[0] / of_wanted[0])
+    return size[0] / of_wanted[0]
 
 
 @functools.cache

@@ -59,6 +59,7 @@ CASES = (
     "cylindrical.nrel_5mw_stage_3",
     "cylindrical.metric_gear_technology",
     "cylindrical.undercut",
+    "cylindrical.inches",
     "loaded.limits",
     "loaded.revolution",
     "loaded.rolling_bearings",

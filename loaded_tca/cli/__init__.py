@@ -14,6 +14,7 @@ from contextlib import AbstractContextManager, nullcontext
 
 from loaded_tca.cli.arguments import command_line
 from loaded_tca.cli.commands import DEMO_SCENE
+from loaded_tca.cli.inputs import as_files_write
 from loaded_tca.cli.terminal import collecting_garbage, flush, let_go, say, warnings_in_one_line_each
 from loaded_tca.errors import ConvergenceError, ExecutorError, InputError, LoadedTCAError, reason_of
 from loaded_tca.lazy import hidden
@@ -44,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             options = command_line().parse_args(arguments)
             # xarray that is there already has looked for dask, and imports it where it saw it.
             needed = getattr(options, "scheduler", None) or "xarray" in sys.modules
-            with nullcontext() if needed else hidden("dask"), _jobs_of(options):
+            with nullcontext() if needed else hidden("dask"), _jobs_of(options), as_files_write(options):
                 options.command(options)
             flush()
     except (Exception, KeyboardInterrupt) as error:  # whatever happens ends in one line

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from loaded_tca.cli.inputs import check_place, scene_of, stage_of
+from loaded_tca.cli.inputs import check_place, read_otherwise, scene_of, stage_of
 from loaded_tca.cli.terminal import print_files
 from loaded_tca.errors import InputError
 from loaded_tca.scene.cylindrical import CylindricalScene
@@ -32,6 +32,7 @@ def check(options: argparse.Namespace) -> None:
     else:
         scene = scene_of(options)
         text, scenes = _described(scene), {PICTURE: scene}
+    text = "\n".join([text, *read_otherwise(options.scene)])
     if options.out is None:
         print(text)
         return

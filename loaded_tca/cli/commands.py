@@ -224,6 +224,7 @@ def _changed_result(
 ) -> tuple[MeshCycle, Path]:
     """Result that a command evaluates, with what its options and else ``defaults`` change, and where its files go."""
     from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.scene.section import writing_at
 
     path = result_file(options.result)
     if options.result.is_dir():
@@ -232,7 +233,7 @@ def _changed_result(
     directory = options.out or path.parent
     check_place(directory)
     changes = changes_of(options)
-    require(*((is_allowed(key), f"--set {key}: {allowed}") for key in changes))
+    require(*((is_allowed(writing_at(result.scene, key)[0]), f"--set {key}: {allowed}") for key in changes))
     if changes := {**defaults, **changes}:
         result = replace(result, scene=result.scene.with_changes(changes))
     return result, directory

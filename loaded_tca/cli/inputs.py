@@ -9,7 +9,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from loaded_tca.errors import InputError, named, reason_of, require
+from loaded_tca.errors import GeometryError, InputError, named, reason_of, require
+from loaded_tca.input_files import read_text
+from loaded_tca.plain import plain
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from loaded_tca.double_helical import DoubleHelicalResult
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
+    from loaded_tca.scene.written import Writing
     from loaded_tca.stages import Stage, StageResult
     from loaded_tca.studies import DesignResult
 
@@ -42,6 +45,62 @@ def stage_of(options: argparse.Namespace) -> Stage:
 
     stage, changes = read_stage(options.scene), changes_of(options)
     return stage.with_changes(changes) if changes else stage
+
+
+def written_otherwise(path: str | os.PathLike[str]) -> tuple[dict[str, Writing], dict[str, Any]]:
+    """How a scene or stage file writes keys that it does not have by their names, and values by paths of keys.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or describes neither.
+    """
+    from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, scenes_of, toml_table
+    from loaded_tca.scene.section import check
+
+    table = toml_table(read_text(path, LARGEST_FILE), os.fspath(path))
+    if is_table_of_stage(table):
+        from loaded_tca.stages import Stage
+
+        values, _, writings = check(Stage, table)
+    else:
+        values, _, writings = check(scenes_of(table), table)
+    return {key: writing for key, writing in writings.items() if writing.given}, values
+
+
+def read_otherwise(path: str | os.PathLike[str]) -> Iterator[str]:
+    """Lines on the keys that a file writes otherwise, with the values that were read; none where there are none."""
+    from loaded_tca.scene.keys import shown
+
+    writings, values = written_otherwise(path)
+    if writings:
+        yield "written otherwise in the file, and read as"
+        width = max(len(writing.path(key)) for key, writing in writings.items())
+        for key, writing in writings.items():
+            value = values[key]
+            read = shown(value) if isinstance(value, tuple) else plain(value, 9)
+            yield f"  {writing.path(key):<{width}}  {key} = {read}"
+
+
+@contextmanager
+def as_files_write(options: argparse.Namespace) -> Iterator[None]:
+    """Tell problems of a scene by the names and in the units of its file, but those of keys that ``--set`` changes."""
+    try:
+        yield
+    except (InputError, GeometryError) as error:
+        try:
+            writings, _ = written_otherwise(options.scene)
+        except (AttributeError, InputError):
+            raise error from None
+        from loaded_tca.scene.written import answered, as_written
+
+        changed = dict(getattr(options, "set", ()))
+        writings = {key: writing for key, writing in writings.items() if key not in changed}
+        told = answered(error.problems if isinstance(error, InputError) else (str(error),), writings)
+        again = InputError(told) if isinstance(error, InputError) else GeometryError(told[0])
+        for note in getattr(error, "__notes__", ()):
+            again.add_note(as_written(note, "", writings))
+        raise again.with_traceback(error.__traceback__) from error.__cause__
 
 
 def changes_of(options: argparse.Namespace) -> dict[str, Any]:

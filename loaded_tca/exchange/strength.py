@@ -79,7 +79,7 @@ def strength_section(reading: Reading, gear: Component) -> dict[str, Any] | None
         told = ", ".join(f"{key} = {value if isinstance(value, str) else plain(value)}" for key, value in table.items())
         reading.leave(gear, f"its strength ({told}): a scene needs {' and '.join(missing)}, too")
         return None
-    _, problems = check(StrengthSection, table)
+    _, problems, _ = check(StrengthSection, table)
     if problems:
         reading.leave(gear, f"its strength: {'; '.join(problems)}")
         return None

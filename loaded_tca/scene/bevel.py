@@ -21,6 +21,7 @@ from loaded_tca.scene.bevel_blank import MEASURED, MEASURED_RULES, Blank, Measur
 from loaded_tca.scene.bevel_rows import blank_rows, common_blank_rows, cone_rows, depth_rows
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
+from loaded_tca.scene.equivalents import OF_BEVEL
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.machine_settings import METHODS, Method, Settings
 from loaded_tca.scene.model import Row, Scene
@@ -28,6 +29,7 @@ from loaded_tca.scene.parse import family, scene_from_table
 from loaded_tca.scene.section import Rule, as_table, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, ERROR_mm, Pair
 from loaded_tca.scene.spiral import MountingErrors, SpiralScene
+from loaded_tca.scene.written import Equivalents
 
 SPIRAL_deg = Number(0.0, 59.0)
 CONE_deg = above_zero(179.0)
@@ -119,6 +121,7 @@ class Geometry(Pair):
         Blank, "depths and thicknesses after ISO 23509; without it they are outer modules about one apex", optional=True
     )
 
+    equivalents: ClassVar[Equivalents] = OF_BEVEL
     rules: ClassVar[tuple[Rule, ...]] = (
         Rule(SIZES, one_size),
         rule(

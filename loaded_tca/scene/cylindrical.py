@@ -19,6 +19,7 @@ from loaded_tca.reference import iso6336_3
 from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.blank import BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
+from loaded_tca.scene.equivalents import OF_HELICAL
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.parse import family
@@ -40,6 +41,7 @@ from loaded_tca.scene.tools import (
     rack_rows,
     shortening,
 )
+from loaded_tca.scene.written import Equivalents
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,6 +79,8 @@ class Geometry(Pair):
         '"computed": both tips are altered by k m_n = a - a_d - m_n (x1 + x2) (ISO 21771) where that shortens them',
         "none",
     )
+
+    equivalents: ClassVar[Equivalents] = OF_HELICAL
 
 
 @dataclass(frozen=True, kw_only=True)

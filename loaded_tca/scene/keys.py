@@ -296,12 +296,16 @@ class Grid:
 
 @dataclass(frozen=True)
 class Key:
-    """A key of a section: the kind of its value, its default (None: not given) and its meaning."""
+    """A key of a section: the kind of its value, its default (None: not given) and its meaning.
+
+    ``of_one_unit``: numbers of its value are all in the unit at the end of its name.
+    """
 
     kind: Kind
     about: str
     default: Any = REQUIRED
     absent: str = ""
+    of_one_unit: bool = True
 
     @property
     def required(self) -> bool:
@@ -317,9 +321,9 @@ class Key:
         return self.default
 
 
-def key(kind: Kind, about: str, default: Any = REQUIRED, absent: str = "") -> Any:
+def key(kind: Kind, about: str, default: Any = REQUIRED, absent: str = "", *, of_one_unit: bool = True) -> Any:
     """Dataclass field that is a key of a scene file; ``absent`` says what holds where it is not given."""
-    entry = {"entry": Key(kind, about, default, absent)}
+    entry = {"entry": Key(kind, about, default, absent, of_one_unit)}
     return field(metadata=entry) if default is REQUIRED else field(default=default, metadata=entry)
 
 

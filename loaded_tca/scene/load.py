@@ -12,7 +12,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
 from loaded_tca.scene.keys import Choice, Line, Number, above_zero, did_you_mean, key, nearest, shown
-from loaded_tca.scene.section import Rule, Section, Tables, check, entries, made
+from loaded_tca.scene.section import Rule, Section, Tables, check, keys_of, made
+from loaded_tca.scene.written import writing_of
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
 
@@ -61,8 +62,8 @@ class LoadCase(Section):
     rules: ClassVar[tuple[Rule, ...]] = (Rule(("hours", "share"), _one_duration),)
 
 
-COLUMNS = {name: entry for name, (_, entry) in entries(LoadCase).items()}
-"""Of a file of a load spectrum: the keys of a bin."""
+COLUMNS = keys_of(LoadCase)
+"""Of a file of a load spectrum: the keys of a bin, which the file may write as drawings do."""
 
 
 def _one_load(torque: float | None, cases: object, spectrum: str | None) -> str | None:
@@ -217,6 +218,7 @@ def read_spectrum(file: str) -> tuple[LoadCase, ...]:
 
 def _column_problems(names: Sequence[str]) -> list[str]:
     """What is wrong with the names of columns."""
+    names = [writing.key if (writing := writing_of(name, COLUMNS, {})) else name for name in names]
     allowed = ", ".join(COLUMNS)
     problems = [
         f"unknown column {shown(name)}{did_you_mean(nearest(name, COLUMNS)) or f'; allowed {allowed}'}"
@@ -241,7 +243,7 @@ def _bins(table: Table) -> tuple[LoadCase, ...]:
             problems.append(f"{line}: more values than the header has columns")
             continue
         row = {name: _value(name, cell) for name, cell in zip(table.names, cells, strict=False) if cell}
-        values, wrong = check(LoadCase, row)
+        values, wrong, _ = check(LoadCase, row)
         problems += [f"{line}: {problem}" for problem in wrong]
         if not wrong:
             cases.append(made(LoadCase, values))

@@ -34,9 +34,11 @@ from loaded_tca.scene.section import (
     Section,
     as_table,
     contents,
+    in_keys,
     replaced_by,
     rule,
     subsection,
+    told_as_written,
 )
 from loaded_tca.scene.sections import (
     Analysis,
@@ -452,7 +454,8 @@ class Scene(WithStandards, ABC):
         changes : mapping
             Key as in a file, with dots (``"pinion.modifications.tip_relief_um"``) -> value; None: not given. Of keys
             that say the same in several ways (``file``, ``measurement`` of a flank; ``index_um``, ``single_um``,
-            ``file``, ``tolerance_class`` of a pitch) the one that is changed takes the place of the others.
+            ``file``, ``tolerance_class`` of a pitch) the one that is changed takes the place of the others. Keys of
+            drawings (``"pinion.face_width_in"``) are taken, too.
 
         Raises
         ------
@@ -465,6 +468,7 @@ class Scene(WithStandards, ABC):
 
             scene.with_changes({"analysis.cells": (32, 32)})
         """
+        changes, writings = in_keys(self, changes)
         # Sections without a change stay what they are, since they are checked; another family may have others.
         table = contents(self) if _OF_FAMILIES.isdisjoint(changes) else as_table(self)
         # What a file was read into, for one, gives way where another file is named.
@@ -478,7 +482,8 @@ class Scene(WithStandards, ABC):
                     inner = {str(n): one for n, one in enumerate(inner)}  # a list of tables: names are places
                 place[section] = place = dict(inner) if isinstance(inner, dict) else {}
             place[name] = value
-        return scene_from_table(table)
+        with told_as_written(writings):
+            return scene_from_table(table)
 
     def to_toml(self) -> str:
         """Return a scene file with every key; ``parse_scene`` makes the same scene of it."""

@@ -19,6 +19,8 @@ from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
 from loaded_tca.scene.keys import Choice, Key, literal, shown, shown_key
 from loaded_tca.scene.section import Section, Subsection, as_given, check, contents, entries, made
+from loaded_tca.scene.written import MODULE, PITCH, INCH_mm
+from loaded_tca.units import INCHES, UNITS, conversion
 
 if TYPE_CHECKING:
     from loaded_tca.scene.model import Scene
@@ -244,6 +246,15 @@ def scene_from_table(table: Mapping[str, Any]) -> Scene:
     InputError
         Every problem at once.
     """
+    scenes = scenes_of(table)
+    values, problems, _ = check(scenes, table)
+    if problems:
+        raise InputError(problems)
+    return made(scenes, values)
+
+
+def scenes_of(table: Mapping[str, Any]) -> type[Scene]:
+    """Return the class of scenes that nested dictionaries describe; InputError with every problem if there is none."""
     pair = {} if table.get("pair") is None else table["pair"]
     pair = contents(pair) if isinstance(pair, Section) else pair
     kind = pair.get("type") if isinstance(pair, Mapping) else None
@@ -251,11 +262,7 @@ def scene_from_table(table: Mapping[str, Any]) -> Scene:
         scenes = FAMILIES[Choice(tuple(FAMILIES)).read(kind)]  # type: ignore[index]
     except ValueError as refused:
         raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
-    scenes = next((one for one, _ in _variants(scenes) if one.describes(table)), scenes)
-    values, problems = check(scenes, table)
-    if problems:
-        raise InputError(problems)
-    return made(scenes, values)
+    return next((one for one, _ in _variants(scenes) if one.describes(table)), scenes)
 
 
 def _problems_without_type(table: Mapping[str, Any], pair: Any, kind: Any, refusal: str) -> list[str]:
@@ -320,6 +327,7 @@ def describe_keys() -> str:
                     lines += section_lines(path, section, f"{about} ({when})", {}, of_family)
     for path, keys_of in shared.items():
         lines += section_lines(path, *keys_of)
+    lines += inch_lines()
     return "\n".join(lines).strip() + "\n"
 
 
@@ -364,6 +372,11 @@ def section_lines(
         for name, entry in others.items()
         if isinstance(entry, Key)
     ]
+    if of_family is None or section.equivalents != of_family.equivalents:
+        rows += [
+            f"| `{name}` | what makes a `{each.key}` | not given | {each.about}; instead of `{each.key}` |"
+            for name, each in section.equivalents.items()
+        ]
     if rows:
         yield from ("| key | allowed | default | meaning |", "|---|---|---|---|", *rows)
     else:
@@ -374,3 +387,12 @@ def _default(entry: Key) -> str:
     if entry.required:
         return "**required**"
     return entry.absent if entry.default is None else f"`{literal(entry.default)}`"
+
+
+def inch_lines() -> Iterator[str]:
+    """Lines of the table of endings that keys have on drawings in inches, in Markdown."""
+    yield from ("", "### Keys on drawings in inches", "", "| ending | instead of | is |", "|---|---|---|")
+    for ending, (unit, metric) in INCHES.items():
+        of = [f"{conversion(unit, UNITS[each].text):.10g} {UNITS[each].text}" for each in metric]
+        yield f"| `_{ending}` | {', '.join(f'`_{each}`' for each in metric)} | {' or '.join(of)} |"
+    yield f"| `_{PITCH}` | `_{MODULE}` | {float(INCH_mm):g} mm over it |"

@@ -7,20 +7,34 @@ new gear type is a new set of sections; nothing here needs to know it.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from textwrap import shorten
 from typing import Any, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import is_place
-from loaded_tca.scene.keys import Key, did_you_mean, nearest, shown, shown_key
+from loaded_tca.scene.keys import Key, List, did_you_mean, nearest, shown, shown_key
 from loaded_tca.scene.spellings import key_meant_by
+from loaded_tca.scene.written import (
+    Equivalents,
+    Writing,
+    WrittenTable,
+    answered,
+    as_written,
+    by_keys,
+    in_inches,
+    writing_of,
+)
 
 SectionType = TypeVar("SectionType", bound="Section")
 
 MOST_UNKNOWN_KEYS = 20
 """Unknown keys told one by one; of the rest of a section only the number is told."""
+
+INCH_WORDS = "in", "inch", "inches", "lb", "lbs", "lbf", "ft", "psi", "ksi"
+"""Ends of unknown keys that mean a unit of drawings in inches."""
 
 LONGEST_LIST = 300
 """Characters of the names of keys that a message lists."""
@@ -68,7 +82,7 @@ class Tables:
                     f"table {place}: found {shown(table)}; allowed a table of {', '.join(entries(self.section))}"
                 )
             else:
-                values, wrong = check(self.section, table)
+                values, wrong, _ = check(self.section, table)
                 problems += [f"table {place}: {one}" for one in wrong]
                 if not wrong:
                     made_of.append(made(self.section, values))
@@ -98,15 +112,17 @@ class Section:
     """What all sections share: every way to make one checks all its values, every problem is told.
 
     ``alternatives`` are keys that say the same in several ways: one that is changed takes the place of the others, and
-    of their ``companions``, keys that mean nothing without them.
+    of their ``companions``, keys that mean nothing without them. ``equivalents`` are other names that tables may have
+    in the place of keys.
     """
 
     rules: ClassVar[tuple[Rule, ...]] = ()
+    equivalents: ClassVar[Equivalents] = {}
     alternatives: ClassVar[tuple[str, ...]] = ()
     companions: ClassVar[dict[str, tuple[str, ...]]] = {}
 
     def __post_init__(self) -> None:
-        values, problems = check(type(self), contents(self))
+        values, problems, _ = check(type(self), contents(self))
         if problems:
             raise InputError(problems)
         for name, (attribute, _) in entries(type(self)).items():
@@ -127,6 +143,11 @@ def entries(section: type[Section]) -> dict[str, tuple[str, Key | Subsection]]:
         name = entry.name if isinstance(entry, Subsection) and entry.name else each.name
         table[name] = (each.name, entry)
     return table
+
+
+def keys_of(section: type[Section]) -> dict[str, Key]:
+    """Name in a file -> key, without the sections inside."""
+    return {name: entry for name, (_, entry) in entries(section).items() if isinstance(entry, Key)}
 
 
 def contents(section: Section) -> dict[str, Any]:
@@ -159,14 +180,15 @@ def values_of(section: Section) -> dict[str, Any]:
 
 def check(
     section: type[Section], table: Mapping[str, Any], place: str = "", whole: type[Section] | None = None
-) -> tuple[dict[str, Any], list[str]]:
+) -> tuple[dict[str, Any], list[str], dict[str, Writing]]:
     """Check a table against a section.
 
     Parameters
     ----------
     section : type of Section
     table : mapping
-        Names -> values; sections inside are mappings or made already. None counts as not given.
+        Names -> values; sections inside are mappings or made already. None counts as not given. Keys may be written as
+        drawings have them.
     place : str
         Prefix of the keys in messages, empty or ending in a dot.
     whole : type of Section, optional
@@ -178,50 +200,69 @@ def check(
         The values that are sound, with defaults for the keys not given: the section's own names, and the
         names inside its sections with dots.
     problems : list of str
-        One line per problem.
+        One line per problem, by the names and in the units of the table.
+    writings : dict
+        The same names of keys -> how the table writes them, of those that it writes otherwise.
     """
     values: dict[str, Any] = {}
     whole = whole or section
-    problems = list(_unknown(section, table, place, whole))
-    for name, (_, entry) in entries(section).items():
+    known = entries(section)
+    written = WrittenTable(table)
+    if any(name not in known for name in table):
+        written = by_keys(table, keys_of(section), section.equivalents, f"[{place[:-1]}]" if place else "the table")
+    table, writings = written.table, written.writings
+    problems = [*_unknown(section, table, place, whole), *(f"{place}{problem}" for problem in written.problems)]
+    for name, (_, entry) in known.items():
         given = table.get(name)
         if isinstance(entry, Subsection):
-            inner, inner_problems = _check_subsection(name, entry, given, place, whole)
+            inner, inner_problems, inner_writings = _check_subsection(name, entry, given, place, whole)
             values |= inner
             problems += inner_problems
+            writings = writings | {f"{name}.{key}": writing for key, writing in inner_writings.items()}
             continue
+        writing = writings.get(name)
         try:
-            values[name] = entry.read(given)
+            values[name] = entry.read(given) if writing is None else writing.read(entry, given)
         except ValueError as refused:
-            problems.append(f"{place}{name}: {refused}")
+            problems.append(f"{place}{name if writing is None else writing.name}: {refused}")
     for demand in section.rules:
         if all(name in values for name in demand.keys):
             complaint = demand.complain(*(values[name] for name in demand.keys))
             if complaint is not None:
-                problems.append(f"{place}{demand.keys[0]}: {complaint}")
-    return values, problems
+                problems.append(f"{place}{_answer(demand.keys, complaint, writings)}")
+    return values, problems, writings
+
+
+def _answer(keys: tuple[str, ...], complaint: str, writings: Mapping[str, Writing]) -> str:
+    """What a rule says of its keys, as the table writes them; the first one's section has names without its path."""
+    if not writings:
+        return f"{keys[0]}: {complaint}"
+    own = keys[0].rpartition(".")[0]
+    named = {writing.key: writing for key, writing in writings.items() if key.rpartition(".")[0] == own}
+    named |= writings
+    return f"{as_written(keys[0], '', named)}: {as_written(complaint, keys[0], named)}"
 
 
 def _check_subsection(
     name: str, entry: Subsection, given: Any, place: str, whole: type[Section]
-) -> tuple[dict[str, Any], list[str]]:
+) -> tuple[dict[str, Any], list[str], dict[str, Writing]]:
     if given is None and entry.optional:
-        return {name: None}, []
+        return {name: None}, [], {}
     if type(given) is entry.section:  # checked when it was made
-        return {name: given} | {f"{name}.{key}": value for key, value in values_of(given).items()}, []
+        return {name: given} | {f"{name}.{key}": value for key, value in values_of(given).items()}, [], {}
     if isinstance(given, Section):
         given = contents(given) if isinstance(given, entry.section) else shown(given)
     if not isinstance(given, Mapping | None):
-        return {}, [f"{place}{name}: found {shown(given)}; allowed a section [{place}{name}]"]
-    values, problems = check(entry.section, given or {}, f"{place}{name}.", whole)
+        return {}, [f"{place}{name}: found {shown(given)}; allowed a section [{place}{name}]"], {}
+    values, problems, writings = check(entry.section, given or {}, f"{place}{name}.", whole)
     inner = {f"{name}.{key}": value for key, value in values.items()}
     if problems:
-        return inner, problems
+        return inner, problems, writings
     try:
         inner[name] = made(entry.section, values)
     except InputError as refused:  # what only shows when it is made: a file that cannot be read
-        return inner, [f"{place}{name}.{problem}" for problem in refused.problems]
-    return inner, []
+        return inner, [f"{place}{name}.{problem}" for problem in refused.problems], writings
+    return inner, [], writings
 
 
 def made(section: type[SectionType], values: Mapping[str, Any]) -> SectionType:
@@ -235,6 +276,9 @@ def _unknown(
     known = entries(section)
     unknown = [name for name in value if name not in known]
     homes = {name: place + home for name, home in _homes(section).items()} if unknown else {}
+    if any(name.lower().endswith(INCH_WORDS) for name in unknown):
+        usual = {key: in_inches(key, entry) for key, entry in keys_of(section).items()}
+        homes |= {writing.name: place + writing.name for writing in usual.values() if writing}
     elsewhere = _homes(whole) if unknown and whole is not None else {}
     for name in unknown[:MOST_UNKNOWN_KEYS]:
         near = nearest(name, homes) or ""
@@ -308,18 +352,120 @@ def replaced_by(section: type[Section], changes: Mapping[str, Any]) -> set[str]:
 def _alternatives_of(section: type[Section], path: str) -> tuple[str, ...]:
     """Paths of the alternatives of the key at a path, and of their companions; none of a path that leads nowhere."""
     *sections, name = path.split(".")
-    names = iter(sections)
-    for each in names:
+    inner = _section_at(section, sections)
+    if inner is None:
+        return ()
+    others = [other for other in inner.alternatives if other != name] if name in inner.alternatives else []
+    others += [companion for other in others for companion in inner.companions.get(other, ())]
+    return tuple(".".join((*sections, other)) for other in others)
+
+
+def _section_at(section: type[Section], names: Sequence[str]) -> type[Section] | None:
+    """The section inside another one that names and places in lists lead to; None where they lead nowhere."""
+    rest = iter(names)
+    for each in rest:
         _, entry = entries(section).get(each, ("", None))
         if isinstance(entry, Subsection):
             section = entry.section
-        elif isinstance(entry, Key) and isinstance(entry.kind, Tables) and is_place(next(names, "")):
+        elif isinstance(entry, Key) and isinstance(entry.kind, Tables) and is_place(next(rest, "")):
             section = entry.kind.section
         else:
-            return ()
-    others = [other for other in section.alternatives if other != name] if name in section.alternatives else []
-    others += [companion for other in others for companion in section.companions.get(other, ())]
-    return tuple(".".join((*sections, other)) for other in others)
+            return None
+    return section
+
+
+def writing_at(scene: Section, path: str, changes: Mapping[str, Any] = {}) -> tuple[str, Writing | None]:
+    """Return the path of the key that a path of a drawing writes, and how; the path itself where it writes none.
+
+    Parameters
+    ----------
+    scene : Section
+        Made already: what ``transverse_module_mm`` means follows from its helix angle.
+    path : str
+        With dots.
+    changes : mapping, optional
+        Path -> value, of those that change with it.
+
+    Raises
+    ------
+    InputError
+        If the name may mean several things.
+
+    Examples
+    --------
+    >>> from loaded_tca import parse_scene
+    >>> from loaded_tca.cli import DEMO_SCENE
+    >>> path, writing = writing_at(parse_scene(DEMO_SCENE.read_text()), "pinion.face_width_in")
+    >>> path, writing.converted(1.5)
+    ('pinion.face_width_mm', 38.1)
+    """
+    *sections, name = path.split(".")
+    section = _section_at(type(scene), sections)
+    if section is None and is_place(name):  # in a list of numbers, each as the list has them
+        path, writing = writing_at(scene, ".".join(sections), changes)
+        return f"{path}.{name}", writing
+    if section is None or name in entries(section):
+        return path, None
+    around: Any = scene
+    for each in sections:
+        around = contents(around).get(each) if isinstance(around, Section) else None
+    own = ".".join((*sections, ""))
+    table = contents(around) if isinstance(around, Section) else {}
+    table |= {key.removeprefix(own): value for key, value in changes.items() if key.startswith(own)}
+    writing = writing_of(name, keys_of(section), section.equivalents, table)
+    question = section.equivalents[name].question(table) if name in section.equivalents else None
+    if question is not None:
+        raise InputError(f"{path}: {question}")
+    return path if writing is None else own + writing.key, writing
+
+
+def in_keys(scene: Section, changes: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Writing]]:
+    """Return changes of a scene by the keys of its sections, and how they are written, where otherwise.
+
+    Raises
+    ------
+    InputError
+        With every value that is refused in the unit in which it is given, and every key that is given twice.
+    """
+    by_key: dict[str, Any] = {}
+    writings: dict[str, Writing] = {}
+    problems: list[str] = []
+    for path, value in changes.items():
+        try:
+            key, writing = writing_at(scene, path, changes)
+            if writing is not None:
+                writings[key] = writing
+                value = value if value is None else writing.read(_entry_at(type(scene), key), value)
+        except InputError as error:
+            problems += error.problems
+            continue
+        except ValueError as refused:
+            problems.append(f"{path}: {refused}")
+            continue
+        if writing is not None and (key in by_key or key in changes):
+            problems.append(f"{path}: given twice, as {key} too")
+        by_key[key] = value
+    if problems:
+        raise InputError(problems)
+    return by_key, writings
+
+
+def _entry_at(section: type[Section], path: str) -> Key:
+    """The key at a path, or that of the numbers of a list whose place the path ends with."""
+    *names, name = path.split(".")
+    if not is_place(name):
+        return key_at(section, path)
+    entry = key_at(section, ".".join(names))
+    return dataclasses.replace(entry, kind=entry.kind.kind) if isinstance(entry.kind, List) else entry
+
+
+@contextmanager
+def told_as_written(writings: Mapping[str, Writing]) -> Iterator[None]:
+    """Tell the problems of keys by the names and in the units in which they are changed."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(answered(error.problems, writings)) if writings else error from None
 
 
 def _homes(section: type[Section]) -> dict[str, str]:
@@ -328,4 +474,4 @@ def _homes(section: type[Section]) -> dict[str, str]:
     for name, (_, entry) in reversed(entries(section).items()):
         if isinstance(entry, Subsection):
             inner |= {key: f"{name}.{home}" for key, home in _homes(entry.section).items()}
-    return inner | {name: name for name in entries(section)}
+    return inner | {name: name for name in (*entries(section), *section.equivalents)}

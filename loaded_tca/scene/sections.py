@@ -147,6 +147,7 @@ class Modifications(Section):
         "a1 to a6 of a1 + a2 x + a3 y + a4 x y + a5 x^2 + a6 y^2 [mm]; x [mm] lengthwise from mid-face, y [mm] "
         "along the roll length (bevel gears: the unwound arc times R_m) from the middle of the active profile",
         NO_POLYNOMIAL,
+        of_one_unit=False,
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (

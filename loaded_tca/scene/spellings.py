@@ -7,6 +7,11 @@ from collections.abc import Container
 
 SPELLINGS = {
     "normal_module_mm": "m mn module modulemm",
+    "transverse_module_mm": "mt transversemodule",
+    "diametral_pitch_per_inch": "pd dp diametralpitch diametralpitchperin diametralpitchin",
+    "normal_diametral_pitch_per_inch": "pn pnd ndp normaldiametralpitch normaldiametralpitchperin",
+    "transverse_diametral_pitch_per_inch": "pt ptd transversediametralpitch transversediametralpitchperin",
+    "transverse_pressure_angle_deg": "alphat alft transversepressureangle",
     "pressure_angle_deg": "alpha alphan alfn alphanormal pressureangle",
     "helix_angle_deg": "beta helixangle",
     "centre_distance_mm": "a aw centredistance centerdistance centerdistancemm",

@@ -17,14 +17,28 @@ from loaded_tca.plain import plain
 from loaded_tca.scene import cylindrical
 from loaded_tca.scene.blank import OTHER
 from loaded_tca.scene.cylindrical import CylindricalScene
+from loaded_tca.scene.equivalents import OF_HELICAL
 from loaded_tca.scene.internal import InternalScene, RingSection
 from loaded_tca.scene.keys import Choice, Either, Key, Line, List, Number, Whole, above_zero, key
 from loaded_tca.scene.load import Load, TORQUE_Nm
 from loaded_tca.scene.parse import toml_lines
 from loaded_tca.scene.rating import ANALYSIS, LOAD_FACTOR, RatingSection
-from loaded_tca.scene.section import Rule, Section, as_table, check, contents, key_at, made, replaced_by, subsection
+from loaded_tca.scene.section import (
+    Rule,
+    Section,
+    as_table,
+    check,
+    contents,
+    in_keys,
+    key_at,
+    made,
+    replaced_by,
+    subsection,
+    told_as_written,
+)
 from loaded_tca.scene.sections import FACTOR, Analysis, DIAMETER_mm, ElasticMaterial, LubricantSection
 from loaded_tca.scene.tools import ADDENDUM, DEDENDUM, ROOT_RADIUS
+from loaded_tca.scene.written import Equivalents
 from loaded_tca.stages.kinematics import spacing_problems
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
@@ -164,6 +178,8 @@ class StageGeometry(Section):
         'root radius of the basic rack in modules, rho_fP/m_n, or "full", the largest that fits; likewise',
         0.38,
     )
+
+    equivalents: ClassVar[Equivalents] = OF_HELICAL
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -379,6 +395,7 @@ class Stage(Section):
         InputError
             Every problem at once, as for a file.
         """
+        changes, writings = in_keys(self, changes)
         table = as_table(self)
         of_planets = {path: value for path, value in changes.items() if PLACE.fullmatch(path)}
         for path, value in (dict.fromkeys(replaced_by(type(self), changes)) | dict(changes)).items():
@@ -401,7 +418,8 @@ class Stage(Section):
                 raise InputError(f"{path}: no such planet; allowed 0 to {len(values) - 1}")
             values[int(number)] = value
             own[name] = values
-        return stage_from_table(table)
+        with told_as_written(writings):
+            return stage_from_table(table)
 
     @classmethod
     def key_at(cls, path: str) -> Key:
@@ -476,7 +494,7 @@ def stage_from_table(table: Mapping[str, Any]) -> Stage:
     InputError
         Every problem at once.
     """
-    values, problems = check(Stage, table)
+    values, problems, _ = check(Stage, table)
     if problems:
         raise InputError(problems)
     return made(Stage, values)

@@ -23,6 +23,8 @@ from loaded_tca.input_files import read_table, read_text, table_in
 from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest, shown, shown_key
 from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, toml_table
+from loaded_tca.scene.section import writing_at
+from loaded_tca.scene.written import Writing
 from loaded_tca.stages import Stage, read_stage
 from loaded_tca.studies.stage import nominal_of
 from loaded_tca.studies.study import MOST_VARIANTS, Distribution, Study, is_finite, is_whole
@@ -120,7 +122,21 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
     given |= {word: table[word] for word in ("samples", "seed") if word in table}
     if problems:
         raise InputError(problems)
+    for word in ("factors", "distributions", "table"):
+        with named(word):
+            given[word] = _by_keys(given["scene"], given.get(word, {}))
     return Study(**given)
+
+
+def _by_keys(scene: Scene | Stage, columns: Mapping[str, Any]) -> dict[str, Any]:
+    """What varies by the keys of a scene: drawings may write it otherwise; distributions are converted already."""
+    by_key: dict[str, Any] = {}
+    for path, values in columns.items():
+        key, writing = writing_at(scene, path)
+        if writing is not None and (key in by_key or key in columns):
+            raise InputError(f"{path}: given twice, as {key} too")
+        by_key[key] = [*map(writing.converted, values)] if writing and isinstance(values, list) else values
+    return by_key
 
 
 def _scene(table: Mapping[str, Any], folder: Path) -> Scene | Stage:
@@ -181,6 +197,9 @@ def _distribution(study: Mapping[str, Any], place: str, value: Any) -> Distribut
             f'{place}: found {value_given}; allowed {{ {DISTRIBUTION} = "norm", scale = 5.0 }}, names of scipy.stats'
         )
     parameters = {word: number for word, number in value.items() if word not in (DISTRIBUTION, ABOUT)}
+    key, writing = writing_at(study["scene"], key) if "scene" in study else (key, None)
+    if writing is not None:
+        parameters = _converted(writing, place, parameters, discrete=isinstance(known, stats.rv_discrete))
     nominal = nominal_of(study["scene"], key) if "scene" in study else None
     is_number = isinstance(nominal, Real) and not isinstance(nominal, bool)
     if (about := value.get(ABOUT)) is not None:
@@ -190,8 +209,9 @@ def _distribution(study: Mapping[str, Any], place: str, value: Any) -> Distribut
             raise InputError(f"{place}.{ABOUT}: the scene has no number there, but {shown(nominal)}")
         parameters["loc"] = parameters.get("loc", 0.0) + (nominal if is_number else 0.0)
     elif "loc" not in parameters and is_number and nominal:
+        there = nominal if writing is None else writing.from_key(nominal)
         raise InputError(
-            f'{place}: the scene has {shown(nominal)} there; allowed {ABOUT} = "{NOMINAL}", which scatters about that, '
+            f'{place}: the scene has {shown(there)} there; allowed {ABOUT} = "{NOMINAL}", which scatters about that, '
             "or loc, with which the distribution takes its place"
         )
     try:
@@ -205,6 +225,15 @@ def _distribution(study: Mapping[str, Any], place: str, value: Any) -> Distribut
         given = ", ".join(parameters) or "none"
         raise InputError(f"{place}: {name} has the parameters {', '.join(takes)}; found {given}") from None
     return frozen
+
+
+def _converted(writing: Writing, place: str, parameters: Mapping[str, Any], *, discrete: bool) -> dict[str, Any]:
+    """Parameters of a distribution in the unit of the key: place and width are quantities, its shapes are not."""
+    if writing.factor is None or discrete:
+        what = "a distribution over whole numbers" if discrete else "another quantity"
+        raise InputError(f"{place}: {what}, which is not converted; allowed a distribution of {writing.key}")
+    quantities = {"loc": parameters.get("loc"), "scale": parameters.get("scale", 1.0)}
+    return {**parameters, **{name: writing.converted(value) for name, value in quantities.items() if value is not None}}
 
 
 def _of_class(scene: Scene | Stage | None, place: str, value: Mapping[str, Any]) -> Distribution:

@@ -66,6 +66,13 @@ def test_table_takes_the_place_of_its_file_and_stays_in_the_text(tmp_path):
     assert parse_scene(one.to_toml(), folder=None) == one
 
 
+def test_torques_of_a_file_may_be_in_pounds(tmp_path):
+    found = spectrum(tmp_path, "pinion_torque_lbf_in,hours\n1000,1\n2000,1\n").load.case
+    assert [case.pinion_torque_Nm for case in found] == pytest.approx([112.9848, 225.9697], rel=1e-6)  # NIST SP 811
+    with pytest.raises(InputError, match=r"line 2: pinion_torque_lbf_in: found -1.*; allowed a number from 0 to 8.85"):
+        spectrum(tmp_path, "pinion_torque_lbf_in,hours\n-1,1\n")
+
+
 def test_files_of_spectra_lie_beside_the_scene(tmp_path):
     text = scene().to_toml().replace("pinion_torque_Nm = 130.0", 'spectrum = "bins.csv"')
     assert 'spectrum = "bins.csv"' in text

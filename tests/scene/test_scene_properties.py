@@ -218,7 +218,7 @@ def test_sound_values_break_only_rules(table):
 def test_misspelt_key_is_never_taken_silently(table, name, data):
     table = copy.deepcopy(table)
     section = data.draw(st.sampled_from(["pair", "pinion", "wheel", "material", "load", "analysis"]))
-    table[section][name + "x"] = 1.0
+    table.setdefault(section, {})[name + "x"] = 1.0
     with pytest.raises(InputError, match=rf"{section}\.{name}x: unknown key"):
         scene_from_table(table)
 

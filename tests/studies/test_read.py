@@ -221,3 +221,59 @@ def test_tolerance_class_of_a_study_is_refused(tmp_path, text, told):
 def test_what_a_distribution_cannot_lie_about_is_told(tmp_path, text, told):
     with pytest.raises(InputError, match=re.escape(told)):
         scattered(tmp_path, text)
+
+
+IN_INCHES = f"""
+scene = "{HELICAL}"
+samples = 4
+table = "given.csv"
+[changes]
+pinion.face_width_in = 1.25
+[factors]
+pinion.modifications.lead_crowning_in = [0.0001, 0.0002]
+[distributions]
+mounting.misalignment_in = {{ distribution = "norm", loc = 0.0001, scale = 0.0002 }}
+mounting.axial_offset_in = {{ distribution = "uniform", about = "nominal", loc = -0.5 }}
+"""
+
+
+def test_study_of_a_drawing_in_inches_varies_the_metric_keys(tmp_path):
+    (tmp_path / "given.csv").write_text("load.pinion_torque_lbf_in\n1000\n2000\n")
+    (tmp_path / "study.toml").write_text(IN_INCHES)
+    study = read_study(tmp_path / "study.toml")
+    assert study.scene.pinion.face_width_mm == 31.75
+    assert study.factors == {CROWNING: [2.54, 5.08]}
+    assert study.table["load.pinion_torque_Nm"] == pytest.approx([112.9848, 225.9697], rel=1e-6)  # NIST SP 811
+    scattered = study.distributions[TILT]
+    assert (scattered.mean(), scattered.std()) == pytest.approx((2.54, 5.08), rel=1e-14)
+    # a width of one inch is not written, and yet is one of 25.4 mm
+    assert study.distributions["mounting.axial_offset_mm"].support() == pytest.approx((-12.7, 12.7))
+
+
+test_study_of_a_drawing_that_is_refused = refused_calls(
+    (
+        lambda: parse_study(f'scene = "{HELICAL}"\n[factors]\n{CROWNING} = [1]\n{CROWNING[:-2]}in = [1e-4]'),
+        f"^factors: {CROWNING[:-2]}in: given twice, as {CROWNING} too$",
+    ),
+    (
+        lambda: parse_study(
+            f'scene = "{HELICAL}"\nsamples = 4\n[distributions]\n'
+            'pair.normal_diametral_pitch_per_inch = { distribution = "norm", loc = 8, scale = 0.1 }'
+        ),
+        "pitch_per_inch: another quantity, which is not converted; allowed a distribution of normal_module_mm$",
+    ),
+    (
+        lambda: parse_study(
+            f'scene = "{HELICAL}"\nsamples = 4\n[distributions]\n'
+            'mounting.misalignment_uin = { distribution = "poisson", mu = 3 }'
+        ),
+        "misalignment_uin: a distribution over whole numbers, which is not converted; allowed .* of misalignment_um$",
+    ),
+    (
+        lambda: parse_study(
+            f'scene = "{HELICAL}"\nsamples = 4\n[distributions]\n'
+            'load.pinion_torque_lbf_in = { distribution = "norm", scale = 10 }'
+        ),
+        "pinion_torque_lbf_in: the scene has 1150.59.* there; allowed about",
+    ),
+)
