@@ -115,7 +115,7 @@ def plot_teeth_in_mesh(scene: CylindricalScene) -> Figure:
 
     Parameters
     ----------
-    scene : CylindricalScene or InternalScene
+    scene : CylindricalScene, InternalScene or RackScene
         Of a double helical pair that of its half.
 
     Returns
@@ -144,6 +144,7 @@ def plot_teeth_in_mesh(scene: CylindricalScene) -> Figure:
     axes = figure.add_subplot()
     for name, one, fill, line in zip(GEARS, gears, FILLS, LINES, strict=True):
         teeth = f"{name}, {abs(one.gear.teeth)} teeth" + (" (ring)" if one.gear.teeth < 0 else "")
+        teeth = "rack" if name == "wheel" and scene.rack_radius else teeth
         axes.fill(*one.outline(width, 6.0 * module), facecolor=fill, edgecolor=line, linewidth=1.2, label=teeth)
         _draw_circles(axes, one, line, width)
     _draw_path(axes, mesh, side)
@@ -161,7 +162,7 @@ def plot_teeth_in_mesh(scene: CylindricalScene) -> Figure:
         f"teeth in mesh at the pitch point, {section}",
         f"{scene.geometry.driving} drives, pinion turns {turns}",
         f"mounted with an error of the centre distance of {error:+.4f} mm" if error else "",
-        *(number.replace(" mm", "\N{NO-BREAK SPACE}mm") for number in _numbers(mesh)),
+        *(number.replace(" mm", "\N{NO-BREAK SPACE}mm") for number in _numbers(mesh, scene.rack_radius)),
     )
     return figure
 
@@ -244,10 +245,11 @@ def _draw_clearances(axes: Axes, mesh: CylindricalMesh | InternalMesh, gears: tu
     axes.annotate(label, (x[0], y[0]), text, ha="center", arrowprops=arrow, **about)
 
 
-def _numbers(mesh: CylindricalMesh | InternalMesh) -> Iterator[str]:
-    """What is read off the picture, with its units."""
+def _numbers(mesh: CylindricalMesh | InternalMesh, rack_radius: float | None) -> Iterator[str]:
+    """What is read off the picture, with its units; a rack's reference line is so far from the wheel's axis."""
     pinion, wheel = mesh.tip_clearances
-    yield f"centre distance {mesh.working_centre_distance:.4f} mm"
+    place = "reference line of the rack from the axis of the pinion" if rack_radius else "centre distance"
+    yield f"{place} {mesh.working_centre_distance - (rack_radius or 0.0):.4f} mm"
     yield f"working pressure angle {math.degrees(mesh.working_pressure_angle):.4f} deg"
     path = mesh.path_of_contact
     yield f"path of contact A to E {path.AE:.4f} mm, contact ratio {mesh.transverse_contact_ratio:.4f}"
