@@ -95,6 +95,11 @@ def _own_racks(rng: np.random.Generator, scene: Scene) -> Scene:
     return scene.with_changes(changes)
 
 
+def _few_teeth(rng: np.random.Generator, scene: Scene) -> Scene:
+    """A pinion that its rack undercuts; the path of contact begins where that ends its flank."""
+    return scene.with_changes({"pinion.teeth": int(rng.integers(11, 15)), "pinion.profile_shift": 0.0})
+
+
 def _protuberance(rng: np.random.Generator, scene: Scene) -> Scene:
     """An undercut of a hundredth of a module that grinding leaves of one gear, or of both."""
     module = 1e3 * scene.pair().module  # um
@@ -368,6 +373,7 @@ FEATURES = (
     Feature("other flank", CYLINDRICAL | BEVEL, 0.2, _other_flank),
     Feature("wheel drives", ALL, 0.3, _wheel_drives),
     Feature("unlike faces", CYLINDRICAL, 0.3, _unlike_faces),
+    Feature("few teeth", EXTERNAL, 0.06, _few_teeth),
     Feature("centre distance", CYLINDRICAL, 0.15, _other_centre_distance),
     Feature("shorter tips", EXTERNAL, 0.15, _shorter_tips),
     Feature("own racks", CYLINDRICAL, 0.1, _own_racks),
