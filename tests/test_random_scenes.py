@@ -1,10 +1,15 @@
 """Quick random scenes, every feature and every invariance among them; ``validation.loaded.random_scenes`` runs more."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
+from loaded_tca import read_scene
+from validation import invariances
 from validation.invariances import INVARIANCES
 from validation.loaded.random_scenes import beyond, examined
-from validation.random_scenes import ALL_FAMILIES, coins
+from validation.random_scenes import ALL_FAMILIES, SCENES, coins
 from validation.scene_features import FEATURES
 
 QUICK = {
@@ -55,3 +60,28 @@ def test_every_feature_family_and_invariance_is_among_the_quick_scenes():
     assert set(families) == set(ALL_FAMILIES)
     assert {feature.name for features in tossed for feature, _ in features} == {feature.name for feature in FEATURES}
     assert {name for names in QUICK.values() for name in names} == {one.name for one in INVARIANCES}
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_differences_leave_out_the_side_on_which_a_tooth_pair_comes_under_load(sense, monkeypatch):
+    key, steps = "mounting.wheel_axial_mm", []
+
+    def after_the_law(scene):
+        value = scene.mounting.wheel_axial_mm
+        share = max(sense * value, 0.0) ** 1.5  # of the second pair, which touches where the key is zero
+        steps.append(value)
+        return SimpleNamespace(
+            pair=np.array([0, 1]) if share else np.array([0]),
+            transmission_error=np.array([[3.0 * value - share]]),
+            load_share=np.array([[[1.0 - share, share]]])[..., : 2 if share else 1],
+            peak_pressure=np.array([[[1e3 + 5.0 * value - share, share]]])[..., : 2 if share else 1],
+        )
+
+    scene = read_scene(SCENES / "straight_bevel.toml").with_changes({key: 0.0})
+    subject = SimpleNamespace(scene=scene, result=after_the_law(scene))
+    monkeypatch.setattr(invariances, "analysed", after_the_law)
+    slopes = invariances._differences(subject, key, 0.01)
+    assert steps == [0.0, -0.01, 0.01]
+    assert slopes["transmission_error"] == pytest.approx(3.0, rel=1e-9)  # over both sides off by 0.05
+    assert slopes["load_share"] == pytest.approx(0.0, abs=1e-9)
+    assert slopes["peak_pressure"] == pytest.approx(5.0, rel=1e-9)

@@ -499,14 +499,30 @@ def _largest(values: Array) -> float:
 
 
 def _differences(subject: Subject, key: str, step: float) -> dict[str, Array]:
-    """Slopes of transmission errors, shares and peak pressures between analyses a step of a key to either side."""
-    value, pairs = value_at(subject.scene, key), subject.result.pair
+    """Slopes of transmission errors, shares and peak pressures between analyses a step of a key to either side.
+
+    Where a tooth pair that carries nothing in the scene comes under load on one side, they are those to the other side:
+    its force grows from nothing with about the power 3/2 of the key, which puts slopes over both sides off by the root
+    of the step, while the derivative is that without it.
+    """
+    value, here = value_at(subject.scene, key), subject.result
     low, high = (analysed(subject.scene.with_changes({key: value + by})) for by in (-step, step))
-    slopes = {"transmission_error": (high.transmission_error - low.transmission_error) / (2.0 * step)}
-    for name in ("load_share", "peak_pressure"):
-        first, second = (of_pairs(one, name, pairs) for one in (low, high))
-        known = (first > 0.0) & (second > 0.0)
-        slopes[name] = np.where(known, (second - first) / (2.0 * step), math.nan)
+    results = low, here, high
+    numbers = np.unique(np.concatenate([one.pair for one in results]))
+    left, carrying, right = (of_pairs(one, "load_share", numbers) > 0.0 for one in results)
+    more_left, more_right = ((side & ~carrying).any(axis=-1, keepdims=True) for side in (left, right))
+    width = step * np.where(more_left == more_right, 2.0, 1.0)
+    slopes = {}
+    for name in ("transmission_error", "load_share", "peak_pressure"):
+        of_states = name == "transmission_error"
+        below, at, above = (
+            one.transmission_error[..., None] if of_states else of_pairs(one, name, here.pair) for one in results
+        )
+        first = np.where(more_left & ~more_right, at, below)
+        second = np.where(more_right & ~more_left, at, above)
+        known = of_states | ((first > 0.0) & (second > 0.0))
+        slope = np.where(known, (second - first) / width, math.nan)
+        slopes[name] = slope[..., 0] if of_states else slope
     return slopes
 
 
