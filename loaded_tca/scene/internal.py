@@ -226,6 +226,7 @@ class InternalScene(CylindricalScene):
             ("radial assembly [mm]", _assembly_cell(mesh)),
             ("", "pinion", "wheel (ring)"),
             ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
+            ("profile shift x", f"{pinion.profile_shift:z.4f}", f"{ring.profile_shift:z.4f}"),
             ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
             *rack_rows(mesh),
             *_diameter_rows(mesh),
