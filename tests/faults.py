@@ -2834,6 +2834,31 @@ FAULTS = (
         '"scale": parameters.get("scale")}',
         "studies/test_read.py::test_study_of_a_drawing_in_inches_varies_the_metric_keys",
     ),
+    Fault(
+        "scenes: measures are judged on teeth without the shift that the centre distance leaves",
+        "scene/cylindrical.py",
+        "            wheel = as_measured(CylindricalGear(**of_wheel), self.wheel)",
+        "            as_measured(CylindricalGear(**of_wheel | {'profile_shift': 0.0}), self.wheel)\n"
+        "            wheel = as_measured(CylindricalGear(**of_wheel), self.wheel)",
+        "scene/test_cylindrical_scene.py::"
+        "test_span_is_measured_on_teeth_with_the_shift_that_the_centre_distance_leaves",
+    ),
+    Fault(
+        "scenes: measures of rings are judged on teeth without the shift that the centre distance leaves",
+        "scene/internal.py",
+        "            ring = as_measured(RingGear(**of_ring), self.wheel)",
+        "            as_measured(RingGear(**of_ring | {'profile_shift': 0.0}), self.wheel)\n"
+        "            ring = as_measured(RingGear(**of_ring), self.wheel)",
+        "scene/test_ring_thickness.py::"
+        "test_balls_are_measured_in_a_ring_with_the_shift_that_the_centre_distance_leaves",
+    ),
+    Fault(
+        "pictures of ratings: stresses are not scaled to the strength of the curve",
+        "rating/lives.py",
+        "return self.required * self.stress * curve.strength(self.cycles) / self.curve.strength(self.cycles)",
+        "return self.required * self.stress",
+        "plots/test_rating.py::test_bins_of_another_strength_stand_on_their_side_of_the_curve",
+    ),
 )
 
 

@@ -17,7 +17,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear
-from loaded_tca.gears.involute import InvoluteMesh, involute, working_pressure_angle
+from loaded_tca.gears.involute import InvoluteMesh, involute
 from loaded_tca.gears.undercut import fillet_room
 from loaded_tca.plain import plain
 
@@ -180,11 +180,6 @@ class CylindricalMesh(InvoluteMesh):
         return self.wheel.teeth / self.pinion.teeth
 
     @property
-    def profile_shift_sum_without_backlash(self) -> float:
-        """x1 + x2 that would leave no backlash at this centre distance, without thickness allowances."""
-        return profile_shift_sum(self.pinion, self.wheel, self.working_centre_distance)
-
-    @property
     def pinion_working_radius(self) -> float:
         """r_w1 = a z1/(z1 + z2) [mm]."""
         return self.working_centre_distance / (1.0 + self.gear_ratio)
@@ -341,36 +336,3 @@ def _what_stops(room: Room, module: float) -> Iterator[str]:
     for (name, mating), length in zip(BOTH_WAYS, room.below_root, strict=True):
         if length < -ROUNDING * module:
             yield f"the tip of the {mating} reaches {plain(-length)} mm into the root of the {name}"
-
-
-def profile_shift_sum(pinion: CylindricalGear, wheel: CylindricalGear, centre_distance: float) -> float:
-    r"""Sum of the profile shift coefficients that leaves no backlash at a centre distance, whatever the gears have.
-
-    .. math:: x_1 + x_2 = \frac{(z_1 + z_2)(\mathrm{inv}\,\alpha_{wt} - \mathrm{inv}\,\alpha_t)}{2 \tan\alpha_n},
-              \qquad \cos\alpha_{wt} = (r_{b1} + r_{b2})/a
-
-    Parameters
-    ----------
-    pinion, wheel : CylindricalGear
-    centre_distance : float [mm]
-
-    Raises
-    ------
-    GeometryError
-        If the base circles reach each other.
-
-    References
-    ----------
-    ISO 21771:2007, 5.4.4 and 5.5.
-
-    Examples
-    --------
-    >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
-    >>> abs(round(profile_shift_sum(*gears, 136.5), 9)), round(profile_shift_sum(*gears, 138.0), 4)
-    (0.0, 0.52)
-    """
-    base = pinion.base_radius + wheel.base_radius
-    if not centre_distance > base:
-        raise GeometryError(f"centre_distance: {centre_distance:.6g} mm is not above {base:.4f} mm, both base radii")
-    difference = involute(working_pressure_angle(centre_distance, base)) - involute(pinion.transverse_pressure_angle)
-    return 0.5 * (pinion.teeth + wheel.teeth) * difference / tan(pinion.pressure_angle)

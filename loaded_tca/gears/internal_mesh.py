@@ -18,7 +18,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, ActiveProfile, PathOfContact, Room, interferences
-from loaded_tca.gears.involute import InvoluteMesh, involute, working_pressure_angle
+from loaded_tca.gears.involute import InvoluteMesh, involute
 from loaded_tca.gears.ring import RingGear
 from loaded_tca.gears.undercut import fillet_room
 
@@ -168,11 +168,6 @@ class InternalMesh(InvoluteMesh):
     def gear_ratio(self) -> float:
         """Gear ratio abs(u) = abs(z2)/z1."""
         return self.ring.tooth_count / self.pinion.teeth
-
-    @property
-    def profile_shift_sum_without_backlash(self) -> float:
-        """x1 + x2 that would leave no backlash at this centre distance."""
-        return internal_profile_shift_sum(self.pinion, self.ring, self.working_centre_distance)
 
     @property
     def pinion_working_radius(self) -> float:
@@ -366,44 +361,6 @@ def _involute(ratio: Array) -> Array:
     """inv(alpha) [rad] at radii over that of the base circle."""
     roll = np.sqrt(np.maximum(ratio**2 - 1.0, 0.0))
     return np.asarray(roll - np.arctan(roll))
-
-
-def internal_profile_shift_sum(pinion: CylindricalGear, ring: RingGear, centre_distance: float) -> float:
-    r"""Sum of the profile shift coefficients that leaves no backlash at a centre distance, whatever the gears have.
-
-    .. math:: x_1 + x_2 = \frac{(|z_2| - z_1)(\mathrm{inv}\,\alpha_t - \mathrm{inv}\,\alpha_{wt})}{2 \tan\alpha_n},
-              \qquad \cos\alpha_{wt} = (r_{b2} - r_{b1})/|a|
-
-    Parameters
-    ----------
-    pinion : CylindricalGear
-    ring : RingGear
-    centre_distance : float [mm]
-
-    Raises
-    ------
-    GeometryError
-        If the base circles reach each other.
-
-    References
-    ----------
-    ISO 21771:2007, 5.4.4 and 5.5.
-
-    Examples
-    --------
-    >>> pinion = CylindricalGear(teeth=25, normal_module=3.0, face_width=25.0)
-    >>> ring = RingGear(teeth=-60, normal_module=3.0, face_width=25.0)
-    >>> round(internal_profile_shift_sum(pinion, ring, 52.0), 4)
-    0.1605
-    """
-    base = ring.base_radius - pinion.base_radius
-    if not centre_distance > base:
-        raise GeometryError(
-            f"centre_distance: {centre_distance:.6g} mm is not above {base:.4f} mm, the base radius of the ring less "
-            "that of the pinion"
-        )
-    difference = involute(pinion.transverse_pressure_angle) - involute(working_pressure_angle(centre_distance, base))
-    return 0.5 * (ring.tooth_count - pinion.teeth) * difference / tan(pinion.pressure_angle)
 
 
 def internal_interferences(mesh: InternalMesh, place: str, *, nominal: bool = False) -> Sequence[str]:

@@ -199,6 +199,17 @@ class InvoluteMesh:
         """T1T2 = abs(a) sin(alpha_wt) [mm]."""
         return line_of_action(self.working_centre_distance, self.base_distance)
 
+    @property
+    def profile_shift_sum_without_backlash(self) -> float:
+        """x1 + x2 that would leave no backlash at this centre distance, without thickness allowances."""
+        return profile_shift_sum(
+            (self.pinion.teeth, self.wheel.teeth),
+            self.pinion.normal_module,
+            pressure_angle=self.pinion.pressure_angle,
+            helix_angle=self.pinion.helix_angle,
+            centre_distance=self.working_centre_distance,
+        )
+
     def check_common_flank(self) -> None:
         """Refuse flanks that do not meet on the line of action."""
         if self.path_of_contact.AE <= 0.0:
@@ -263,3 +274,52 @@ def line_of_action(centre_distance: float, base_distance: float) -> float:
 def working_pressure_angle(centre_distance: float, base_distance: float) -> float:
     """Transverse working pressure angle alpha_wt [rad]; arguments as of :func:`line_of_action`."""
     return atan(line_of_action(centre_distance, base_distance) / base_distance)
+
+
+def profile_shift_sum(
+    teeth: tuple[int, int],
+    normal_module: float,
+    *,
+    pressure_angle: float,
+    helix_angle: float,
+    centre_distance: float,
+) -> float:
+    r"""Sum of the profile shift coefficients that leaves no backlash at a centre distance.
+
+    .. math:: x_1 + x_2 = \frac{(z_1 + z_2)(\mathrm{inv}\,\alpha_{wt} - \mathrm{inv}\,\alpha_t)}{2 \tan\alpha_n},
+              \qquad \cos\alpha_{wt} = |(z_1 + z_2) m_t \cos\alpha_t/(2 a)|
+
+    Parameters
+    ----------
+    teeth : (int, int)
+        z1, z2; that of a ring negative.
+    normal_module : float [mm]
+    pressure_angle, helix_angle : float [rad]
+        Normal pressure angle; helix angle of either sign.
+    centre_distance : float [mm]
+        abs(a).
+
+    Raises
+    ------
+    GeometryError
+        If the base circles reach each other.
+
+    References
+    ----------
+    ISO 21771:2007, 5.4.4 and 5.5.
+
+    Examples
+    --------
+    >>> from math import radians
+    >>> round(profile_shift_sum((34, 57), 3.0, pressure_angle=radians(20), helix_angle=0.0, centre_distance=138.0), 4)
+    0.52
+    >>> round(profile_shift_sum((25, -60), 3.0, pressure_angle=radians(20), helix_angle=0.0, centre_distance=52.0), 4)
+    0.1605
+    """
+    angle = atan(tan(pressure_angle) / cos(helix_angle))
+    base = 0.5 * abs(sum(teeth)) * normal_module / cos(helix_angle) * cos(angle)
+    if not centre_distance > base:
+        radii = "both base radii" if teeth[1] > 0 else "the base radius of the ring less that of the pinion"
+        raise GeometryError(f"centre_distance: {centre_distance:.6g} mm is not above {base:.4f} mm, {radii}")
+    difference = involute(working_pressure_angle(centre_distance, base)) - involute(angle)
+    return 0.5 * sum(teeth) * difference / tan(pressure_angle)

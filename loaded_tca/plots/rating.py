@@ -33,7 +33,9 @@ PANEL = 3.6
 def plot_sn_curves(rating: Rating) -> Figure:
     """S-N curves of both gears with the load cases at their load cycles and stresses times the required safety.
 
-    Curves that differ from case to case, by the velocity factor, are those of the case of the largest damage.
+    Curves that differ from case to case, by the velocity factor or by Y_M of reversed bins, are those of the case of
+    the largest damage. The other stresses are scaled by the strength of that curve over their own one at their load
+    cycles, as the axis then says: so all lie above or below the curve as they use up more or less than the life.
 
     Parameters
     ----------
@@ -47,7 +49,8 @@ def plot_sn_curves(rating: Rating) -> Figure:
     for (mode, both), axes in zip(rating.endurances.items(), panels, strict=True):
         for gear, endurance in zip(GEARS, both, strict=True):
             _draw_curve(axes, endurance, gear)
-        axes.set(xscale="log", yscale="log", ylabel="stress · required safety [MPa]", xlabel="load cycles [-]")
+        scaled = "" if all(endurance.has_one_curve for endurance in both) else "\nscaled to the strength of the curve"
+        axes.set(xscale="log", yscale="log", ylabel=f"stress · required safety [MPa]{scaled}", xlabel="load cycles [-]")
         _finish(axes, WORDS[mode])
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(lambda value, _: plain(value))
@@ -123,7 +126,7 @@ def _draw_curve(axes: Axes, endurance: Endurance, gear: str) -> None:
     cycles = np.array([ends[0], *curve.cycles, ends[1]])
     axes.plot(cycles, curve.strength(cycles), line, color=colour, label=gear)
     loading = (endurance.stress > 0.0) & (endurance.cycles >= FEWEST_CYCLES)
-    stress = endurance.required * endurance.stress[loading]
+    stress = endurance.stress_at(curve)[loading]
     size = 5.0 if loading.sum() <= MOST_BARS else 2.5
     axes.plot(
         endurance.cycles[loading], stress, marker, color=colour, markersize=size, alpha=0.7, label=f"{gear}: load"
@@ -164,7 +167,8 @@ RATING_PICTURES = {
     "rating_sn_curves": RatingPicture(
         "S-N curves with the load cases on them, a panel for each kind of failure",
         "S-N curves after ISO 6336-6 of both gears, with each load case at its load cycles in the required life and at "
-        "its stress times the required safety: points above their curve use up more than the life.",
+        "its stress times the required safety: points above their curve use up more than the life. Where the strength "
+        "differs from case to case, stresses are scaled to that of the curve.",
         "damage",
         plot_sn_curves,
     ),

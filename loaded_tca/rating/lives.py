@@ -76,6 +76,16 @@ class Endurance:
         line = np.broadcast_to(self.curve.exponents[0], torques.shape)[torques.argmax()]
         return equivalent_torque(torques[loading], self.cycles[loading], float(self.power * line))
 
+    def stress_at(self, curve: SNCurve) -> Array:
+        """Stress of each case (c,) at the required safety, over another curve as over its own at its load cycles."""
+        return self.required * self.stress * curve.strength(self.cycles) / self.curve.strength(self.cycles)
+
+    @property
+    def has_one_curve(self) -> bool:
+        """Whether the strength is the same in all cases."""
+        levels = self.curve.stresses.reshape(len(self.curve.cycles), -1)
+        return bool((levels == levels[:, :1]).all())
+
     def worst_curve(self) -> SNCurve:
         """Curve of the case that does the largest damage, with a level for each knee."""
         levels = self.curve.stresses

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, RingGear
-from loaded_tca.gears.cylindrical_mesh import ROUNDING, interferences, profile_shift_sum
-from loaded_tca.gears.involute import InvoluteMesh
+from loaded_tca.gears.cylindrical_mesh import ROUNDING, interferences
+from loaded_tca.gears.involute import InvoluteMesh, profile_shift_sum
 from loaded_tca.gears.undercut import undercut_sentences
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
@@ -188,31 +190,52 @@ class CylindricalScene(BlankScene):
     @cached_property
     def _mesh(self) -> CylindricalMesh:
         """The macro geometry, which every number of the standards asks for again."""
+        of_pinion, of_wheel = self._gear_values((CylindricalGear, CylindricalGear))
+        with self._following_shift_named():
+            pinion = as_measured(CylindricalGear(**of_pinion), self.pinion)
+            wheel = as_measured(CylindricalGear(**of_wheel), self.wheel)
+        return CylindricalMesh(pinion, wheel, self.geometry.centre_distance_mm, self.mounting.axial_offset_mm)
 
-        def gears(shifts: Sequence[float | None]) -> Iterator[CylindricalGear]:
-            both = shifts[0] or 0.0, shifts[1] or 0.0
-            tips = shortening(self.geometry, (self.pinion.teeth, self.wheel.teeth), both)
-            for own, sign, name, shift in zip(sections, self.hand_signs, names, both, strict=True):
-                values = cut_parameters(CylindricalGear, self.geometry, own) | tips
-                values["helix_angle"] *= sign
-                values["profile_shift"] = shift
-                yield as_measured(CylindricalGear(**values, name=name), own)
+    @cached_property
+    def _profile_shifts(self) -> tuple[float, float]:
+        """Profile shifts of both gears, before any gear is made: thickness is measured on teeth with their shift."""
+        geometry, shifts = self.geometry, [self.pinion.profile_shift, self.wheel.profile_shift]
+        following = 0.0
+        if geometry.centre_distance_mm is not None and shifts.count(None) == 1:
+            following = profile_shift_sum(
+                (self.pinion.teeth, self.wheel.teeth),
+                geometry.normal_module_mm,
+                pressure_angle=math.radians(geometry.pressure_angle_deg),
+                helix_angle=math.radians(geometry.helix_angle_deg),
+                centre_distance=geometry.centre_distance_mm,
+            ) - sum(shift for shift in shifts if shift is not None)
+        pinion, wheel = (following if shift is None else shift for shift in shifts)
+        return pinion, wheel
 
-        sections, names, distance = (self.pinion, self.wheel), ("pinion", "wheel"), self.geometry.centre_distance_mm
-        shifts = [own.profile_shift for own in sections]
-        pinion, wheel = gears(shifts)
-        if distance is not None and shifts.count(None) == 1:
-            rest = profile_shift_sum(pinion, wheel, distance) - sum(shift for shift in shifts if shift is not None)
-            shifts = [rest if shift is None else shift for shift in shifts]
-            try:
-                pinion, wheel = gears(shifts)
-            except (InputError, GeometryError) as error:
+    def _gear_values(self, kinds: tuple[type, type]) -> Iterator[dict[str, Any]]:
+        """Values of both gears: of their sections, and those that follow from the pair."""
+        shifts, sections = self._profile_shifts, (self.pinion, self.wheel)
+        tips = shortening(self.geometry, (self.pinion.teeth, self.wheel.teeth), shifts)
+        for kind, own, sign, name, shift in zip(kinds, sections, self.hand_signs, GEARS, shifts, strict=True):
+            values = cut_parameters(kind, self.geometry, own) | tips | {"name": name, "profile_shift": shift}
+            values["helix_angle"] *= sign
+            yield values
+
+    @contextmanager
+    def _following_shift_named(self) -> Iterator[None]:
+        """Add to a refusal of gears which profile shift the centre distance asks for, where one follows from it."""
+        try:
+            yield
+        except (InputError, GeometryError) as error:
+            distance = self.geometry.centre_distance_mm
+            shifts = zip((self.pinion, self.wheel), self._profile_shifts, strict=True)
+            following = [shift for own, shift in shifts if own.profile_shift is None]
+            if distance is not None and len(following) == 1:
                 error.add_note(
-                    f"pair.centre_distance_mm = {distance:g} and the profile shift that is given ask for {rest:.4f} on "
-                    "the other gear"
+                    f"pair.centre_distance_mm = {distance:g} and the profile shift that is given ask for "
+                    f"{following[0]:.4f} on the other gear"
                 )
-                raise
-        return CylindricalMesh(pinion, wheel, distance, self.mounting.axial_offset_mm)
+            raise
 
     @property
     def sense(self) -> Sense:

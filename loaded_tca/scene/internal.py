@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from loaded_tca.errors import require
 from loaded_tca.gears import CylindricalGear, InternalMesh, PinionCutter, RingGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING
-from loaded_tca.gears.internal_mesh import internal_interferences, internal_profile_shift_sum
+from loaded_tca.gears.internal_mesh import internal_interferences
 from loaded_tca.gears.undercut import undercut_sentences
 from loaded_tca.pairs.cylindrical import internal_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
@@ -23,7 +23,7 @@ from loaded_tca.scene.parse import variant
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.sections import DIAMETER_mm, below
 from loaded_tca.scene.thickness import as_measured, thickness_rows
-from loaded_tca.scene.tools import SHORTENED_ONCE, CutSection, chamfer_rows, cut_parameters, rack_rows, shortening
+from loaded_tca.scene.tools import SHORTENED_ONCE, CutSection, chamfer_rows, rack_rows
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,27 +180,13 @@ class InternalScene(CylindricalScene):
     @cached_property
     def _mesh(self) -> InternalMesh:  # type: ignore[override]
         """The macro geometry, kept as that of external pairs is."""
-        distance, sign = self.geometry.centre_distance_mm, self.hand_signs[0]
+        of_pinion, of_ring = self._gear_values((CylindricalGear, RingGear))
         cutter = self.wheel.cutter
-        cut_by = None if cutter is None else PinionCutter(**parameters_of(PinionCutter, cutter))
-
-        def gears(shifts: list[float | None]) -> tuple[CylindricalGear, RingGear]:
-            both = shifts[0] or 0.0, shifts[1] or 0.0
-            tips = shortening(self.geometry, (self.pinion.teeth, self.wheel.teeth), both)
-            of_pinion = cut_parameters(CylindricalGear, self.geometry, self.pinion) | tips
-            of_ring = cut_parameters(RingGear, self.geometry, self.wheel) | tips | {"cutter": cut_by}
-            for values, shift in ((of_pinion, shifts[0]), (of_ring, shifts[1])):
-                values["helix_angle"] *= sign
-                values["profile_shift"] = shift or 0.0
-            pinion = as_measured(CylindricalGear(**of_pinion, name="pinion"), self.pinion)
-            return pinion, as_measured(RingGear(**of_ring, name="wheel"), self.wheel)
-
-        shifts = [self.pinion.profile_shift, self.wheel.profile_shift]
-        pinion, ring = gears(shifts)
-        if distance is not None and shifts.count(None) == 1:
-            rest = internal_profile_shift_sum(pinion, ring, distance) - sum(x for x in shifts if x is not None)
-            pinion, ring = gears([rest if shift is None else shift for shift in shifts])
-        return InternalMesh(pinion, ring, distance, self.mounting.axial_offset_mm)
+        of_ring["cutter"] = None if cutter is None else PinionCutter(**parameters_of(PinionCutter, cutter))
+        with self._following_shift_named():
+            pinion = as_measured(CylindricalGear(**of_pinion), self.pinion)
+            ring = as_measured(RingGear(**of_ring), self.wheel)
+        return InternalMesh(pinion, ring, self.geometry.centre_distance_mm, self.mounting.axial_offset_mm)
 
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two involute flanks in space."""
@@ -245,6 +231,7 @@ class InternalScene(CylindricalScene):
             ("radial assembly [mm]", _assembly_cell(mesh)),
             ("", "pinion", "wheel (ring)"),
             ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
+            ("profile shift x", f"{pinion.profile_shift:z.4f}", f"{ring.profile_shift:z.4f}"),
             ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
             *rack_rows(mesh),
             *_diameter_rows(mesh),

@@ -25,6 +25,22 @@ def test_curves_have_every_load_case_at_its_load_cycles():
     assert_allclose(np.interp(one.cycles[0, 0], curve.get_xdata(), curve.get_ydata()), one.sigma_FG[0, 0], rtol=0.2)
 
 
+def test_bins_of_another_strength_stand_on_their_side_of_the_curve():
+    """Damage is above 1 where a stress is above its strength: by the lives, which the picture does not use."""
+    bins = [{"pinion_torque_Nm": 200.0, "hours": 1.0, "reversed": side} for side in (False, True)]
+    one = rated(**{"load.case": bins, "analysis.torques_Nm": (100.0, 200.0), "rating.required_root_safety": 1.9})
+    damage = one.damage[:, 0, 1]
+    assert damage[0] < 1.0 < damage[1]
+    axes = plot_sn_curves(one).axes[1]
+    curve, load = axes.lines[:2]
+    knees, levels = np.log(curve.get_xdata()), np.log(curve.get_ydata())
+    over = np.log(load.get_ydata()) - np.interp(np.log(load.get_xdata()), knees, levels)
+    assert (over > 0.0).tolist() == [False, True]
+    assert_allclose(np.exp(over), 1.9 * one.sigma_F[:, 0] / one.sigma_FG[:, 0], rtol=1e-9)  # rounding of logarithms
+    assert axes.get_ylabel() == "stress · required safety [MPa]\nscaled to the strength of the curve"
+    assert "scaled" not in plot_sn_curves(rated()).axes[1].get_ylabel()
+
+
 @pytest.mark.parametrize("torques", [(), np.linspace(100.0, 200.0, 45)])
 def test_bars_add_up_to_the_damage(torques):
     one = rated(torques)

@@ -1,8 +1,11 @@
 """What scenes of cylindrical gears leave to be found: the profile shift of one gear from the centre distance."""
 
-import pytest
+import math
 
-from loaded_tca import parse_scene, read_scene
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import InputError, parse_scene, read_scene
 from tests.samples.results import SCENES
 
 WIDER = 138.0
@@ -46,3 +49,53 @@ def test_scene_that_is_written_and_read_has_the_same_shifts():
     again = parse_scene(scene.to_toml())
     assert again == scene
     assert again.wheel.profile_shift is None
+
+
+THIN = -0.12
+"""Allowance of the wheel's teeth [mm]."""
+SPUR = {
+    "pair.normal_module_mm": 2.0,
+    "pair.centre_distance_mm": 82.4,
+    "pinion.teeth": 20,
+    "pinion.profile_shift": 0.3,
+    "wheel.teeth": 60,
+}
+GROUND = {
+    "pair.normal_module_mm": 4.0,
+    "pair.helix_angle_deg": 12.0,
+    "pair.centre_distance_mm": 136.5,
+    "pair.tip_shortening": "computed",
+    "pinion.teeth": 19,
+    "pinion.profile_shift": 0.45,
+    "pinion.protuberance_um": 220.0,
+    "pinion.grinding_stock_um": 150.0,
+    "pinion.face_width_mm": 38.0,
+    "wheel.teeth": 46,
+    "wheel.face_width_mm": 38.0,
+}
+
+
+@pytest.mark.parametrize(("changes", "teeth"), [(SPUR, 9), (GROUND, 7)])
+def test_span_is_measured_on_teeth_with_the_shift_that_the_centre_distance_leaves(changes, teeth):
+    """Closed forms of ISO 21771: x1 + x2, and W_k of that x2 and an allowance, which the scene has to find again."""
+    module, count, normal = changes["pair.normal_module_mm"], changes["wheel.teeth"], math.radians(20.0)
+    helix, total = math.radians(changes.get("pair.helix_angle_deg", 0.0)), count + changes["pinion.teeth"]
+    angle = math.atan(math.tan(normal) / math.cos(helix))
+    working = math.acos(0.5 * total * module * math.cos(angle) / math.cos(helix) / changes["pair.centre_distance_mm"])
+    rest = math.tan(working) - working - math.tan(angle) + angle
+    shift = 0.5 * total * rest / math.tan(normal) - changes["pinion.profile_shift"]
+    span = module * math.cos(normal) * (math.pi * (teeth - 0.5) + count * (math.tan(angle) - angle))
+    span += 2.0 * shift * module * math.sin(normal) + THIN * math.cos(normal)
+    measured = read_scene(SCENES / "spur.toml").with_changes({**changes, "wheel.span_measurement_mm": span})
+    wheel = measured.mesh().wheel
+    assert wheel.span_teeth == teeth
+    assert_allclose([wheel.profile_shift, wheel.thickness_allowance], [shift, THIN], atol=ROUNDING)
+
+
+def test_refused_measure_names_the_shift_that_the_centre_distance_asks_for():
+    scene = read_scene(SCENES / "spur.toml").with_changes({**SPUR, "wheel.span_measurement_mm": 45.0})
+    with pytest.raises(InputError, match=r"^wheel: span_measurement: 45 mm over 9 teeth") as refusal:
+        scene.mesh()
+    assert refusal.value.__notes__ == [
+        "pair.centre_distance_mm = 82.4 and the profile shift that is given ask for 1.0236 on the other gear"
+    ]

@@ -55,6 +55,7 @@ def test_missing_shift_is_what_leaves_no_backlash():
 def test_geometry_table_has_the_three_interferences_and_the_outside(scene):
     rows = {row[0]: row[1:] for row in scene.geometry_rows()}
     assert rows["teeth z"] == ("25", "-60")
+    assert rows["profile shift x"] == ("0.3000", "0.0000")
     for name in ("involute interference: ring's tip to T1 [mm]", "overlap interference at the tips [mm]"):
         assert rows[name][0].endswith("free")
     assert "radial assembly [mm]" in rows

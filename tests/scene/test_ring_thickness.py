@@ -1,5 +1,7 @@
 """Tooth thickness of rings in scenes: the keys of external gears, measured from inside."""
 
+import math
+
 import pytest
 from numpy.testing import assert_allclose
 
@@ -30,6 +32,29 @@ def test_allowance_span_and_balls_make_the_same_ring(thinned):
     for other in (by_span, by_balls):
         assert_allclose(other.mesh().ring.thickness_allowance, THIN, atol=1e-9)
         assert parse_scene(other.to_toml()) == other
+
+
+def test_balls_are_measured_in_a_ring_with_the_shift_that_the_centre_distance_leaves():
+    """x2 after ISO 21771, 5.4.4, written out in one scene; the other finds it, and the allowance on its teeth."""
+    module, normal, helix, distance = 2.0, math.radians(20.0), math.radians(10.0), 59.2
+    angle = math.atan(math.tan(normal) / math.cos(helix))
+    working = math.acos(0.5 * (83 - 25) * module * math.cos(angle) / math.cos(helix) / distance)
+    rest = math.tan(angle) - angle - math.tan(working) + working
+    shift = 0.5 * (83 - 25) * rest / math.tan(normal) - 0.3
+    ring = parse_scene(SCENE).with_changes(
+        {
+            "pair.normal_module_mm": module,
+            "pair.helix_angle_deg": 10.0,
+            "pair.centre_distance_mm": distance,
+            "wheel.teeth": -83,
+            "wheel.tip_diameter_mm": None,
+            "wheel.cutter.teeth": 28,
+        }
+    )
+    written = ring.with_changes({"wheel.profile_shift": shift, "wheel.thickness_allowance_um": -70.0}).mesh().ring
+    balls = {"wheel.ball_measurement_mm": written.ball_measurement(3.5), "wheel.ball_diameter_mm": 3.5}
+    measured = ring.with_changes(balls).mesh().ring
+    assert_allclose([measured.profile_shift, measured.thickness_allowance], [shift, -0.07], atol=1e-9)
 
 
 def test_check_has_thickness_and_backlash_of_a_ring(thinned):
