@@ -125,8 +125,8 @@ STRIPS_ALIKE = Kind(
     "analyses on both sides, or a Monte Carlo study; not the spread to first order",
 )
 CONTACTS_ALIKE = Kind(
-    "{figure}: another contact decides but for {lacking:.1g}; beyond the kink there derivatives are others by up to "
-    "{size:.0%} ({key}; {count} of {keys} keys)",
+    "{figure}: the largest stresses of two contacts differ by {lacking:.1%}; derivatives are those of the larger one, "
+    "and where the other becomes the larger they change by up to {size:.0%} ({key}; {count} of {keys} keys)",
     "local safeties are those of the largest pressure and root tension of all positions, and beyond the change by "
     "which another contact has the largest they follow that",
     "analyses on both sides, or more positions; not the spread to first order",

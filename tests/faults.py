@@ -2859,6 +2859,20 @@ FAULTS = (
         "return self.required * self.stress",
         "plots/test_rating.py::test_bins_of_another_strength_stand_on_their_side_of_the_curve",
     ),
+    Fault(
+        "pictures of ratings: a bin is called by the number of its torque",
+        "plots/safety.py",
+        "(bin {case + 1} of",
+        "(bin {torque + 1} of",
+        "rating/test_spectrum.py::test_places_are_those_of_bins_whose_torque_was_solved",
+    ),
+    Fault(
+        "chamfers: the angle that fits is that of another chord",
+        "gears/chamfer.py",
+        "return atan2(y - tip_y, abs(tip_x - x))",
+        "return atan2(y, abs(tip_x - x))",
+        "gears/test_chamfer.py::test_chamfer_that_is_too_flat_is_told_from_which_angle_it_fits",
+    ),
 )
 
 

@@ -7,7 +7,7 @@ inclined towards the middle of the tooth. Nothing of it touches the mating gear.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import asin, cos, pi, radians, sin, sqrt
+from math import asin, atan2, cos, degrees, pi, radians, sin, sqrt
 from typing import TYPE_CHECKING
 
 from loaded_tca.arrays import real
@@ -48,6 +48,14 @@ def tip_half_angle(gear: MeasuredGear) -> float:
     return 0.5 * (chamfered_land(gear) if gear.tip_chamfer else gear.tooth_thickness_at(tip)) / tip
 
 
+def _angle_of_flank(gear: MeasuredGear) -> float:
+    """Angle between the middle of the tooth and the chord of the flank from the tip form circle to the tip [rad]."""
+    radii = gear.tip_form_radius, gear.tip_radius
+    halves = [0.5 * gear.tooth_thickness_at(radius) / radius for radius in radii]
+    (x, y), (tip_x, tip_y) = ((r * cos(half), r * sin(half)) for r, half in zip(radii, halves, strict=True))
+    return atan2(y - tip_y, abs(tip_x - x))
+
+
 def check_chamfer(gear: MeasuredGear) -> None:
     """Refuse a chamfer that leaves no flank or no tip, or that stands out of the flank.
 
@@ -72,5 +80,5 @@ def check_chamfer(gear: MeasuredGear) -> None:
     if land >= gear.tooth_thickness_at(gear.tip_radius):
         raise GeometryError(
             f"{gear.name}: tip_chamfer_angle: the chamfer stands out of the flank, which leans further towards the "
-            "middle of the tooth; increase it"
+            f"middle of the tooth; an angle above {degrees(_angle_of_flank(gear)):.2f} deg fits"
         )

@@ -22,7 +22,7 @@ from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks
 from loaded_tca.plots.pressure_map import FIELDS, POINTS_OF_A_FIELD
 from loaded_tca.plots.root_stress import GEAR_COLOURS
-from loaded_tca.plots.style import ACCENT, COLOURS, load
+from loaded_tca.plots.style import ACCENT, COLOURS, load, torque_label
 from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, ROOT
 from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties, root_safeties, torque_of, worst_case
 
@@ -75,7 +75,7 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
     style.set_title(
         figure,
         rating.result,
-        f"local safety of the flanks, {load(rating.result, torque_of(rating, case))}",
+        f"local safety of the flanks, {_load(rating, case)}",
         *_about(required),
     )
     return figure
@@ -126,7 +126,7 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
     style.set_title(
         figure,
         rating.result,
-        f"local safety of the roots, {load(rating.result, torque_of(rating, case))}",
+        f"local safety of the roots, {_load(rating, case)}",
         *_about(required),
     )
     return figure
@@ -180,6 +180,14 @@ def _scale(safety: Array, required: float) -> tuple[Normalize, Colormap]:
     least = float(known.min()) if known.size else required
     colours = colormaps[f"{COLOURS}_r"].with_extremes(under=ACCENT)
     return Normalize(required, max(LARGEST * least, 1.5 * required)), colours
+
+
+def _load(rating: Rating, case: int) -> str:
+    """Torque of a case, with the number of its bin in a load spectrum, as notes and tables count them."""
+    torque, cases = torque_of(rating, case), rating.inputs.cases
+    if not cases.is_spectrum:
+        return load(rating.result, torque)
+    return f"{torque_label(rating.result, torque)} (bin {case + 1} of {len(cases.torque)})"
 
 
 def _about(required: float) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """Chamfers of tip edges: where flanks end, what is left of the tip, and what a mesh takes of it."""
 
+import re
 from math import cos, pi, radians, sin
 
 import pytest
@@ -58,6 +59,16 @@ test_chamfer_refuses = refused_calls(
     (lambda: ring(tip_chamfer=2.0), "^ring: tip_chamfer: 2 mm is not from 0 to below a module"),
     (lambda: gear(tip_chamfer=0.1, tip_chamfer_angle=0.5 * pi), "^gear: tip_chamfer_angle: 1.57.* is not between 0"),
 )
+
+
+@pytest.mark.parametrize("make", [gear, ring])
+def test_chamfer_that_is_too_flat_is_told_from_which_angle_it_fits(make):
+    with pytest.raises(GeometryError, match="stands out of the flank") as refusal:
+        make(tip_chamfer=0.2, tip_chamfer_angle=0.02)
+    least = float(re.search(r"an angle above (\d+\.\d\d) deg fits", str(refusal.value))[1])
+    assert chamfered_land(make(tip_chamfer=0.2, tip_chamfer_angle=radians(least + 0.01))) > 0.0  # two decimals
+    with pytest.raises(GeometryError, match="stands out of the flank"):
+        make(tip_chamfer=0.2, tip_chamfer_angle=radians(least - 0.01))
 
 
 @pytest.mark.parametrize(

@@ -194,7 +194,7 @@ def test_transverse_load_factor_of_cylindrical_pairs_is_held():
 def test_contacts_that_decide_nearly_alike_are_told():
     slopes = np.array([[[1.0, 2.0]], [[1.01, 1.0]]])
     with pytest.warns(
-        AccuracyWarning, match=r"another contact decides but for 0.003; .* by up to 50% \(second; 1 of 2"
+        AccuracyWarning, match=r"largest stresses of two contacts differ by 0.3%; .* by up to 50% \(second; 1 of 2"
     ):
         rating_slopes._warn_of_kinks("local safety of roots", ["first", "second"], slopes, np.array([0.003]))
 
@@ -205,7 +205,7 @@ def test_safeties_follow_the_torque_as_ratings_do():
     rated = replace(cycle, scene=cycle.scene.with_changes(RATED).with_changes(METHOD_B)).rating()
     with coarsely(), noted_accuracy_warnings(given=False) as told:
         found = rated.sensitivities([TORQUE])
-    assert any("another contact decides but for" in sentence for sentence in told)  # from 145 N m on
+    assert any("largest stresses of two contacts differ by" in sentence for sentence in told)  # from 145 N m on
     for name in SAFETIES:
         values = rated.values(name)
         # steps of 5 N m, grids made anew, places of roots that are discrete; from 145 N m on another position decides

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.output import write_rating
-from loaded_tca.plots import RATING_PICTURES, plot_safeties
+from loaded_tca.plots import RATING_PICTURES, plot_flank_safety, plot_safeties
 from loaded_tca.plots import rating_figures as rating_pictures
 from loaded_tca.rating import flank_safeties, root_safeties
 from loaded_tca.rating.cases import cases_of
@@ -251,6 +251,7 @@ def test_places_are_those_of_bins_whose_torque_was_solved():
     rated = under([*bins((150.0, 1.0)), *bins((200.0, 1.0), reversed=True), *bins((200.0, 1.0))])
     places = flank_safeties(rated, 2)
     assert_allclose(places.safety.min(axis=1), rated.local_flank_safety[2], rtol=ROUNDING)
+    assert "(bin 3 of 3)" in plot_flank_safety(rated).get_suptitle()
     assert worst_case(rated, "local_root_safety") == 2  # the reversed bin has less, and no places
     for gear in range(2):  # tops of parabolas exceed the nodes of 5 deg and a face by little
         least = np.nanmin(root_safeties(rated, 2, gear).safety)

@@ -12,7 +12,7 @@ from dataclasses import replace
 from math import radians
 
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.gears.cylindrical_mesh import profile_shift_sum
+from loaded_tca.gears.involute import profile_shift_sum
 from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
 from validation.table import Row
 
