@@ -2735,6 +2735,27 @@ FAULTS = (
         "if not held and (rating.K_Halpha ==",
         "rating/test_slopes.py::test_transverse_load_factor_of_cylindrical_pairs_is_held",
     ),
+    Fault(
+        "settings: points in space count from their own mean azimuth, not from that of their nominal points",
+        "flanks/topography.py",
+        "zero = ahead if self.nominal is None else",
+        "zero = ahead if True else",
+        "flank_maps/test_settings_fit.py::test_thickness_of_points_in_space_counts_from_their_nominal_points",
+    ),
+    Fault(
+        "settings: the thickness of a tooth follows from points in space that do not say it",
+        "flank_maps/settings_fit.py",
+        'turned != "tooth" or one.topography.has_zero or',
+        'turned != "tooth" or True or',
+        "flank_maps/test_settings_fit.py::test_thickness_of_points_in_space_counts_from_their_nominal_points",
+    ),
+    Fault(
+        "measured flanks: nominal points of a file with normals are dropped",
+        "flanks/topography.py",
+        'grids["deviation"]), notes, weights, points)',
+        'grids["deviation"]), notes, weights)',
+        "flanks/test_measured_columns.py::test_nominal_points_with_normals_are_points_of_the_measured_flank",
+    ),
 )
 
 
