@@ -2873,6 +2873,41 @@ FAULTS = (
         "return atan2(y, abs(tip_x - x))",
         "gears/test_chamfer.py::test_chamfer_that_is_too_flat_is_told_from_which_angle_it_fits",
     ),
+    Fault(
+        "settings: points in space count from their own mean azimuth, not from that of their nominal points",
+        "flanks/topography.py",
+        "zero = ahead if self.nominal is None else",
+        "zero = ahead if True else",
+        "flank_maps/test_settings_fit.py::test_thickness_of_points_in_space_counts_from_their_nominal_points",
+    ),
+    Fault(
+        "settings: the thickness of a tooth follows from points in space that do not say it",
+        "flank_maps/settings_fit.py",
+        'turned != "tooth" or one.topography.has_zero or',
+        'turned != "tooth" or True or',
+        "flank_maps/test_settings_fit.py::test_thickness_of_points_in_space_counts_from_their_nominal_points",
+    ),
+    Fault(
+        "measured flanks: nominal points of a file with normals are dropped",
+        "flanks/topography.py",
+        'grids["deviation"]), notes, weights, points)',
+        'grids["deviation"]), notes, weights)',
+        "flanks/test_measured_columns.py::test_nominal_points_with_normals_are_points_of_the_measured_flank",
+    ),
+    Fault(
+        "gearbox models: the tool of the wheel does not count where that of the pinion lacks a number",
+        "exchange/gears.py",
+        "value = next((one for one in by_tools if one is not None), None)",
+        "value = next(by_tools)",
+        "exchange/test_stage.py::test_wheel_has_its_tool_where_that_of_the_pinion_says_less",
+    ),
+    Fault(
+        "measured flanks: a scene of two halves is said to have none",
+        "cli/measured_flank.py",
+        "    pair = scene.analytic_pair(scene.sense)  # refuses scenes of more pairs than one\n",
+        "",
+        "test_cli_double_helical.py::test_commands_that_take_one_pair_refuse_two_halves",
+    ),
 )
 
 

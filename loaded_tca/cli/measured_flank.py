@@ -18,6 +18,7 @@ def measured(options: argparse.Namespace) -> None:
     from loaded_tca.scene.build import in_own_frame
 
     scene, gear = scene_of(options), options.gear
+    pair = scene.analytic_pair(scene.sense)  # refuses scenes of more pairs than one
     topography = None if options.file is None else read_topography(options.file)
     if gear is None:
         stated = None if topography is None else topography.notes.get("gear")
@@ -28,7 +29,7 @@ def measured(options: argparse.Namespace) -> None:
         for read in filter(None, (Path(options.scene), options.file)):
             check_files([options.out], read)
     if topography is not None:
-        topography = in_own_frame(topography, getattr(scene.analytic_pair(scene.sense), gear).flank.frame.upwards)
+        topography = in_own_frame(topography, getattr(pair, gear).flank.frame.upwards)
     made = measured_modifications(scene, gear, topography, measured_from=options.measured_from)
     print(made.summary())
     if options.out is not None:

@@ -35,6 +35,11 @@ MATERIAL_KEYS = {
     "conductivity_W_mK": ("thermal_conductivity", CONDUCTIVITY),
     "heat_capacity_J_kgK": ("thermal_capacity", HEAT),
 }
+RACK = {
+    "dedendum_coefficient": ("addendum_coefficient_reference_profile", "addendum_reference_profile"),
+    "root_radius_coefficient": ("tip_radius_factor", "tip_radius"),
+}
+"""Numbers of a basic rack -> attributes of the tool that cuts it: over the module, and as a length."""
 TORQUE_DIGITS = 9
 """Of torques that follow from a balance [N m]."""
 DIGITS = 6
@@ -268,31 +273,35 @@ def _pressure_angle(reading: Reading, stage: Stage, flanks: list[Component | Non
 
 
 def _rack(reading: Reading, stage: Stage, flanks: list[Component | None], module: float) -> dict[str, float]:
-    """Basic rack of the pair: that of the first gear that has a tool."""
-    racks = (_rack_of(reading, gear, flank, module) for gear, flank in zip(stage.gears, flanks, strict=True))
-    return next((rack for rack in racks if rack is not None), {})
+    """Basic rack of the pair: each number that of the first gear whose tool has it."""
+    rack = {}
+    for name in RACK:
+        by_tools = (_by_tool(reading, *pair, module, name) for pair in zip(stage.gears, flanks, strict=True))
+        value = next((one for one in by_tools if one is not None), None)
+        if value is not None:
+            rack[name] = value
+    return rack
 
 
-def _rack_of(reading: Reading, gear: Component, flank: Component | None, module: float) -> dict[str, float] | None:
-    """Dedendum and root radius of the rack of a gear: addendum and tip radius of its tool; None where it has none."""
+def _by_tool(reading: Reading, gear: Component, flank: Component | None, module: float, name: str) -> float | None:
+    """Dedendum or root radius of the rack of a gear: addendum or tip radius of its tool; None where it has none."""
     for tool in tools_of(reading, gear, flank)[:1]:
-        rack = {}
-        dedendum = _per_module(
-            reading, tool, module, "addendum_coefficient_reference_profile", "addendum_reference_profile"
-        )
-        radius = _per_module(reading, tool, module, "tip_radius_factor", "tip_radius")
-        if dedendum is not None:
-            rack["dedendum_coefficient"] = dedendum
-        if radius is not None and tool.type == "rack_shaped_tool":
-            rack["root_radius_coefficient"] = radius
-        return rack
+        value = _per_module(reading, tool, module, *RACK[name])
+        return value if name != "root_radius_coefficient" or tool.type == "rack_shaped_tool" else None
     return None
 
 
 def _own_rack(reading: Reading, gear: Component, flank: Component | None, pair: dict[str, Any]) -> dict[str, float]:
-    """What the rack of a gear has other than that of the pair."""
-    rack = _rack_of(reading, gear, flank, pair["normal_module_mm"]) or {}
-    return {name: value for name, value in rack.items() if abs(value - pair.get(name, value)) > ALIKE}
+    """What the rack of a gear has other than that of the pair; notes what this has by the tool of the other gear."""
+    rack = {}
+    for name in (one for one in RACK if one in pair):
+        value = _by_tool(reading, gear, flank, pair["normal_module_mm"], name)
+        if value is None:
+            by_other = f"{name} {pair[name]:g} is that by the tool of the other gear"
+            reading.note(f"{gear}: no tool with {RACK[name][0]}; {by_other}")
+        elif abs(value - pair[name]) > ALIKE:
+            rack[name] = value
+    return rack
 
 
 def _per_module(reading: Reading, component: Component, module: float, factor: str, length: str) -> float | None:

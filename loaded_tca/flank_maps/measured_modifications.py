@@ -226,9 +226,9 @@ OFF_EDGE = 0.02
 
 def _own(scene: Scene, gear: GearName) -> Topography:
     """The measurement of a gear of a scene."""
+    frame = getattr(scene.analytic_pair(scene.sense), gear).flank.frame  # refuses scenes of more pairs than one
     measurement = getattr(scene, gear).flank.measurement
     require((measurement is not None, f'{gear}.flank: no measurement; allowed form = "measured", or a topography'))
-    frame = getattr(scene.analytic_pair(scene.sense), gear).flank.frame
     return build_topography(measurement, frame.upwards)
 
 

@@ -258,7 +258,8 @@ def fit_settings(
         Keys of machine settings and blades that may change, as ``"wheel.machine.radial_mm"``; with the largest change
         of each in its unit, either way; None: any.
     turned : {"flank", "tooth"}
-        Whether each flank is free to turn about its axis, or the tooth with both, whose thickness then counts.
+        Whether each flank is free to turn about its axis, or the tooth with both, whose thickness then counts: of
+        deviations, or points in space with the nominal points they deviate from.
 
     Returns
     -------
@@ -273,7 +274,8 @@ def fit_settings(
     ------
     InputError
         If the scene has no machine settings, a key is none of them or does nothing to the measured flanks, settings do
-        the same to them (told by names), or points are no points of their flank.
+        the same to them (told by names), points are no points of their flank, or the tooth with both flanks is to turn
+        as one and points in space, or two lines, do not say where these stand to each other.
     GeometryError
         If the cutter does not leave the flank where it was measured.
     ConvergenceError
@@ -360,6 +362,14 @@ def _require_sound(
         *(
             (places.count(place) < 2, f"measured: the {place[1]} flank of the {place[0]} is given twice")
             for place in dict.fromkeys(places)
+        ),
+        *(
+            (
+                turned != "tooth" or one.topography.has_zero or sum(gear == one.gear for gear, _ in places) < 2,
+                f'turned: "tooth" needs the thickness of the tooth, which the points of the {one.name} do not tell; '
+                'allowed deviations, nominal points with normals and deviations, or "flank"',
+            )
+            for one in measured
         ),
         *(
             (

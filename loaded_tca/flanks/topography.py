@@ -166,7 +166,8 @@ def _topography(grids: Mapping[str, Array], notes: Mapping[str, str]) -> Topogra
     if "x" in grids and not ("deviation" in grids and NORMAL[0] not in grids):
         points = np.stack([grids[name] for name in ("x", "y", "z")], axis=-1)
         if NORMAL[0] in grids:
-            points = along_normals(points, np.stack([grids[name] for name in NORMAL], axis=-1), grids["deviation"])
+            normals = np.stack([grids[name] for name in NORMAL], axis=-1)
+            return MeasuredPoints(along_normals(points, normals, grids["deviation"]), notes, weights, points)
         return MeasuredPoints(points, notes, weights)
     return MeasuredDeviations(*_places(grids), grids["deviation"], notes, weights)
 
@@ -313,6 +314,11 @@ class Topography(ABC):
         problem = "weight: a spline through measured points has none, settings from measured flanks do; leave it out"
         require((self.weights is None, problem))
 
+    @property
+    @abstractmethod
+    def has_zero(self) -> bool:
+        """Whether the mean of the deviations is measured, from which the thickness of a tooth follows."""
+
     @abstractmethod
     def excess_over(self, nominal: Flank, turned: bool) -> Array:
         """Material (n, m) in excess of a nominal flank [mm]; ``turned``: the azimuth of the tooth has no meaning."""
@@ -329,29 +335,45 @@ class MeasuredPoints(Topography):
         x, y, z; the azimuth of the tooth is free where the flank is turned to its pitch point.
     notes : mapping, optional
     weights : (n, m) array, optional
+    nominal : (n, m, 3) array [mm], optional
+        x, y, z of the nominal flank from which the points deviate: where it stands says by how much on the mean.
 
     Raises
     ------
     InputError
-        If the shape is another one, a point or weight is not finite, or a weight is negative or none is positive.
+        If a shape is another one, a point or weight is not finite, or a weight is negative or none is positive.
     """
 
     points: ArrayLike
     notes: Mapping[str, str] = field(default_factory=dict)
     weights: ArrayLike | None = None
+    nominal: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         points = _grid("points", self.points, 3)
+        if self.nominal is not None:
+            nominal = _grid("nominal", self.nominal, 3)
+            require((nominal.shape == points.shape, f"nominal: shape {nominal.shape}; allowed {points.shape}"))
+            object.__setattr__(self, "nominal", nominal)
         object.__setattr__(self, "weights", _weights(self.weights, points.shape[:2]))
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "radius", np.hypot(points[..., 0], points[..., 1]))
         object.__setattr__(self, "axial", points[..., 2])
 
+    @property
+    def has_zero(self) -> bool:
+        """Where nominal points say at which azimuth the nominal flank stands."""
+        return self.nominal is not None
+
     def excess_over(self, nominal: Flank, turned: bool) -> Array:
-        """Azimuth ahead of the nominal flank, as a distance along its normal [mm]."""
-        points = np.asarray(self.points)
-        ahead = np.arctan2(points[..., 1], points[..., 0]) - nominal.theta(self.radius, self.axial).value
-        middle = np.angle(np.exp(1j * ahead).mean()) if turned else 0.0
+        """Azimuth ahead of the nominal flank, as a distance along its normal [mm].
+
+        Where the azimuth of the tooth has no meaning, the nominal flank stands at the mean azimuth of the nominal
+        points, or without these at that of the points.
+        """
+        ahead = _ahead(np.asarray(self.points), nominal)
+        zero = ahead if self.nominal is None else _ahead(np.asarray(self.nominal), nominal)
+        middle = np.angle(np.exp(1j * zero).mean()) if turned else 0.0
         ahead = np.angle(np.exp(1j * (ahead - middle)))
         return nominal.side * ahead / nominal.gradient_norm(self.radius, self.axial).value
 
@@ -401,9 +423,20 @@ class MeasuredDeviations(Topography):
             object.__setattr__(self, name, array)
         object.__setattr__(self, "weights", _weights(self.weights, arrays["radius"].shape))
 
+    @property
+    def has_zero(self) -> bool:
+        """Deviations of points have one; lines are taken less what they have where they cross."""
+        return LINES_NOTE not in self.notes
+
     def excess_over(self, nominal: Flank, turned: bool) -> Array:  # noqa: ARG002 (the nominal flank they belong to)
         """The deviations themselves [mm]."""
         return np.asarray(self.excess)
+
+
+def _ahead(points: Array, nominal: Flank) -> Array:
+    """Azimuth (n, m) of points (n, m, 3) less that of the nominal flank at their radius and axial coordinate [rad]."""
+    x, y, z = np.moveaxis(points, -1, 0)
+    return np.asarray(np.arctan2(y, x) - nominal.theta(np.hypot(x, y), z).value)
 
 
 def excess_problems(nominal: Flank, excess: Array) -> list[str]:

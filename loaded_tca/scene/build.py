@@ -190,6 +190,8 @@ def build_topography(measurement: Measurement, upwards: int = 1) -> Topography:
 def in_own_frame(topography: Topography, upwards: int) -> Topography:
     """Return a topography of a file in the frame of its gear, whose y and z point against it where upwards is -1."""
     if isinstance(topography, MeasuredPoints):
-        return replace(topography, points=np.asarray(topography.points) * (1, upwards, upwards))
+        axes = np.array([1.0, upwards, upwards])
+        nominal = None if topography.nominal is None else np.asarray(topography.nominal) * axes
+        return replace(topography, points=np.asarray(topography.points) * axes, nominal=nominal)
     assert isinstance(topography, MeasuredDeviations)
     return replace(topography, axial=upwards * np.asarray(topography.axial))

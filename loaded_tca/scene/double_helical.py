@@ -35,7 +35,7 @@ OF_HALVES = frozenset({"double_helical", "gap_mm", "apex_offset_mm", "floating",
 ONE_BY_ONE = (
     "found true; of both halves together 'loaded-tca run' and 'loaded-tca check' tell, in Python "
     "loaded_tca.double_helical.analyse_double_helical; each half is a pair by itself: half_a.nc and half_b.nc of a "
-    "result, scene.halves"
+    "result, scene.halves, and as a scene, with its measured flanks, scene.half_scenes(0.0)"
 )
 NOT_OF_HALVES = {
     "pitch": "whole revolutions are not analysed; give the half by itself, as a helical pair",

@@ -88,6 +88,35 @@ def test_tools_of_both_gears_may_differ() -> None:
     assert not any("rack_shaped_tool 52" in one and "profile" in one for one in imported.not_taken)
 
 
+TOOL = {"addendum_coefficient_reference_profile": 1.3, "tip_radius_factor": 0.2}
+
+
+@pytest.mark.parametrize("lacking", [["tip_radius_factor"], [*TOOL], None], ids=["tip radius", "both", "tool"])
+def test_wheel_has_its_tool_where_that_of_the_pinion_says_less(lacking) -> None:
+    """The pinion has what it lacks of the tool of the wheel, and the list says so."""
+    model = example()
+    pinion, wheel = ("41", "42"), ("43", "44")
+    steps = [
+        one
+        for one in model.relations
+        if one.type == "manufacturing_step" and one.roles["workpiece"] not in (wheel if lacking else pinion + wheel)
+    ]
+    other = [relation("manufacturing_step", 1, workpiece=int(flank), tool=52) for flank in wheel]
+    attributes = {f"52.{name}": (value, "none") for name, value in TOOL.items()}
+    attributes |= {f"51.{name}": None for name in lacking or ()}
+    model = changed(model, attributes=attributes, without=["manufacturing_step"], relations=[*steps, *other])
+    imported = import_stage(model, "10")
+    mesh = imported.scene.mesh()
+    assert (mesh.wheel.dedendum_coefficient, mesh.wheel.root_radius_coefficient) == (1.3, 0.2)
+    assert mesh.pinion.dedendum_coefficient == (1.4 if lacking == ["tip_radius_factor"] else 1.3)
+    assert mesh.pinion.root_radius_coefficient == 0.2
+    notes = [one for one in imported.read_as if one.startswith("cylindrical_gear 21: no tool with ")]
+    assert len(notes) == len(lacking or TOOL)
+    assert notes[-1].endswith(
+        "no tool with tip_radius_factor; root_radius_coefficient 0.2 is that by the tool of the other gear"
+    )
+
+
 def test_grinding_after_hobbing_leaves_the_second_tool() -> None:
     grinding = [relation("manufacturing_step", 2, workpiece=flank, tool=52) for flank in (41, 42)]
     imported = import_stage(changed(relations=grinding), "10")

@@ -87,6 +87,8 @@ def test_flank_of_the_scene_is_taken_and_others_are_refused():
     assert measured_modifications(scene, "wheel").measured[2] == pytest.approx(8.0, abs=0.2)  # that was made
     with pytest.raises(InputError, match=r"pinion[.]flank: no measurement"):
         measured_modifications(scene, "pinion")
+    with pytest.raises(InputError, match=r"pair.double_helical: found true; .* scene.half_scenes\(0.0\)"):
+        measured_modifications(read_scene("examples/scenes/double_helical.toml"), "wheel")
     with pytest.raises(InputError, match="gear: 'gear' is not 'pinion' or 'wheel'"):
         measured_modifications(scene, "gear")
     with pytest.raises(InputError, match="measured_from: 'x' is not 'modified' or 'unmodified'"):

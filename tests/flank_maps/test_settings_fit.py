@@ -116,6 +116,29 @@ def test_thickness_of_the_tooth_counts_where_both_flanks_turn_as_one(scene, gene
     assert rms["flank"] < 0.05 * thinner
 
 
+def as_points(generated, flank, azimuth, nominal):
+    """The same measured flank as points in space; its nominal flank stands at an azimuth that the file chose."""
+    surface, topography = generated[flank.gear, flank.flank], flank.topography
+    rho, z = topography.radius, topography.axial
+    of_nominal = surface.theta(rho, z).value + azimuth
+    of_points = of_nominal + surface.side * topography.excess * surface.gradient_norm(rho, z).value
+    xyz = [np.stack([rho * np.cos(at), rho * np.sin(at), z], axis=-1) for at in (of_points, of_nominal)]
+    return replace(flank, topography=MeasuredPoints(xyz[0], nominal=xyz[1] if nominal else None))
+
+
+def test_thickness_of_points_in_space_counts_from_their_nominal_points(scene, generated):
+    """One blade too far out; without nominal points nothing says where the nominal flanks stand to each other."""
+    errors = {"cutter.convex.point_radius": 0.05}
+    flanks = [measured(generated, ("wheel", flank), errors if flank == "convex" else {}) for flank in FLANKS]
+    keys = keys_of("wheel", errors)
+    points = [as_points(generated, one, azimuth, True) for one, azimuth in zip(flanks, (0.7, -2.0), strict=True)]
+    fit = fit_settings(scene, points, keys, turned="tooth")
+    assert_allclose([*errors_found(fit).values()], [*errors.values()], rtol=FOUND)
+    bare = as_points(generated, flanks[1], 0.7, False)
+    with pytest.raises(InputError, match=r'turned: "tooth" needs .* points of the wheel, convex flank do not tell'):
+        fit_settings(scene, [flanks[0], bare], keys, turned="tooth")
+
+
 def test_correction_stops_at_its_limit_and_the_others_make_the_best_of_it(scene, generated):
     """What is left is orthogonal to what the free settings can do, and pushes the limited one outwards."""
     names = [*ERRORS][:3]

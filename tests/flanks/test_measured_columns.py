@@ -10,6 +10,7 @@ from loaded_tca.flanks.base import outward_normal, unmodified
 from loaded_tca.flanks.measured_columns import MOST_OF_LINE
 from loaded_tca.flanks.topography import parse_topography
 from loaded_tca.scene import FlankForm
+from loaded_tca.scene.build import in_own_frame
 from tests.flanks.test_topography import pair_of
 from tests.samples.gear_pairs import gear_pair
 
@@ -48,11 +49,17 @@ def test_nominal_points_with_normals_are_points_of_the_measured_flank(flank, tur
     assert topography.radius.shape == (6, 10)
     excess = topography.excess_over(flank, turned=True)
     asked = excess_at(topography.radius, topography.axial)
-    turns = 1.0 / flank.gradient_norm(topography.radius, topography.axial).value
-    rest = excess - asked
-    rest -= turns * (turns * rest).sum() / (turns**2).sum()
     # mm; a point is moved along its normal by 3 um where the flank turns by 1 / 10 mm
-    assert_allclose(rest, 0.0, atol=3e-3**2 / 10.0)
+    assert_allclose(excess, asked, atol=3e-3**2 / 10.0)
+
+
+def test_nominal_points_turn_into_the_frame_of_the_gear_with_the_measured_ones():
+    points = np.arange(12.0).reshape(2, 2, 3)
+    there = in_own_frame(MeasuredPoints(points + 1e-3, nominal=points), -1)
+    assert_allclose(there.nominal, points * np.array([1.0, -1.0, -1.0]))
+    assert_allclose(there.points - there.nominal, 1e-3 * np.array([1.0, -1.0, -1.0]) * np.ones((2, 2, 1)), rtol=1e-9)
+    with pytest.raises(InputError, match=r"nominal: shape \(2, 1, 3\); allowed \(2, 2, 3\)"):
+        MeasuredPoints(points, nominal=points[:, :1])
 
 
 def test_nominal_points_without_normals_are_places_of_deviations():
