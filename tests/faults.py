@@ -2508,7 +2508,7 @@ FAULTS = (
         "double helical pairs: the place of a floating gear that moves on at the last step counts as settled",
         "double_helical/analyse.py",
         "    if not settled:\n",
-        "    if abs(moved - axial) > FACES * _width(scene):\n",
+        "    if float(np.abs(places - axial).max()) > FACES * scene.narrow_half:\n",
         "double_helical/test_analyse.py::test_a_place_that_does_not_settle_is_an_error",
     ),
     Fault(
@@ -2734,6 +2734,20 @@ FAULTS = (
         "if held and (rating.K_Halpha ==",
         "if not held and (rating.K_Halpha ==",
         "rating/test_slopes.py::test_transverse_load_factor_of_cylindrical_pairs_is_held",
+    ),
+    Fault(
+        "double helical pairs: faces are analysed where the gear stands on the mean over torques that stand apart",
+        "double_helical/analyse.py",
+        "groups = _groups(places, FACES * scene.narrow_half)",
+        "groups, places = [np.arange(len(places))], places.mean(keepdims=True)",
+        "double_helical/test_analyse.py::test_a_torque_in_a_list_has_the_numbers_that_it_has_alone",
+    ),
+    Fault(
+        "double helical pairs: numbers under several torques lie in the order of the places of the gear",
+        "double_helical/analyse.py",
+        "np.concatenate([part[name] for part in parts])[rows]",
+        "np.concatenate([part[name] for part in parts])",
+        "double_helical/test_analyse.py::test_a_torque_in_a_list_has_the_numbers_that_it_has_alone",
     ),
 )
 

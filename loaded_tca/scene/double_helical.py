@@ -260,6 +260,11 @@ class DoubleHelicalScene(CylindricalScene):
         return 0.5 * (gear.face_width_mm - self.geometry.gap_mm)
 
     @property
+    def narrow_half(self) -> float:
+        """Face width of a half of the narrower gear [mm]."""
+        return min(self.half_width(self.pinion), self.half_width(self.wheel))
+
+    @property
     def _wheel_lever(self) -> float:
         """Distance from the middle of the wheel's groove to the middle of the face of a half [mm]."""
         return 0.25 * (self.wheel.face_width_mm + self.geometry.gap_mm)
