@@ -2749,6 +2749,13 @@ FAULTS = (
         "np.concatenate([part[name] for part in parts])",
         "double_helical/test_analyse.py::test_a_torque_in_a_list_has_the_numbers_that_it_has_alone",
     ),
+    Fault(
+        "double helical pairs: a measured flank of a half that is held softly is not warned of",
+        "scene/double_helical.py",
+        'self.geometry.floating != "none" and self.geometry.axial_stiffness_N_per_um == 0.0',
+        'self.geometry.floating != "none"',
+        "double_helical/test_analyse.py::test_a_measured_flank_of_one_half_that_is_held_is_warned_of",
+    ),
 )
 
 

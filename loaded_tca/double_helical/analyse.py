@@ -92,7 +92,8 @@ def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None 
     Warns
     -----
     AccuracyWarning
-        As there, of both halves, and where shares are uncertain between the torques that were analysed.
+        As there, of both halves, where shares are uncertain between the torques that were analysed, and where one half
+        has a measured flank and no gear floats freely.
 
     Examples
     --------
@@ -282,6 +283,9 @@ def _result(scene: DoubleHelicalScene, places: Sequence[_Place]) -> DoubleHelica
     with noted_accuracy_warnings(given=False) as own:
         if (worst := max(float(place.state.error.max()) for place in places)) > WARNED:
             give_accuracy_warning(kinds.SHARES_OF_HALVES.sentence(error=worst))
+        if not scene.floats_freely:
+            for half, gear in scene.measured_halves:
+                give_accuracy_warning(kinds.MEASURED_HALF.sentence(half=half, gear=gear))
     halves = [half for of_both in zip(*(place.halves for place in places), strict=True) for half in of_both]
     sentences = [*dict.fromkeys(sentence for half in halves for sentence in half.warnings), *own]
     for sentence in sentences:

@@ -260,6 +260,22 @@ class DoubleHelicalScene(CylindricalScene):
         return 0.5 * (gear.face_width_mm - self.geometry.gap_mm)
 
     @property
+    def floats_freely(self) -> bool:
+        """Whether nothing holds the floating gear along its axis."""
+        return self.geometry.floating != "none" and self.geometry.axial_stiffness_N_per_um == 0.0
+
+    @property
+    def measured_halves(self) -> tuple[tuple[str, str], ...]:
+        """Halves with a measured flank that is not that of the other half, and the gear of each."""
+        halves = []
+        for name, gear in zip(GEARS, (self.pinion, self.wheel), strict=True):
+            of_half_b = None if gear.half_b is None else gear.half_b.flank
+            forms = gear.flank, of_half_b or gear.flank
+            if forms[0] != forms[1]:
+                halves += [(half, name) for half, form in zip(HALVES, forms, strict=True) if form.form == "measured"]
+        return tuple(halves)
+
+    @property
     def narrow_half(self) -> float:
         """Face width of a half of the narrower gear [mm]."""
         return min(self.half_width(self.pinion), self.half_width(self.wheel))

@@ -10,7 +10,7 @@ from loaded_tca import ConvergenceError, InputError, analyse
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
 from loaded_tca.results import load_result
-from loaded_tca.warning_kinds import SHARES_OF_HALVES, kind_of
+from loaded_tca.warning_kinds import MEASURED_HALF, SHARES_OF_HALVES, kind_of
 from tests.samples import double_helical as samples
 from tests.samples.root_stress import coarsely
 
@@ -240,3 +240,19 @@ def test_uncertain_shares_are_told(equal_halves, one_half, monkeypatch):
     (sentence,) = result.warnings
     assert sentence.startswith("the shares of the halves are off by up to")  # far beyond the torques of one half
     assert kind_of(sentence) is SHARES_OF_HALVES
+
+
+@pytest.mark.parametrize(
+    ("support", "count"),
+    [({}, 0), ({"pair.floating": "none"}, 1), ({"pair.axial_stiffness_N_per_um": 5.0}, 1)],
+    ids=["free", "held", "soft"],
+)
+def test_a_measured_flank_of_one_half_that_is_held_is_warned_of(equal_halves, one_half, support, count, monkeypatch):
+    monkeypatch.setattr(analyses, "_analysed", lambda *_: 2 * (analyses._Half(one_half, []),))
+    points = {"radius_mm": [4 * [r] for r in (64.0, 66.0, 68.0, 70.0)], "axial_mm": 4 * [[-15.0, -5.0, 5.0, 15.0]]}
+    flank = {"form": "measured", "measurement": {**points, "deviation_um": 4 * [4 * [0.0]]}}
+    scene = equal_halves.with_changes({**support, "pinion.half_b": {"flank": flank}})
+    sentences = [line for line in analyse_double_helical(scene).warnings if kind_of(line) is MEASURED_HALF]
+    assert [line.partition(" has")[0] for line in sentences] == count * ["half b of the pinion"]
+    alike = equal_halves.with_changes({**support, "pinion.flank": flank})
+    assert alike.measured_halves == ()
