@@ -2756,6 +2756,13 @@ FAULTS = (
         'self.geometry.floating != "none"',
         "double_helical/test_analyse.py::test_a_measured_flank_of_one_half_that_is_held_is_warned_of",
     ),
+    Fault(
+        "double helical pairs: a place in a sentence without a torque is taken for one under a torque",
+        "results/warnings.py",
+        "return AT_MAPS in sentence",
+        'return " (at " in sentence',
+        "double_helical/test_analyse.py::test_a_sentence_without_a_torque_says_nothing_of_torques",
+    ),
 )
 
 

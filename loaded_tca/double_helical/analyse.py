@@ -28,7 +28,7 @@ from loaded_tca.errors import (
 )
 from loaded_tca.plain import plain
 from loaded_tca.results import MeshCycle
-from loaded_tca.results.warnings import without_place
+from loaded_tca.results.warnings import is_under_torque
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import HALVES, SIGNS, DoubleHelicalScene
 
@@ -193,8 +193,7 @@ def _are_alike(first: CylindricalScene, second: CylindricalScene) -> bool:
 
 def _of_half(sentence: str) -> str:
     """A sentence whose torques, if it has any, are said to be those of the half."""
-    placed = sentence != without_place(sentence)
-    return f"{sentence[:-1]}; N m: the torque of the half)" if placed else sentence
+    return f"{sentence[:-1]}; N m: the torque of the half)" if is_under_torque(sentence) else sentence
 
 
 def _balanced(scene: DoubleHelicalScene, analysed: Sequence[_Half]) -> Shares:

@@ -10,6 +10,7 @@ from loaded_tca import ConvergenceError, InputError, analyse
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
 from loaded_tca.results import load_result
+from loaded_tca.results.warnings import at_places
 from loaded_tca.warning_kinds import MEASURED_HALF, SHARES_OF_HALVES, kind_of
 from tests.samples import double_helical as samples
 from tests.samples.root_stress import coarsely
@@ -256,3 +257,10 @@ def test_a_measured_flank_of_one_half_that_is_held_is_warned_of(equal_halves, on
     assert [line.partition(" has")[0] for line in sentences] == count * ["half b of the pinion"]
     alike = equal_halves.with_changes({**support, "pinion.flank": flank})
     assert alike.measured_halves == ()
+
+
+def test_a_sentence_without_a_torque_says_nothing_of_torques():
+    sentence = "fillet interference: the wheel reaches below the form circle (at the centre distance of 262.8 mm)"
+    assert analyses._of_half(sentence) == sentence
+    placed = at_places("the contact is wide", ["300 N m, pinion angle 0 deg, tooth pair 0"], 4)
+    assert analyses._of_half(placed) == f"{placed[:-1]}; N m: the torque of the half)"
