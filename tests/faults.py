@@ -2763,6 +2763,13 @@ FAULTS = (
         'return " (at " in sentence',
         "double_helical/test_analyse.py::test_a_sentence_without_a_torque_says_nothing_of_torques",
     ),
+    Fault(
+        "double helical pairs: a torque of 0 in a list is said to be that of the load",
+        "scene/double_helical.py",
+        'rule(("analysis.torques_Nm",), lambda several',
+        'rule(("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda _, several',
+        "scene/test_double_helical_scene.py",
+    ),
 )
 
 

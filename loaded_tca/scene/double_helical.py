@@ -37,6 +37,7 @@ ONE_BY_ONE = (
     "loaded_tca.double_helical.analyse_double_helical; each half is a pair by itself: half_a.nc and half_b.nc of a "
     "result, scene.halves"
 )
+SHARED = "found a torque of 0; allowed above 0: the halves share a torque"
 NOT_OF_HALVES = {
     "pitch": "whole revolutions are not analysed; give the half by itself, as a helical pair",
     "tooth": "whole revolutions are not analysed; give the half by itself, as a helical pair",
@@ -171,10 +172,9 @@ class DoubleHelicalScene(CylindricalScene):
             lambda load: load.case is None,
             "found a load spectrum; not allowed of double helical pairs: give its torques as analysis.torques_Nm",
         ),
+        rule(("analysis.torques_Nm",), lambda several: all(several or ()), SHARED),
         rule(
-            ("load.pinion_torque_Nm", "analysis.torques_Nm"),
-            lambda torque, several: all(several or (1.0 if torque is None else torque,)),
-            "found a torque of 0; allowed above 0: the halves share a torque",
+            ("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda torque, several: several or torque != 0.0, SHARED
         ),
         rule(("revolution",), lambda given: given is None, f"found a section; not allowed: {NOT_OF_HALVES['pitch']}"),
     )
