@@ -394,6 +394,13 @@ SHARES_OF_HALVES = Kind(
     "told by how much compliances and deflections of neighbouring torques disagree",
     "a gear that floats, halves that are alike, or more crowning and relief, so that contacts stay off the edges",
 )
+MEASURED_HALF = Kind(
+    "half {half} of the {gear} has a measured flank that the other half has not, between gears that are held along "
+    "the axes: it is turned onto its pitch point, so that shares leave out how it stands against the other half",
+    "a measured flank is turned until it holds the pitch point: what its deviations say there, a shift of the apex, "
+    "is left out of the shares and of the transmission error",
+    "`pair.apex_offset_mm` for the apex as measured, modifications of the same size, or a gear that floats freely",
+)
 
 KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))
 """Of every accuracy warning of an analysis, of derivatives of its result, of its tribology and its rating."""

@@ -2509,7 +2509,7 @@ FAULTS = (
         "double helical pairs: the place of a floating gear that moves on at the last step counts as settled",
         "double_helical/analyse.py",
         "    if not settled:\n",
-        "    if abs(moved - axial) > FACES * _width(scene):\n",
+        "    if float(np.abs(places - axial).max()) > FACES * scene.narrow_half:\n",
         "double_helical/test_analyse.py::test_a_place_that_does_not_settle_is_an_error",
     ),
     Fault(
@@ -2907,6 +2907,41 @@ FAULTS = (
         "    pair = scene.analytic_pair(scene.sense)  # refuses scenes of more pairs than one\n",
         "",
         "test_cli_double_helical.py::test_commands_that_take_one_pair_refuse_two_halves",
+    ),
+    Fault(
+        "double helical pairs: faces are analysed where the gear stands on the mean over torques that stand apart",
+        "double_helical/analyse.py",
+        "groups = _groups(places, FACES * scene.narrow_half)",
+        "groups, places = [np.arange(len(places))], places.mean(keepdims=True)",
+        "double_helical/test_analyse.py::test_a_torque_in_a_list_has_the_numbers_that_it_has_alone",
+    ),
+    Fault(
+        "double helical pairs: numbers under several torques lie in the order of the places of the gear",
+        "double_helical/analyse.py",
+        "np.concatenate([part[name] for part in parts])[rows]",
+        "np.concatenate([part[name] for part in parts])",
+        "double_helical/test_analyse.py::test_a_torque_in_a_list_has_the_numbers_that_it_has_alone",
+    ),
+    Fault(
+        "double helical pairs: a measured flank of a half that is held softly is not warned of",
+        "scene/double_helical.py",
+        'self.geometry.floating != "none" and self.geometry.axial_stiffness_N_per_um == 0.0',
+        'self.geometry.floating != "none"',
+        "double_helical/test_analyse.py::test_a_measured_flank_of_one_half_that_is_held_is_warned_of",
+    ),
+    Fault(
+        "double helical pairs: a place in a sentence without a torque is taken for one under a torque",
+        "results/warnings.py",
+        "return AT_MAPS in sentence",
+        'return " (at " in sentence',
+        "double_helical/test_analyse.py::test_a_sentence_without_a_torque_says_nothing_of_torques",
+    ),
+    Fault(
+        "double helical pairs: a torque of 0 in a list is said to be that of the load",
+        "scene/double_helical.py",
+        'rule(("analysis.torques_Nm",), lambda several',
+        'rule(("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda _, several',
+        "scene/test_double_helical_scene.py",
     ),
 )
 

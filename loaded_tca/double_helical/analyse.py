@@ -15,9 +15,9 @@ import scipy
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.analysis import analyse
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.double_helical.balance import HalfLaw, Halves, Shares, shared
-from loaded_tca.double_helical.result import DoubleHelicalResult
+from loaded_tca.double_helical.result import FACES, DoubleHelicalResult
 from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import (
     ConvergenceError,
@@ -28,14 +28,10 @@ from loaded_tca.errors import (
 )
 from loaded_tca.plain import plain
 from loaded_tca.results import MeshCycle
-from loaded_tca.results.warnings import without_place
+from loaded_tca.results.warnings import is_under_torque
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import HALVES, SIGNS, DoubleHelicalScene
 
-FACES = 1e-3
-"""How far the gears may stand from where their faces were analysed, over the width of a half. A motion along the axis
-turns a helix into itself, and moves its ends and modifications by as much: 1e-4 of the motion was left in the
-transmission error of helical pairs that are crowned by 5 um."""
 ACCURATE, WARNED = 1e-4, 1e-3
 """Estimated error of a share with which no more torques are analysed, and above which a warning says so."""
 NEAR = 0.02
@@ -57,9 +53,24 @@ class _Half(NamedTuple):
     warnings: list[str]
 
 
+class _Place(NamedTuple):
+    """Both halves where the floating gear stands under the torques of a scene, and their balance there."""
+
+    scene: DoubleHelicalScene
+    halves: tuple[_Half, _Half]
+    state: Shares
+
+    @property
+    def cycles(self) -> list[MeshCycle]:
+        """Mesh cycles of both halves."""
+        return [half.cycle for half in self.halves]
+
+
 @checked
 def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None = None) -> DoubleHelicalResult:
     """Analyse a double helical pair: how its halves share the torque over a pitch, and how far a gear floats.
+
+    Torques under which the floating gear stands apart are analysed by themselves, each where it stands.
 
     Parameters
     ----------
@@ -81,7 +92,8 @@ def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None 
     Warns
     -----
     AccuracyWarning
-        As there, of both halves, and where shares are uncertain between the torques that were analysed.
+        As there, of both halves, where shares are uncertain between the torques that were analysed, and where one half
+        has a measured flank and no gear floats freely.
 
     Examples
     --------
@@ -95,14 +107,23 @@ def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None 
     >>> result.axial_motion.round(6).tolist()
     [[0.01]]
     """
-    axial, torques = scene.mounting.axial_offset_mm, _even_torques(scene)
-    shown = _Progress(progress)
+    return _result(scene, _settled(scene, scene.mounting.axial_offset_mm, _Progress(progress)))
+
+
+def _settled(scene: DoubleHelicalScene, axial: float, shown: _Progress) -> list[_Place]:
+    """Analyses of both halves where the floating gear stands [mm]: one for all torques, or more where it moves far."""
+    torques = _even_torques(scene)
     for _ in range(MOST_ROUNDS):
         scenes = scene.half_scenes(axial, [[1e-3 * torque for torque in of_half] for of_half in torques])
         analysed = _analysed(scenes, shown)
         state = _balanced(scene, analysed)
-        moved, wanted = _place(scene, state), _wanted(scene, state, torques)
-        settled = abs(moved - axial) <= FACES * _width(scene)
+        places, wanted = _places(scene, state), _wanted(scene, state, torques)
+        moved = float(places.mean())
+        groups = _groups(places, FACES * scene.narrow_half)
+        if len(groups) > 1:
+            parts = (_settled(_under(scene, rows), float(places[rows].mean()), shown) for rows in groups)
+            return [place for part in parts for place in part]
+        settled = float(np.abs(places - axial).max()) <= FACES * scene.narrow_half
         if settled and wanted == torques:
             break
         axial, torques = axial if settled else moved, wanted
@@ -111,7 +132,7 @@ def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None 
             f"pair.floating: the place of the {scene.geometry.floating} along its axis, {plain(moved)} mm, is not "
             f"settled in {MOST_ROUNDS} steps"
         )
-    return _result(scene, analysed, state)
+    return [_Place(scene, analysed, state)]
 
 
 def expected_double_helical_effort(scene: DoubleHelicalScene) -> Effort:
@@ -172,8 +193,7 @@ def _are_alike(first: CylindricalScene, second: CylindricalScene) -> bool:
 
 def _of_half(sentence: str) -> str:
     """A sentence whose torques, if it has any, are said to be those of the half."""
-    placed = sentence != without_place(sentence)
-    return f"{sentence[:-1]}; N m: the torque of the half)" if placed else sentence
+    return f"{sentence[:-1]}; N m: the torque of the half)" if is_under_torque(sentence) else sentence
 
 
 def _balanced(scene: DoubleHelicalScene, analysed: Sequence[_Half]) -> Shares:
@@ -205,14 +225,28 @@ def _law(cycle: MeshCycle, axial_rate: float) -> HalfLaw:
     )
 
 
-def _width(scene: DoubleHelicalScene) -> float:
-    """Smaller width of a half [mm]."""
-    return min(scene.half_width(scene.pinion), scene.half_width(scene.wheel))
+def _places(scene: DoubleHelicalScene, state: Shares) -> Array:
+    """Mean places (torque,) of the wheel along the axis over the pitch [mm]."""
+    return np.asarray(scene.mounting.axial_offset_mm + state.motion.mean(axis=1))
 
 
-def _place(scene: DoubleHelicalScene, state: Shares) -> float:
-    """Mean place of the wheel along the axis, under all torques [mm]."""
-    return scene.mounting.axial_offset_mm + float(state.motion.mean())
+def _groups(places: Array, span: float) -> list[Indices]:
+    """Indices of places [mm] that lie within a span of each other, from the lowest place on."""
+    groups: list[list[int]] = []
+    for row in np.argsort(places, kind="stable").tolist():
+        if not groups or places[row] - places[groups[-1][0]] > span:
+            groups.append([])
+        groups[-1].append(row)
+    return [np.array(sorted(rows)) for rows in groups]
+
+
+def _under(scene: DoubleHelicalScene, rows: Indices) -> DoubleHelicalScene:
+    """The scene under some of its torques."""
+    torques = scene.analysis.torques_Nm
+    assert torques is not None  # one torque has one place
+    changed = scene.with_changes({"analysis.torques_Nm": [torques[row] for row in rows.tolist()]})
+    assert isinstance(changed, DoubleHelicalScene)
+    return changed
 
 
 def _wanted(scene: DoubleHelicalScene, state: Shares, torques: Sequence[Sequence[float]]) -> list[list[float]]:
@@ -242,17 +276,21 @@ def _add(torques: list[float], more: Sequence[float], even: float) -> None:
             torques.append(asked)
 
 
-def _result(scene: DoubleHelicalScene, analysed: Sequence[_Half], state: Shares) -> DoubleHelicalResult:
-    """The result, with the warnings of both halves."""
-    cycles = [half.cycle for half in analysed]
+def _result(scene: DoubleHelicalScene, places: Sequence[_Place]) -> DoubleHelicalResult:
+    """The result, with the warnings of both halves; their mesh cycles are those under the largest torque."""
+    cycles = max(places, key=lambda place: max(place.scene.torques)).cycles
     with noted_accuracy_warnings(given=False) as own:
-        if (worst := float(state.error.max())) > WARNED:
+        if (worst := max(float(place.state.error.max()) for place in places)) > WARNED:
             give_accuracy_warning(kinds.SHARES_OF_HALVES.sentence(error=worst))
-    sentences = [*(sentence for half in analysed for sentence in half.warnings), *own]
+        if not scene.floats_freely:
+            for half, gear in scene.measured_halves:
+                give_accuracy_warning(kinds.MEASURED_HALF.sentence(half=half, gear=gear))
+    halves = [half for of_both in zip(*(place.halves for place in places), strict=True) for half in of_both]
+    sentences = [*dict.fromkeys(sentence for half in halves for sentence in half.warnings), *own]
     for sentence in sentences:
         give_accuracy_warning(sentence)
     dataset = DoubleHelicalResult.dataset_of(
-        _arrays(scene, cycles, state),
+        _joined(scene, [_arrays(place) for place in places]),
         version=version("loaded_tca"),
         date=datetime.now(UTC).isoformat(timespec="seconds"),
         warnings="\n".join(sentences),
@@ -260,11 +298,23 @@ def _result(scene: DoubleHelicalScene, analysed: Sequence[_Half], state: Shares)
     return DoubleHelicalResult(scene=scene, dataset=dataset, half_a=cycles[0], half_b=cycles[1])
 
 
-def _arrays(scene: DoubleHelicalScene, cycles: Sequence[MeshCycle], state: Shares) -> dict[str, Array]:
-    """Arrays of the result."""
+def _joined(scene: DoubleHelicalScene, parts: Sequence[dict[str, Array]]) -> dict[str, Array]:
+    """Arrays of the result, from those under the torques at each place."""
+    torques = np.concatenate([part["torque"] for part in parts])
+    rows = np.array([int(np.flatnonzero(torques == torque)[0]) for torque in scene.torques])
+    return {
+        name: np.concatenate([part[name] for part in parts])[rows] if "torque" in number.dims else parts[0][name]
+        for name, number in DoubleHelicalResult.NUMBERS.items()
+        if name in parts[0]
+    }
+
+
+def _arrays(place: _Place) -> dict[str, Array]:
+    """Arrays of the result at one place."""
+    scene, cycles, state = place.scene, place.cycles, place.state
     pair, torques = cycles[0].gear_pair, np.asarray(scene.torques)
     base = pair.base_radii
-    width = 2.0 * min(float(cycle.face_width) for cycle in cycles)
+    width = 2.0 * scene.narrow_half
     carried = base[0] * state.force
     axial = scene.axial_rate * state.force * np.asarray(SIGNS)
     share = state.force / state.force.sum(axis=-1, keepdims=True)

@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 
 PAIR_FILE, *HALF_FILES = FILES = "double_helical.nc", "half_a.nc", "half_b.nc"
 """Names of the files of a result: both halves together, and the mesh cycles of each."""
+FACES = 1e-3
+"""How far the gears may stand from where their faces were analysed, over the width of a half. A motion along the axis
+turns a helix into itself, and moves its ends and modifications by as much: 1e-4 of the motion was left in the
+transmission error of helical pairs that are crowned by 5 um."""
 TORQUE, HALF, OVER_HALVES = ("torque",), ("torque", "half"), (*CYCLE, "half")
 NUMBERS = numbers(
     {
@@ -37,7 +41,7 @@ NUMBERS = numbers(
         ),
         "pinion_angle": (("position",), "rad", "angle of the pinion phi1, 0 at the pitch point in mid-face of a half"),
         "wheel_base_radius": ((), "mm", "base radius of the wheel"),
-        "face_width": ((), "mm", "common face width of both halves, without the groove"),
+        "face_width": ((), "mm", "face width of both halves of the narrower gear, without the groove"),
         "transmission_error": Number(
             CYCLE, "rad", "loaded transmission error, absolute, of both halves together", at_base_circle=True
         ),
@@ -144,7 +148,8 @@ class DoubleHelicalResult(AnalysisResult):
     dataset : xarray.Dataset
         Numbers of ``NUMBERS`` with their units, over torque [N mm], position (``pinion_angle`` [rad]) and half.
     half_a, half_b : MeshCycle
-        Of each half, with z from the groove outwards, under the torques between which its shares lie.
+        Of each half, with z from the groove outwards, under the torques between which its shares lie; where a floating
+        gear stands apart under several torques, those where it stands under the largest.
     """
 
     KIND: ClassVar = DOUBLE_HELICAL
@@ -188,7 +193,7 @@ class DoubleHelicalResult(AnalysisResult):
         )
 
     def notes(self) -> tuple[str, ...]:
-        """Sentences on halves that carry nothing: under which torque, and whether at all positions."""
+        """Sentences on halves that carry nothing, and on torques under which the gear stands apart from both halves."""
         sentences = []
         for shares, torque in zip(self.torque_share, self.torque.tolist(), strict=True):
             for name, share in zip(HALVES, shares.T, strict=True):
@@ -198,7 +203,19 @@ class DoubleHelicalResult(AnalysisResult):
                         f"under {shown_torque(torque)} half {name} carries nothing at {words} positions: its flanks "
                         "stand farther apart than those of the other half give way"
                     )
-        return tuple(sentences)
+        return (*sentences, *self._notes_of_places())
+
+    def _notes_of_places(self) -> list[str]:
+        """Sentences on torques under which the mesh cycles of both halves are those of another place."""
+        places = self.axial_motion.mean(axis=1)
+        largest = int(self.torque.argmax())
+        return [
+            f"under {shown_torque(torque)} the {self.scene.geometry.floating} stands {plain(way, 3)} mm along its axis "
+            f"from where it stands under {shown_torque(self.torque[largest])}, which half_a and half_b are of: for "
+            "mesh cycles there, analyse that torque by itself"
+            for torque, way in zip(self.torque.tolist(), (places - places[largest]).tolist(), strict=True)
+            if abs(way) > FACES * self.scene.narrow_half
+        ]
 
     @checked
     def save(self, directory: FilePath) -> tuple[Path, ...]:

@@ -46,6 +46,8 @@ MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
 MOST_STIFFENED = 0.05
 """Part by which rigid bores make a mesh stiffer from which they are warned of."""
+AT_MAPS = "pressure maps; the first: "
+"""In sentences on contacts, before the torque and the place of the first."""
 OF_THE_LARGEST = (kinds.ROUNDED_EDGE, kinds.BODY_TWIST, kinds.RIGID_BORES, kinds.DEFLECTION)
 """Kinds whose sentences say how large it becomes under any torque."""
 
@@ -191,7 +193,12 @@ def place_of(torque: float, angle: float, number: int) -> str:
 
 def at_places(reason: str, places: Sequence[str], count: int) -> str:
     """A sentence with how many pressure maps of all it concerns, and the first of them."""
-    return f"{reason} (at {len(places)} of {count} pressure maps; the first: {places[0]})"
+    return f"{reason} (at {len(places)} of {count} {AT_MAPS}{places[0]})"
+
+
+def is_under_torque(sentence: str) -> bool:
+    """Whether an accuracy warning ends with the torque of the first pressure map that it concerns."""
+    return AT_MAPS in sentence
 
 
 def warn_of_root_stress(torques: Array, tension: Array, compression: Array) -> None:

@@ -37,6 +37,7 @@ ONE_BY_ONE = (
     "loaded_tca.double_helical.analyse_double_helical; each half is a pair by itself: half_a.nc and half_b.nc of a "
     "result, scene.halves, and as a scene, with its measured flanks, scene.half_scenes(0.0)"
 )
+SHARED = "found a torque of 0; allowed above 0: the halves share a torque"
 NOT_OF_HALVES = {
     "pitch": "whole revolutions are not analysed; give the half by itself, as a helical pair",
     "tooth": "whole revolutions are not analysed; give the half by itself, as a helical pair",
@@ -171,10 +172,9 @@ class DoubleHelicalScene(CylindricalScene):
             lambda load: load.case is None,
             "found a load spectrum; not allowed of double helical pairs: give its torques as analysis.torques_Nm",
         ),
+        rule(("analysis.torques_Nm",), lambda several: all(several or ()), SHARED),
         rule(
-            ("load.pinion_torque_Nm", "analysis.torques_Nm"),
-            lambda torque, several: all(several or (1.0 if torque is None else torque,)),
-            "found a torque of 0; allowed above 0: the halves share a torque",
+            ("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda torque, several: several or torque != 0.0, SHARED
         ),
         rule(("revolution",), lambda given: given is None, f"found a section; not allowed: {NOT_OF_HALVES['pitch']}"),
     )
@@ -258,6 +258,27 @@ class DoubleHelicalScene(CylindricalScene):
     def half_width(self, gear: cylindrical.GearSection) -> float:
         """Face width of a half of a gear [mm]."""
         return 0.5 * (gear.face_width_mm - self.geometry.gap_mm)
+
+    @property
+    def floats_freely(self) -> bool:
+        """Whether nothing holds the floating gear along its axis."""
+        return self.geometry.floating != "none" and self.geometry.axial_stiffness_N_per_um == 0.0
+
+    @property
+    def measured_halves(self) -> tuple[tuple[str, str], ...]:
+        """Halves with a measured flank that is not that of the other half, and the gear of each."""
+        halves = []
+        for name, gear in zip(GEARS, (self.pinion, self.wheel), strict=True):
+            of_half_b = None if gear.half_b is None else gear.half_b.flank
+            forms = gear.flank, of_half_b or gear.flank
+            if forms[0] != forms[1]:
+                halves += [(half, name) for half, form in zip(HALVES, forms, strict=True) if form.form == "measured"]
+        return tuple(halves)
+
+    @property
+    def narrow_half(self) -> float:
+        """Face width of a half of the narrower gear [mm]."""
+        return min(self.half_width(self.pinion), self.half_width(self.wheel))
 
     @property
     def _wheel_lever(self) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.plain import plain
-from loaded_tca.results.warnings import without_place
+from loaded_tca.results.warnings import is_under_torque
 from loaded_tca.stages.sections import RING_MESH, SUN_MESH
 
 MESHES = tuple(" and ".join(f"{name} ({gear})" for gear, name in gears.items()) for gears in (SUN_MESH, RING_MESH))
@@ -74,6 +74,5 @@ class MeshWarnings:
                 sentence = up_to[0] if len(up_to) == 1 else up_to[last]
                 if sentence is not None:
                     load = f"; N m: {whose}, up to {plain(1e-3 * torque)})"
-                    placed = sentence != without_place(sentence)
-                    sentences.append(f"{mesh}: {sentence[:-1] + load if placed else sentence}")
+                    sentences.append(f"{mesh}: {sentence[:-1] + load if is_under_torque(sentence) else sentence}")
         return sentences

@@ -10,13 +10,15 @@ from loaded_tca import ConvergenceError, InputError, analyse
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
 from loaded_tca.results import load_result
-from loaded_tca.warning_kinds import SHARES_OF_HALVES, kind_of
+from loaded_tca.results.warnings import at_places
+from loaded_tca.warning_kinds import MEASURED_HALF, SHARES_OF_HALVES, kind_of
 from tests.samples import double_helical as samples
 from tests.samples.root_stress import coarsely
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # few cells
 HELD = {"pair.floating": "none"}
 APEX = 0.005
+ERRORS = ("transmission_error", "unloaded_transmission_error")
 
 
 @pytest.fixture(scope="module")
@@ -133,9 +135,41 @@ def test_a_soft_support_lets_go_and_a_stiff_one_holds(unlike_halves, unlike, unl
 def test_a_place_that_does_not_settle_is_an_error(equal_halves, one_half, monkeypatch):
     monkeypatch.setattr(analyses, "_analysed", lambda *_: 2 * (analyses._Half(one_half, []),))
     places = iter(np.arange(1.0, 20.0))
-    monkeypatch.setattr(analyses, "_place", lambda *_: next(places))
+    monkeypatch.setattr(analyses, "_places", lambda *_: np.array([next(places)]))
     with pytest.raises(ConvergenceError, match=r"pair\.floating: the place of the pinion along its axis, 6 mm, is not"):
         analyse_double_helical(equal_halves)
+
+
+def test_a_torque_in_a_list_has_the_numbers_that_it_has_alone(equal_halves, one_half, monkeypatch):
+    rate, length = equal_halves.axial_rate, -one_half.gear_pair.driving * one_half.gear_pair.base_radii[1]
+
+    def where_they_stand(scenes, _):  # helices turn into themselves; pressures grow where faces lie beside each other
+        halves = []
+        for scene in scenes:
+            offset, numbers = scene.mounting.axial_offset_mm, one_half.dataset
+            moved = {name: numbers[name] + rate * offset / length for name in ERRORS}
+            moved["peak_pressure"] = numbers["peak_pressure"] * (1.0 + abs(offset))
+            cycle = replace(one_half, scene=scene, dataset=numbers.assign(moved), states=None)
+            halves.append(analyses._Half(cycle, []))
+        return halves
+
+    monkeypatch.setattr(analyses, "_analysed", where_they_stand)
+    softly = {"pair.axial_stiffness_N_per_um": 1.0, "pair.apex_offset_mm": 8.0}  # so far apart that half a has it all
+    both, *alone = (
+        analyse_double_helical(equal_halves.with_changes({**softly, "analysis.torques_Nm": torques}))
+        for torques in ([160.0, 1600.0], [160.0], [1600.0])
+    )
+    # N/um and um: the axial force of half a, T tan(beta_b)/r_b, on the support
+    mesh = equal_halves.mesh()
+    force = both.torque / mesh.pinion.base_radius * np.tan(mesh.pinion.base_helix_angle)
+    assert_allclose(1e3 * both.axial_motion, np.broadcast_to(force[:, None], (2, 2)), rtol=1e-9)
+    for name in ("peak_pressure", "mesh_stiffness", "transmission_error", "axial_motion"):
+        numbers = np.concatenate([getattr(result, name) for result in alone])
+        assert_allclose(getattr(both, name), numbers, rtol=1e-9)  # places differ by rounding
+    assert both.half_a.scene.mounting == alone[1].half_a.scene.mounting
+    assert next(note for note in both.notes() if "half_a and half_b are of" in note).startswith(
+        "under 160 N m the pinion stands -6.43 mm along its axis from where it stands under 1600 N m"
+    )
 
 
 def test_results_come_back_from_their_files(unlike, tmp_path, equal_halves):
@@ -207,3 +241,26 @@ def test_uncertain_shares_are_told(equal_halves, one_half, monkeypatch):
     (sentence,) = result.warnings
     assert sentence.startswith("the shares of the halves are off by up to")  # far beyond the torques of one half
     assert kind_of(sentence) is SHARES_OF_HALVES
+
+
+@pytest.mark.parametrize(
+    ("support", "count"),
+    [({}, 0), ({"pair.floating": "none"}, 1), ({"pair.axial_stiffness_N_per_um": 5.0}, 1)],
+    ids=["free", "held", "soft"],
+)
+def test_a_measured_flank_of_one_half_that_is_held_is_warned_of(equal_halves, one_half, support, count, monkeypatch):
+    monkeypatch.setattr(analyses, "_analysed", lambda *_: 2 * (analyses._Half(one_half, []),))
+    points = {"radius_mm": [4 * [r] for r in (64.0, 66.0, 68.0, 70.0)], "axial_mm": 4 * [[-15.0, -5.0, 5.0, 15.0]]}
+    flank = {"form": "measured", "measurement": {**points, "deviation_um": 4 * [4 * [0.0]]}}
+    scene = equal_halves.with_changes({**support, "pinion.half_b": {"flank": flank}})
+    sentences = [line for line in analyse_double_helical(scene).warnings if kind_of(line) is MEASURED_HALF]
+    assert [line.partition(" has")[0] for line in sentences] == count * ["half b of the pinion"]
+    alike = equal_halves.with_changes({**support, "pinion.flank": flank})
+    assert alike.measured_halves == ()
+
+
+def test_a_sentence_without_a_torque_says_nothing_of_torques():
+    sentence = "fillet interference: the wheel reaches below the form circle (at the centre distance of 262.8 mm)"
+    assert analyses._of_half(sentence) == sentence
+    placed = at_places("the contact is wide", ["300 N m, pinion angle 0 deg, tooth pair 0"], 4)
+    assert analyses._of_half(placed) == f"{placed[:-1]}; N m: the torque of the half)"

@@ -133,7 +133,7 @@ test_refused = refusals(
     ({"analysis.load_sharing": False}, "analysis.load_sharing: found false; allowed true: the tooth pairs of both"),
     ({"load": {"case": [{"pinion_torque_Nm": 3.0, "hours": 2.0}]}}, "load: found a load spectrum; not allowed"),
     ({"load.pinion_torque_Nm": 0.0}, "load.pinion_torque_Nm: found a torque of 0; allowed above 0"),
-    ({"analysis.torques_Nm": [0.0, 5.0]}, "load.pinion_torque_Nm: found a torque of 0; allowed above 0"),
+    ({"analysis.torques_Nm": [0.0, 5.0]}, "analysis.torques_Nm: found a torque of 0; allowed above 0"),
     ({"revolution": {}}, "revolution: found a section; not allowed: whole revolutions are not analysed"),
     ({"pinion.pitch": {"runout_um": 3.0}}, "pinion.pitch: found a section; not allowed of halves: whole rev"),
     (
