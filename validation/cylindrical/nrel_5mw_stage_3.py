@@ -41,7 +41,8 @@ def pair() -> tuple[CylindricalGear, CylindricalGear]:
         )
         for z, sign, tip, bore in zip((24, 95), (1.0, -1.0), tips, bores, strict=True)
     ]
-    rest = profile_shift_sum(gears[0], gears[1], CENTRE_DISTANCE) - SHIFT
+    angles = {"pressure_angle": radians(20.0), "helix_angle": radians(10.0)}
+    rest = profile_shift_sum((24, 95), 14.0, **angles, centre_distance=CENTRE_DISTANCE) - SHIFT
     return gears[0], replace(gears[1], profile_shift=rest)
 
 
