@@ -30,19 +30,18 @@ CUT, CONVEX = read_scene(SCENES / "duplex_30x20_mended.toml"), read_measured_fla
 def main() -> None:
     """Draw those of results, a bevel pair, a revolution, a stage and an oil."""
     result, other = (analyse(HELICAL.with_changes({"analysis.root_stress": True, LEAD: um})) for um in (5.0, 10.0))
-    drawn = plots.result_figures(result, more=True)
+    drawn = plots.result_figures(result, more=True) | {"teeth_in_mesh": plots.plot_teeth_in_mesh(HELICAL)}
     drawn |= {"teeth": plots.plot_teeth(result), "stress_below": plots.plot_stress_below(stress_below(result))}
     both = {"crowning 5 µm": result, "crowning 10 µm": other}
     drawn |= {"comparison": plots.plot_comparison(both), "compared_maps": plots.plot_compared_maps(both)}
     check = vh_check(lambda v, h: BEVEL.with_changes({V: v, H: h}).pair(), STEPS, STEPS)
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
     drawn["measured_settings"] = plots.plot_measured_settings(fit_settings(CUT, [CONVEX], ["wheel.machine.radial_mm"]))
-    drawn["teeth_in_mesh"] = plots.plot_teeth_in_mesh(HELICAL)
     drawn["shafts"] = plots.plot_shafts(shaft_lines(read_scene(SCENES / "helical_on_shafts.toml")))
     on = read_scene(SCENES / "helical_on_rolling_bearings.toml").with_changes(FEW | {"analysis.torques_Nm": [40, 130]})
-    on_bearings, rigid = analyse(on), analyse(on.on_rigid_supports())
+    on_bearings = analyse(on)
     drawn |= {kind: getattr(plots, f"plot_{kind}")(on_bearings) for kind in ("misalignment", "bearing_loads")}
-    drawn["face_load_on_supports"] = plots.plot_face_load_on_supports(on_bearings, rigid)
+    drawn["face_load_on_supports"] = plots.plot_face_load_on_supports(on_bearings, analyse(on.on_rigid_supports()))
     turn = analyse_revolution(HELICAL.with_changes(FEW | {"revolution.pitches": 8, "pinion.pitch.runout_um": 9.0}))
     drawn |= {name: draw(turn) for name, draw in plots.REVOLUTION_PICTURES.items()}
     drawn |= plots.stage_figures(analyse_stage(read_stage(STAGE).with_changes(FEW)))

@@ -209,7 +209,7 @@ def exact_conversion(written: str, wanted: str) -> Fraction | None:
     Examples
     --------
     >>> exact_conversion("in", "um"), exact_conversion("lbf/in", "N/um")
-    (Fraction(25400, 1), Fraction(35025367, 200000000000))
+    (Fraction(25400, 1), Fraction(8896443230521, 50800000000000000))
     """
     size, of_wanted = (_size(unit[:LONGEST].translate(PLAIN).replace("**", "^").strip()) for unit in (written, wanted))
     if size is None or of_wanted is None or size[1] != of_wanted[1]:

@@ -2941,7 +2941,7 @@ FAULTS = (
         "scene/double_helical.py",
         'rule(("analysis.torques_Nm",), lambda several',
         'rule(("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda _, several',
-        "scene/test_double_helical_scene.py",
+        "scene/test_double_helical_scene.py::test_refused",
     ),
 )
 
