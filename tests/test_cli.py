@@ -11,6 +11,7 @@ import warnings
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import loaded_tca.analysis
@@ -18,6 +19,7 @@ import loaded_tca.plots
 from loaded_tca import cli, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError
 from loaded_tca.flank_maps.ease_off_map import ease_off_map
+from loaded_tca.machine_speed import MachineSpeed
 from loaded_tca.threads import jobs
 
 SCENES = Path(__file__).parents[1] / "examples" / "scenes"
@@ -32,7 +34,9 @@ PICTURES = {"contact_path.png", "transmission_error.png", "peak_pressure.png", "
 
 @pytest.fixture(autouse=True)
 def _in_an_empty_directory(tmp_path, monkeypatch):
+    """On a machine of usual speed: a slow or busy one tells the time of small scenes, too."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("loaded_tca.effort.machine_speed", lambda: MachineSpeed(np.array(1.0), np.array(1.0)))
 
 
 def scene(name="quick", **changes):
