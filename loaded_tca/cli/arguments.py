@@ -306,7 +306,8 @@ def _add_comparisons(command: Command) -> None:
     )
     slopes.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
     text = "for instance mounting.axial_offset_mm=0.05"
-    slopes.add_argument("--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=_tolerance, help=text)
+    tolerance = _key_with("tolerance", "mounting.axial_offset_mm=0.05")
+    slopes.add_argument("--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=tolerance, help=text)
     slopes.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {BESIDE}")
     slopes.add_argument("--torque", metavar="NM", type=_float, help="pinion torque shown; default: largest, bands all")
 
@@ -330,7 +331,8 @@ def _add_tables_and_maps(command: Command) -> None:
     text = "measured flank whose deviations the settings are to bring to zero; may be given again for other flanks"
     cut.add_argument("--measured", metavar="[GEAR.FLANK=]FILE", action="append", type=_measured, help=text)
     text = "with --measured: settings that may change, as wheel.machine.radial_mm=0.1"
-    cut.add_argument("--settings", metavar="KEY[=LIMIT]", nargs="+", type=_limit, help=text)
+    limit = _key_with("limit", "wheel.machine.radial_mm=0.1")
+    cut.add_argument("--settings", metavar="KEY[=LIMIT]", nargs="+", type=limit, help=text)
     text = "with --measured: each flank may turn about the axis of its gear (default), or the tooth with both flanks"
     cut.add_argument("--turned", choices=("flank", "tooth"), help=text)
     text = "with --measured: write the scene whose settings cut the flanks as they were measured"
@@ -527,17 +529,21 @@ def _numbers(text: str) -> tuple[int, ...]:
     return tuple(map(int, text.split(",")))
 
 
-def _tolerance(text: str) -> tuple[str, float | None]:
-    """Key, and its standard deviation if that is given."""
-    key, equals, value = (part.strip() for part in text.partition("="))
-    try:
-        tolerance = number_in(value) if equals else None
-    except ValueError:
-        tolerance = math.nan
-    if not key or not (tolerance is None or 0.0 < tolerance < math.inf):
-        allowed = "KEY or KEY=TOLERANCE, the tolerance a number above 0, as mounting.axial_offset_mm=0.05"
-        raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed {allowed}")
-    return key, tolerance
+def _key_with(size: str, example: str) -> Callable[[str], tuple[str, float | None]]:
+    """Reader of a key, and of a size above 0 behind it if that is given; the size is named as messages call it."""
+
+    def read(text: str) -> tuple[str, float | None]:
+        key, equals, value = (part.strip() for part in text.partition("="))
+        try:
+            number = number_in(value) if equals else None
+        except ValueError:
+            number = math.nan
+        if not key or not (number is None or 0.0 < number < math.inf):
+            allowed = f"KEY or KEY={size.upper()}, the {size} a number above 0, as {example}"
+            raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed {allowed}")
+        return key, number
+
+    return read
 
 
 def _measured(text: str) -> tuple[str | None, str | None, Path]:
@@ -548,19 +554,6 @@ def _measured(text: str) -> tuple[str | None, str | None, Path]:
         return None, None, _path(text)
     gear, flank = place.split(".")
     return gear, flank, _path(file)
-
-
-def _limit(text: str) -> tuple[str, float | None]:
-    """Key of a setting, and the largest change of it if that is given."""
-    key, equals, value = (part.strip() for part in text.partition("="))
-    try:
-        limit = number_in(value) if equals else None
-    except ValueError:
-        limit = math.nan
-    if not key or not (limit is None or 0.0 < limit < math.inf):
-        allowed = "KEY or KEY=LIMIT, the limit a number above 0, as wheel.machine.radial_mm=0.1"
-        raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed {allowed}")
-    return key, limit
 
 
 def _add_scene(parser: argparse.ArgumentParser) -> None:

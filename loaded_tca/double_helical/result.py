@@ -6,19 +6,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.declared import CYCLE, Asked, Number, Row, numbers
 from loaded_tca.results.figure import Figure
-from loaded_tca.results.files import DOUBLE_HELICAL, Buffer, FilePath, replace_together
-from loaded_tca.results.result import AnalysisResult, figures_of
+from loaded_tca.results.files import DOUBLE_HELICAL
+from loaded_tca.results.result import JoinedResult, figures_of
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
@@ -27,8 +26,8 @@ from loaded_tca.units import MICROMETRES
 if TYPE_CHECKING:
     import xarray
 
-PAIR_FILE, *HALF_FILES = FILES = "double_helical.nc", "half_a.nc", "half_b.nc"
-"""Names of the files of a result: both halves together, and the mesh cycles of each."""
+PAIR_FILE = "double_helical.nc"
+"""Name of the file of both halves together."""
 FACES = 1e-3
 """How far the gears may stand from where their faces were analysed, over the width of a half. A motion along the axis
 turns a helix into itself, and moves its ends and modifications by as much: 1e-4 of the motion was left in the
@@ -138,7 +137,7 @@ FIGURES: dict[str, Figure] = {
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class DoubleHelicalResult(AnalysisResult):
+class DoubleHelicalResult(JoinedResult):
     """Both halves of a double helical pair over one pitch, under each torque.
 
     Attributes
@@ -158,6 +157,8 @@ class DoubleHelicalResult(AnalysisResult):
     NUMBERS: ClassVar = NUMBERS | ROOTS
     COORDINATES: ClassVar = ("torque", "pinion_angle")
     FIGURES: ClassVar = FIGURES
+    FILE: ClassVar = PAIR_FILE
+    PARTS: ClassVar = {"half_a": "half_a.nc", "half_b": "half_b.nc"}
 
     scene: DoubleHelicalScene
     dataset: xarray.Dataset
@@ -217,40 +218,6 @@ class DoubleHelicalResult(AnalysisResult):
             if abs(way) > FACES * self.scene.narrow_half
         ]
 
-    @checked
-    def save(self, directory: FilePath) -> tuple[Path, ...]:
-        """Write ``double_helical.nc``, ``half_a.nc`` and ``half_b.nc`` into a directory, all or none.
-
-        Raises
-        ------
-        InputError
-            If they cannot be written.
-        """
-        return replace_together(directory, self.contents())
-
-    def contents(self) -> dict[str, Buffer]:
-        """Names and contents of the files that ``save`` writes."""
-        contents = self.to_netcdf(), *(half.to_netcdf() for half in self.halves)
-        return dict(zip(FILES, contents, strict=True))
-
-    @classmethod
-    @checked
-    def load(cls, directory: FilePath) -> Self:
-        """Read the files that ``save`` wrote into a directory.
-
-        Parameters
-        ----------
-        directory : str or path
-            The directory, or the file ``double_helical.nc`` in it.
-
-        Raises
-        ------
-        InputError
-            If one cannot be read, is damaged, or is no such file.
-        """
-        place = Path(directory)
-        return super().load(place / PAIR_FILE if place.is_dir() or place.name != PAIR_FILE else place)
-
     @classmethod
     def parts_of(
         cls,
@@ -266,7 +233,7 @@ class DoubleHelicalResult(AnalysisResult):
     @classmethod
     def parts_beside(cls, path: Path, subject: DoubleHelicalScene) -> dict[str, Any]:
         """Both mesh cycles, of the files beside that of the pair."""
-        places = [path.parent / name for name in HALF_FILES]
+        places = [path.parent / name for name in cls.PARTS.values()]
         cycles = [MeshCycle.load(place) for place in places]
         for half, (place, cycle) in enumerate(zip(places, cycles, strict=True)):
             torques = [1e-3 * torque for torque in cycle.scene.torques]
@@ -277,4 +244,4 @@ class DoubleHelicalResult(AnalysisResult):
             )  # where the gear floats to
             if found != replace(expected, mounting=stands, load=found.load, analysis=found.analysis):
                 raise InputError(f"{place}: the mesh cycle of another pair than {PAIR_FILE} beside it")
-        return dict(zip(("half_a", "half_b"), cycles, strict=True))
+        return dict(zip(cls.PARTS, cycles, strict=True))

@@ -243,8 +243,8 @@ class SettingsProblem:
             low, high = (np.concatenate([(side * limits - errors) * sizes, side * unbounded]) for side in (-1.0, 1.0))
             answer = scipy.optimize.lsq_linear(matrix, missed, bounds=(low, high), method="bvls", tol=1e-14)
             step, turn = answer.x[: errors.size] / sizes, answer.x[errors.size :]
-            taken = self._taken(errors, turns, step, turn)
-            errors, turns, values, slopes = taken
+            before = float(np.linalg.norm(missed))
+            errors, turns, values, slopes = self._taken(errors, turns, step, turn, before)
             errors = np.clip(errors, -limits, limits)
             if float(np.abs(step * sizes).max()) < SETTLED:
                 return errors, turns
@@ -254,9 +254,10 @@ class SettingsProblem:
             errors * self.factors,
         )
 
-    def _taken(self, errors: Array, turns: Array, step: Array, turn: Array) -> tuple[Array, Array, Array, Array]:
+    def _taken(
+        self, errors: Array, turns: Array, step: Array, turn: Array, before: float
+    ) -> tuple[Array, Array, Array, Array]:
         """Errors, turns, deviations and their derivatives after a step, or the part of it that lessens what is left."""
-        before = float(np.linalg.norm(self.weight * (self.excess - self.cut(errors)[0] - self.turning @ turns)))
         last: Exception | None = None
         for halving in range(MOST_HALVINGS):
             part = 0.5**halving

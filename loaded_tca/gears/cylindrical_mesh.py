@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite, pi, tan
+from math import inf, isfinite, pi
 from typing import NamedTuple
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear
-from loaded_tca.gears.involute import InvoluteMesh, involute
+from loaded_tca.gears.involute import InvoluteMesh
 from loaded_tca.gears.undercut import fillet_room
 from loaded_tca.plain import plain
 
@@ -162,17 +162,6 @@ class CylindricalMesh(InvoluteMesh):
     def base_distance(self) -> float:
         """Centre distance r_b1 + r_b2 at which the base circles touch [mm]."""
         return self.pinion.base_radius + self.wheel.base_radius
-
-    @property
-    def _profile_shift_sum(self) -> float:
-        return self.pinion.profile_shift + self.wheel.profile_shift
-
-    @property
-    def _involute_without_backlash(self) -> float:
-        """inv(alpha_wt) at which the profile shifts leave no backlash [rad]."""
-        teeth = self.pinion.teeth + self.wheel.teeth
-        shift = 2.0 * self._profile_shift_sum * tan(self.pinion.pressure_angle) / teeth
-        return involute(self.pinion.transverse_pressure_angle) + shift
 
     @property
     def gear_ratio(self) -> float:

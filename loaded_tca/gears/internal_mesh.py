@@ -145,23 +145,9 @@ class InternalMesh(InvoluteMesh):
         return self._ring_tip_roll, self.pinion.roll_length(self.pinion.tip_form_radius) + self.line_of_action
 
     @property
-    def _profile_shift_sum(self) -> float:
-        return self.pinion.profile_shift + self.ring.profile_shift
-
-    @property
-    def _teeth_difference(self) -> int:
-        return self.ring.tooth_count - self.pinion.teeth
-
-    @property
-    def _involute_without_backlash(self) -> float:
-        """inv(alpha_wt) at which the profile shifts leave no backlash [rad]."""
-        shift = 2.0 * self._profile_shift_sum * tan(self.pinion.pressure_angle) / self._teeth_difference
-        return involute(self.pinion.transverse_pressure_angle) - shift
-
-    @property
     def _largest_shift_sum(self) -> float:
         """x1 + x2 at which alpha_wt without backlash is zero."""
-        rest = involute(self.pinion.transverse_pressure_angle) * self._teeth_difference
+        rest = involute(self.pinion.transverse_pressure_angle) * (self.ring.tooth_count - self.pinion.teeth)
         return 0.5 * rest / tan(self.pinion.pressure_angle)
 
     @property

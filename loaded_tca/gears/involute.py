@@ -168,10 +168,6 @@ class InvoluteMesh:
             """Centre distance at which the base circles touch: abs(r_b2 + r_b1) with the signs of ISO 21771 [mm]."""
 
         @property
-        def _involute_without_backlash(self) -> float:
-            """inv(alpha_wt) at which the profile shifts leave no backlash [rad]."""
-
-        @property
         def pinion_working_radius(self) -> float:
             """r_w1 [mm]."""
 
@@ -181,6 +177,16 @@ class InvoluteMesh:
 
         def backlash_at(self, centre_distance: float) -> float:
             """Backlash at another centre distance [mm]."""
+
+    @property
+    def _profile_shift_sum(self) -> float:
+        return self.pinion.profile_shift + self.wheel.profile_shift
+
+    @property
+    def _involute_without_backlash(self) -> float:
+        """inv(alpha_wt) at which the profile shifts leave no backlash [rad]."""
+        teeth, angle = self.pinion.teeth + self.wheel.teeth, self.pinion.pressure_angle
+        return involute_without_backlash(teeth, self._profile_shift_sum, angle, self.pinion.transverse_pressure_angle)
 
     @cached_property
     def working_centre_distance(self) -> float:
@@ -274,6 +280,13 @@ def line_of_action(centre_distance: float, base_distance: float) -> float:
 def working_pressure_angle(centre_distance: float, base_distance: float) -> float:
     """Transverse working pressure angle alpha_wt [rad]; arguments as of :func:`line_of_action`."""
     return atan(line_of_action(centre_distance, base_distance) / base_distance)
+
+
+def involute_without_backlash(
+    teeth: int, shift_sum: float, pressure_angle: float, transverse_pressure_angle: float
+) -> float:
+    """inv(alpha_wt) at which profile shifts leave no backlash, of the sums z1 + z2 and x1 + x2 [rad]; angles in rad."""
+    return involute(transverse_pressure_angle) + 2.0 * shift_sum * tan(pressure_angle) / teeth
 
 
 def profile_shift_sum(

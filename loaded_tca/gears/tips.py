@@ -8,7 +8,7 @@ from __future__ import annotations
 from math import atan, cos, tan
 
 from loaded_tca.errors import require
-from loaded_tca.gears.involute import inverse_involute, involute
+from loaded_tca.gears.involute import inverse_involute, involute_without_backlash
 
 
 def computed_tip_alteration(
@@ -63,7 +63,7 @@ def computed_tip_alteration(
     distance = centre_distance
     if distance is None:
         angle = atan(tan(pressure_angle) / cos(helix_angle))
-        value = involute(angle) + 2.0 * sum(shifts) * tan(pressure_angle) / sum(teeth)
+        value = involute_without_backlash(sum(teeth), sum(shifts), pressure_angle, angle)
         require(
             (value > 0.0, f"profile_shift: for the sum {sum(shifts):.6g} no centre distance is without backlash"),
         )

@@ -67,14 +67,8 @@ def _over_the_pitch(result: DoubleHelicalResult, number: Callable[[int], np.ndar
     """Curves over the pinion angle, one for each torque."""
     figure, axes = style.one_panel()
     angle = np.degrees(result.pinion_angle)
-    for torque in np.argsort(result.torque).tolist():
-        axes.plot(
-            angle,
-            number(torque),
-            color=style.torque_colour(torque, len(result.torque)),
-            marker=style.MARKERS[torque % len(style.MARKERS)],
-            label=f"pinion torque {shown_torque(result.torque[torque])}",
-        )
+    for torque, drawn in style.rising_torques(result.torque):
+        axes.plot(angle, number(torque), **drawn)
     axes.set_ylabel(label)
     style.widen(axes, LEAST_um)
     axes.ticklabel_format(useOffset=False)

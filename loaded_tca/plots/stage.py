@@ -117,16 +117,8 @@ def plot_stage_load_factor(result: StageResult) -> Figure:
         ]
     )
     amount = np.asarray(SHARES_OF_ERRORS) * np.abs(pins).max()
-    for torque in np.argsort(result.torque).tolist():
-        label = f"sun torque {shown_torque(result.torque[torque])}"
-        marker = style.MARKERS[torque % 8]
-        axes.plot(
-            amount,
-            factors[:, torque],
-            color=style.torque_colour(torque, len(result.torque)),
-            marker=marker,
-            label=label,
-        )
+    for torque, drawn in style.rising_torques(result.torque, "sun"):
+        axes.plot(amount, factors[:, torque], **drawn)
     axes.set_xlabel("largest tangential pin error [µm]")
     axes.set_ylabel("mesh load factor K_gamma")
     style.widen(axes, 0.01)
@@ -148,13 +140,9 @@ def plot_stage_sun_orbit(result: StageResult) -> Figure:
     matplotlib.figure.Figure
     """
     figure, axes = style.one_panel(6.0)
-    for torque in np.argsort(result.torque).tolist():
+    for torque, drawn in style.rising_torques(result.torque, "sun"):
         x, y = 1e3 * np.concatenate([result.sun_motion[torque], result.sun_motion[torque][:1]]).T
-        label = f"sun torque {shown_torque(result.torque[torque])}"
-        marker = style.MARKERS[torque % 8]
-        axes.plot(
-            x, y, color=style.torque_colour(torque, len(result.torque)), marker=marker, markersize=4.0, label=label
-        )
+        axes.plot(x, y, markersize=4.0, **drawn)
     if not result.sun_motion.any():
         style.tell(axes, "the sun is held rigid")
     places = 1e3 * result.sun_motion.reshape(-1, 2)

@@ -166,6 +166,19 @@ def torque_styles(result: CycleNumbers) -> Iterator[tuple[int, str, str, str]]:
         yield torque, label, torque_colour(torque, count), MARKERS[torque % len(MARKERS)]
 
 
+def rising_torques(torques: Array, gear: str = "pinion") -> Iterator[tuple[int, dict[str, Any]]]:
+    """Index of each torque [N mm] of a gear, from the smallest on, and how its curve is drawn and called."""
+    for torque in np.argsort(torques).tolist():
+        yield (
+            torque,
+            {
+                "color": torque_colour(torque, len(torques)),
+                "marker": MARKERS[torque % len(MARKERS)],
+                "label": f"{gear} torque {shown_torque(torques[torque])}",
+            },
+        )
+
+
 def torque_colour(torque: int, count: int) -> str:
     """Colour of one of so many torques."""
     return to_hex(colormaps[COLOURS](0.15 + 0.7 * torque / max(1, count - 1)))

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from loaded_tca.double_helical import DoubleHelicalResult
     from loaded_tca.scene.double_helical import DoubleHelicalScene
 
-FILES = "half_a.nc", "half_b.nc"
-
 
 def double_helical_content(result: DoubleHelicalResult) -> dict[str, Any]:
     """Return what the template of a double helical pair takes.
@@ -34,7 +32,7 @@ def double_helical_content(result: DoubleHelicalResult) -> dict[str, Any]:
         **halves_geometry(scene),
         "key_figures": [_figures(result, part) for part in parts_of(result.torque.tolist(), MOST_TORQUES)],
         "notes": result.notes(),
-        "files": FILES,
+        "files": [*result.PARTS.values()],
         "warnings": explained(result.warnings or ()),
         "pictures": pictures_of(double_helical_figures(result), DOUBLE_HELICAL_CAPTIONS, scene.title),
     }

@@ -29,7 +29,6 @@ from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.summary import known_rows, limits_of, shown
 from loaded_tca.scene import Scene
 from loaded_tca.stages import Stage, StageResult
-from loaded_tca.stages.result import FILES
 from loaded_tca.tribology import tribology_of
 from loaded_tca.tribology.summary import unknown_in_words
 from loaded_tca.warning_kinds import Kind, kind_of
@@ -219,7 +218,7 @@ def stage_content(result: StageResult) -> dict[str, Any]:
         "shares": _shares(result),
         "findings": result.findings(),
         "orders": _orders(result),
-        "files": FILES[1:],
+        "files": [*result.PARTS.values()],
         "warnings": explained(result.warnings or ()),
         "pictures": pictures_of(stage_figures(result), STAGE_CAPTIONS, result.stage.title),
     }

@@ -13,7 +13,16 @@ from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError
 from loaded_tca.results.declared import ABOUT, CYCLE, Number, Numbers, Row
 from loaded_tca.results.figure import Figure, Figures, labelled
-from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_kind, replace_file
+from loaded_tca.results.files import (
+    Buffer,
+    FilePath,
+    Part,
+    arrays_of,
+    netcdf_of,
+    read_kind,
+    replace_file,
+    replace_together,
+)
 from loaded_tca.results.summary import shown, summary_of
 from loaded_tca.scene import parse_scene
 from loaded_tca.units import without_unit
@@ -228,3 +237,53 @@ class AnalysisResult(Result):
     def parts_beside(cls, path: Path, subject: Any) -> dict[str, Any]:  # noqa: ARG003
         """What else the result consists of, of files beside its own."""
         return {}
+
+
+class JoinedResult(AnalysisResult):
+    """Result that joins other ones, which have files of their own beside its own.
+
+    Attributes
+    ----------
+    FILE : str
+        Name of its own file.
+    PARTS : mapping of str to str
+        Attributes that are results -> names of their files.
+    """
+
+    FILE: ClassVar[str]
+    PARTS: ClassVar[Mapping[str, str]]
+
+    @checked
+    def save(self, directory: FilePath) -> tuple[Path, ...]:
+        """Write the result and its parts into a directory, each into its file (``FILE``, ``PARTS``), all or none.
+
+        Raises
+        ------
+        InputError
+            If they cannot be written.
+        """
+        return replace_together(directory, self.contents())
+
+    def contents(self) -> dict[str, Buffer]:
+        """Names and contents of the files that ``save`` writes."""
+        return {self.FILE: self.to_netcdf()} | {
+            file: getattr(self, name).to_netcdf() for name, file in self.PARTS.items()
+        }
+
+    @classmethod
+    @checked
+    def load(cls, directory: FilePath) -> Self:
+        """Read the files that ``save`` wrote into a directory.
+
+        Parameters
+        ----------
+        directory : str or path
+            The directory, or the file ``FILE`` in it.
+
+        Raises
+        ------
+        InputError
+            If one cannot be read, is damaged, or is no such file.
+        """
+        place = Path(directory)
+        return super().load(place / cls.FILE if place.is_dir() or place.name != cls.FILE else place)

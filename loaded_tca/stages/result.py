@@ -7,19 +7,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.declared import CYCLE, Asked, Number, numbers
 from loaded_tca.results.figure import Figure, Figures
-from loaded_tca.results.files import STAGE, Buffer, FilePath, replace_together
-from loaded_tca.results.result import AnalysisResult, figures_of
+from loaded_tca.results.files import STAGE
+from loaded_tca.results.result import JoinedResult, figures_of
 from loaded_tca.results.summary import kind_of_edge, shown_torque
 from loaded_tca.stages.files import parse_stage
 from loaded_tca.stages.kinematics import neutralised
@@ -31,8 +30,8 @@ if TYPE_CHECKING:
 
     from loaded_tca.stages.rating import StageRating
 
-STAGE_FILE, *MESH_FILES = FILES = "stage.nc", "sun_mesh.nc", "ring_mesh.nc"
-"""Names of the files of a result: the stage, and the mesh cycles of its two meshes."""
+STAGE_FILE = "stage.nc"
+"""Name of the file of the stage."""
 MOST_ORDERS = 6
 TORQUE, PLANETS = ("torque",), ("planet",)
 
@@ -161,7 +160,7 @@ class Order:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class StageResult(AnalysisResult):
+class StageResult(JoinedResult):
     """Planets of a stage over one pitch of the sun, under each torque.
 
     Attributes
@@ -182,7 +181,9 @@ class StageResult(AnalysisResult):
     NUMBERS: ClassVar = STAGE_NUMBERS | EDGES | ROOTS
     COORDINATES: ClassVar = COORDINATES
     FIGURES: ClassVar = FIGURES
-    ABOUT: ClassVar = (*AnalysisResult.ABOUT, "mesh_warnings")
+    FILE: ClassVar = STAGE_FILE
+    PARTS: ClassVar = {"sun_mesh": "sun_mesh.nc", "ring_mesh": "ring_mesh.nc"}
+    ABOUT: ClassVar = (*JoinedResult.ABOUT, "mesh_warnings")
 
     stage: Stage
     dataset: xarray.Dataset
@@ -304,40 +305,6 @@ class StageResult(AnalysisResult):
 
         return stage_rating_of(self)
 
-    @checked
-    def save(self, directory: FilePath) -> tuple[Path, ...]:
-        """Write ``stage.nc``, ``sun_mesh.nc`` and ``ring_mesh.nc`` into a directory, all or none.
-
-        Raises
-        ------
-        InputError
-            If they cannot be written.
-        """
-        return replace_together(directory, self.contents())
-
-    def contents(self) -> dict[str, Buffer]:
-        """Names and contents of the files that ``save`` writes."""
-        contents = self.to_netcdf(), self.sun_mesh.to_netcdf(), self.ring_mesh.to_netcdf()
-        return dict(zip(FILES, contents, strict=True))
-
-    @classmethod
-    @checked
-    def load(cls, directory: FilePath) -> Self:
-        """Read the files that ``save`` wrote into a directory.
-
-        Parameters
-        ----------
-        directory : str or path
-            The directory, or the file ``stage.nc`` in it.
-
-        Raises
-        ------
-        InputError
-            If one cannot be read, is damaged, or is no such file.
-        """
-        place = Path(directory)
-        return super().load(place / STAGE_FILE if place.is_dir() or place.name != STAGE_FILE else place)
-
     @staticmethod
     def parse(text: str, source: str) -> Stage:
         """The stage of its text."""
@@ -353,10 +320,10 @@ class StageResult(AnalysisResult):
     @classmethod
     def parts_beside(cls, path: Path, subject: Stage) -> dict[str, Any]:
         """Both mesh cycles, of the files beside that of the stage."""
-        places = [path.parent / name for name in MESH_FILES]
+        places = [path.parent / name for name in cls.PARTS.values()]
         cycles = [MeshCycle.load(place) for place in places]
         for place, cycle, scene in zip(places, cycles, (subject.sun_scene, subject.ring_scene), strict=True):
             gears = {gear: replace(getattr(cycle.scene, gear), strength=None) for gear in GEARS}  # of rating alone
             if replace(cycle.scene, analysis=scene.analysis, **gears) != scene:
                 raise InputError(f"{place}: the mesh cycle of another stage than {STAGE_FILE} beside it")
-        return dict(zip(("sun_mesh", "ring_mesh"), cycles, strict=True))
+        return dict(zip(cls.PARTS, cycles, strict=True))

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby, product
+from itertools import groupby
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -136,8 +136,7 @@ class ContactSlices:
 
 def contact_slices(result: CycleNumbers) -> ContactSlices:
     """Slices of the contacts of a result under load, with their line loads."""
-    torques, positions, pairs = (range(count) for count in result.load_share.shape)
-    present = [(place, one) for place in product(torques, positions, pairs) if (one := _map_at(result, place))]
+    present = [((t, n, k), one) for t, n, k in np.ndindex(result.load_share.shape) if (one := result.maps[t][n][k])]
     sums = [one.pressure.sum(axis=0) for _, one in present]
     loaded = [number for number, each in enumerate(sums) if each.any()]
     places = np.array([present[number][0] for number in loaded], dtype=int).reshape(-1, 3)
@@ -157,11 +156,6 @@ def contact_slices(result: CycleNumbers) -> ContactSlices:
         result, maps, places, some.sum(axis=1), some.nonzero()[1], moment[some] / pressure[some], y[some],
         line_load[some],
     )  # fmt: skip
-
-
-def _map_at(result: CycleNumbers, place: tuple[int, int, int]) -> PressureMap | None:
-    torque, position, column = place
-    return result.maps[torque][position][column]
 
 
 def _averaged(force: Array, step: Array, module: float) -> Array:
