@@ -2527,11 +2527,11 @@ FAULTS = (
         "double_helical/test_balance.py::test_halves_are_in_balance_on_any_support",
     ),
     Fault(
-        "scenes: variants of a family are tried in the order in which they were imported",
-        "scene/parse.py",
-        "    return sorted(VARIANTS.get(scenes, {}).items(), key=lambda one: order.index(one[0].__module__))",
-        "    return list(VARIANTS.get(scenes, {}).items())",
-        "scene/test_double_helical_scene.py::test_a_ring_with_halves_is_told_of_its_teeth_whatever_was_imported_first",
+        "scenes: halves of a pair that also has a ring are passed over",
+        "scene/variants.py",
+        '"double_helical": has_halves, "internal": has_ring,',
+        '"internal": has_ring, "double_helical": has_halves,',
+        "scene/test_double_helical_scene.py::test_a_ring_with_halves_is_told_of_its_teeth",
     ),
     Fault(
         "double helical pairs: a half that carries all is not analysed under what it carries",
@@ -2942,6 +2942,14 @@ FAULTS = (
         'rule(("analysis.torques_Nm",), lambda several',
         'rule(("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda _, several',
         "scene/test_double_helical_scene.py::test_refused",
+    ),
+    Fault(
+        "scenes: all variants of a family are imported with it",
+        "scene/parse.py",
+        "        module, _ = MODULES[kind]\n",
+        "        module, variants = MODULES[kind]\n"
+        '        [import_module(f"loaded_tca.scene.{each}") for each in variants]\n',
+        "test_public_names.py::test_check_and_the_imports_of_run_load_no_heavy_library",
     ),
 )
 

@@ -76,9 +76,10 @@ import io, sys
 from contextlib import redirect_stdout
 from loaded_tca.cli import main
 with redirect_stdout(io.StringIO()):
-    for name in ("mesh_cycle_helical", "hypoid_13x42"):
+    for name in ("hypoid_13x42", "mesh_cycle_helical"):
         assert main(["check", f"examples/scenes/{name}.toml"]) == 0
-checked = set(sys.modules)
+        sys.modules.update({f"after {name}: {module}": sys for module in set(sys.modules)})
+checked = {name for name in sys.modules if not name.startswith("after ")}
 import loaded_tca.analysis, loaded_tca.output.result_files, loaded_tca.plots
 sys.modules.update({f"after check: {name}": sys for name in checked})
 """
@@ -87,6 +88,10 @@ sys.modules.update({f"after check: {name}": sys for name in checked})
     heavy = {"dask", "matplotlib.pyplot", "pandas", "skfem", "xarray", *(f"scipy.{part}" for part in parts)}
     assert not heavy & loaded
     assert not {"after check: matplotlib", "after check: scipy"} & loaded
+    others = {f"after hypoid_13x42: loaded_tca.scene.{name}" for name in ("cylindrical", "bevel", "blank_face_milled")}
+    others |= {f"after mesh_cycle_helical: loaded_tca.scene.{name}" for name in ("double_helical", "internal", "rack")}
+    assert not others & loaded  # scenes of other pairs
+    assert {"after hypoid_13x42: loaded_tca.scene.face_milled", "loaded_tca.scene.cylindrical"} <= loaded
 
 
 @pytest.mark.thorough

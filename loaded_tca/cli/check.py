@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from loaded_tca.cli.inputs import check_place, read_otherwise, scene_of, stage_of
 from loaded_tca.cli.terminal import print_files
 from loaded_tca.errors import InputError
-from loaded_tca.scene.cylindrical import CylindricalScene
-from loaded_tca.scene.double_helical import DoubleHelicalScene
+from loaded_tca.scene.variants import has_halves
 from loaded_tca.stages.files import is_stage_file
 
 if TYPE_CHECKING:
@@ -45,9 +44,11 @@ def check(options: argparse.Namespace) -> None:
 
 def _described(scene: Scene) -> str:
     """The text of a scene."""
-    if isinstance(scene, DoubleHelicalScene):
+    if has_halves({"pair": scene.geometry}):
         from loaded_tca.output.double_helical_overview import describe_double_helical
+        from loaded_tca.scene.double_helical import DoubleHelicalScene
 
+        assert isinstance(scene, DoubleHelicalScene)
         return describe_double_helical(scene)
     from loaded_tca.output.overview import describe_scene
 
@@ -57,6 +58,7 @@ def _described(scene: Scene) -> str:
 def _drawn(options: argparse.Namespace, scenes: Mapping[str, Scene]) -> dict[str, bytes]:
     """Pictures of scenes by the names of their files."""
     from loaded_tca.plots import plot_teeth_in_mesh, png_of
+    from loaded_tca.scene.cylindrical import CylindricalScene
 
     pictures = {}
     for name, scene in scenes.items():

@@ -3,7 +3,7 @@
 A scene file is TOML with the unit in every key; ``read_scene`` makes a ``Scene`` of it, or tells every
 problem at once. All values are checked and kept in the engineer's units; ``Scene.pair`` converts them. Each family of
 gear pairs is a module here, with its sections and its class of scenes; ``pair.type`` picks it. A new family is such a
-module, with ``@family`` and its types over its class, and an entry of ``MODULES`` in ``scene/parse.py``.
+module, with ``@family`` and its types over its class, and an entry of ``MODULES`` in ``scene/variants.py``.
 """
 
 from typing import TYPE_CHECKING

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from loaded_tca.gears.face_milled import FaceMilledMesh
 from loaded_tca.pairs.gear_pair import GearPair, Sense
@@ -69,7 +69,7 @@ class Geometry(bevel.Geometry):
     )
 
 
-@variant(FaceMilledScene, "a `face_milled` pair by its blanks: `pair` has a section `blank`, settings follow")
+@variant("a `face_milled` pair by its blanks: `pair` has a section `blank`, settings follow")
 @dataclass(frozen=True, kw_only=True)
 class BlankFaceMilledScene(BevelScene):
     """A scene of two face-milled gears given by their blanks; settings and cutters follow from these.
@@ -108,13 +108,6 @@ class BlankFaceMilledScene(BevelScene):
     )
 
     usual_flank = "concave"
-
-    @classmethod
-    def describes(cls, table: Mapping[str, Any]) -> bool:
-        """Whether the pair has a blank."""
-        pair: Any = table.get("pair")
-        blank = pair.get("blank") if isinstance(pair, Mapping) else getattr(pair, "blank", None)
-        return blank is not None
 
     @cached_property
     def cut(self) -> FaceMilledScene:

@@ -8,7 +8,7 @@ helical gears, and two equal halves are one scene.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, Literal
@@ -24,14 +24,13 @@ from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.parse import scene_from_table, variant
 from loaded_tca.scene.section import Rule, Section, contents, rule, subsection
 from loaded_tca.scene.sections import ERROR_mm, Modifications
+from loaded_tca.scene.variants import OF_HALVES
 
 # ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
 
 HALVES = "a", "b"
 SIGNS = 1.0, -1.0
 """Of z of the pair, along the z of each half, which runs outwards."""
-OF_HALVES = frozenset({"double_helical", "gap_mm", "apex_offset_mm", "floating", "axial_stiffness_N_per_um"})
-"""Keys of [pair] that double helical pairs alone have."""
 ONE_BY_ONE = (
     "found true; of both halves together 'loaded-tca run' and 'loaded-tca check' tell, in Python "
     "loaded_tca.double_helical.analyse_double_helical; each half is a pair by itself: half_a.nc and half_b.nc of a "
@@ -135,7 +134,7 @@ def _within_face(gap: float, pinion: float, wheel: float) -> str | None:
     return None if gap < narrow else f"found {gap:g}; allowed below the overall face width, {narrow:g}"
 
 
-@variant(CylindricalScene, "a double helical pair: `pair.double_helical` is true")
+@variant("a double helical pair: `pair.double_helical` is true")
 @dataclass(frozen=True, kw_only=True)
 class DoubleHelicalScene(CylindricalScene):
     """A scene of two double helical gears.
@@ -182,12 +181,6 @@ class DoubleHelicalScene(CylindricalScene):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.half_scenes(self.mounting.axial_offset_mm)  # which checks what is of halves: lengths over half the face
-
-    @classmethod
-    def describes(cls, table: Mapping[str, Any]) -> bool:
-        """Whether the section [pair] has a key of double helical pairs."""
-        pair = table.get("pair")
-        return bool(OF_HALVES.intersection(contents(pair) if isinstance(pair, Section) else pair or ()))
 
     @cached_property
     def halves(self) -> tuple[GearPair, GearPair]:

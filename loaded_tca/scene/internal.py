@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from loaded_tca.errors import require
 from loaded_tca.gears import CylindricalGear, InternalMesh, PinionCutter, RingGear
@@ -107,7 +107,7 @@ def _same_hands(wheel: Hand | None, pinion: Hand | None) -> str | None:
     return f'found "{wheel}" and "{pinion}" of the pinion; allowed "{pinion}": gears of an internal pair have one hand'
 
 
-@variant(CylindricalScene, "an internal pair: `wheel.teeth` is negative")
+@variant("an internal pair: `wheel.teeth` is negative")
 @dataclass(frozen=True, kw_only=True)
 class InternalScene(CylindricalScene):
     """A scene of a pinion and a ring gear.
@@ -153,13 +153,6 @@ class InternalScene(CylindricalScene):
             ),
         ),
     )
-
-    @classmethod
-    def describes(cls, table: Any) -> bool:
-        """Whether the wheel has a negative number of teeth."""
-        wheel = table.get("wheel")
-        teeth = wheel.get("teeth") if hasattr(wheel, "get") else getattr(wheel, "teeth", None)
-        return isinstance(teeth, int | float) and teeth < 0
 
     @property
     def hands(self) -> tuple[Hand, Hand]:

@@ -152,11 +152,6 @@ class Scene(WithStandards, ABC):
         *REVOLUTION_RULES,
     )
 
-    @classmethod
-    def describes(cls, table: Mapping[str, Any]) -> bool:  # noqa: ARG003 (of families without variants)
-        """Whether a table is one of this class; asked of the variants of a family alone."""
-        return True
-
     @abstractmethod
     def mesh(self) -> Any:
         """Return the macro geometry.

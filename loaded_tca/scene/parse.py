@@ -19,6 +19,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
 from loaded_tca.scene.keys import Choice, Key, literal, shown, shown_key
 from loaded_tca.scene.section import Section, Subsection, as_given, check, contents, entries, made
+from loaded_tca.scene.variants import MODULES
 from loaded_tca.scene.written import MODULE, PITCH, INCH_mm
 from loaded_tca.units import INCHES, UNITS, conversion
 
@@ -176,24 +177,15 @@ def toml_table(text: str, source: str) -> dict[str, Any]:
         raise InputError(f"{source}: line {lines[0]} holds a whole number of more than {most} digits") from None
 
 
-MODULES = {
-    "cylindrical": ("cylindrical", "double_helical", "internal", "rack"),
-    "straight_bevel": ("bevel",),
-    "spiral_bevel": ("bevel",),
-    "face_milled": ("face_milled", "blank_face_milled"),
-}
-"""Type of a gear pair, as files call it -> the modules of its scenes and their variants, in the order of messages."""
-
-
 class _Families(Mapping[str, "type[Scene]"]):
-    """Scenes of each type of gear pair, whose modules are imported when a scene of that type is."""
+    """Scenes of each type of gear pair, whose module is imported when a scene of that type is."""
 
     def __init__(self) -> None:
         self.known: dict[str, type[Scene]] = {}
 
     def __getitem__(self, kind: str) -> type[Scene]:
-        for module in MODULES[kind]:
-            import_module(f"loaded_tca.scene.{module}")
+        module, _ = MODULES[kind]
+        import_module(f"loaded_tca.scene.{module}")
         return self.known[kind]
 
     def __iter__(self) -> Iterator[str]:
@@ -206,8 +198,27 @@ class _Families(Mapping[str, "type[Scene]"]):
 FAMILIES = _Families()
 """Type of a gear pair -> the scenes of its family; filled by ``family``."""
 
-VARIANTS: dict[type[Scene], dict[type[Scene], str]] = {}
-"""Class of a family -> its variants, which scenes of other keys are, and of what; filled by ``variant``."""
+
+class _Variants(Mapping[str, "tuple[type[Scene], str]"]):
+    """Scenes of each variant of a family, and of what they are, by their modules, which are imported when asked for."""
+
+    def __init__(self) -> None:
+        self.known: dict[str, tuple[type[Scene], str]] = {}
+
+    def __getitem__(self, module: str) -> tuple[type[Scene], str]:
+        import_module(f"loaded_tca.scene.{module}")
+        return self.known[module]
+
+    def __iter__(self) -> Iterator[str]:
+        return (module for _, variants in MODULES.values() for module in variants)
+
+    def __len__(self) -> int:
+        return sum(len(variants) for _, variants in MODULES.values())
+
+
+VARIANTS = _Variants()
+"""Module of a variant -> its scenes, which have other keys than those of the family, and of what; filled by
+``variant``."""
 
 SceneType = TypeVar("SceneType", bound="type[Scene]")
 
@@ -222,20 +233,14 @@ def family(*types: str) -> Callable[[SceneType], SceneType]:
     return known
 
 
-def variant(scenes: type[Scene], about: str) -> Callable[[SceneType], SceneType]:
-    """Make a class known as a variant of a family, for the tables that it describes; ``about`` says when."""
+def variant(about: str) -> Callable[[SceneType], SceneType]:
+    """Make the class of a module of ``MODULES`` known as a variant of its family; ``about`` says of what."""
 
     def known(scene: SceneType) -> SceneType:
-        VARIANTS.setdefault(scenes, {})[scene] = about
+        VARIANTS.known[scene.__module__.rpartition(".")[2]] = scene, about
         return scene
 
     return known
-
-
-def _variants(scenes: type[Scene]) -> list[tuple[type[Scene], str]]:
-    """Variants of a family and of what they are, in the order of their modules: the first that describes a table."""
-    order = [f"loaded_tca.scene.{name}" for modules in MODULES.values() for name in modules]
-    return sorted(VARIANTS.get(scenes, {}).items(), key=lambda one: order.index(one[0].__module__))
 
 
 def scene_from_table(table: Mapping[str, Any]) -> Scene:
@@ -259,10 +264,12 @@ def scenes_of(table: Mapping[str, Any]) -> type[Scene]:
     pair = contents(pair) if isinstance(pair, Section) else pair
     kind = pair.get("type") if isinstance(pair, Mapping) else None
     try:
-        scenes = FAMILIES[Choice(tuple(FAMILIES)).read(kind)]  # type: ignore[index]
+        name = str(Choice(tuple(FAMILIES)).read(kind))
     except ValueError as refused:
         raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
-    return next((one for one, _ in _variants(scenes) if one.describes(table)), scenes)
+    _, variants = MODULES[name]
+    module = next((each for each, describes in variants.items() if describes(table)), None)
+    return FAMILIES[name] if module is None else VARIANTS[module][0]
 
 
 def _problems_without_type(table: Mapping[str, Any], pair: Any, kind: Any, refusal: str) -> list[str]:
@@ -315,11 +322,12 @@ def describe_keys() -> str:
     }
     lines = list(section_lines("", *shared.pop("")))
     for scene, table in zip(families, tables, strict=True):
-        kinds = ", ".join(f"`{name}`" for name, known in FAMILIES.items() if known is scene)
+        types = [name for name, known in FAMILIES.items() if known is scene]
+        kinds = ", ".join(f"`{name}`" for name in types)
         for path, (section, about) in table.items():
             if path and path not in shared:
                 lines += section_lines(path, section, f"{about} ({kinds})")
-        for own, when in _variants(scene):
+        for own, when in (VARIANTS[module] for module in MODULES[types[0]][1]):
             of_families = {section for each in tables for section, _ in each.values()}
             for path, (section, about) in _sections(own, "", {}):
                 if path and section not in of_families:

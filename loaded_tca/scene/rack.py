@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.flanks.modification import FlankModifications
@@ -100,7 +100,7 @@ class RackSection(BlankGearSection):
     )
 
 
-@variant(CylindricalScene, 'a pinion and a rack: `wheel.teeth` is `"rack"`')
+@variant('a pinion and a rack: `wheel.teeth` is `"rack"`')
 @dataclass(frozen=True, kw_only=True)
 class RackScene(CylindricalScene):
     """A scene of a pinion and a rack, which is the wheel.
@@ -141,13 +141,6 @@ class RackScene(CylindricalScene):
         _none("pinion.pitch", "whole revolutions are those of gears"),
         _none("pinion.tooth", "whole revolutions are those of gears"),
     )
-
-    @classmethod
-    def describes(cls, table: Any) -> bool:
-        """Whether the wheel is a rack, however that is spelled: the section says how."""
-        wheel = table.get("wheel")
-        teeth = wheel.get("teeth") if hasattr(wheel, "get") else getattr(wheel, "teeth", None)
-        return isinstance(teeth, str) and teeth.casefold() == "rack"
 
     @cached_property
     def rack(self) -> Rack:

@@ -113,7 +113,7 @@ def sections_of(section, known):
 def test_every_key_with_a_unit_of_its_own_has_one_in_inches():
     """Both ways lead to the same key, and what the range allows in inches the key allows: no rounding passes it."""
     known = {}
-    for scene in (*dict.fromkeys(FAMILIES.values()), *(v for each in VARIANTS.values() for v in each), Stage):
+    for scene in (*dict.fromkeys(FAMILIES.values()), *(scene for scene, _ in VARIANTS.values()), Stage):
         sections_of(scene, known)
     count = 0
     for keys in known.values():
