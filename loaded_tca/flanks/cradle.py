@@ -49,22 +49,25 @@ LARGEST_STEP = 0.2
 """Newton steps, and the largest change of an angle in one of them [rad]."""
 RESOLVED = 1e-12
 """Steps below this [rad] end the iteration."""
-RHO, ALPHA, Z, PHI = range(4)
+RHO, Z, ALPHA, PHI = 0, 1, -2, -1
+"""Entries of derivatives by (rho, z, alpha, phi), and of those by the angles alone."""
 
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Position of the cutter's edge against points of the blank, with derivatives by (rho, alpha, z, phi).
+    """Position of the cutter's edge against points of the blank, with k = 4 derivatives by (rho, z, alpha, phi).
+
+    Or with k = 2 by the angles alpha and phi alone.
 
     Attributes
     ----------
     value : (n,) array [mm]
         G.
-    slopes : (4, n) array
+    slopes : (k, n) array
         First derivatives of G.
-    bends : (4, 4, n) array
+    bends : (k, k, n) array
         Second derivatives of G.
-    height, height_slopes : (n,) and (4, n) array [mm]
+    height, height_slopes : (n,) and (k, n) array [mm]
         h above the blade tips and its first derivatives.
     roll, roll_bend : (n,) array
         psi' and psi''.
@@ -85,7 +88,7 @@ class Cut:
 
     @property
     def meshing_slopes(self) -> Array:
-        """Derivatives (4, n) of F_phi by (rho, alpha, z, phi), that by phi at fixed alpha."""
+        """Derivatives (k, n) of F_phi, that by phi at fixed alpha."""
         slopes = self.bends[PHI] + self.roll * self.bends[ALPHA]
         slopes[PHI] += self.roll_bend * self.slopes[ALPHA]
         return slopes
@@ -150,7 +153,8 @@ class CradleGeneration:
         alpha, phi = self._start(rho, z)
         moving = np.ones(rho.shape, dtype=bool)
         for _ in range(MOST_STEPS):
-            steps = self._step(self.cut(rho[moving], alpha[moving], z[moving], phi[moving]), phi[moving])
+            place = rho[moving], alpha[moving], z[moving], phi[moving]
+            steps = self._step(self.cut(*place, by_angles_alone=True), phi[moving])
             alpha[moving] += steps[0]
             phi[moving] += steps[1]
             moving[moving] = np.abs(steps).max(axis=0) > RESOLVED
@@ -192,9 +196,11 @@ class CradleGeneration:
         rho, z = distance * np.sin(angle), distance * np.cos(angle)
         return angle, self._points(self.cut(rho, alpha, z, phi), alpha, phi, resolved)
 
-    def cut(self, rho: Array, alpha: Array, z: Array, phi: Array) -> Cut:
+    def cut(self, rho: Array, alpha: Array, z: Array, phi: Array, by_angles_alone: bool = False) -> Cut:
         """Position of the cutter's edge against points of the blank."""
         place, slopes, bends = self._seen_from_cutter(rho, alpha, z, phi)
+        if by_angles_alone:
+            slopes, bends = slopes[ALPHA:], bends[ALPHA:, ALPHA:]
         along, along_bends, height = -self.axis @ slopes, -self.axis @ bends, -self.axis @ place
         across = place + np.multiply.outer(self.axis, height)
         distance = np.sqrt(np.einsum("an,an->n", across, across))
@@ -286,7 +292,7 @@ class CradleGeneration:
         return np.clip(steps / determinant, -LARGEST_STEP, LARGEST_STEP)
 
     def _meshing(self, cut: Cut, phi: Array) -> tuple[Array, Array]:
-        """The second equation and its derivatives (4, n): F_phi, or phi of a formate gear."""
+        """The second equation and its derivatives (k, n): F_phi, or phi of a formate gear."""
         if self.machine.rolls:
             return cut.meshing, cut.meshing_slopes
         slopes = np.zeros_like(cut.slopes)

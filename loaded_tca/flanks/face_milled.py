@@ -21,6 +21,7 @@ Litvin & Fuentes 2004, Gear Geometry and Applied Theory, section 6.4 (envelopes)
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import cos, hypot, sin
@@ -149,13 +150,9 @@ class GeneratedFlank(ToothRegion):
         """
         lines = self._lines(points)
         midway = [0.5 * (line[1:] + line[:-1]) for line in lines]  # where the B-spline is furthest from the flank
-        places = [tuple(part.ravel() for part in self.places(*grid)) for grid in (lines, midway)]
-        exact = [self._exact(rho, z) for rho, z in places]
-        bare = SplineFlank(Region(self), self._fitted(exact[0].value.reshape(points)), FitError(0.0, 0.0))
-        errors = [
-            FitError.of((bare.theta(rho, z).value - jet.value) / _gradient(rho, jet))
-            for (rho, z), jet in zip(places, exact, strict=True)
-        ]
+        exact = [self._at_nodes if points == SPLINE_POINTS else self._exact_on(lines), self._exact_on(midway)]
+        bare = SplineFlank(Region(self), self._fitted(exact[0][2].value.reshape(points)), FitError(0.0, 0.0))
+        errors = [FitError.of((bare.theta(rho, z).value - jet.value) / _gradient(rho, jet)) for rho, z, jet in exact]
         return SplineFlank(Region(self), bare.spline, *errors)
 
     @cached_property
@@ -235,8 +232,18 @@ class GeneratedFlank(ToothRegion):
 
     @cached_property
     def _gradient_spline(self) -> TensorSpline:
-        rho, z = (part.ravel() for part in self.places(*self._lines(SPLINE_POINTS)))
-        return self._fitted(_gradient(rho, self._exact(rho, z)).reshape(SPLINE_POINTS))
+        rho, _, jet = self._at_nodes
+        return self._fitted(_gradient(rho, jet).reshape(SPLINE_POINTS))
+
+    @cached_property
+    def _at_nodes(self) -> tuple[Array, Array, Jet]:
+        """Points (n,) of the grid of the B-splines, and Theta there."""
+        return self._exact_on(self._lines(SPLINE_POINTS))
+
+    def _exact_on(self, lines: Sequence[Array]) -> tuple[Array, Array, Jet]:
+        """Points (n,) of the grid of lines of the profile coordinate and the cone distance, and Theta there."""
+        rho, z = (part.ravel() for part in self.places(*lines))
+        return rho, z, self._exact(rho, z)
 
     def _lines(self, points: tuple[int, int]) -> tuple[Array, Array]:
         """Profile coordinates and cone distances of the grid lines."""
@@ -267,6 +274,12 @@ def tooth_angle(gear: FaceMilledGear, rho: Array, z: Array) -> Array:
     cuts = [CradleGeneration(gear.cutter.blade(name), name, gear.machine).solve(rho, z) for name in names]
     slot = cuts[1].theta.value - cuts[0].theta.value
     return 2.0 * math.pi / gear.teeth - np.where(cuts[0].found & cuts[1].found, slot, 0.0)
+
+
+@lru_cache(maxsize=MOST_FLANKS)
+def tooth_angle_at(gear: FaceMilledGear, rho: float, z: float) -> float:
+    """Angle of the tooth at one point [rad], which its form and the sheets of its geometry ask for in turn."""
+    return float(tooth_angle(gear, np.array([rho]), np.array([z]))[0])
 
 
 def _gradient(rho: Array, theta: Jet) -> Array:

@@ -7,9 +7,7 @@ from dataclasses import replace
 from math import cos, degrees, isnan, nan, pi, sin, tan
 from typing import Any
 
-import numpy as np
-
-from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank, generated_flank, tooth_angle
+from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank, generated_flank, tooth_angle_at
 from loaded_tca.gears.bevel import BevelGear
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.bevel_meshes import BevelMesh
@@ -159,8 +157,8 @@ def mean_thickness(gear: FaceMilledGear) -> float:
     """Thickness across the teeth on the pitch cone at the mean point [mm]; NaN: only one flank is cut."""
     if None in (gear.cutter.concave, gear.cutter.convex):
         return nan
-    rho, z = (np.array([part]) for part in pitch_point(gear.blank.mean_cone_distance, gear.blank.pitch_angle))
-    return _normal_arc(gear, float(tooth_angle(gear, rho, z)[0]))
+    place = pitch_point(gear.blank.mean_cone_distance, gear.blank.pitch_angle)
+    return _normal_arc(gear, tooth_angle_at(gear, *place))
 
 
 def _normal_arc(gear: FaceMilledGear, angle: float) -> float:

@@ -9,9 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 from loaded_tca.errors import GeometryError
-from loaded_tca.flanks.base import Flank, unmodified
+from loaded_tca.flanks.base import ConeFrame, Flank, unmodified
 from loaded_tca.flanks.bevel import chebyshev_nodes, face_cone_angles
-from loaded_tca.flanks.face_milled import MOST_FLANKS, GeneratedFlank, generated_flank, tooth_angle
+from loaded_tca.flanks.face_milled import MOST_FLANKS, GeneratedFlank, generated_flank, tooth_angle, tooth_angle_at
 from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears.face_milled import BLADE_SIGNS, FaceMilledGear
 from loaded_tca.tooth.families import FILLET_RADIUS_COEFFICIENT, RootCone, ToothForm, ToothGeometry
@@ -84,7 +84,7 @@ class FaceMilledTooth(ToothGeometry):
         """
         gear, blank = self.gear, self.gear.blank
         rho, z = (blank.mean_cone_distance * part(blank.pitch_angle) for part in (math.sin, math.cos))
-        half_angle = 0.5 * float(tooth_angle(gear, np.array([rho]), np.array([z]))[0])
+        half_angle = 0.5 * tooth_angle_at(gear, rho, z)
         radius = max(gear.cutter.blade(flank).edge_radius for flank in BLADE_SIGNS)
         if radius == 0.0:
             spiral = generated_flank(gear, "concave").angles.spiral
@@ -98,20 +98,23 @@ def _nominal(gear: FaceMilledGear, side: int, exact: bool) -> Flank:
     """Generated flank of a side; its B-spline takes far longer than its modifications."""
     flank = generated_flank(gear, gear.flank_name(side))
     if gear.cutter.concave is not None and gear.cutter.convex is not None:
-        _require_tip(gear, flank)
+        _require_tip(gear)
     return flank if exact else flank.as_spline()
 
 
-def _require_tip(gear: FaceMilledGear, flank: GeneratedFlank) -> None:
+@lru_cache(maxsize=MOST_FLANKS)
+def _require_tip(gear: FaceMilledGear) -> None:
     """Refuse a tooth whose two flanks, cut with one set of machine settings, meet below the face cone."""
-    distance = chebyshev_nodes(flank.cone_distances, TIP_POINTS)
-    angle = face_cone_angles(flank.face_cone, distance)
+    blank = gear.blank
+    distance = chebyshev_nodes(blank.cone_distances, TIP_POINTS)
+    angle = face_cone_angles((blank.face_angle, blank.face_apex), distance)
     rho, z = distance * np.sin(angle), distance * np.cos(angle)
     thickness = rho * tooth_angle(gear, rho, z)
     worst = int(np.argmin(thickness))
     if not thickness[worst] > 0.0:
+        frame = ConeFrame(blank.pitch_angle, blank.middle_cone_distance)
         raise GeometryError(
             f"{gear.name}: pointed tooth: its flanks lie {-thickness[worst]:.3g} mm beyond each other at the "
-            f"tip, {flank.frame.place(float(rho[worst]), float(z[worst]))}; lower face_angle, or bring the point "
+            f"tip, {frame.place(float(rho[worst]), float(z[worst]))}; lower face_angle, or bring the point "
             "radii of the cutter nearer to each other"
         )

@@ -320,7 +320,7 @@ def build_tooth(flanks: tuple[Flank, Flank], form: ToothForm, resolution: Resolu
     sides = [profile_of(flank, form.sections, form.half_thickness_angle, counts) for flank in flanks]
     coordinate, land = sides[0].coordinate, resolution.land
     space = _Space(sides, form.root_radius(coordinate), 2.0 * math.pi / form.teeth, resolution.fillet)
-    (plus_radius, plus), (minus_radius, minus) = space.halves(_fitting(space, form))
+    (plus_radius, plus), (minus_radius, minus) = _fitting(space, form)
     if any(isinstance(flank, RoundedFlank) for flank in flanks):
         build_tooth((sharp(flanks[0]), sharp(flanks[1])), form, resolution)  # what cannot exist with sharp edges
         lacking = np.maximum(-0.5 * (plus + minus)[: resolution.flank], 0.0)
@@ -352,6 +352,10 @@ def build_tooth(flanks: tuple[Flank, Flank], form: ToothForm, resolution: Resolu
     )
 
 
+Halves = list[tuple[Array, Array]]
+"""Radius [mm] and angle from the middle [rad] (k, m) of both sides of a tooth, from the tip to the root."""
+
+
 @dataclass(frozen=True, eq=False)
 class _Space:
     """The space between two teeth before its fillets are known: its sides, root circles, pitch, points of a fillet."""
@@ -361,17 +365,17 @@ class _Space:
     pitch: float
     points: int
 
-    def halves(self, fillet: Fillet) -> list[tuple[Array, Array]]:
+    def halves(self, fillet: Fillet) -> Halves:
         """Radius [mm] and angle from the middle [rad] (k, m) of both sides of a tooth, from the tip to the root."""
         return [_outline(side, fillet.curve(side, self.root, self.points), self.root) for side in self.sides]
 
-    def has_room(self, fillet: Fillet) -> bool:
-        """Whether the fillets of a space leave each other room."""
+    def halves_with_room(self, fillet: Fillet) -> Halves | None:
+        """The same, if there are such fillets, and those of a space leave each other room."""
         try:
-            (_, plus), (_, minus) = self.halves(fillet)
+            (_, plus), (_, minus) = halves = self.halves(fillet)
         except GeometryError:
-            return False
-        return bool((self.pitch - plus[-1] - minus[-1] >= -OVERLAP * self.pitch).all())
+            return None
+        return halves if (self.pitch - plus[-1] - minus[-1] >= -OVERLAP * self.pitch).all() else None
 
 
 def _outline(profile: Profile, curve: FilletCurve, root: Array) -> tuple[Array, Array]:
@@ -387,19 +391,20 @@ def _outline(profile: Profile, curve: FilletCurve, root: Array) -> tuple[Array, 
     return np.concatenate([flank, fillet[1:]]), np.concatenate([angle, (angle[-1] + turn)[1:]])
 
 
-def _fitting(space: _Space, form: ToothForm) -> Fillet:
-    """The fillet of the form, or the largest arc that fits where that is allowed."""
+def _fitting(space: _Space, form: ToothForm) -> Halves:
+    """Both sides of a tooth with the fillet of the form, or with the largest arc that fits where that is allowed."""
     fillet = form.fillet
-    if space.has_room(fillet):
-        return fillet
+    fitting = space.halves_with_room(fillet)
+    if fitting is not None:
+        return fitting
     if not isinstance(fillet, ArcFillet):
         raise GeometryError("the fillets of neighbouring teeth pass each other: no space is left at the root")
     small, large = 0.0, fillet.radius
     for _ in range(HALVINGS):
         middle = 0.5 * (small + large)
-        fits = space.has_room(replace(fillet, radius=middle))
-        small, large = (middle, large) if fits else (small, middle)
-    if small == 0.0:
+        halves = space.halves_with_room(replace(fillet, radius=middle))
+        small, large, fitting = (small, middle, fitting) if halves is None else (middle, large, halves)
+    if fitting is None:
         space.halves(replace(fillet, radius=large))
         raise GeometryError("no fillet fits between neighbouring teeth: no space is left at the root")
     if not form.largest_that_fits:
@@ -407,7 +412,7 @@ def _fitting(space: _Space, form: ToothForm) -> Fillet:
             f"fillet_radius: {fillet.radius:.6g} mm does not fit into the space between two teeth; the largest that "
             f"does is {small:.4g} mm"
         )
-    return replace(fillet, radius=small)
+    return fitting
 
 
 def _check_thickness(thickness: Array, coordinate: Array, resolution: Resolution) -> None:
