@@ -2951,6 +2951,13 @@ FAULTS = (
         '        [import_module(f"loaded_tca.scene.{each}") for each in variants]\n',
         "test_public_names.py::test_check_and_the_imports_of_run_load_no_heavy_library",
     ),
+    Fault(
+        "span of contact: the last contact of the nearer angles is counted twice",
+        "unloaded/path.py",
+        "inside[number] += contacts[1:]",
+        "inside[number] += contacts",
+        "unloaded/test_contact_span.py::test_ends_farther_away_than_the_angles_looked_at_first_are_found",
+    ),
 )
 
 

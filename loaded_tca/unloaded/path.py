@@ -331,8 +331,9 @@ def _residual(field: EaseOff, station: Station, normals: tuple[Array, Array], he
 
 ROUNDS, FINENESS = 4, 13
 """Rounds in which an end of the path of contact is found, and angles of each: to 5e-5 of the span."""
-FARTHEST = 4.0
-"""Pitches before and after the pitch point up to which the ends are looked for."""
+FARTHEST, NEAR = 4.0, 7
+"""Pitches before and after the pitch point up to which the ends are looked for, and angles of the first round that lie
+within half of that: flanks far from contact take the longest, and are looked at where no end is nearer."""
 
 
 def contact_span(pair: GearPair) -> tuple[ContactPoint | None, ContactPoint | None]:
@@ -363,23 +364,44 @@ def contact_span(pair: GearPair) -> tuple[ContactPoint | None, ContactPoint | No
     farthest = FARTHEST * pair.driving * pair.pitch
     brackets = {"root": (0.0, -farthest), "tip": (0.0, farthest)}
     last: dict[str, ContactPoint | None] = dict.fromkeys(brackets)
-    for _ in range(ROUNDS):
-        angles = [np.linspace(*bracket, FINENESS) for bracket in brackets.values()]
+    for number in range(ROUNDS):
+        rows = [np.linspace(*bracket, FINENESS) for bracket in brackets.values()]
         try:
-            path = trace_contact(pair, np.concatenate(angles), warn=False)
+            contacts = _up_to_the_ends(pair, rows, FINENESS if number else NEAR)
         except GeometryError:  # nothing is in contact
             break
-        for number, end in enumerate(tuple(brackets)):
-            part = path[number * FINENESS : (number + 1) * FINENESS]
-            outside = part.on_edge | ~part.in_contact
-            first = int(np.argmax(outside))
-            if first:
-                brackets[end], last[end] = tuple(part.pinion_angle[first - 1 : first + 1]), part[first - 1]
+        for end, row, inside in zip(tuple(brackets), rows, contacts, strict=True):
+            if 0 < len(inside) < FINENESS:
+                brackets[end], last[end] = (row[len(inside) - 1], row[len(inside)]), inside[-1]
             else:  # all the way, or nowhere: no end
                 del brackets[end], last[end]
         if not brackets:
             break
     return last.get("root"), last.get("tip")
+
+
+def _up_to_the_ends(pair: GearPair, rows: Sequence[Array], near: int) -> list[list[ContactPoint]]:
+    """Contacts at rows of pinion angles, each up to the last one before an edge; some rows may have none.
+
+    Of rows that meet no edge at their first ``near`` angles the others are looked at, too.
+    """
+    inside = _up_to_edges(pair, [row[:near] for row in rows])
+    further = [number for number, contacts in enumerate(inside) if near == len(contacts) < len(rows[number])]
+    if further:  # from the last contact on: where no angle has one, none can be traced
+        beyond = _up_to_edges(pair, [rows[number][near - 1 :] for number in further])
+        for number, contacts in zip(further, beyond, strict=True):
+            inside[number] += contacts[1:]
+    return inside
+
+
+def _up_to_edges(pair: GearPair, rows: Sequence[Array]) -> list[list[ContactPoint]]:
+    """Contacts at rows of pinion angles, each up to the last one before an edge."""
+    path, end, inside = trace_contact(pair, np.concatenate(rows), warn=False), 0, []
+    for row in rows:
+        part, end = path[end : end + len(row)], end + len(row)
+        outside = np.append(part.on_edge | ~part.in_contact, True)
+        inside.append([part[place] for place in range(int(np.argmax(outside)))])
+    return inside
 
 
 def path_letters(at_root: float, at_tip: float, pitch: float) -> dict[str, float]:
