@@ -244,18 +244,14 @@ STAGE_STRENGTHS = "sun.strength", "planet.strength", "ring.strength"
 SPECTRUM = "load.spectrum", "load.case"
 OF_RATING, OF_STAGE_RATING = (
     f"an analysis depends on it; allowed keys of {', '.join(f'[{name}]' for name in sections)}, [rating], [operation] "
-    f"and [lubricant]{more}"
-    for sections, more in (
-        (STRENGTHS, f", and a load spectrum: {', '.join(SPECTRUM)}"),
-        (STAGE_STRENGTHS, ""),
-    )
+    f"and [lubricant], and a load spectrum: {', '.join(SPECTRUM)}"
+    for sections in (STRENGTHS, STAGE_STRENGTHS)
 )
 
 
 def _is_of_rating(key: str, strengths: Sequence[str] = STRENGTHS) -> bool:
     """Whether a key of a scene or stage concerns rating alone, so that a result stays valid."""
-    of_spectrum = strengths == STRENGTHS and key.startswith(SPECTRUM)
-    return of_spectrum or key.rpartition(".")[0] in (*strengths, "rating", "operation", "lubricant")
+    return key.startswith(SPECTRUM) or key.rpartition(".")[0] in (*strengths, "rating", "operation", "lubricant")
 
 
 ROUGHNESS, THERMAL = "roughness_Ra_um", ("conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK")

@@ -11,8 +11,8 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
 from loaded_tca.output.result_files import csv_table, json_text, known
 from loaded_tca.plain import lasting
-from loaded_tca.rating import SpectrumRating
 from loaded_tca.rating.quantities import OF_SPECTRUM
+from loaded_tca.rating.spectrum import OfSpectrum
 from loaded_tca.results.files import Buffer, FilePath, replace_together
 from loaded_tca.supports import RollingBearing
 from loaded_tca.tribology.quantities import COLUMNS
@@ -173,14 +173,14 @@ def write_rating(
     InputError
         If they cannot be written.
     """
-    beside = {"spectrum": spectrum_figures(rating)} if isinstance(rating, SpectrumRating) else {}
+    beside = {"spectrum": spectrum_figures(rating)} if isinstance(rating, OfSpectrum) else {}
     text = figures_json(rating, **beside, notes=rating.notes(), warnings=rating.warnings or ())
     contents = text.encode(), csv_table(rating.to_table()).encode()
     files = {**dict(zip(RATING_FILES, contents, strict=True)), **more}
     return replace_together(directory, files, {*outdated} - {*files})
 
 
-def spectrum_figures(rating: SpectrumRating) -> dict[str, Any]:
+def spectrum_figures(rating: OfSpectrum) -> dict[str, Any]:
     """What all bins do together: hours, and for each kind of failure of each gear its numbers, null where not known."""
     rows = rating.key_figures()[0]
     together: dict[str, Any] = {
@@ -190,7 +190,7 @@ def spectrum_figures(rating: SpectrumRating) -> dict[str, Any]:
             if number.dims == OF_SPECTRUM
             for head in (number.head(name),)
         }
-        for gear in GEARS
+        for gear in rating.MEMBERS
         for mode in rating.modes
     }
     return {"required_life_h": rating.life_required, "bins": len(rating.torque), **together}

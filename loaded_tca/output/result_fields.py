@@ -19,7 +19,7 @@ from loaded_tca.results.quantities import (
 from loaded_tca.results.revolution import REVOLUTION_QUANTITIES
 from loaded_tca.scene.double_helical import HALVES
 from loaded_tca.stages import StageResult
-from loaded_tca.stages.rating import STAGE_RATING_NUMBERS
+from loaded_tca.stages.rating import STAGE_RATING_NUMBERS, STAGE_SPECTRUM_NUMBERS
 from loaded_tca.tribology.quantities import NUMBERS, TORQUE
 
 if TYPE_CHECKING:
@@ -54,6 +54,14 @@ def describe_results() -> str:
             of_torques=True,
         ),
         "Rating of planetary stages: gears are sun, planet and ring": _numbers(STAGE_RATING_NUMBERS, of_torques=True),
+        "Rating of planetary stages under a load spectrum, beside or in the place of these": _numbers(
+            {
+                name: number
+                for name, number in STAGE_SPECTRUM_NUMBERS.items()
+                if STAGE_RATING_NUMBERS.get(name) is not number
+            },
+            of_torques=True,
+        ),
     }
     return "\n".join("\n".join([f"### {title}", "", *lines, ""]) for title, lines in sections.items())
 

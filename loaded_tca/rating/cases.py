@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.errors import InputError
 from loaded_tca.reference.iso6336_3_strength import mean_stress_sensitivities
-from loaded_tca.scene import Scene
+
+if TYPE_CHECKING:
+    from loaded_tca.scene import Scene
+    from loaded_tca.scene.load import AnyLoad
+    from loaded_tca.scene.rating import StrengthSection
+    from loaded_tca.scene.section import Section
 
 LEAST_PART = 1e-3
 """Of the largest torque: factors of bins below, idle ones among them, are those under this part of it."""
@@ -63,21 +69,34 @@ class Cases:
 
 def cases_of(scene: Scene, torques: Array) -> Cases:
     """Load cases of a scene with a rating: its spectrum, or else the torques (t,) [N mm] of a result."""
-    rating, operation, bins = scene.rating, scene.operation, scene.load.case
-    assert rating is not None  # asked for before
-    speed = None if operation is None else operation.pinion_speed_rpm
+    assert scene.rating is not None  # asked for before
+    speed = None if scene.operation is None else scene.operation.pinion_speed_rpm
+    return load_cases(scene.load, scene.rating.life_hours, speed, torques)
+
+
+def load_cases(load: AnyLoad, life_hours: float | None, speed: float | None, torques: Array) -> Cases:
+    """Load cases of a pair or a stage, without problems: its spectrum, or else the torques (t,) [N mm] of a result.
+
+    Parameters
+    ----------
+    load : AnyLoad
+    life_hours : float, optional [h]
+        That is required; None: the hours of all bins.
+    speed : float, optional [rpm]
+        Of bins without one, and of torques.
+    torques : (t,) array [N mm]
+    """
+    bins, together = load.case, load.hours
+    life = together if life_hours is None else life_hours
+    assert life is not None  # by the rules of scenes and stages
     if bins is None:
-        assert rating.life_hours is not None  # by the rules of the scene
-        hours, ones = rating.life_hours, np.ones(len(torques))
+        ones = np.ones(len(torques))
         assert speed is not None
-        return Cases(torques, speed * ones, hours * ones, ones < 0.0, hours)
-    speeds = [speed if case.pinion_speed_rpm is None else case.pinion_speed_rpm for case in bins]
+        return Cases(torques, speed * ones, life * ones, ones < 0.0, life)
+    speeds = [speed if case.speed_rpm is None else case.speed_rpm for case in bins]
     parts = np.array([case.share if case.hours is None else case.hours for case in bins], dtype=float)
-    together = scene.load.hours
-    life = together if rating.life_hours is None else rating.life_hours
-    assert life is not None  # by the rules of the scene
     return Cases(
-        1e3 * np.array([case.pinion_torque_Nm for case in bins]),
+        1e3 * np.array([case.torque_Nm for case in bins]),
         np.array(speeds, dtype=float),
         life * parts / parts.sum(),
         np.array([case.reversed for case in bins]),
@@ -87,21 +106,34 @@ def cases_of(scene: Scene, torques: Array) -> Cases:
     )
 
 
-def problems_of_cases(scene: Scene, largest: float) -> Iterator[str]:
-    """What is missing in a scene to rate its load cases; ``largest`` is the largest torque solved [N mm]."""
-    bins = scene.load.case
-    without = [place for place, case in enumerate(bins or ()) if case.pinion_speed_rpm is None]
-    if scene.operation is None and (bins is None or without):
+def problems_of_cases(
+    load: AnyLoad, operation: Section | None, strengths: Mapping[str, StrengthSection | None], largest: float
+) -> Iterator[str]:
+    """What is missing to rate load cases of a pair or a stage.
+
+    Parameters
+    ----------
+    load : AnyLoad
+    operation : Section, optional
+        [operation], which has the speed of bins without one.
+    strengths : mapping
+        Names of sections -> those of gears whose Y_M follows from a stress ratio; None: missing, as is told elsewhere.
+    largest : float [N mm]
+        The largest torque solved.
+    """
+    bins = load.case
+    without = [place for place, case in enumerate(bins or ()) if case.speed_rpm is None]
+    if operation is None and (bins is None or without):
         where = f"; bin {without[0]} has none of its own" if without else ""
-        yield f"operation: missing; strength, cycles and K_v depend on pinion_speed_rpm{where}"
-    for name, gear in (("pinion", scene.pinion), ("wheel", scene.wheel)):
-        if gear.strength is None or not any(case.reversed for case in bins or ()):
+        yield f"operation: missing; strength, cycles and K_v depend on {load.CASE.MEMBER}_speed_rpm{where}"
+    for name, strength in strengths.items():
+        if strength is None or not any(case.reversed for case in bins or ()):
             continue
         try:
-            mean_stress_sensitivities(gear.strength.kind_of_material)
+            mean_stress_sensitivities(strength.kind_of_material)
         except InputError:
-            kind = gear.strength.kind_of_material
-            yield f"load.case: reversed bins; the standard has no Y_M of kind {kind!r} ({name}.strength)"
-    highest = max((case.pinion_torque_Nm for case in bins or ()), default=0.0)
+            kind = strength.kind_of_material
+            yield f"load.case: reversed bins; the standard has no Y_M of kind {kind!r} ({name})"
+    highest = load.largest_Nm
     if 1e3 * highest > largest * (1.0 + 1e-9):
         yield f"load.case: a bin has {highest:g} N m; allowed up to {1e-3 * largest:g}, the largest that was solved"

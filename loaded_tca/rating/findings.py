@@ -12,7 +12,7 @@ from loaded_tca.plain import plain
 from loaded_tca.rating.lives import FLANK, ROOT
 
 if TYPE_CHECKING:
-    from loaded_tca.rating.rating import Rating
+    from loaded_tca.rating.rating import OfCases, Rating
 
 FAILURES = {FLANK: "pitting", ROOT: "tooth breakage"}
 
@@ -49,7 +49,7 @@ def worst_of(rating: Rating, prefix: str = "") -> Worst:
 def findings(rating: Rating) -> tuple[str, ...]:
     """Sentences on what decides, and on what the local rating has that the standard does not."""
     if rating.inputs.cases.is_spectrum:
-        return tuple(_of_all_bins(rating))
+        return tuple(of_all_bins(rating))
     local = worst_of(rating, "local_")
     of_local = f"by local stresses what decides is {local.words(rating)}, at {_place(rating, local)}"
     sentences = [
@@ -62,7 +62,7 @@ def findings(rating: Rating) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def _of_all_bins(rating: Rating) -> Iterator[str]:
+def of_all_bins(rating: OfCases) -> Iterator[str]:
     """What decides under a spectrum, after the standard and by local stresses, and the bin that does most of it."""
     safeties = rating.safeties_and_lives()[0][0]
     required = np.array([rating.required.required_safety(mode) for mode in rating.modes])
@@ -75,7 +75,7 @@ def _of_all_bins(rating: Rating) -> Iterator[str]:
         n = of[place]
         damage = rating.values("damage")[:, gear, n]
         sentence = (
-            f"{words} what decides is {FAILURES[_kind(rating.modes[n])]} of the {GEARS[gear]}: safety "
+            f"{words} what decides is {FAILURES[_kind(rating.modes[n])]} of the {rating.MEMBERS[gear]}: safety "
             f"{plain(safeties[gear, n])} in {plain(rating.life_required)} h, required {plain(required[n])}"
         )
         if np.isfinite(damage).all() and damage.sum() > 0.0:

@@ -43,16 +43,18 @@ class Duty:
 
     Attributes
     ----------
-    mesh_load_factor : array (c,) or float
-        K_gamma.
+    mesh_load_factor : array (t,) or float
+        K_gamma under the torques of the result.
     meshes : (int, int)
         Mates that pinion and wheel have at once, each of which loads every tooth once in a turn against the carrier.
     wheel_is_held : bool
         Whether the wheel does not swing, as a ring in a housing.
     mean_stress_factors : (float or None, float or None)
         Y_M of pinion and wheel, where it does not follow from a stress ratio.
-    stress_ratios : (array (c,) or None, array (c,) or None)
-        Smallest over largest computed root stress of a turn, where other mates add to those of the mesh.
+    stress_ratios : (array (t,) or None, array (t,) or None)
+        Smallest over largest computed root stress of a turn under these, where other mates add to those of the mesh.
+    cases : Cases or None
+        Those of the mesh; None: those of its scene.
     """
 
     mesh_load_factor: Array | float = 1.0
@@ -60,6 +62,7 @@ class Duty:
     wheel_is_held: bool = False
     mean_stress_factors: tuple[float | None, float | None] = (None, None)
     stress_ratios: tuple[Array | None, Array | None] = (None, None)
+    cases: Cases | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,8 +96,10 @@ class CommonInputs(ABC):
 
     @cached_property
     def loads(self) -> SolvedLoads:
-        """Under the torques of the cases."""
-        return self.solved.at(self.cases.factor_torque)
+        """Under the torques of the cases; one mate of all carries the whole torque at the most."""
+        loads = self.solved.at(self.cases.factor_torque)
+        most = max(float(self.solved.mesh_load_factor.max()), *self.duty.meshes)
+        return replace(loads, mesh_load_factor=np.minimum(loads.mesh_load_factor, most))
 
     @property
     def torque(self) -> Array:
@@ -166,7 +171,7 @@ class RatingInputs(CommonInputs):
     @property
     def load(self) -> Array:
         """F_t K_A K_gamma/b (c,) [N/mm], at the reference circle, for load factors."""
-        force = self.duty.mesh_load_factor * self.cases.factor_torque / self.mesh.pinion.reference_radius
+        force = self.loads.mesh_load_factor * self.cases.factor_torque / self.mesh.pinion.reference_radius
         return np.asarray(force * self.operation.application_factor / self.mesh.common_face_width)
 
     @property
@@ -195,10 +200,10 @@ def inputs_of(result: CycleNumbers, duty: Duty = Duty()) -> RatingInputs:
     outside = [
         f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
     ]
-    return RatingInputs(result, scene, **common_inputs(result, outside), mesh=scene.mesh(), duty=duty)
+    return RatingInputs(result, scene, **common_inputs(result, outside, duty), mesh=scene.mesh(), duty=duty)
 
 
-def common_inputs(result: CycleNumbers, outside: Sequence[str] = ()) -> dict[str, Any]:
+def common_inputs(result: CycleNumbers, outside: Sequence[str] = (), duty: Duty = Duty()) -> dict[str, Any]:
     """What every rating takes of a result and the sections of its scene: fields of ``CommonInputs`` but the first two.
 
     Raises
@@ -216,17 +221,18 @@ def common_inputs(result: CycleNumbers, outside: Sequence[str] = ()) -> dict[str
         problems.append(f"analysis.positions: {len(result.path)}; a rating takes {FEWEST} or more: run the scene again")
     if not (torques > 0.0).all():
         problems.append("pinion torque: 0 N m; a rating takes torques above 0")
-    problems += problems_of_cases(scene, float(torques.max()))
+    if duty.cases is None:
+        problems += problems_of_cases(scene.load, scene.operation, strengths, float(torques.max()))
     if problems := [*problems, *outside]:
         raise InputError(problems)
-    cases = cases_of(scene, torques)
+    cases = duty.cases or cases_of(scene, torques)
     return {
         "strengths": (scene.pinion.strength, scene.wheel.strength),
         "rating": scene.rating,
         "operation": scene.operation or Operation(pinion_speed_rpm=float(cases.speed.max())),
         "lubricant": scene.lubricant,
         "cases": cases,
-        "solved": solved_factors(result),
+        "solved": solved_factors(result, duty),
     }
 
 

@@ -83,6 +83,7 @@ def _raised(inputs: CommonInputs, endurances: Endurances) -> Endurances:
         for name in ("face_load_factor", "transverse_load_factor")
         if getattr(wanted, name) == ANALYSIS
     )
+    of_sharing = float(scatter(solved.torque, solved.mesh_load_factor))
     local = {LOCAL_FLANK: np.full(len(GEARS), scatter(solved.torque, solved.pressure, OF_FLANK))}
     if solved.root_tension is not None:
         local[LOCAL_ROOT] = scatter(solved.torque, solved.root_tension, OF_ROOT)
@@ -90,7 +91,7 @@ def _raised(inputs: CommonInputs, endurances: Endurances) -> Endurances:
     def of(mode: str, gear: int) -> Endurance:
         endurance = endurances[mode][gear]
         part = local[mode][gear] if mode in local else endurance.power * of_factors
-        return replace(endurance, stress=endurance.stress * np.exp(part))
+        return replace(endurance, stress=endurance.stress * np.exp(part + endurance.power * of_sharing))
 
     return {mode: (of(mode, 0), of(mode, 1)) for mode in endurances}
 

@@ -8,7 +8,7 @@ from math import inf, nan
 
 import numpy as np
 
-from loaded_tca.arrays import GEARS, Array
+from loaded_tca.arrays import Array
 from loaded_tca.rating.cases import Cases
 from loaded_tca.reference.iso6336_6 import SNCurve, damages, equivalent_torque, spectrum_safety
 
@@ -96,16 +96,18 @@ class Endurance:
 
 Endurances = Mapping[str, tuple[Endurance, Endurance]]
 """Of pinion and wheel, by the kind of failure."""
+OfGears = Mapping[str, tuple[Endurance, ...]]
+"""Of all gears, by the kind of failure."""
 
 
-def lives_of(cases: Cases, endurances: Endurances, cycles_per_hour: Array) -> dict[str, Array]:
+def lives_of(cases: Cases, endurances: OfGears, cycles_per_hour: Array) -> dict[str, Array]:
     """``damage`` (c, gear, mode), ``life_hours`` and, of a spectrum, what all cases do together (gear, mode).
 
     Parameters
     ----------
     cases : Cases
     endurances : mapping
-    cycles_per_hour : (c, 2) array
+    cycles_per_hour : (c, gear) array
     """
     damage = damages_of(endurances)
     if not cases.is_spectrum:
@@ -123,12 +125,12 @@ def lives_of(cases: Cases, endurances: Endurances, cycles_per_hour: Array) -> di
     }
 
 
-def damages_of(endurances: Endurances) -> Array:
+def damages_of(endurances: OfGears) -> Array:
     """Damage (c, gear, mode) of each case."""
     return _by_mode(endurances, lambda each: each.damage())
 
 
-def _by_mode(endurances: Endurances, number: Callable[[Endurance], Array]) -> Array:
-    """Numbers (..., gear, mode) of all kinds of failure of both gears."""
-    rows = [[number(endurances[mode][place]) for mode in endurances] for place in range(len(GEARS))]
+def _by_mode(endurances: OfGears, number: Callable[[Endurance], Array]) -> Array:
+    """Numbers (..., gear, mode) of all kinds of failure of all gears."""
+    rows = [[number(each) for each in of_gear] for of_gear in zip(*endurances.values(), strict=True)]
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))

@@ -36,7 +36,7 @@ def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...
     height = inputs.scene.tooth_height_over_width
     factors = {
         "K_A": ones * inputs.operation.application_factor,
-        "K_gamma": ones * inputs.duty.mesh_load_factor,
+        "K_gamma": ones * inputs.loads.mesh_load_factor,
         "K_v": dynamic,
         "K_Hbeta": face,
         "K_Halpha": ones * flank,

@@ -148,7 +148,7 @@ NUMBERS: dict[str, Number] = {
 }
 """Names in ``Rating.dataset``, and what each is, in the order of the summary."""
 UNDER_LOAD = (
-    *(name for name in _LOADS if name not in ("K_A", "K_gamma")),
+    *(name for name in _LOADS if name != "K_A"),
     *_RESONANCE,
     *_EXCITATION,
     *(f"local_{name}" for name in ("flank_radius", "flank_axial", "root_angle", "root_axial", "stress_ratio", "Y_M")),

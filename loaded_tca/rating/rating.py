@@ -14,7 +14,7 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError
 from loaded_tca.rating.findings import findings
 from loaded_tca.rating.inputs import CommonInputs
-from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurances
+from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurances, OfGears
 from loaded_tca.rating.quantities import CASE, NUMBERS, OF_GEARS, OF_MODES, OF_SPECTRUM
 from loaded_tca.results.figure import Figure, Figures, labelled
 from loaded_tca.results.files import RATING
@@ -103,10 +103,32 @@ class OfCases(Result):
     COORDINATES: ClassVar = ("torque",)
     MEMBERS: ClassVar[tuple[str, ...]] = GEARS
 
+    endurances: OfGears
+
     @property
-    @abstractmethod
     def modes(self) -> tuple[str, ...]:
         """Kinds of failure that are rated."""
+        return tuple(self.endurances)
+
+    @property
+    @abstractmethod
+    def required(self) -> RatingSection:
+        """What is required."""
+
+    @property
+    @abstractmethod
+    def life_required(self) -> float:
+        """The life that is required [h]."""
+
+    @property
+    def standard(self) -> str:
+        """The standard whose factors these are."""
+        return "ISO 6336"
+
+    def safeties_and_lives(self) -> tuple[Array, Array]:
+        """Safety, and life at the required safety [h], of each load case (c, gear, mode)."""
+        safeties = [self.values(f"{mode}_safety") for mode in self.modes]
+        return np.stack(safeties, axis=-1), self.values("life_hours")
 
     def figure_arrays(self) -> dict[str, Array]:
         """Return the key figures as arrays (case,) by their names; of what all bins do together the same for each."""
@@ -139,6 +161,12 @@ class OfCases(Result):
     def stored(self) -> xarray.Dataset:
         """The dataset as files have it: gears by their place in ``MEMBERS``, from 0; kinds of failure likewise."""
         return self.dataset.drop_vars(["gear", "mode"]).assign_attrs(modes=" ".join(self.modes))
+
+
+def shown_speeds(speed: Array) -> str:
+    """Speeds (c,) [rpm] in words."""
+    least, most = speed.min(), speed.max()
+    return f"{least:g} rpm" if least == most else f"{least:g} to {most:g} rpm"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -191,12 +219,7 @@ class Rating(OfCases):
     @property
     def life_required(self) -> float:
         """The life that is required [h]."""
-        return float(self.required.life_hours or self.scene.load.hours or 0.0)
-
-    @property
-    def modes(self) -> tuple[str, ...]:
-        """Kinds of failure that are rated."""
-        return tuple(self.endurances)
+        return self.inputs.cases.life_hours
 
     @property
     def scope(self) -> str:
@@ -206,7 +229,7 @@ class Rating(OfCases):
     @property
     def standard(self) -> str:
         """The standard whose factors these are."""
-        return "ISO 10300" if isinstance(self.scene, SpiralScene) else "ISO 6336"
+        return "ISO 10300" if isinstance(self.scene, SpiralScene) else super().standard
 
     @property
     def _standards(self) -> str:
@@ -215,19 +238,12 @@ class Rating(OfCases):
 
     @property
     def _speed(self) -> str:
-        operation = self.scene.operation
-        assert operation is not None  # refused before
-        return f"{operation.pinion_speed_rpm:g} rpm"
+        return shown_speeds(self.inputs.cases.speed)
 
     @property
     def _safeties(self) -> str:
         wanted = self.required
         return f"required S_H {wanted.required_flank_safety:g}, S_F {wanted.required_root_safety:g}; pinion | wheel"
-
-    def safeties_and_lives(self) -> tuple[Array, Array]:
-        """Safety, and life at the required safety [h], of each load case (c, gear, mode)."""
-        safeties = [self.values(f"{mode}_safety") for mode in self.modes]
-        return np.stack(safeties, axis=-1), self.values("life_hours")
 
     def rows(self, figures: Sequence[Figures]) -> list[tuple[str, ...]]:
         """Lines of the summary: label with unit, and a cell for each torque, of both gears where they differ."""

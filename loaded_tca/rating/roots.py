@@ -41,8 +41,11 @@ def local_root_factors(
     ``case`` is the index of the load case of each ratio, or of all: other mates press a root more than the mesh does.
     """
     made_of, common = root_of(inputs, place)
-    cycles, of_mates = inputs.cycles[case, place], inputs.duty.stress_ratios[place]
-    highest = asked_ratio(inputs, place) if of_mates is None else of_mates
+    cycles, of_mates = inputs.cycles[case, place], inputs.loads.mate_stress_ratios
+    highest = asked_ratio(inputs, place)
+    if of_mates is not None:
+        by_mesh = np.isnan(of_mates[:, place]) | inputs.cases.reversed
+        highest = np.where(by_mesh, highest, of_mates[:, place])
     ratio = np.clip(np.minimum(ratio, highest[case]), REVERSED, 0.0)
     try:
         return ratio, iso6336_3.root_factors(made_of, cycles=cycles, stress_ratio=ratio, **common), ()

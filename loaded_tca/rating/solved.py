@@ -15,12 +15,13 @@ from loaded_tca.scene.spiral import SpiralScene
 from loaded_tca.tribology.contact_slices import largest_pressures
 
 if TYPE_CHECKING:
-    from loaded_tca.rating.inputs import CommonInputs
+    from loaded_tca.rating.inputs import CommonInputs, Duty
     from loaded_tca.results.numbers import CycleNumbers
 
 OF_ROOT = 1.0
 OF_FLANK = 0.5
 """Powers of the torque that root tension and pressure of a line contact grow with: what is left is interpolated."""
+FACTORS = "face_load_factor", "transverse_load_factor", "mesh_load_factor"
 OVER_GEARS = "places", "root_places"
 """Arrays whose torques are the second axis."""
 
@@ -36,6 +37,8 @@ class SolvedLoads:
     face_load_factor : (c,) array
     transverse_load_factor : (c,) array
         Of bevel pairs the largest share of a tooth pair in the load, which K_Halpha follows from by Z_LS.
+    mesh_load_factor : (c,) array
+        K_gamma.
     pressure : (c,) array [MPa]
         Largest pressure of an elastic line contact over all slices of all contacts, whatever the cap: strengths of
         flanks are such pressures.
@@ -49,6 +52,9 @@ class SolvedLoads:
         Of all places [MPa]: what decides where stress is reversed everywhere alike.
     root_places : (2, c, 2) array, or None
         Tangent angle [rad] and axial coordinate [mm] of the place that decides, of both gears; that of the nearest.
+    mate_stress_ratios : (c, 2) array, or None
+        Smallest over largest root stress of a turn of both gears, where other mates add to those of the mesh; NaN:
+        none do.
     excitation : mapping of str to (c,) array
         Mean mesh stiffness [N/(mm um)], span and first order of the transmission error [um].
     """
@@ -56,6 +62,7 @@ class SolvedLoads:
     torque: Array
     face_load_factor: Array
     transverse_load_factor: Array
+    mesh_load_factor: Array
     pressure: Array
     places: Array
     at_edge: Mask
@@ -63,14 +70,18 @@ class SolvedLoads:
     root_stress_ratio: Array | None = None
     largest_root_tension: Array | None = None
     root_places: Array | None = None
+    mate_stress_ratios: Array | None = None
     excitation: dict[str, Array] = field(default_factory=dict)
 
     @classmethod
-    def of_factors(cls, torque: Array, face_load_factor: Array, transverse_load_factor: Array) -> SolvedLoads:
+    def of_factors(
+        cls, torque: Array, face_load_factor: Array, transverse_load_factor: Array, mesh_load_factor: Array
+    ) -> SolvedLoads:
         """Load factors alone, with stresses that are not known."""
-        unknown = np.full(len(torque), nan)
+        unknown, nowhere = np.full(len(torque), nan), np.zeros(len(torque), dtype=bool)
         places = np.full((2, len(torque), 2), nan)
-        return cls(torque, face_load_factor, transverse_load_factor, unknown, places, np.zeros(len(torque), dtype=bool))
+        factors = face_load_factor, transverse_load_factor, mesh_load_factor
+        return cls(torque, *factors, unknown, places, nowhere)
 
     def at(self, torques: Array) -> SolvedLoads:
         """The same under other torques, none above the largest: as solved, or interpolated.
@@ -83,9 +94,11 @@ class SolvedLoads:
         if np.array_equal(exact.torque, torques):
             return exact
         roots: dict[str, Array] = {}
+        if self.mate_stress_ratios is not None:
+            roots["mate_stress_ratios"] = self._straight(self.mate_stress_ratios, torques)
         if self.root_tension is not None and self.root_stress_ratio is not None:
             assert self.largest_root_tension is not None
-            roots = {
+            roots |= {
                 "root_tension": self._between(self.root_tension, torques, OF_ROOT),
                 "largest_root_tension": self._between(self.largest_root_tension, torques, OF_ROOT),
                 "root_stress_ratio": self._straight(self.root_stress_ratio, torques),
@@ -93,8 +106,7 @@ class SolvedLoads:
         return replace(
             exact,
             torque=torques,
-            face_load_factor=self._between(self.face_load_factor, torques),
-            transverse_load_factor=self._between(self.transverse_load_factor, torques),
+            **{name: self._between(getattr(self, name), torques) for name in FACTORS},
             pressure=self._between(self.pressure, torques, OF_FLANK),
             excitation={
                 name: self._straight(values[:, None], torques)[:, 0] for name, values in self.excitation.items()
@@ -145,20 +157,22 @@ class SolvedLoads:
         return np.stack([np.interp(wanted, nodes, column) for column in values.T], axis=-1)
 
 
-def solved_factors(result: CycleNumbers) -> SolvedLoads:
+def solved_factors(result: CycleNumbers, duty: Duty) -> SolvedLoads:
     """Load factors of a result under its torques; of bevel pairs the largest share in place of K_Halpha."""
-    of_bevel = isinstance(result.scene, SpiralScene)
+    of_bevel, torque = isinstance(result.scene, SpiralScene), np.asarray(result.torque)
     transverse = np.nanmax(result.load_share, axis=(1, 2)) if of_bevel else np.asarray(result.transverse_load_factor)
-    return SolvedLoads.of_factors(np.asarray(result.torque), np.asarray(result.face_load_factor), transverse)
+    factors = np.asarray(result.face_load_factor), transverse, duty.mesh_load_factor * np.ones(len(torque))
+    of_mates = [np.full(len(torque), nan) if one is None else one for one in duty.stress_ratios]
+    return replace(SolvedLoads.of_factors(torque, *factors), mate_stress_ratios=np.stack(of_mates, axis=-1))
 
 
 def solved_loads(inputs: CommonInputs) -> SolvedLoads:
-    """Loads of a result under the torques that it was solved for, each once, ascending."""
+    """Loads of a result under the torques that it was solved for, each once, ascending; ``inputs`` have the factors."""
     result = inputs.result
     _, order = np.unique(np.asarray(result.torque), return_index=True)
     largest = largest_pressures(result)
     whole = replace(
-        solved_factors(result),
+        inputs.solved,
         pressure=largest.pressure,
         places=np.stack([largest.radius.T, largest.axial.T]),
         at_edge=largest.at_edge,

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.arrays import GEARS, Array
+from loaded_tca.arrays import Array
 from loaded_tca.rating.interpolation import Evaluate, interpolation_error
 from loaded_tca.rating.lives import Endurances
 from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS, UNDER_LOAD
-from loaded_tca.rating.rating import WORDS, Rating, all_figures
+from loaded_tca.rating.rating import WORDS, OfCases, Rating, all_figures
 from loaded_tca.rating.roots import REVERSED
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.summary import shown, summary_of
@@ -26,6 +26,7 @@ ROUNDING = 1e-9
 """Of hours that are the same."""
 MOST_SHOWN = 8
 """Bins that the summary has in full: those of the largest damage."""
+OF_PART_6 = "ISO 6336-6:2019 with {} bins"
 TOLD = 0.01
 """Told error of the damage from which on a warning is given."""
 
@@ -43,11 +44,13 @@ def of_spectrum(
         "interpolation_error": error,
         **{name: _loaded(cases.torque, arrays[name]) for name in UNDER_LOAD if name in arrays},
     }
-    sentences = []
+    return more, [*_notes(inputs, arrays, error)], told_error(error, len(solved.torque))
+
+
+def told_error(error: Array, solved: int) -> list[str]:
+    """Sentence of the warning where the error of damages (gear, mode) is large, between a number of solved torques."""
     largest = float(np.nanmax(error)) if np.isfinite(error).any() else nan
-    if largest > TOLD:
-        sentences.append(kinds.SPECTRUM_BETWEEN.sentence(change=largest, count=len(solved.torque)))
-    return more, [*_notes(inputs, arrays, error)], sentences
+    return [kinds.SPECTRUM_BETWEEN.sentence(change=largest, count=solved)] if largest > TOLD else []
 
 
 def _loaded(torque: Array, values: Array) -> Array:
@@ -86,28 +89,8 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array) -> Iter
         yield f"the hours of the bins, {together}, follow each other {cases.repeated:.4g} times"
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class SpectrumRating(Rating):
-    """Safeties and lives under a load spectrum: cases are its bins.
-
-    ``damage`` of each bin, in the required life at the required safeties, adds up to ``miner_sum``; ``life_hours`` is
-    the required life over that sum, ``spectrum_safety`` the safety on stress at which it is 1, ``equivalent_torque``
-    that of the same damage over the same load cycles by the first line of the S-N curve, ``interpolation_error`` by
-    which part the sum may be wrong: all over gears and kinds of failure. Safeties over cases are those of a bin alone
-    in its own load cycles.
-    """
-
-    NUMBERS: ClassVar = SPECTRUM_NUMBERS
-    FIGURES: ClassVar = all_figures(SPECTRUM_NUMBERS)
-
-    @property
-    def _standards(self) -> str:
-        return f"{super()._standards}, ISO 6336-6:2019 with {len(self.torque)} bins"
-
-    @property
-    def _speed(self) -> str:
-        least, most = self.pinion_speed.min(), self.pinion_speed.max()
-        return f"{least:g} rpm" if least == most else f"{least:g} to {most:g} rpm"
+class OfSpectrum(OfCases):
+    """Numbers of the bins of a load spectrum, and of all of them together."""
 
     def safeties_and_lives(self) -> tuple[Array, Array]:
         """Safety in the required life, and life at the required safety [h], of all bins together (1, gear, mode)."""
@@ -115,7 +98,7 @@ class SpectrumRating(Rating):
 
     def spectrum_rows(self) -> list[tuple[str, ...]]:
         """Lines on all bins together: label with unit, and a cell for each gear."""
-        rows: list[tuple[str, ...]] = [("spectrum", *GEARS)]
+        rows: list[tuple[str, ...]] = [("spectrum", *self.MEMBERS)]
         for n, mode in enumerate(self.modes):
             for name, number in self.NUMBERS.items():
                 if number.dims == OF_SPECTRUM:
@@ -142,8 +125,9 @@ class SpectrumRating(Rating):
         return f"{together}\n\n{table}"
 
     def _short(self) -> list[str]:
+        """Sentences on lives shorter than the one that is required."""
         sentences = []
-        for place, gear in enumerate(GEARS):
+        for place, gear in enumerate(self.MEMBERS):
             for n, mode in enumerate(self.modes):
                 life, safety = float(self.life_hours[place, n]), float(self.spectrum_safety[place, n])
                 least = self.required.required_safety(mode)
@@ -158,3 +142,22 @@ class SpectrumRating(Rating):
                         f"{least:g}; has a safety of {safety:.3g} in these"
                     )
         return sentences
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SpectrumRating(OfSpectrum, Rating):
+    """Safeties and lives under a load spectrum: cases are its bins.
+
+    ``damage`` of each bin, in the required life at the required safeties, adds up to ``miner_sum``; ``life_hours`` is
+    the required life over that sum, ``spectrum_safety`` the safety on stress at which it is 1, ``equivalent_torque``
+    that of the same damage over the same load cycles by the first line of the S-N curve, ``interpolation_error`` by
+    which part the sum may be wrong: all over gears and kinds of failure. Safeties over cases are those of a bin alone
+    in its own load cycles.
+    """
+
+    NUMBERS: ClassVar = SPECTRUM_NUMBERS
+    FIGURES: ClassVar = all_figures(SPECTRUM_NUMBERS)
+
+    @property
+    def _standards(self) -> str:
+        return f"{super()._standards}, {OF_PART_6.format(len(self.torque))}"

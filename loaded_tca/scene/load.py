@@ -1,9 +1,10 @@
-"""What a pair carries: one torque on the pinion, or a load spectrum whose bins may stand in a file."""
+"""What a pair or a stage carries: one torque on its input, or a load spectrum whose bins may stand in a file."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,7 +16,7 @@ from loaded_tca.scene.keys import Choice, Line, Number, above_zero, did_you_mean
 from loaded_tca.scene.section import Rule, Section, Tables, check, keys_of, made
 from loaded_tca.scene.written import writing_of
 
-# ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
+# ruff: noqa: N802, N815  -- names are the keys of the file, units included; the calls make dataclass fields
 
 TORQUE_Nm = Number(0.0, 1e9)
 LARGEST_FILE = 2**21
@@ -42,38 +43,81 @@ def _one_duration(hours: float | None, share: float | None) -> str | None:
     return "missing; give hours, or share" if hours is None else f"found {hours:g} beside share = {share:g}; give one"
 
 
-@dataclass(frozen=True, kw_only=True)
-class LoadCase(Section):
-    """[[load.case]]: a bin of a load spectrum; the analysis takes its torque, a rating the rest."""
+class Bin(Section):
+    """What the bins of load spectra of pairs and of stages have in common; ``MEMBER`` carries torque and speed.
 
-    pinion_torque_Nm: float = key(
-        Number(0.0, 1e9, advice="reversed = true is the other direction"), "magnitude of the torque on the pinion"
-    )
-    pinion_speed_rpm: float | None = key(above_zero(1e6), "speed of the pinion", None, "`operation.pinion_speed_rpm`")
-    hours: float | None = key(Number(0.0, 1e8), "how long the bin lasts", None, "`share` is given")
-    share: float | None = key(
-        Number(0.0, 1.0), "or its part of the time; all shares add up to 1", None, "`hours` are given"
-    )
-    reversed: bool = key(
-        Choice((False, True)), "whether the torque acts the other way, so that the other flanks carry it", False
-    )
+    ``OTHER_WAY`` has the keys that turn a whole spectrum round.
+    """
+
+    MEMBER: ClassVar[str]
+    OTHER_WAY: ClassVar[str]
+    hours: float | None
+    share: float | None
+    reversed: bool
 
     alternatives: ClassVar[tuple[str, ...]] = ("hours", "share")
     rules: ClassVar[tuple[Rule, ...]] = (Rule(("hours", "share"), _one_duration),)
 
+    @property
+    def torque_Nm(self) -> float:
+        """Magnitude of the torque [N m]."""
+        return float(getattr(self, self.torque_key()))
 
-COLUMNS = keys_of(LoadCase)
-"""Of a file of a load spectrum: the keys of a bin, which the file may write as drawings do."""
+    @property
+    def speed_rpm(self) -> float | None:
+        """Speed [rpm], or None: that of [operation]."""
+        speed: float | None = getattr(self, f"{self.MEMBER}_speed_rpm")
+        return speed
+
+    @classmethod
+    def torque_key(cls) -> str:
+        """Name of the key of the torque."""
+        return f"{cls.MEMBER}_torque_Nm"
 
 
-def _one_load(torque: float | None, cases: object, spectrum: str | None) -> str | None:
-    given = [name for name, one in zip(Load.alternatives, (torque, cases, spectrum), strict=True) if one is not None]
+torque_of_bin = partial(key, Number(0.0, 1e9, advice="reversed = true is the other direction"))
+speed_of_bin = partial(key, above_zero(1e6))
+hours_of_bin = partial(key, Number(0.0, 1e8), "how long the bin lasts", None, "`share` is given")
+share_of_bin = partial(
+    key, Number(0.0, 1.0), "or its part of the time; all shares add up to 1", None, "`hours` are given"
+)
+reversed_of_bin = partial(
+    key, Choice((False, True)), "whether the torque acts the other way, so that the other flanks carry it", False
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadCase(Bin):
+    """[[load.case]]: a bin of a load spectrum; the analysis takes its torque, a rating the rest."""
+
+    MEMBER: ClassVar[str] = "pinion"
+    OTHER_WAY: ClassVar[str] = "pair.driving or pair.sense"
+    pinion_torque_Nm: float = torque_of_bin("magnitude of the torque on the pinion")
+    pinion_speed_rpm: float | None = speed_of_bin("speed of the pinion", None, "`operation.pinion_speed_rpm`")
+    hours: float | None = hours_of_bin()
+    share: float | None = share_of_bin()
+    reversed: bool = reversed_of_bin()
+
+
+def alternatives_of(case: type[Bin]) -> tuple[str, ...]:
+    """Keys that say in several ways what is carried."""
+    return case.torque_key(), "case", "spectrum"
+
+
+def load_rules(case: type[Bin]) -> tuple[Rule, ...]:
+    """What the keys of a load must fulfil together."""
+    names = alternatives_of(case)
+    return Rule(names, partial(_one_load, names)), Rule(("case",), _spectrum_problem)
+
+
+def _one_load(names: tuple[str, ...], torque: float | None, cases: object, spectrum: str | None) -> str | None:
+    given = [name for name, one in zip(names, (torque, cases, spectrum), strict=True) if one is not None]
     if not given:
         return "missing; give a torque, or the bins of a spectrum: [[load.case]], or load.spectrum"
     return f"found {' beside '.join(given)}; give one of them" if len(given) > 1 else None
 
 
-def _spectrum_problem(cases: Sequence[LoadCase] | None) -> str | None:
+def _spectrum_problem(cases: Sequence[Bin] | None) -> str | None:
     """What is wrong with bins that are sound one by one."""
     if cases is None:
         return None
@@ -85,20 +129,57 @@ def _spectrum_problem(cases: Sequence[LoadCase] | None) -> str | None:
         return "the hours sum to 0; allowed above 0"
     if not of_hours and abs(sum(shares) - 1.0) > SUM_OF_SHARES:
         return f"the shares sum to {sum(shares):.6g}; allowed 1"
-    if not any(case.pinion_torque_Nm > 0.0 for case in cases):
-        return "no bin has a pinion_torque_Nm above 0"
+    if not any(case.torque_Nm > 0.0 for case in cases):
+        return f"no bin has a {cases[0].torque_key()} above 0"
     if all(case.reversed for case in cases):
-        return "all bins are reversed; change pair.driving or pair.sense, and leave reversed out"
+        return f"all bins are reversed; change {cases[0].OTHER_WAY}, and leave reversed out"
     return None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Load(Section):
-    """[load]: torque on the pinion, or the bins of a load spectrum.
+class AnyLoad(Section):
+    """[load] of pairs and of stages: a torque, or the bins of a load spectrum, which are of the class ``CASE``.
 
     A file of a spectrum is read when the section is made, and its bins take its place.
     """
 
+    CASE: ClassVar[type[Bin]]
+    case: tuple[Bin, ...] | None
+    spectrum: str | None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.spectrum is not None:
+            with named("spectrum"):
+                cases = read_spectrum(self.spectrum, self.CASE)
+                complaint = _spectrum_problem(cases)
+                require((complaint is None, f"{self.spectrum}: {complaint}"))
+            object.__setattr__(self, "case", cases)
+            object.__setattr__(self, "spectrum", None)
+
+    @property
+    def hours(self) -> float | None:
+        """Hours of all bins together; None of shares, and without a spectrum."""
+        hours = [case.hours for case in self.case or () if case.hours is not None]
+        return sum(hours) if hours else None
+
+    @property
+    def largest_Nm(self) -> float:
+        """Largest torque of all bins [N m]; 0 without a spectrum."""
+        return max((case.torque_Nm for case in self.case or ()), default=0.0)
+
+    @property
+    def torques(self) -> tuple[float, ...]:
+        """Torques to solve [N mm]: that of the pair or stage, all of a spectrum, or of many bins a dozen."""
+        if self.case is None:
+            return (1e3 * float(getattr(self, self.CASE.torque_key())),)  # given, by the rules of the section
+        return tuple(1e3 * torque for torque in _solved_torques(self.case))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Load(AnyLoad):
+    """[load]: torque on the pinion, or the bins of a load spectrum."""
+
+    CASE: ClassVar[type[Bin]] = LoadCase
     pinion_torque_Nm: float | None = key(
         TORQUE_Nm, "magnitude of the torque on the pinion", None, "those of `case` or `spectrum`"
     )
@@ -119,38 +200,11 @@ class Load(Section):
         "as `case`",
     )
 
-    alternatives: ClassVar[tuple[str, ...]] = ("pinion_torque_Nm", "case", "spectrum")
-    rules: ClassVar[tuple[Rule, ...]] = (
-        Rule(alternatives, _one_load),
-        Rule(("case",), _spectrum_problem),
-    )
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.spectrum is not None:
-            with named("spectrum"):
-                cases = read_spectrum(self.spectrum)
-                complaint = _spectrum_problem(cases)
-                require((complaint is None, f"{self.spectrum}: {complaint}"))
-            object.__setattr__(self, "case", cases)
-            object.__setattr__(self, "spectrum", None)
-
-    @property
-    def hours(self) -> float | None:
-        """Hours of all bins together; None of shares, and without a spectrum."""
-        hours = [case.hours for case in self.case or () if case.hours is not None]
-        return sum(hours) if hours else None
-
-    @property
-    def torques(self) -> tuple[float, ...]:
-        """Pinion torques to solve [N mm]: that of the pair, all of a spectrum, or of many bins a dozen."""
-        if self.case is None:
-            assert self.pinion_torque_Nm is not None  # by the rules of the section
-            return (1e3 * self.pinion_torque_Nm,)
-        return tuple(1e3 * torque for torque in _solved_torques(self.case))
+    alternatives: ClassVar[tuple[str, ...]] = alternatives_of(LoadCase)
+    rules: ClassVar[tuple[Rule, ...]] = load_rules(LoadCase)
 
 
-def _solved_torques(cases: Sequence[LoadCase]) -> list[float]:
+def _solved_torques(cases: Sequence[Bin]) -> list[float]:
     """Torques [N m] of bins; of more than a dozen a dozen: in equal steps, or the smallest beside these.
 
     Steps are equal since damage is done by the largest: in equal ratios the damage of flanks of an electric drive under
@@ -158,8 +212,8 @@ def _solved_torques(cases: Sequence[LoadCase]) -> list[float]:
     multiplies small loads: near resonance bins of 2 % of the largest torque did 9 % of the damage of these flanks
     (``validation/rating/spectra.py``).
     """
-    loaded = [case for case in cases if case.pinion_torque_Nm > 0.0]
-    torques = np.array([case.pinion_torque_Nm for case in loaded])
+    loaded = [case for case in cases if case.torque_Nm > 0.0]
+    torques = np.array([case.torque_Nm for case in loaded])
     distinct = np.unique(torques)
     if len(distinct) <= SOLVED:
         return [float(torque) for torque in distinct]
@@ -171,35 +225,34 @@ def _solved_torques(cases: Sequence[LoadCase]) -> list[float]:
     return [*([smallest] if alone else []), first, *between, largest]
 
 
-def _smallest_that_matters(cases: Sequence[LoadCase], torques: Array) -> float:
+def _smallest_that_matters(cases: Sequence[Bin], torques: Array) -> float:
     """Torque [N m] below which bins do next to no damage on the flattest S-N curve."""
     weights = np.array([case.hours if case.share is None else case.share for case in cases], dtype=float)
-    if all(case.pinion_speed_rpm is not None for case in cases):
-        weights *= [case.pinion_speed_rpm for case in cases]
+    if all(case.speed_rpm is not None for case in cases):
+        weights *= [case.speed_rpm for case in cases]
     order = np.argsort(torques, kind="stable")
     damage = np.cumsum(weights[order] * (torques[order] / torques.max()) ** LEAST_EXPONENT)
     return float(torques[order][np.searchsorted(damage, NEGLIGIBLE * damage[-1])])
 
 
-def life_is_given(life_hours: float | None, load: Load) -> str | None:
+def life_is_given(life_hours: float | None, load: AnyLoad) -> str | None:
     """What is wrong where neither a rating nor its load cases say how long the gears are to last."""
     if life_hours is not None or load.hours is not None:
         return None
     return "missing; needed but for load cases with hours, which are the life that is asked for then"
 
 
-def within_solved(load: Load | None, torques: Sequence[float] | None) -> str | None:
+def within_solved(load: AnyLoad | None, torques: Sequence[float] | None) -> str | None:
     """What is wrong with torques [N m] that are solved in the place of those of a spectrum."""
     if load is None or load.case is None or torques is None:
         return None
-    largest = max(case.pinion_torque_Nm for case in load.case)
-    if largest <= max(torques):
+    if load.largest_Nm <= max(torques):
         return None
-    return f"a bin has {largest:g} N m; allowed up to {max(torques):g}, the largest of analysis.torques_Nm"
+    return f"a bin has {load.largest_Nm:g} N m; allowed up to {max(torques):g}, the largest of analysis.torques_Nm"
 
 
-def read_spectrum(file: str) -> tuple[LoadCase, ...]:
-    """Return the bins of a CSV file of a load spectrum.
+def read_spectrum(file: str, case: type[Bin] = LoadCase) -> tuple[Bin, ...]:
+    """Return the bins of a CSV file of a load spectrum: its columns are the keys of ``case``, as drawings have them.
 
     Raises
     ------
@@ -209,33 +262,34 @@ def read_spectrum(file: str) -> tuple[LoadCase, ...]:
     text = read_table(file, LARGEST_FILE, "file of a load spectrum")
     with named(file):
         table = table_in(text)
-        require(*((False, problem) for problem in _column_problems(table.names)))
+        require(*((False, problem) for problem in _column_problems(table.names, case)))
         require_decimal_points(table)
         count = len(table.rows)
         require((0 < count <= MOST_BINS, f"{count} lines of bins; allowed 1 to {MOST_BINS}"))
-        return _bins(table)
+        return _bins(table, case)
 
 
-def _column_problems(names: Sequence[str]) -> list[str]:
+def _column_problems(names: Sequence[str], case: type[Bin]) -> list[str]:
     """What is wrong with the names of columns."""
-    names = [writing.key if (writing := writing_of(name, COLUMNS, {})) else name for name in names]
-    allowed = ", ".join(COLUMNS)
+    columns, torque = keys_of(case), case.torque_key()
+    names = [writing.key if (writing := writing_of(name, columns, {})) else name for name in names]
+    allowed = ", ".join(columns)
     problems = [
-        f"unknown column {shown(name)}{did_you_mean(nearest(name, COLUMNS)) or f'; allowed {allowed}'}"
+        f"unknown column {shown(name)}{did_you_mean(nearest(name, columns)) or f'; allowed {allowed}'}"
         for name in names
-        if name not in COLUMNS
+        if name not in columns
     ]
     problems += [f"column {name} found twice" for name in dict.fromkeys(names) if names.count(name) > 1]
-    if "pinion_torque_Nm" not in names:
-        problems.append(f"no column pinion_torque_Nm; found {', '.join(names) or 'no columns'}")
+    if torque not in names:
+        problems.append(f"no column {torque}; found {', '.join(names) or 'no columns'}")
     if ("hours" in names) == ("share" in names):
         problems.append(f"found {'both' if 'hours' in names else 'none'} of the columns hours and share; give one")
     return problems
 
 
-def _bins(table: Table) -> tuple[LoadCase, ...]:
+def _bins(table: Table, case: type[Bin]) -> tuple[Bin, ...]:
     """The bins of a table whose columns are sound; InputError with every line that is not."""
-    cases: list[LoadCase] = []
+    cases: list[Bin] = []
     problems: list[str] = []
     for number, cells in table.rows:
         line = f"line {number}"
@@ -243,10 +297,10 @@ def _bins(table: Table) -> tuple[LoadCase, ...]:
             problems.append(f"{line}: more values than the header has columns")
             continue
         row = {name: _value(name, cell) for name, cell in zip(table.names, cells, strict=False) if cell}
-        values, wrong, _ = check(LoadCase, row)
+        values, wrong, _ = check(case, row)
         problems += [f"{line}: {problem}" for problem in wrong]
         if not wrong:
-            cases.append(made(LoadCase, values))
+            cases.append(made(case, values))
     if len(problems) > MOST_PROBLEMS:
         problems[MOST_PROBLEMS:] = [f"{len(problems) - MOST_PROBLEMS} more problems"]
     if problems:

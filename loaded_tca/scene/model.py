@@ -35,6 +35,7 @@ from loaded_tca.scene.section import (
     as_table,
     contents,
     in_keys,
+    place_at,
     replaced_by,
     rule,
     subsection,
@@ -469,14 +470,7 @@ class Scene(WithStandards, ABC):
         # What a file was read into, for one, gives way where another file is named.
         for path, value in (dict.fromkeys(replaced_by(type(self), changes)) | dict(changes)).items():
             *sections, name = path.split(".")
-            place = table
-            for section in sections:
-                inner = place.get(section)
-                inner = contents(inner) if isinstance(inner, Section) else inner
-                if isinstance(inner, tuple) and inner and isinstance(inner[0], Section | dict):
-                    inner = {str(n): one for n, one in enumerate(inner)}  # a list of tables: names are places
-                place[section] = place = dict(inner) if isinstance(inner, dict) else {}
-            place[name] = value
+            place_at(table, sections)[name] = value
         with told_as_written(writings):
             return scene_from_table(table)
 

@@ -327,6 +327,20 @@ def key_at(section: type[Section], path: str, place: str = "") -> Key:
     return entry
 
 
+def place_at(table: dict[str, Any], sections: Sequence[str]) -> dict[str, Any]:
+    """The table inside a table at a path, made where there is none; all that lies on the way is copied.
+
+    Sections become tables, lists of tables such by their places.
+    """
+    for name in sections:
+        inner = table.get(name)
+        inner = contents(inner) if isinstance(inner, Section) else inner
+        if isinstance(inner, tuple) and inner and isinstance(inner[0], Section | dict):
+            inner = {str(n): one for n, one in enumerate(inner)}
+        table[name] = table = dict(inner) if isinstance(inner, dict) else {}
+    return table
+
+
 def replaced_by(section: type[Section], changes: Mapping[str, Any]) -> set[str]:
     """Paths of the keys whose places those that are changed take: none that is changed itself, or inside.
 

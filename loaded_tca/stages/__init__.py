@@ -7,7 +7,7 @@ from loaded_tca.lazy import lazy_names
 if TYPE_CHECKING:
     from loaded_tca.stages.analyse import analyse_stage, rebalanced
     from loaded_tca.stages.files import describe_stage_keys, parse_stage, read_stage
-    from loaded_tca.stages.rating import StageRating
+    from loaded_tca.stages.rating import StageRating, StageSpectrumRating
     from loaded_tca.stages.result import StageResult
     from loaded_tca.stages.sections import Stage
 else:
@@ -17,6 +17,7 @@ __all__ = [
     "Stage",
     "StageRating",
     "StageResult",
+    "StageSpectrumRating",
     "analyse_stage",
     "describe_stage_keys",
     "parse_stage",

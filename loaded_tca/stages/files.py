@@ -103,7 +103,7 @@ def describe_stage_keys() -> str:
     sections: tuple[tuple[str, type[Section], str], ...] = (
         ("stage", PlanetaryStage, "planets, pins, and how the sun is held"),
         ("pair", StageGeometry, "what all gears have in common"),
-        ("load", StageLoad, "what the sun carries"),
+        ("load", StageLoad, "what the sun carries: a torque, or the bins of a load spectrum"),
         ("operation", StageOperation, "speed and factors, for rating"),
         ("rating", StageRatingSection, "what is required of the gears, and factors, for rating"),
     )

@@ -1,20 +1,29 @@
-"""Rating of a planetary stage: both meshes with K_gamma, planets with reversed bending, lives by gear."""
+"""Rating of a planetary stage: both meshes with K_gamma, planets with reversed bending, lives by gear.
+
+Under a load spectrum both meshes are rated under its bins, with K_gamma and the stress ratios of planets at the torques
+that were solved and between them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, give_accuracy_warning
 from loaded_tca.rating import Rating, rating_of
+from loaded_tca.rating.cases import Cases, load_cases, problems_of_cases
+from loaded_tca.rating.findings import of_all_bins
 from loaded_tca.rating.inputs import Duty, missing_sections
-from loaded_tca.rating.quantities import CASE, NUMBERS
-from loaded_tca.rating.rating import NOT_COUNTED, OfCases, all_figures, rows_of
+from loaded_tca.rating.lives import OfGears, lives_of
+from loaded_tca.rating.quantities import CASE, NUMBERS, OF_SPECTRUM, SPECTRUM_NUMBERS
+from loaded_tca.rating.rating import NOT_COUNTED, OfCases, all_figures, rows_of, shown_speeds
 from loaded_tca.rating.roots import REVERSED
+from loaded_tca.rating.spectrum import OF_PART_6, OfSpectrum, told_error
 from loaded_tca.reference.iso6336_3_strength import mean_stress_sensitivities
 from loaded_tca.results import MeshCycle
 from loaded_tca.results.declared import Number
@@ -23,6 +32,7 @@ from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.rating import ANALYSIS, RatingSection, StrengthSection
 from loaded_tca.scene.section import contents
 from loaded_tca.scene.sections import Operation
+from loaded_tca.stages.gears import StageGears
 from loaded_tca.stages.sections import RING_MESH, SUN_MESH, Stage, in_words_of, words_of
 from loaded_tca.stages.warnings import WHOSE
 
@@ -45,6 +55,15 @@ STAGE_RATING_NUMBERS: dict[str, Number] = {
     **{name: NUMBERS[name] for name in (*_LEAST, "damage", "life_hours")},
 }
 """Names in ``StageRating.dataset``: of a planet the worse one of both meshes counts."""
+STAGE_SPECTRUM_NUMBERS: dict[str, Number] = {
+    "torque": STAGE_RATING_NUMBERS["torque"],
+    "sun_speed": Number(CASE, "rpm", "speed of the sun", label="sun speed"),
+    **{name: SPECTRUM_NUMBERS[name] for name in ("hours", "reversed")},
+    **{name: number for name, number in STAGE_RATING_NUMBERS.items() if name not in ("torque", "life_hours")},
+    **{name: number for name, number in SPECTRUM_NUMBERS.items() if number.dims == OF_SPECTRUM},
+    "equivalent_torque": SPECTRUM_NUMBERS["equivalent_torque"].changed(text="equivalent sun torque"),
+}
+"""The same of a load spectrum, whose bins are the cases."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -70,10 +89,12 @@ class StageRating(OfCases):
     sun_mesh: Rating
     ring_mesh: Rating
     dataset: xarray.Dataset
+    cases: Cases
+    endurances: OfGears
 
     def __repr__(self) -> str:
         flank, root = self.flank_safety.min(), self.root_safety.min()
-        return f"StageRating({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
+        return f"{type(self).__name__}({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
 
     @property
     def stage(self) -> Stage:
@@ -81,21 +102,30 @@ class StageRating(OfCases):
         return self.result.stage
 
     @property
-    def modes(self) -> tuple[str, ...]:
-        """Kinds of failure that are rated."""
-        return self.sun_mesh.modes
+    def required(self) -> RatingSection:
+        """What the stage requires."""
+        wanted = self.stage.rating
+        assert wanted is not None  # refused before
+        return wanted
+
+    @property
+    def life_required(self) -> float:
+        """The life that is required [h]."""
+        return self.cases.life_hours
 
     @property
     def scope(self) -> str:
         """Speeds, hours and what is required, in words."""
-        wanted, operation = self.stage.rating, self.stage.operation
-        assert wanted is not None  # refused before
-        assert operation is not None
+        wanted, ratio = self.required, speed_ratio(self.stage)
         return (
-            f"ISO 6336-2:2019 and -3:2006, sun at {operation.sun_speed_rpm:g} rpm, "
-            f"{relative_speed(self.stage):.4g} against the carrier, for {wanted.life_hours:g} h; required S_H "
-            f"{wanted.required_flank_safety:g}, S_F {wanted.required_root_safety:g}; sun | planet | ring"
+            f"{self._standards}, sun at {shown_speeds(self.cases.speed)}, times {ratio:.4g} against the carrier, for "
+            f"{self.life_required:g} h; required S_H {wanted.required_flank_safety:g}, S_F "
+            f"{wanted.required_root_safety:g}; {' | '.join(self.MEMBERS)}"
         )
+
+    @property
+    def _standards(self) -> str:
+        return "ISO 6336-2:2019 and -3:2006"
 
     def figure_arrays(self) -> dict[str, Array]:
         """Return the figures (torque,) of the gears, and of the meshes, which begin with their names."""
@@ -110,8 +140,10 @@ class StageRating(OfCases):
         rows = rows_of(self, MEMBERS, self.modes, figures)
         for (mesh, gears), whose in zip(MESHES.items(), WHOSE, strict=True):
             rating: Rating = getattr(self, mesh)
+            of_mesh = {name: f"{mesh}_{_renamed(name, gears)}" for name in rating.figure_arrays()}
+            own = [{name: row[head] for name, head in of_mesh.items()} for row in figures]
             rows.append((f"{gears['pinion']} and {gears['wheel']}, under {whose}", *("" for _ in figures)))
-            rows += [(f"  {words_of(gears, label)}", *cells) for label, *cells in rating.rows(rating.key_figures())]
+            rows += [(f"  {words_of(gears, label)}", *cells) for label, *cells in rating.rows(own)]
         return rows
 
     def notes(self) -> tuple[str, ...]:
@@ -131,11 +163,40 @@ def _renamed(name: str, gears: dict[str, str]) -> str:
     return f"{gears[first]}_{rest}" if first in gears else name
 
 
-def relative_speed(stage: Stage) -> float:
-    """Speed of the sun against the carrier [rpm]: the ring stands still, n_sun z_r/(z_s + z_r)."""
-    assert stage.operation is not None
+class StageSpectrumRating(OfSpectrum, StageRating):
+    """Safeties and lives of a stage under a load spectrum: cases are its bins, as of :class:`SpectrumRating`.
+
+    ``miner_sum``, ``life_hours``, ``spectrum_safety``, ``equivalent_torque`` (of the sun) and ``interpolation_error``
+    are over gears and kinds of failure. Of a planet that flank and that fillet count which have the smaller safety
+    under all bins; in reversed bins a fillet is drawn by the other mesh.
+    """
+
+    NUMBERS: ClassVar = STAGE_SPECTRUM_NUMBERS
+    FIGURES: ClassVar = all_figures(STAGE_SPECTRUM_NUMBERS, MEMBERS)
+
+    @property
+    def _standards(self) -> str:
+        return f"{super()._standards}, {OF_PART_6.format(len(self.torque))}"
+
+    def notes(self) -> tuple[str, ...]:
+        """What decides, what of the spectrum is assumed, which lives are too short, what does not count."""
+        remarks = [
+            [words_of(gears, remark) for remark in getattr(self, mesh).remarks] for mesh, gears in MESHES.items()
+        ]
+        common = [remark for remark in remarks[0] if remark in remarks[1]]
+        of_meshes = [
+            f"{gears['pinion']} and {gears['wheel']}: {remark}"
+            for gears, some in zip(MESHES.values(), remarks, strict=True)
+            for remark in some
+            if remark not in common
+        ]
+        return (*of_all_bins(self), *of_meshes, *common, *self._short(), NOT_COUNTED)
+
+
+def speed_ratio(stage: Stage) -> float:
+    """Speed of the sun against the carrier over its own: the ring stands still, z_r/(z_s + z_r)."""
     sun, _, ring = stage.teeth
-    return stage.operation.sun_speed_rpm * ring / (sun + ring)
+    return ring / (sun + ring)
 
 
 def stage_rating_of(result: StageResult, *, warn: bool = True) -> StageRating:
@@ -151,62 +212,80 @@ def stage_rating_of(result: StageResult, *, warn: bool = True) -> StageRating:
     -------
     StageRating
     """
-    stage = result.stage
-    _require_sections(stage)
+    stage, torques = result.stage, np.asarray(result.torque)
+    _require_sections(stage, float(torques.max()))
     assert stage.rating is not None
+    speed = None if stage.operation is None else stage.operation.sun_speed_rpm
+    cases = load_cases(stage.load, stage.rating.life_hours, speed, torques)
     given = stage.rating.mesh_load_factor
-    factor = result.mesh_load_factor if given == ANALYSIS else np.full(len(result.torque), float(given))
-    ratings = _of_meshes(result, factor)
-    warned = (
-        words_of(gears, sentence)
-        for gears, rating in zip(MESHES.values(), ratings, strict=True)
-        for sentence in rating.warnings or ()
-    )
-    sentences = list(dict.fromkeys(warned))
+    factor = result.mesh_load_factor if given == ANALYSIS else np.full(len(torques), float(given))
+    meshes = _of_meshes(result, cases, factor)
+    gears = StageGears.of(*meshes, cases)
+    arrays = _of_gears(*meshes) | {"torque": cases.torque} | lives_of(cases, gears.endurances, _turns(*meshes))
+    kind: type[StageRating] = StageRating
+    sentences = _warned(meshes)
+    if cases.is_spectrum:
+        kind = StageSpectrumRating
+        error = gears.interpolation_errors(*meshes)
+        arrays |= {name: meshes[0].values(name) for name in ("hours", "reversed")}
+        arrays |= {"sun_speed": cases.speed, "interpolation_error": error}
+        sentences += told_error(error, len(torques))
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
-    arrays = _of_gears(*ratings) | {"torque": np.asarray(result.torque)}
-    about: dict[str, Any] = {"version": ratings[0].version, "warnings": "\n".join(sentences)}
-    dataset = StageRating.dataset_of(arrays, **about).assign_coords(gear=[*MEMBERS], mode=[*ratings[0].modes])
-    return StageRating(result, *ratings, dataset)
+    about: dict[str, Any] = {"version": meshes[0].version, "warnings": "\n".join(sentences)}
+    dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*MEMBERS], mode=[*gears.endurances])
+    return kind(result, *meshes, dataset, cases, gears.endurances)
 
 
-def _require_sections(stage: Stage) -> None:
-    """Refuse a stage without a section that its rating needs, with every one."""
-    sections = {f"{gear}.strength": getattr(stage, gear).strength for gear in MEMBERS}
-    sections |= {"rating": stage.rating, "operation": stage.operation, "lubricant": stage.lubricant}
-    if problems := missing_sections(sections, operation="strength, cycles and K_v depend on sun_speed_rpm"):
+def _warned(meshes: tuple[Rating, Rating]) -> list[str]:
+    """Warnings of both meshes in the words of the stage; that of interpolation is told of the gears."""
+    of_interpolation = kinds.SPECTRUM_BETWEEN.words
+    sentences = (
+        words_of(gears, sentence)
+        for gears, rating in zip(MESHES.values(), meshes, strict=True)
+        for sentence in rating.warnings or ()
+        if of_interpolation not in sentence
+    )
+    return list(dict.fromkeys(sentences))
+
+
+def _require_sections(stage: Stage, largest: float) -> None:
+    """Refuse a stage without what its rating needs, with every problem; ``largest``: torque that was solved [N mm]."""
+    strengths = {f"{gear}.strength": getattr(stage, gear).strength for gear in MEMBERS}
+    problems = missing_sections({**strengths, "rating": stage.rating, "lubricant": stage.lubricant})
+    by_ratio = {name: one for name, one in strengths.items() if name != "planet.strength"}
+    if problems := [*problems, *problems_of_cases(stage.load, stage.operation, by_ratio, largest)]:
         raise InputError(problems)
 
 
-def _of_meshes(result: StageResult, factor: Array) -> tuple[Rating, Rating]:
-    """Ratings of both meshes under even shares of the torques."""
+def _of_meshes(result: StageResult, cases: Cases, factor: Array) -> tuple[Rating, Rating]:
+    """Ratings of both meshes under even shares of the torques of load cases; K_gamma (t,) under those solved."""
     stage, planets = result.stage, len(result.stage.stage.angles)
-    speed, (sun, planet, _) = relative_speed(stage), stage.teeth
+    ratio, (sun, planet, _) = speed_ratio(stage), stage.teeth
     widths = [mesh.common_face_width for mesh in stage.meshes]
-    ratio = REVERSED * min(widths) / max(widths)
     assert stage.planet.strength is not None
-    bent, mean = _reversed(stage.planet.strength, ratio)
-    cycles = (
-        _under_even_shares(result, result.sun_mesh, stage.sun_scene, speed, (stage.sun.strength, bent)),
-        _under_even_shares(
-            result, result.ring_mesh, stage.ring_scene, speed * sun / planet, (bent, stage.ring.strength)
-        ),
-    )
+    bent, mean = _reversed(stage.planet.strength, REVERSED * min(widths) / max(widths))
+    scenes = (stage.sun_scene, (stage.sun.strength, bent)), (stage.ring_scene, (bent, stage.ring.strength))
+    shares = [_EvenShare(cycle, stage) for cycle in (result.sun_mesh, result.ring_mesh)]
+    own = [
+        replace(cases, torque=share.of(cases.torque), speed=cases.speed * turns)
+        for share, turns in zip(shares, (ratio, ratio * sun / planet), strict=True)
+    ]
+    cycles = [
+        share.under(np.asarray(result.torque), _rated_scene(stage, scene, strengths, float(of_mesh.speed.max())))
+        for share, (scene, strengths), of_mesh in zip(shares, scenes, own, strict=True)
+    ]
     at_sun, at_ring = _computed_ratios(*cycles) if stage.analysis.root_stress else (None, None)
-    with in_words_of(SUN_MESH):
-        of_sun = rating_of(
-            cycles[0],
-            duty=Duty(factor, (planets, 1), mean_stress_factors=(None, mean), stress_ratios=(None, at_sun)),
-            warn=False,
-        )
-    with in_words_of(RING_MESH):
-        of_ring = rating_of(
-            cycles[1],
-            duty=Duty(factor, (1, planets), True, mean_stress_factors=(mean, None), stress_ratios=(at_ring, None)),
-            warn=False,
-        )
-    return of_sun, of_ring
+    duties = (
+        Duty(factor, (planets, 1), False, (None, mean), (None, at_sun), own[0]),
+        Duty(factor, (1, planets), True, (mean, None), (at_ring, None), own[1]),
+    )
+    ratings = []
+    for gears, cycle, duty in zip(MESHES.values(), cycles, duties, strict=True):
+        with in_words_of(gears):
+            ratings.append(rating_of(cycle, duty=duty, warn=False))
+    first, second = ratings
+    return first, second
 
 
 def _reversed(strength: StrengthSection, ratio: float) -> tuple[StrengthSection, float | None]:
@@ -230,52 +309,69 @@ def _computed_ratios(of_sun: MeshCycle, of_ring: MeshCycle) -> tuple[Array, Arra
     return compression[1] / tension[0], compression[0] / tension[1]
 
 
-def _under_even_shares(
-    result: StageResult,
-    cycle: MeshCycle,
+@dataclass(frozen=True, eq=False)
+class _EvenShare:
+    """Torques of the pinion of a mesh under even shares of those of the sun."""
+
+    cycle: MeshCycle
+    stage: Stage
+
+    def of(self, torques: Array) -> Array:
+        """Of torques of the sun (n,) [N mm]."""
+        radii = self.cycle.gear_pair.base_radii[0] / self.stage.meshes[0].pinion.base_radius
+        return torques / len(self.stage.stage.angles) * radii
+
+    def under(self, torques: Array, scene: CylindricalScene) -> MeshCycle:
+        """Mesh cycle under the even shares of torques of the sun (t,) alone, of which it has those solved."""
+        even, solved = self.of(torques), self.cycle.dataset["torque"]
+        places = np.abs(solved.values / even[:, None] - 1.0).argmin(axis=1)
+        analysis = replace(self.cycle.scene.analysis, torques_Nm=tuple((1e-3 * even).tolist()))
+        # even shares as load cases have them: those solved went through N m
+        under = self.cycle.dataset.isel(torque=places).assign_coords(torque=solved[places].copy(data=even))
+        return replace(
+            self.cycle,
+            scene=replace(scene, analysis=analysis),
+            dataset=under,
+            maps=tuple(self.cycle.maps[place] for place in places),
+            states=None,
+        )
+
+
+def _rated_scene(
+    stage: Stage,
     scene: CylindricalScene,
-    speed: float,
     strengths: tuple[StrengthSection | None, StrengthSection | None],
-) -> MeshCycle:
-    """Mesh cycle under the even shares of all torques alone, whose scene says what a rating needs."""
-    stage, planets = result.stage, len(result.stage.stage.angles)
-    radii = cycle.gear_pair.base_radii[0] / stage.meshes[0].pinion.base_radius
-    even = np.asarray(result.torque) / planets * radii
-    torques = cycle.dataset["torque"].values
-    places = np.abs(torques / even[:, None] - 1.0).argmin(axis=1)
+    speed: float,
+) -> CylindricalScene:
+    """Scene of a mesh that says what its rating needs; ``speed`` is the largest of its pinion [rpm]."""
     assert stage.rating is not None
-    assert stage.operation is not None
     values = {name: value for name, value in contents(stage.rating).items() if name != "mesh_load_factor"}
-    operation = Operation(
-        pinion_speed_rpm=speed,
-        application_factor=stage.operation.application_factor,
-        dynamic_factor=stage.operation.dynamic_factor,
-    )
-    analysis = replace(cycle.scene.analysis, torques_Nm=tuple((1e-3 * torques[places]).tolist()))
-    rated = replace(
+    operation = Operation(pinion_speed_rpm=speed)
+    if stage.operation is not None:
+        factors = {name: getattr(stage.operation, name) for name in ("application_factor", "dynamic_factor")}
+        operation = replace(operation, **factors)
+    return replace(
         scene,
         pinion=replace(scene.pinion, strength=strengths[0]),
         wheel=replace(scene.wheel, strength=strengths[1]),
         operation=operation,
         lubricant=stage.lubricant,
         rating=RatingSection(**values),
-        analysis=analysis,
     )
-    return replace(
-        cycle,
-        scene=rated,
-        dataset=cycle.dataset.isel(torque=places),
-        maps=tuple(cycle.maps[place] for place in places),
-        states=None,
-    )
+
+
+def _turns(of_sun: Rating, of_ring: Rating) -> Array:
+    """Load cycles of sun, planet and ring in an hour of each load case (c, 3)."""
+    at_sun, at_ring = of_sun.inputs.cycles_per_hour, of_ring.inputs.cycles_per_hour
+    return np.stack([at_sun[:, 0], at_sun[:, 1], at_ring[:, 1]], axis=1)
 
 
 def _of_gears(of_sun: Rating, of_ring: Rating) -> dict[str, Array]:
-    """Numbers of sun, planet and ring (t, 3, ...); of the planet the worse one of both meshes."""
+    """Numbers of load cases of sun, planet and ring (c, 3); of planets the smaller safety of both meshes."""
 
-    def joined(name: str, worse: Callable[[Array, Array], Array] = np.minimum) -> Array:
+    def joined(name: str) -> Array:
         first, second = of_sun.values(name), of_ring.values(name)
-        return np.stack([first[:, 0], worse(first[:, 1], second[:, 0]), second[:, 1]], axis=1)
+        return np.stack([first[:, 0], np.minimum(first[:, 1], second[:, 0]), second[:, 1]], axis=1)
 
-    least = {name: joined(name) for name in (*_LEAST, "life_hours", "cycles") if of_sun.has(name)}
-    return least | {"damage": joined("damage", np.maximum)} | {name: of_sun.values(name) for name in _LOADS}
+    least = {name: joined(name) for name in (*_LEAST, "cycles") if of_sun.has(name)}
+    return least | {name: of_sun.values(name) for name in _LOADS}

@@ -285,11 +285,13 @@ class StageResult(JoinedResult):
         """Return safeties and lives of sun, planets and ring, after ISO 6336 and by the local stresses.
 
         Materials, required safeties, speed and oil are those of the stage: [sun.strength], [planet.strength],
-        [ring.strength], [rating], [operation], [lubricant].
+        [ring.strength], [rating], [operation], [lubricant]. Each torque is a load case for itself; under a load
+        spectrum of the stage, ``load.case``, the cases are its bins, and their damage adds up.
 
         Returns
         -------
-        loaded_tca.stages.rating.StageRating
+        loaded_tca.stages.StageRating
+            Under a load spectrum a :class:`loaded_tca.stages.StageSpectrumRating`.
 
         Raises
         ------
@@ -299,7 +301,8 @@ class StageResult(JoinedResult):
         Warns
         -----
         AccuracyWarning
-            Where the largest pressure lies at an edge of a flank.
+            As of the rating of a pair, of both meshes; of a spectrum where stresses between the torques that were
+            solved make the damage of a gear wrong by more than 1 %.
         """
         from loaded_tca.stages.rating import stage_rating_of  # which takes results
 

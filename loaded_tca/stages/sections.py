@@ -20,18 +20,35 @@ from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.equivalents import OF_HELICAL
 from loaded_tca.scene.internal import InternalScene, RingSection
 from loaded_tca.scene.keys import Choice, Either, Key, Line, List, Number, Whole, above_zero, key
-from loaded_tca.scene.load import Load, TORQUE_Nm
+from loaded_tca.scene.load import (
+    MOST_BINS,
+    AnyLoad,
+    Bin,
+    Load,
+    TORQUE_Nm,
+    alternatives_of,
+    hours_of_bin,
+    life_is_given,
+    load_rules,
+    reversed_of_bin,
+    share_of_bin,
+    speed_of_bin,
+    torque_of_bin,
+    within_solved,
+)
 from loaded_tca.scene.parse import toml_lines
 from loaded_tca.scene.rating import ANALYSIS, LOAD_FACTOR, RatingSection
 from loaded_tca.scene.section import (
     Rule,
     Section,
+    Tables,
     as_table,
     check,
     contents,
     in_keys,
     key_at,
     made,
+    place_at,
     replaced_by,
     subsection,
     told_as_written,
@@ -183,10 +200,46 @@ class StageGeometry(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class StageLoad(Section):
-    """[load] of a stage."""
+class StageLoadCase(Bin):
+    """[[load.case]] of a stage: a bin of its load spectrum."""
 
-    sun_torque_Nm: float = key(TORQUE_Nm, "magnitude of the torque on the sun")
+    MEMBER: ClassVar[str] = "sun"
+    OTHER_WAY: ClassVar[str] = "stage.driving"
+    sun_torque_Nm: float = torque_of_bin("magnitude of the torque on the sun")
+    sun_speed_rpm: float | None = speed_of_bin(
+        "speed of the sun; the ring stands still", None, "`operation.sun_speed_rpm`"
+    )
+    hours: float | None = hours_of_bin()
+    share: float | None = share_of_bin()
+    reversed: bool = reversed_of_bin()
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageLoad(AnyLoad):
+    """[load] of a stage: torque on the sun, or the bins of a load spectrum."""
+
+    CASE: ClassVar[type[Bin]] = StageLoadCase
+    sun_torque_Nm: float | None = key(
+        TORQUE_Nm, "magnitude of the torque on the sun", None, "those of `case` or `spectrum`"
+    )
+    case: tuple[StageLoadCase, ...] | None = key(
+        Tables(StageLoadCase, 1, MOST_BINS),
+        "or the bins of a load spectrum, each a table `[[load.case]]` of `sun_torque_Nm`, `hours` or `share`, "
+        "`sun_speed_rpm`, by default that of [operation], and `reversed`, as of pairs; of more than twelve torques, "
+        "twelve in equal steps are solved",
+        None,
+        "no spectrum",
+    )
+    spectrum: str | None = key(
+        Line(1000),
+        "or a CSV file, relative to the folder of the stage, a line for each bin, its keys as columns: "
+        "`sun_torque_Nm`, `hours` or `share`, and where wanted `sun_speed_rpm` and `reversed` (true, false)",
+        None,
+        "as `case`",
+    )
+
+    alternatives: ClassVar[tuple[str, ...]] = alternatives_of(StageLoadCase)
+    rules: ClassVar[tuple[Rule, ...]] = load_rules(StageLoadCase)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -265,19 +318,15 @@ class Stage(Section):
         Rule(
             ("load.sun_torque_Nm", "analysis.torques_Nm"),
             lambda torque, several: (
-                None if several or torque > 0.0 else "found 0; allowed above 0: a stage shares a torque"
+                "found 0; allowed above 0: a stage shares a torque" if torque == 0.0 and not several else None
             ),
         ),
         Rule(
             ("analysis.torques_Nm",),
             lambda several: None if all(several or (1.0,)) else "found 0; allowed above 0: a stage shares a torque",
         ),
-        Rule(
-            ("rating.life_hours",),
-            lambda hours: (
-                None if hours is not None else "missing; a stage has no load cases whose hours could be meant"
-            ),
-        ),
+        Rule(("load", "analysis.torques_Nm"), within_solved),
+        Rule(("rating.life_hours", "load"), life_is_given),
         Rule(
             ("analysis.load_sharing",),
             lambda sharing: None if sharing else "found false; allowed true: the meshes of a stage share the load",
@@ -295,9 +344,9 @@ class Stage(Section):
 
     @property
     def sun_torques(self) -> tuple[float, ...]:
-        """Torques of the sun [N mm]."""
+        """Torques of the sun to analyse [N mm]; of a load spectrum of many bins a dozen."""
         several = self.analysis.torques_Nm
-        return tuple(1e3 * torque for torque in (several or (self.load.sun_torque_Nm,)))
+        return tuple(1e3 * torque for torque in several) if several else self.load.torques
 
     @cached_property
     def centre_distance(self) -> float:
@@ -402,14 +451,12 @@ class Stage(Section):
             if path in of_planets:
                 continue
             *sections, name = path.split(".")
-            place = table
-            for section in sections:
-                place = place.setdefault(section, {})
+            place = place_at(table, sections)
             if value is None:
                 place.pop(name, None)
             else:
                 place[name] = value
-        own = table.setdefault("stage", {})
+        own = place_at(table, ["stage"])
         for path, value in of_planets.items():
             _, name, number = path.split(".")
             count = own.get("planets") or len(own.get("planet_angles_deg") or ())

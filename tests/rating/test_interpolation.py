@@ -33,7 +33,8 @@ class Inputs:
 
 def loads(torque, pressure):
     places = np.zeros((2, len(torque), 2))
-    return SolvedLoads(torque, np.ones(len(torque)), np.ones(len(torque)), pressure, places, places[0, :, 0] > 0.0)
+    ones = np.ones(len(torque))
+    return SolvedLoads(torque, ones, ones, ones, pressure, places, ones < 0.0)
 
 
 def by(curve):

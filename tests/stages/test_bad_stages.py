@@ -22,6 +22,13 @@ def changed(**keys):
     return parse_stage(TEXT).with_changes({name.replace("__", "."): value for name, value in keys.items()})
 
 
+def test_changes_of_a_section_and_its_keys_leave_the_given_section_alone():
+    section = {"sun_speed_rpm": 100.0}
+    stage = changed(operation=section, operation__application_factor=1.2)
+    assert stage.operation.application_factor == 1.2
+    assert section == {"sun_speed_rpm": 100.0}
+
+
 def meshes(**keys):
     return changed(**keys).meshes
 
@@ -39,7 +46,7 @@ test_bad_stage_is_refused = refused_calls(
     ),
     (
         lambda: changed(rating={"required_flank_safety": 1.0, "required_root_safety": 1.4}),
-        "rating.life_hours: missing; a stage has no load cases",
+        "rating.life_hours: missing; needed but for load cases with hours",
     ),
     (lambda: on_angles(0.0, 90.0, 172.8), "stage.planet_angles_deg: found planets on one side of a sun .*187.2 deg"),
     (lambda: parse_stage('stage = "wind_spur.toml"'), "not a stage but a study of wind_spur.toml"),

@@ -1,0 +1,232 @@
+"""Ratings of stages under load spectra: single meshes counted by hand, fillets of planets, K_gamma between torques."""
+
+import functools
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.output import write_rating
+from loaded_tca.stages import StageResult, parse_stage
+from loaded_tca.stages.analyse import _shared, states_of
+from tests.refusals import refused_calls
+from tests.samples.rating import HARD, RATED
+from tests.samples.stages import analysed, stage_of_few_cells
+from tests.stages.test_stage_rating import SECTIONS
+
+ROUNDING = 1e-9  # exponents of S-N curves, up to 33, multiply rounding of stresses
+TORQUES = 45.0, 150.0, 300.0, 480.0  # of the sun: even shares that both mesh cycles of the sample were solved for
+REQUIRED = {"rating.required_flank_safety": 1.3, "rating.required_root_safety": 2.4}
+"""With these most stresses lie on slopes of their curves."""
+
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:rating.*at an edge:loaded_tca.AccuracyWarning", "ignore:rating.*static strength:loaded_tca.AccuracyWarning"
+)
+
+
+@functools.cache
+def solved():
+    """The stage of few cells under several torques."""
+    whole, _ = analysed()
+    stage, cycles = whole.stage.with_changes({"analysis.torques_Nm": TORQUES}), (whole.sun_mesh, whole.ring_mesh)
+    forces = cycles[0].dataset["torque"].values / cycles[0].gear_pair.base_radii[0]
+    arrays = _shared(stage, 1e3 * np.array(TORQUES), forces, cycles)
+    return replace(whole, stage=stage, dataset=StageResult.dataset_of(arrays, **whole.dataset.attrs))
+
+
+def bins(*rows, **more):
+    """Bins of (torque, hours), and keys that all of them have."""
+    return [{"sun_torque_Nm": torque, "hours": hours} | more for torque, hours in rows]
+
+
+def under(cases, **changes):
+    """Rating of that stage under bins."""
+    return rated(**{"load.case": cases} | changes)
+
+
+def rated(**changes):
+    """The same under each torque for itself."""
+    result = solved()
+    return replace(result, stage=result.stage.with_changes(SECTIONS | REQUIRED).with_changes(changes)).rating()
+
+
+def test_one_bin_is_the_rating_at_its_torque():
+    single, one = rated(), under(bins((480.0, 7.0)))
+    assert_allclose(one.damage[0], single.damage[3], rtol=ROUNDING)
+    assert_allclose(one.life_hours, single.life_hours[3], rtol=ROUNDING)
+    assert_allclose(one.flank_safety[0], single.flank_safety[3], rtol=ROUNDING)
+    assert_allclose(one.K_gamma[0], single.K_gamma[3], rtol=ROUNDING)
+    assert_array_equal(one.interpolation_error, 0.0)
+    assert (one.miner_sum[:, :2] > 0.0).any(axis=1).all()
+
+
+def test_damage_of_bins_adds_up_by_hours_and_halves_are_one_bin():
+    single = rated()
+    parts = under(bins((300.0, 5.0), (480.0, 2.0), (300.0, 1.0)))
+    assert_allclose(parts.miner_sum, 0.75 * single.damage[2] + 0.25 * single.damage[3], rtol=ROUNDING)
+    assert_allclose(parts.damage.sum(axis=0), parts.miner_sum, rtol=ROUNDING)
+    assert_allclose(parts.damage[0], 5.0 * parts.damage[2], rtol=ROUNDING)
+    shares = [{"sun_torque_Nm": 300.0, "share": 0.75}, {"sun_torque_Nm": 480.0, "share": 0.25}]
+    assert_allclose(under(shares).life_hours, parts.life_hours, rtol=ROUNDING)
+
+
+def test_stage_of_equal_planets_is_its_single_meshes_with_cycles_by_hand():
+    """K_gamma 1: pairs under even shares; a tooth of sun and ring meets all planets in a turn against the carrier."""
+    rows = ((300.0, 3.0), (480.0, 1.0))
+    stage = under(bins(*rows), **{"rating.mesh_load_factor": 1.0})
+    sun, planet, ring = stage.stage.teeth
+    planets, relative = len(stage.stage.stage.angles), 6000.0 * ring / (sun + ring)
+    widths = [mesh.common_face_width for mesh in stage.stage.meshes]
+    bent = HARD | {"root_stress_ratio": -1.2 * min(widths) / max(widths)}
+    whole, meshes = solved(), []
+    for cycle, speed, strengths, share in (
+        (whole.sun_mesh, relative, (HARD, bent), 1.0),
+        (whole.ring_mesh, relative * sun / planet, (bent, HARD), planet / sun),
+    ):
+        changes = {"pinion.strength": strengths[0], "wheel.strength": strengths[1]} | REQUIRED
+        cases = [{"pinion_torque_Nm": share * torque / planets, "hours": hours} for torque, hours in rows]
+        more = {"operation.pinion_speed_rpm": speed, "load.case": cases}
+        meshes.append(replace(cycle, scene=cycle.scene.with_changes(RATED | changes | more)).rating().miner_sum)
+    expected = [planets * meshes[0][0], np.maximum(meshes[0][1], meshes[1][0]), planets * meshes[1][1]]
+    assert np.isfinite(expected[:2]).any()
+    assert_allclose(stage.miner_sum, expected, rtol=1e-7)  # torques of the mesh cycles went through N m
+
+
+def test_fillets_of_planets_are_drawn_by_both_meshes_where_bins_are_reversed():
+    rating = under(bins((480.0, 1.0), (300.0, 4.0)) + bins((480.0, 3.0), reversed=True))
+    back = np.array([False, False, True])
+    of_mode = rating.modes.index("root")
+    at_sun, at_ring = rating.sun_mesh.damage[:, 1, of_mode], rating.ring_mesh.damage[:, 0, of_mode]
+    fillets = at_sun[~back].sum() + at_ring[back].sum(), at_ring[~back].sum() + at_sun[back].sum()
+    assert fillets[0] != pytest.approx(fillets[1])
+    assert_allclose(rating.miner_sum[1, of_mode], max(fillets), rtol=ROUNDING)
+    assert_array_equal(rating.damage[2][:, rating.modes.index("flank")], 0.0)
+    assert_allclose(rating.miner_sum[0, of_mode], rating.sun_mesh.damage[:, 0, of_mode].sum(), rtol=ROUNDING)
+
+
+def test_flank_of_a_planet_that_decides_has_the_smaller_safety_of_both():
+    rating, mode = under(bins((300.0, 1.0), (480.0, 1.0))), 0
+    safeties = rating.sun_mesh.spectrum_safety[1, mode], rating.ring_mesh.spectrum_safety[0, mode]
+    assert_allclose(rating.spectrum_safety[1, mode], min(safeties), rtol=ROUNDING)
+    assert_allclose(rating.miner_sum[1, mode], rating.sun_mesh.miner_sum[1, mode], rtol=ROUNDING)
+    assert safeties[0] < safeties[1]
+
+
+def test_speed_of_a_bin_counts_its_load_cycles_against_the_carrier():
+    rating = under(bins((300.0, 1.0)) + bins((300.0, 1.0), sun_speed_rpm=1500.0))
+    sun, planet, ring = rating.stage.teeth
+    planets, relative = len(rating.stage.stage.angles), ring / (sun + ring)
+    turns = 60.0 * 10000.0 * relative * np.array([[6000.0], [1500.0]])
+    assert_allclose(rating.cycles, turns * [planets, sun / planet, planets * sun / ring], rtol=ROUNDING)
+    assert_allclose(rating.sun_mesh.pinion_speed, relative * np.array([6000.0, 1500.0]), rtol=ROUNDING)
+    assert under(bins((300.0, 1.0), sun_speed_rpm=100.0), operation=None).K_A == 1.0
+
+
+@pytest.mark.filterwarnings("ignore:rating. the damage of the spectrum may be wrong:loaded_tca.AccuracyWarning")
+def test_mesh_load_factor_is_interpolated_and_no_planet_carries_more_than_all(monkeypatch):
+    law = 1.3 * (np.array(TORQUES) / 300.0) ** -0.5  # powers of the torque are interpolated exactly
+    result = solved()
+    sharing = replace(result, dataset=result.dataset.assign(mesh_load_factor=("torque", law)))
+    monkeypatch.setattr("tests.stages.test_stage_spectrum.solved", lambda: sharing)
+    torques = np.array([480.0, 200.0, 40.0, 2.0, 0.0])
+    rating = under(bins(*((torque, 1.0) for torque in torques)))
+    expected = np.minimum(1.3 * (torques[:4] / 300.0) ** -0.5, len(rating.stage.stage.angles))
+    assert_allclose(rating.K_gamma, [*expected, np.nan], rtol=ROUNDING)
+    assert_allclose(rating.sun_mesh.K_gamma, rating.ring_mesh.K_gamma, rtol=ROUNDING)
+    assert_array_equal(rating.damage[4], 0.0)
+
+
+def test_error_of_interpolation_is_told_of_the_gears():
+    cases = bins(*((torque, 1.0) for torque in np.linspace(60.0, 480.0, 15)))
+    with pytest.warns(AccuracyWarning, match="damage of the spectrum may be wrong") as given:
+        rating = under(cases)
+    told = [str(one.message) for one in given if "spectrum may be wrong" in str(one.message)]
+    assert len(told) == 1  # one of both meshes
+    error = rating.interpolation_error
+    assert_allclose(error[[0, 2]], [rating.sun_mesh.interpolation_error[0], rating.ring_mesh.interpolation_error[1]])
+    assert_allclose(error[1, 1], rating.sun_mesh.interpolation_error[1, 1])
+    assert f"wrong by {np.nanmax(error):.1%}" in told[0]
+    with pytest.warns(AccuracyWarning):
+        back = under(cases + bins((100.0, 1.0), (101.0, 1.0), reversed=True))
+    # errors of the bins of both meshes add up, none counts less than in the mesh that does most of the damage
+    assert error[1, 1] < back.interpolation_error[1, 1] < 4.0 * error[1, 1]
+
+
+def test_many_bins_solve_no_more_torques_than_a_dozen():
+    torques = np.linspace(50.0, 300.0, 500)
+    stage = stage_of_few_cells().with_changes(
+        {"analysis.torques_Nm": None, "load.case": bins(*((torque, 1.0) for torque in torques))}
+    )
+    dozen = stage.with_changes({"load.case": bins(*((1e-3 * torque, 1.0) for torque in stage.sun_torques))})
+    assert len(stage.sun_torques) == len(dozen.sun_torques) == 12
+    assert states_of(stage) == states_of(dozen)
+    assert parse_stage(stage.to_toml()) == stage
+
+
+def test_numbers_of_a_spectrum_stand_in_summary_and_files(tmp_path):
+    rating = under(bins((300.0, 1.0), (480.0, 1.0)), title="Two bins")
+    text = rating.summary()
+    assert [line.split() for line in text.splitlines() if line.startswith("spectrum")] == [
+        ["spectrum", "sun", "planet", "ring"]
+    ]
+    assert "ISO 6336-6:2019 with 2 bins, sun at 6000 rpm" in text
+    assert sum("follow each other" in line for line in text.splitlines()) == 1  # not of each mesh
+    assert not any(word in text for word in ("pinion", "wheel"))
+    stored = json.loads(write_rating(rating, tmp_path)[0].read_text(encoding="utf-8"))
+    assert stored["spectrum"]["bins"] == 2
+    assert stored["spectrum"]["planet_root"]["miner_sum"] == rating.miner_sum[1, 1]
+    assert stored["torques"][1]["ring_mesh_planet_Y_M"] == rating.ring_mesh.Y_M[1, 0]
+    assert rating.key_figures()[0]["sun_root_equivalent_torque_Nm"] == 1e-3 * rating.equivalent_torque[0, 1]
+
+
+IRON = {"kind": "GG", "sigma_H_lim_MPa": 300.0, "sigma_F_lim_MPa": 60.0, "proof_stress_MPa": 250.0}
+IRON |= {"flank_Rz_um": 4.8, "root_Rz_um": 20.0}
+BACK = [*bins((300.0, 1.0)), *bins((300.0, 1.0), reversed=True)]
+
+test_bad_spectrum_is_refused = refused_calls(
+    (lambda: under(bins((480.1, 1.0))), "load: a bin has 480.1 N m; allowed up to 480, the largest of analysis"),
+    (
+        lambda: under(bins((600.0, 1.0)), **{"analysis.torques_Nm": None}),
+        "load.case: a bin has 600 N m; allowed up to 480, the largest that was solved",
+    ),
+    (
+        lambda: under(bins((300.0, 1.0)), operation=None),
+        "operation: missing; strength, cycles and K_v depend on sun_speed_rpm; bin 0 has none of its own",
+    ),
+    (
+        lambda: under(BACK, **{"ring.strength": IRON}),
+        r"load.case: reversed bins; the standard has no Y_M of kind 'GG' \(ring.strength\)",
+    ),
+    (lambda: under(bins((300.0, 0.0))), "load.case: the hours sum to 0; allowed above 0"),
+    (lambda: under(bins((0.0, 1.0))), "load.case: no bin has a sun_torque_Nm above 0"),
+    (lambda: under(bins((300.0, 1.0), reversed=True)), "load.case: all bins are reversed; change stage.driving"),
+    (lambda: under(bins((300.0, -1.0))), "load.case: table 0: hours: found -1.0; allowed a number from 0"),
+    (lambda: under([{"pinion_torque_Nm": 3.0, "hours": 1.0}]), 'pinion_torque_Nm: unknown key; did you mean "sun_tor'),
+    (lambda: rated(**{"load.sun_torque_Nm": None}), "load.sun_torque_Nm: missing; give a torque, or the bins"),
+    (
+        lambda: under([{"sun_torque_Nm": 300.0, "share": 1.0}], **{"rating.life_hours": None}),
+        "rating.life_hours: missing; needed but for load cases with hours",
+    ),
+)
+
+
+def test_planets_of_cast_iron_are_rated_under_reversed_bins():
+    rating = under(BACK, **{"planet.strength": IRON})
+    assert_array_equal(rating.sun_mesh.Y_M[:, 1], 0.7)
+
+
+def test_spectrum_of_a_file(tmp_path):
+    file = tmp_path / "bins.csv"
+    file.write_text("sun_torque_Nm,hours,reversed\n300,4\n480,1,true\n", encoding="utf-8")
+    text = solved().stage.with_changes(SECTIONS | REQUIRED | {"load.sun_torque_Nm": 480.0}).to_toml()
+    stage = parse_stage(text.replace("sun_torque_Nm = 480.0", 'spectrum = "bins.csv"'), folder=tmp_path)
+    assert (
+        stage.load.case
+        == stage.with_changes({"load.case": bins((300.0, 4.0)) + bins((480.0, 1.0), reversed=True)}).load.case
+    )
+    file.write_text("pinion_torque_Nm,hours\n300,4\n", encoding="utf-8")
+    with pytest.raises(InputError, match="no column sun_torque_Nm; found pinion_torque_Nm"):
+        stage.with_changes({"load.spectrum": str(file)})
