@@ -413,6 +413,8 @@ def _add_studies(command: Command) -> None:
     text = "result.nc, stage.nc, double_helical.nc, study.nc, the file of a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
+    text = "of a result or a study, a page with sliders for a browser; default of --out: interactive.html"
+    report.add_argument("--interactive", action="store_true", help=text)
     report.add_argument(
         "--rank-by", metavar="FIGURE", help="of a study, figure that ranks, best first; default: TE span"
     )

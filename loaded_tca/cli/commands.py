@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from loaded_tca.cli.directories import REPORT, outdated_files, remove_empty_parts, require_place_of
+from loaded_tca.cli.directories import INTERACTIVE_REPORT, REPORT, outdated_files, remove_empty_parts, require_place_of
 from loaded_tca.cli.inputs import (
     STUDY_FILE,
     changes_of,
@@ -549,12 +549,13 @@ def report(options: argparse.Namespace) -> None:
     from loaded_tca.reports import write_html_report
 
     path, out = file_of_report(options.result), options.out
-    out = path.parent / REPORT if out is None else out
+    out = path.parent / (INTERACTIVE_REPORT if options.interactive else REPORT) if out is None else out
     check_files([out], path)
     subject = subject_of_report(path)
     date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
     date = getattr(subject, "date", "") or date
-    print_files([write_html_report(subject, out, date=date, rank_by=options.rank_by)])
+    ways = {"date": date, "rank_by": options.rank_by, "interactive": options.interactive}
+    print_files([write_html_report(subject, out, **ways)])
 
 
 def check(options: argparse.Namespace) -> None:

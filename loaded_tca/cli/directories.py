@@ -67,12 +67,12 @@ def names_of_result() -> set[str]:
     tables = *(path.name for path in tables_at(Path(DYNAMICS))), SENSITIVITY_DATA, SENSITIVITIES
     pictures = *PICTURES, *MORE_PICTURES, *SENSITIVITY_PICTURES, *TRIBOLOGY_PICTURES, *RATING_PICTURES
     pictures += "teeth", *(f"subsurface_{quantity}" for quantity in NAMES)
-    others = "at_a_glance.pdf", REPORT, STRESS_FIELDS, STRESS_TABLE
+    others = "at_a_glance.pdf", REPORT, INTERACTIVE_REPORT, STRESS_FIELDS, STRESS_TABLE
     return {*tables, *TRIBOLOGY_FILES, *RATING_FILES, *TEETH_FILES, *others, *(f"{name}.png" for name in pictures)}
 
 
-REPORT = "report.html"
-"""Name of the report of a result, where no other is asked for."""
+REPORT, INTERACTIVE_REPORT = "report.html", "interactive.html"
+"""Names of the reports of a result, where no other is asked for."""
 
 
 def outdated_files(directory: Path) -> list[str]:

@@ -20,7 +20,7 @@ from matplotlib.patches import Patch, Polygon
 
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.flank_maps.conjugate import GearName
-from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.base import Flank, Point
 from loaded_tca.flanks.rounding import RoundedFlank, edge_places
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plain import plain, signed
@@ -49,6 +49,8 @@ LEAST_SEEN = 0.01
 """Part of the height of a flank from which an area of it is seen."""
 FINENESS = (129, 33)
 """Points along the profile and lengthwise from which the outline of a flank is drawn."""
+MARGIN = 0.08
+"""About the outline of a flank, over its size."""
 
 
 @dataclass(frozen=True)
@@ -309,26 +311,45 @@ def _draw_on_flank(
 
 def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
     """The flank from root to tip, with the part from profile coordinate ``start`` on in white; returns its outline."""
-    rho, z = flank.grid(*FINENESS)
-    along = flank.profile_coordinate(rho, z).value
-    active = [np.array([np.interp(start, along[:, k], part[:, k]) for k in range(along.shape[1])]) for part in (rho, z)]
-    regions = []
-    for bottom, colour in (((rho[0], z[0]), NOT_REACHED), (active, "white")):
-        around = (np.concatenate([first, last[-1, ::-1]]) for first, last in zip(bottom, (rho, z), strict=True))
-        corners = np.stack(flank.frame.to_picture(*around), axis=-1)
-        regions.append(Polygon(corners, facecolor=colour, edgecolor="black"))
-        axes.add_patch(regions[-1])
-    lower, upper = regions[0].get_xy().min(axis=0), regions[0].get_xy().max(axis=0)
+    outlines, ends = flank_outlines(flank, start)
+    regions = [
+        Polygon(corners, facecolor=colour, edgecolor="black")
+        for corners, colour in zip(outlines, (NOT_REACHED, "white"), strict=True)
+    ]
+    for region in regions:
+        axes.add_patch(region)
     _draw_arcs(axes, flank)
-    margin = 0.08 * (upper - lower)
-    axes.set_xlim(lower[0] - margin[0], upper[0] + margin[0])
-    axes.set_ylim(lower[1] - margin[1], upper[1] + margin[1])
-    middle = FINENESS[1] // 2
-    ends = [(float(radius[middle]), float(axial[middle])) for radius, axial in (active, (rho[-1], z[-1]))]
+    low, high = limits_of_flank(outlines[0])
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
     axes.set_title(f"{name}, active from {flank.frame.profile_span(*ends)}", fontsize="small")
     axes.set_xlabel(flank.frame.labels[0])
     axes.set_ylabel(flank.frame.labels[1])
     return regions[0]
+
+
+def flank_outlines(flank: Flank, start: float) -> tuple[tuple[Array, Array], tuple[Point, Point]]:
+    """Outlines (n, 2) in its picture of a flank, and of the part from profile coordinate ``start`` on.
+
+    The ends (rho, z) of the profile of that part in the middle of the face come after them.
+    """
+    rho, z = flank.grid(*FINENESS)
+    along = flank.profile_coordinate(rho, z).value
+    active = [np.array([np.interp(start, along[:, k], part[:, k]) for k in range(along.shape[1])]) for part in (rho, z)]
+    outlines = []
+    for bottom in ((rho[0], z[0]), active):
+        around = (np.concatenate([first, last[-1, ::-1]]) for first, last in zip(bottom, (rho, z), strict=True))
+        outlines.append(np.stack(flank.frame.to_picture(*around), axis=-1))
+    middle = FINENESS[1] // 2
+    begin, end = ((float(radius[middle]), float(axial[middle])) for radius, axial in (active, (rho[-1], z[-1])))
+    return (outlines[0], outlines[1]), (begin, end)
+
+
+def limits_of_flank(outline: Array) -> tuple[Array, Array]:
+    """Lower and upper corner (2,) of the picture of a flank, with a margin about its outline (n, 2)."""
+    lower, upper = outline.min(axis=0), outline.max(axis=0)
+    margin = MARGIN * (upper - lower)
+    return lower - margin, upper + margin
 
 
 def _draw_arcs(axes: Axes, flank: Flank) -> None:

@@ -6,6 +6,7 @@ import io
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import Any
 
 from matplotlib import rc_context
@@ -126,6 +127,16 @@ def svg_of(figure: Figure, prefix: str, title: str) -> str:
     width, height = float(size[1]), float(size[2])
     shape = f'viewBox="0 0 {width:g} {height:g}" style="max-width:{width:g}pt"' + ' class="tall"' * (height > width)
     return f"<svg {about} {links} {shape}>{drawing[size.end() :].strip()}"
+
+
+def shown_date(date: str | None) -> str:
+    """A date as a reader takes it, to the minute; any other text as it is; without one now."""
+    date = date or datetime.now(UTC).isoformat(timespec="seconds")
+    try:
+        when = datetime.fromisoformat(date)
+    except ValueError:
+        return date
+    return f"{when:%Y-%m-%d %H:%M} {when.tzname() or ''}".strip()
 
 
 def render(template: str, **content: Any) -> str:

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -58,7 +57,14 @@ if TYPE_CHECKING:
 
 
 @checked
-def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, rank_by: str | None = None) -> Path:
+def write_html_report(
+    subject: Any,
+    path: FilePath,
+    *,
+    date: str | None = None,
+    rank_by: str | None = None,
+    interactive: bool = False,
+) -> Path:
     """Write the report of a result, a stage, a study or a design: one HTML file with pictures, which needs no other.
 
     It tells what was asked, the geometry, the load cases, the key figures with their units and how accurate they are,
@@ -78,6 +84,8 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
         Figure that ranks the variants of a study; default: the peak-to-peak transmission error. The least is best, of
         safeties, lives and films the largest. Where the study has distributions, combinations of its other values are
         ranked, by the 95 % quantile over their samples, or the 5 % quantile where the largest is best.
+    interactive : bool
+        True: the page of :func:`explore`, of a result or a study, which needs the extra ``interactive``.
 
     Returns
     -------
@@ -101,6 +109,10 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
     ...     write_html_report(analyse(scene), Path(directory, "report.html")).name
     'report.html'
     """
+    if interactive:
+        from loaded_tca.reports.interactive import explore  # which shows tables of this module, too
+
+        return explore(subject, date=date, rank_by=rank_by).save(path)
     page.require_jinja2()
     is_study = getattr(subject, "attrs", {}).get("kind") == STUDY
     require((rank_by is None or is_study, f"rank_by: {rank_by!r:.60}; a {type(subject).__name__} has no ranking"))
@@ -124,21 +136,12 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, 
                 "or a design"
             )
     content = {"version": version("loaded_tca"), **content}
-    content["date"] = _shown(date or datetime.now(UTC).isoformat(timespec="seconds"))
+    content["date"] = page.shown_date(date)
     text = page.render(template, **content)
     target = Path(path)
     make_directory(target.parent)
     replace_file(target, text.encode())
     return target
-
-
-def _shown(date: str) -> str:
-    """A date as a reader takes it: to the minute; any other text as it is."""
-    try:
-        when = datetime.fromisoformat(date)
-    except ValueError:
-        return date
-    return f"{when:%Y-%m-%d %H:%M} {when.tzname() or ''}".strip()
 
 
 MOST_ROWS = 30
@@ -164,6 +167,14 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
     rank_by : str, optional
         As for :func:`loaded_tca.studies.rank_variants`.
     """
+    figures = plot_study(study, rank_by=rank_by if main_figures(study) else None)
+    figures.pop("study_ranking")  # a table of the page
+    tables = study_tables(study, rank_by)
+    return {**tables, "pictures": pictures_of(figures, STUDY_CAPTIONS, tables["title"])}
+
+
+def study_tables(study: xarray.Dataset, rank_by: str | None = None) -> dict[str, Any]:
+    """Return what a page says of a study in words and tables; as :func:`study_content`, without pictures."""
     by = rank_by if main_figures(study) else None  # where all variants were refused there is nothing to rank by
     sampled = is_sampled(study)
     combinations = rank_combinations(study, by) if sampled else None
@@ -178,8 +189,6 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
         for reason, places in by_reason.items()
     }
     variants = study.sizes["sample"]
-    figures = plot_study(study, rank_by=by)
-    figures.pop("study_ranking")  # a table of the page
     return {
         "title": subject.title or "Study",
         "analysed_by": str(study.attrs.get("version", "")),
@@ -206,7 +215,6 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
             if status != "ok"
         ).most_common(),
         "warnings": explained([f"{reason} ({count} of {variants} variants)" for reason, count in concerned.items()]),
-        "pictures": pictures_of(figures, STUDY_CAPTIONS, subject.title),
     }
 
 

@@ -45,9 +45,25 @@ def result_content(result: MeshCycle) -> dict[str, Any]:
     ----------
     result : MeshCycle
     """
-    figures = result.key_figures()
     pictures = result_figures(result, more=True)
     glance = {name: pictures.pop(name) for name in ("at_a_glance",) if name in pictures}
+    return {
+        **result_tables(result),
+        "glance": pictures_of(glance, CAPTIONS, result.scene.title),
+        "pictures": pictures_of(pictures, CAPTIONS, result.scene.title),
+        "lubrication": _lubrication(result),
+        "rating": rating_content(result),
+    }
+
+
+def result_tables(result: MeshCycle) -> dict[str, Any]:
+    """Return what a page says of a result in words and tables.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    """
+    figures = result.key_figures()
     return {
         "title": result.scene.title or "Loaded tooth contact",
         "analysed_by": result.version,
@@ -58,10 +74,6 @@ def result_content(result: MeshCycle) -> dict[str, Any]:
         "limits": [*limits_of(figures), *result.findings()],
         "accuracy": [_accuracy(result, part, figures) for part in parts_of(figures, MOST_TORQUES)],
         "warnings": None if result.warnings is None else explained(result.warnings),
-        "glance": pictures_of(glance, CAPTIONS, result.scene.title),
-        "pictures": pictures_of(pictures, CAPTIONS, result.scene.title),
-        "lubrication": _lubrication(result),
-        "rating": rating_content(result),
     }
 
 

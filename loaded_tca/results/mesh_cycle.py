@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
     from loaded_tca.arrays import Array
     from loaded_tca.rating import Rating
+    from loaded_tca.reports import InteractivePage
     from loaded_tca.results.sensitivities import Sensitivities
     from loaded_tca.scene import Scene
     from loaded_tca.tribology import Lubricant, Tribology
@@ -241,6 +242,32 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         from loaded_tca.rating import rating_of  # which stands above results
 
         return rating_of(self)
+
+    def explore(self) -> InteractivePage:
+        """Return the interactive page of the result: sliders over positions and torques, all pictures linked.
+
+        As the last line of a cell of a notebook it is shown there; ``save`` writes it as one HTML file. It needs the
+        extra ``interactive``.
+
+        Returns
+        -------
+        loaded_tca.reports.InteractivePage
+
+        Raises
+        ------
+        InputError
+            If jinja2 or plotly is not installed.
+
+        Examples
+        --------
+        >>> from loaded_tca import analyse, read_scene
+        >>> changes = {"analysis.positions": 2, "analysis.torques_Nm": [20.0], "analysis.compliance": "contact"}
+        >>> analyse(read_scene("examples/scenes/mesh_cycle_spur.toml").with_changes(changes)).explore()
+        InteractivePage(title='Mesh cycle of a spur pair 34/57')
+        """
+        from loaded_tca.reports import explore  # which stands above results
+
+        return explore(self)
 
     def to_dynamics(self) -> xarray.Dataset:
         """Return curves over the pitch and their Fourier coefficients in SI units, for models of gear dynamics.
