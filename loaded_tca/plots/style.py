@@ -87,7 +87,7 @@ def png_of(figure: Figure) -> bytes:
     with estimated_at_first(figure), rc_context(FAST_TEXT):
         canvas.draw()  # once: savefig would draw the figure to lay it out, and then again
     figure.set_dpi(shown)
-    pixels = np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])  # figures let nothing shine through
+    pixels = np.asarray(canvas.buffer_rgba())[..., :3]  # figures let nothing shine through
     content = _png_content(pixels)
     return content if len(content) <= LARGEST_PICTURE else _png_content(*_with_palette(pixels))
 
@@ -96,16 +96,19 @@ def _png_content(pixels: NDArray[np.uint8], palette: NDArray[np.uint8] | None = 
     """PNG of pixels (m, n, 3), or of their places (m, n) in a palette (256, 3).
 
     Rows are not filtered: Pillow tries four filters on each, takes three times as long, and letters and curves take as
-    many bytes with them as without.
+    many bytes with them as without. One colour after the other is copied to them, in a tenth of the time of all three.
     """
-    rows = pixels.reshape(len(pixels), -1)
+    values = pixels.reshape(*pixels.shape[:2], -1)
+    rows, count = np.zeros((len(values), 1 + values[0].size), dtype=np.uint8), values.shape[-1]
+    for colour in range(count):
+        rows[:, 1 + colour :: count] = values[..., colour]
     kind = COLOUR_OF_PIXELS if palette is None else COLOUR_OF_PALETTE
     dots = round(DOTS_PER_INCH / METRES_PER_INCH)
     parts = [
         (b"IHDR", struct.pack(">2I5B", pixels.shape[1], pixels.shape[0], 8, kind, 0, 0, 0)),
         (b"pHYs", struct.pack(">2IB", dots, dots, 1)),
         (b"PLTE", b"" if palette is None else palette.tobytes()),
-        (b"IDAT", zlib.compress(np.pad(rows, ((0, 0), (1, 0))).tobytes(), PACKING)),
+        (b"IDAT", zlib.compress(rows.data, PACKING)),
         (b"IEND", b""),
     ]
     chunks = [
