@@ -159,6 +159,7 @@ STAGE = """files in DIR:
   stage_sun_orbit.png       motion of the sun's axis, all torques; of a sun that is not held rigid
   stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
   stage_orders.png          their orders of the mesh
+and with [rating] and what it needs the files of 'loaded-tca rating'.
 Numbers have their units in their names; docs/guide/planetary_stages.md says more."""
 IMPORT = """MODEL is a REXS file of version 1.0 to 1.7: XML (.rexs), JSON (.rexsj) or zip (.rexsz). FILE is a scene of
 the cylindrical stage: flanks, tools, modifications, materials, shafts, bearings, and the loads of other stages on the

@@ -194,13 +194,11 @@ def _changed_stage(options: argparse.Namespace) -> tuple[StageResult, Path]:
 
 
 def _rating_files(rated: Rating | StageRating, directory: Path) -> tuple[Path, ...]:
-    """Write a rating, of a pair with its pictures; those of an older one that it does not have go."""
+    """Write a rating with its pictures; those of an older one that it does not have go."""
     from loaded_tca.output.other_results import write_rating
     from loaded_tca.plots import RATING_PICTURES, png_of, rating_figures
-    from loaded_tca.rating import Rating
 
-    figures = rating_figures(rated) if isinstance(rated, Rating) else {}
-    pictures = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
+    pictures = {f"{name}.png": png_of(figure) for name, figure in rating_figures(rated).items()}
     return write_rating(rated, directory, pictures, outdated=[f"{name}.png" for name in RATING_PICTURES])
 
 
@@ -271,7 +269,7 @@ def _is_of_tribology(key: str) -> bool:
 def stage(options: argparse.Namespace) -> None:
     """Analyse a planetary stage, write everything into a directory, and show the summary."""
     from loaded_tca.output.other_results import RATING_FILES, write_stage
-    from loaded_tca.plots import png_of, stage_figures
+    from loaded_tca.plots import RATING_PICTURES, png_of, stage_figures
     from loaded_tca.stages import analyse_stage
     from loaded_tca.stages.analyse import expected_stage_effort, states_of
     from loaded_tca.stages.result import STAGE_FILE
@@ -284,7 +282,8 @@ def stage(options: argparse.Namespace) -> None:
     with progress_bar(expected_stage_effort(asked), "states of both meshes", states) as progress:
         result = analyse_stage(asked, progress=progress)
     pictures = {f"{name}.png": png_of(figure) for name, figure in stage_figures(result).items()}
-    written = write_stage(result, directory, pictures, outdated=RATING_FILES)
+    of_rating = *RATING_FILES, *(f"{name}.png" for name in RATING_PICTURES)
+    written = write_stage(result, directory, pictures, outdated=of_rating)
     files, rating_text = _rated(result, directory)
     summary = "\n\n".join(filter(None, (result.summary(), rating_text)))
     print_summary(summary, [*written, *files])

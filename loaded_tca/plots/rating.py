@@ -7,15 +7,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from loaded_tca.arrays import GEARS, Array
+from loaded_tca.arrays import Array
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.safety import SAFETY_PICTURES, RatingPicture
 from loaded_tca.plots.style import DISTINCT_COLOURS, NO_MATERIAL
-from loaded_tca.rating import Rating, SpectrumRating
+from loaded_tca.rating import Rating
 from loaded_tca.rating.lives import Endurance
 from loaded_tca.rating.places import is_shown
-from loaded_tca.rating.rating import WORDS
+from loaded_tca.rating.rating import WORDS, OfCases
+from loaded_tca.rating.spectrum import OfSpectrum
 
 SHOWN_CYCLES = 1e2, 1e11
 """Of the axis of load cycles, at least."""
@@ -24,14 +25,18 @@ MOST_BARS = 40
 LEAST_BAR, OF_ONE_DECADE = 1e-6, 0.1
 """Of the largest damage: what is drawn of smaller ones, and from where on down bars need a logarithmic axis."""
 FEWEST_CYCLES = 1.0
-GEAR_STYLES = {"pinion": (DISTINCT_COLOURS[0], "o", "-"), "wheel": (DISTINCT_COLOURS[1], "s", "--")}
-"""Colour, marker and line of each gear."""
+GEAR_STYLES = (
+    (DISTINCT_COLOURS[0], "o", "-", ""),
+    (DISTINCT_COLOURS[1], "s", "--", "///"),
+    (DISTINCT_COLOURS[5], "^", ":", "..."),
+)
+"""Colour, marker, line and hatch of each gear."""
 PANEL = 3.6
 """Height [inch]."""
 
 
-def plot_sn_curves(rating: Rating) -> Figure:
-    """S-N curves of both gears with the load cases at their load cycles and stresses times the required safety.
+def plot_sn_curves(rating: OfCases) -> Figure:
+    """S-N curves of all gears with the load cases at their load cycles and stresses times the required safety.
 
     Curves that differ from case to case, by the velocity factor or by Y_M of reversed bins, are those of the case of
     the largest damage. The other stresses are scaled by the strength of that curve over their own one at their load
@@ -39,32 +44,34 @@ def plot_sn_curves(rating: Rating) -> Figure:
 
     Parameters
     ----------
-    rating : Rating
+    rating : Rating or StageRating
 
     Returns
     -------
     matplotlib.figure.Figure
     """
     figure, panels = _panels(rating)
-    for (mode, both), axes in zip(rating.endurances.items(), panels, strict=True):
-        for gear, endurance in zip(GEARS, both, strict=True):
-            _draw_curve(axes, endurance, gear)
-        scaled = "" if all(endurance.has_one_curve for endurance in both) else "\nscaled to the strength of the curve"
+    for (mode, of_gears), axes in zip(rating.endurances.items(), panels, strict=True):
+        for place, endurance in enumerate(of_gears):
+            _draw_curve(axes, endurance, rating.MEMBERS[place], place)
+        scaled = (
+            "" if all(endurance.has_one_curve for endurance in of_gears) else "\nscaled to the strength of the curve"
+        )
         axes.set(xscale="log", yscale="log", ylabel=f"stress · required safety [MPa]{scaled}", xlabel="load cycles [-]")
         _finish(axes, WORDS[mode])
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(lambda value, _: plain(value))
         axes.yaxis.set_minor_formatter(NullFormatter())
-    kind = "bins" if isinstance(rating, SpectrumRating) else "torques"
+    kind = "bins" if isinstance(rating, OfSpectrum) else "torques"
     return _finished(figure, panels, rating, f"S-N curves with {len(rating.torque)} {kind}")
 
 
-def plot_damage(rating: Rating) -> Figure:
-    """Damage of the load cases over their torques, of both gears, a panel for each kind of failure.
+def plot_damage(rating: OfCases) -> Figure:
+    """Damage of the load cases over their torques, of all gears, a panel for each kind of failure.
 
     Parameters
     ----------
-    rating : Rating
+    rating : Rating or StageRating
 
     Returns
     -------
@@ -75,23 +82,23 @@ def plot_damage(rating: Rating) -> Figure:
     figure, panels = _panels(rating)
     for n, (mode, axes) in enumerate(zip(rating.modes, panels, strict=True)):
         places, width, damage = _bars(rating, rating.damage[:, :, n])
-        for k, gear in enumerate(GEARS):
-            colour = GEAR_STYLES[gear][0]
-            hatch = "///" if k else ""
+        step = 0.9 * width / len(rating.MEMBERS)
+        for k, gear in enumerate(rating.MEMBERS):
+            colour, *_, hatch = GEAR_STYLES[k]
             shown = np.where(np.isfinite(damage[:, k]), damage[:, k], 0.0)
-            offset = (k - 0.5) * 0.45 * width
-            axes.bar(places + offset, shown, 0.42 * width, color=colour, label=gear, hatch=hatch, edgecolor="white")
+            offset = (k - 0.5 * (len(rating.MEMBERS) - 1)) * step
+            axes.bar(places + offset, shown, 0.93 * step, color=colour, label=gear, hatch=hatch, edgecolor="white")
             broken = places[np.isinf(damage[:, k])] + offset
             if broken.size:
                 top = axes.get_xaxis_transform()
                 label = f"{gear}: above the static strength"
                 axes.plot(broken, np.full(broken.size, 0.97), "v", color=colour, transform=top, label=label)
-        axes.set(xlabel="pinion torque [N m]", ylabel=f"damage in {rating.life_required:g} h [-]")
+        axes.set(xlabel=f"{rating.NUMBERS['torque'].label} [N m]", ylabel=f"damage in {rating.life_required:g} h [-]")
         _scale(axes, damage[np.isfinite(damage)])
         if not (damage > 0.0).any():
             style.tell(axes, "no damage: stresses below the end of the curve")
         _finish(axes, WORDS[mode])
-    several = isinstance(rating, SpectrumRating)
+    several = isinstance(rating, OfSpectrum)
     what = f"damage of {len(rating.torque)} bins" if several else "damage under each torque alone"
     return _finished(figure, panels, rating, what)
 
@@ -107,7 +114,7 @@ def _scale(axes: Axes, damage: Array) -> None:
         axes.set_ylim(0.5 * least, 2.0 * largest)
 
 
-def _panels(rating: Rating) -> tuple[Figure, list[Axes]]:
+def _panels(rating: OfCases) -> tuple[Figure, list[Axes]]:
     """A figure with a panel for each kind of failure."""
     count = len(rating.modes)
     rows = -(-count // 2)
@@ -118,9 +125,9 @@ def _panels(rating: Rating) -> tuple[Figure, list[Axes]]:
     return figure, panels[:count]
 
 
-def _draw_curve(axes: Axes, endurance: Endurance, gear: str) -> None:
+def _draw_curve(axes: Axes, endurance: Endurance, gear: str, place: int) -> None:
     """The curve of a gear, and its load cases."""
-    colour, marker, line = GEAR_STYLES[gear]
+    colour, marker, line, _ = GEAR_STYLES[place]
     curve = endurance.worst_curve()
     ends = min(SHOWN_CYCLES[0], curve.cycles[0]), max(SHOWN_CYCLES[1], curve.cycles[-1])
     cycles = np.array([ends[0], *curve.cycles, ends[1]])
@@ -133,7 +140,7 @@ def _draw_curve(axes: Axes, endurance: Endurance, gear: str) -> None:
     )
 
 
-def _bars(rating: Rating, damage: Array) -> tuple[Array, float, Array]:
+def _bars(rating: OfCases, damage: Array) -> tuple[Array, float, Array]:
     """Places and width [N m] of bars, and the damage (bar, gear) of the cases (c, gear) that each of them has."""
     torque = 1e-3 * rating.torque
     distinct, which = np.unique(torque, return_inverse=True)
@@ -154,11 +161,11 @@ def _finish(axes: Axes, title: str) -> None:
     axes.set_axisbelow(True)
 
 
-def _finished(figure: Figure, panels: list[Axes], rating: Rating, what: str) -> Figure:
+def _finished(figure: Figure, panels: list[Axes], rating: OfCases, what: str) -> Figure:
     """Return the figure with one legend of all panels, and its title."""
     keys = {label: key for axes in panels for key, label in zip(*axes.get_legend_handles_labels(), strict=True)}
     figure.legend(keys.values(), keys.keys(), loc="outside lower center", ncols=4, fontsize="small")
-    style.set_title(figure, rating.result, what, rating.scope.partition("; pinion |")[0])
+    style.write_title(figure, rating.title, what, rating.scope.rpartition("; ")[0])
     return figure
 
 
@@ -166,7 +173,7 @@ RATING_PICTURES = {
     **SAFETY_PICTURES,
     "rating_sn_curves": RatingPicture(
         "S-N curves with the load cases on them, a panel for each kind of failure",
-        "S-N curves after ISO 6336-6 of both gears, with each load case at its load cycles in the required life and at "
+        "S-N curves after ISO 6336-6 of all gears, with each load case at its load cycles in the required life and at "
         "its stress times the required safety: points above their curve use up more than the life. Where the strength "
         "differs from case to case, stresses are scaled to that of the curve.",
         "damage",
@@ -183,19 +190,19 @@ RATING_PICTURES = {
 """Pictures of the command, by the names of their files."""
 
 
-def rating_figures(rating: Rating) -> dict[str, Figure]:
+def rating_figures(rating: OfCases) -> dict[str, Figure]:
     """Draw every picture that a rating has.
 
     Parameters
     ----------
-    rating : Rating
+    rating : Rating or StageRating
 
     Returns
     -------
     dict of str to matplotlib.figure.Figure
-        By the names of ``RATING_PICTURES``; those of places where a case has these.
+        By the names of ``RATING_PICTURES``; those of places where a case of a pair has these.
     """
-    shown = bool(is_shown(rating).any())
+    shown = isinstance(rating, Rating) and bool(is_shown(rating).any())
     return {
         name: picture.draw(rating)
         for name, picture in RATING_PICTURES.items()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
@@ -22,13 +22,16 @@ from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks
 from loaded_tca.plots.pressure_map import FIELDS, POINTS_OF_A_FIELD
 from loaded_tca.plots.root_stress import GEAR_COLOURS
-from loaded_tca.plots.style import ACCENT, COLOURS, load, torque_label
+from loaded_tca.plots.style import ACCENT, COLOURS, DISTINCT_COLOURS, load, torque_label
 from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, ROOT
 from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties, root_safeties, torque_of, worst_case
+from loaded_tca.rating.spectrum import OfSpectrum
 
 if TYPE_CHECKING:
     from loaded_tca.rating import Rating
+    from loaded_tca.rating.rating import OfCases
 
+BAR_COLOURS = (*GEAR_COLOURS, DISTINCT_COLOURS[5])
 LARGEST = 2.5
 """Safety over the least one from which colours do not differ any more."""
 SAFETIES = {
@@ -132,12 +135,12 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
     return figure
 
 
-def plot_safeties(rating: Rating) -> Figure:
-    """Safeties of the standard and local ones of both gears beside those required, with those of each case.
+def plot_safeties(rating: OfCases) -> Figure:
+    """Safeties of the standard and local ones of all gears beside those required, with those of each case.
 
     Parameters
     ----------
-    rating : Rating
+    rating : Rating or StageRating
 
     Returns
     -------
@@ -147,15 +150,15 @@ def plot_safeties(rating: Rating) -> Figure:
     least = dict(zip(rating.modes, np.moveaxis(rating.safeties_and_lives()[0].min(axis=0), -1, 0), strict=True))
     names = [mode for mode in SAFETIES if mode in least and np.isfinite(least[mode]).any()]
     figure = Figure(figsize=(8.5, 1.8 + 0.75 * len(names)), layout="constrained")
-    axes = figure.add_subplot()
+    axes, step = figure.add_subplot(), 0.72 / len(rating.MEMBERS)
     for row, name in enumerate(names):
         required = rating.required.required_safety(name)
-        for gear, colour in enumerate(GEAR_COLOURS):
+        for gear, member in enumerate(rating.MEMBERS):
             safety, values = float(least[name][gear]), rating.values(f"{name}_safety")[:, gear]
             if not np.isfinite(safety):  # a rim thinner than the standard allows
                 continue
-            at = row + (gear - 0.5) * 0.36
-            axes.barh(at, safety, 0.34, color=colour, label=GEARS[gear] if row == 0 else "")
+            at, label = row + (gear - 0.5 * (len(rating.MEMBERS) - 1)) * step, member if row == 0 else ""
+            axes.barh(at, safety, 0.94 * step, color=BAR_COLOURS[gear], label=label)
             values = values[np.isfinite(values)]
             axes.plot(values, np.full(len(values), at), "|", color="black", markersize=7.0)
             axes.text(0.0, at, f"  {plain(safety)}", va="center", fontsize="small", color="white", weight="bold")
@@ -164,14 +167,13 @@ def plot_safeties(rating: Rating) -> Figure:
     axes.set_yticks(range(len(names)), [SAFETIES[name].format(rating.standard) for name in names])
     axes.invert_yaxis()
     of_bins = "safety of all bins together; strokes: each bin alone"
-    axes.set_xlabel(
-        of_bins if rating.inputs.cases.is_spectrum else "safety, the least of all cases; strokes: each case"
-    )
+    axes.set_xlabel(of_bins if isinstance(rating, OfSpectrum) else "safety, the least of all cases; strokes: each case")
     every = np.concatenate([rating.values(f"{name}_safety").ravel() for name in names])
     axes.set_xlim(0.0, 1.15 * float(every[np.isfinite(every)].max()))
     axes.grid(axis="x", alpha=0.3)
     axes.set_axisbelow(True)
-    return style.finished(figure, axes, rating.result, "safeties beside those required", rating.scope)
+    about = "safeties beside those required", rating.scope
+    return style.finished_under(figure, axes, rating.title, *about, columns=1 + len(rating.MEMBERS))
 
 
 def _scale(safety: Array, required: float) -> tuple[Normalize, Colormap]:
@@ -276,14 +278,14 @@ class RatingPicture(NamedTuple):
     line: str
     caption: str
     needs: str
-    draw: Callable[[Rating], Figure]
+    draw: Callable[[Any], Figure]
     of_places: bool = False
 
 
 SAFETY_PICTURES = {
     "safeties": RatingPicture(
         "safeties of the standard and local ones beside those required",
-        "Of both gears the least of all cases, or that of all bins of a load spectrum together; where the local one is "
+        "Of all gears the least of all cases, or that of all bins of a load spectrum together; where the local one is "
         "below that of the standard, the contact of the analysis carries its load less evenly than the standard "
         "assumes, or its pressure lacks Z_eps.",
         "flank_safety",

@@ -153,10 +153,15 @@ def one_panel(height: float = 5.0) -> tuple[Figure, Axes]:
 
 def finished(figure: Figure, axes: Axes, result: CycleNumbers, *about: str, columns: int = 3) -> Figure:
     """Return the figure with the legend of its panel below, if that has labels, and its title."""
+    return finished_under(figure, axes, result.scene.title, *about, columns=columns)
+
+
+def finished_under(figure: Figure, axes: Axes, scene: str, *about: str, columns: int = 3) -> Figure:
+    """The same under the title of a scene or a stage."""
     handles, labels = axes.get_legend_handles_labels()
     if labels:
         figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize="small")
-    set_title(figure, result, *about)
+    write_title(figure, scene, *about)
     return figure
 
 

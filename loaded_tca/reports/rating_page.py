@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError
 from loaded_tca.plain import plain
 from loaded_tca.plots import RATING_PICTURES, rating_figures
-from loaded_tca.rating import Rating, SpectrumRating, rating_of
-from loaded_tca.rating.findings import FAILURES, findings
+from loaded_tca.rating import rating_of
+from loaded_tca.rating.findings import FAILURES, findings, of_all_bins
 from loaded_tca.rating.quantities import OF_GEARS, OF_MODES, OF_SPECTRUM
-from loaded_tca.rating.rating import WORDS
+from loaded_tca.rating.rating import WORDS, OfCases
+from loaded_tca.rating.spectrum import OfSpectrum
 from loaded_tca.reports.page import Table, parts_of, pictures_of
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.summary import shown
 from loaded_tca.scene.rating import is_rated
+from loaded_tca.stages.rating import MEMBERS, MESHES, StageRating, stage_rating_of
+from loaded_tca.stages.sections import words_of
 
 if TYPE_CHECKING:
     from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.stages import StageResult
 
 MOST_CASES = 2
 """With a column for each gear in one table of a page."""
@@ -31,7 +35,12 @@ BLOCKS = {
     "local_flank_stress": "Local",
     "damage": "Damage and lives",
 }
-"""First number of each table, and its caption with the standard."""
+STAGE_BLOCKS = {
+    "torque": "Loads of sun, planets and ring",
+    "flank_safety": "Safeties; of planets the smaller one of both meshes",
+    "damage": "Damage and lives",
+}
+"""First number of each table, of pairs and of stages, and its caption with the standard."""
 
 
 def rating_content(result: MeshCycle) -> dict[str, Any] | None:
@@ -47,51 +56,95 @@ def rating_content(result: MeshCycle) -> dict[str, Any] | None:
         rating = rating_of(result, warn=False)
     except InputError as error:  # the report has what there is
         return {"refused": error.problems, "pictures": ()}
-    decisive, said, cases = findings(rating), {*findings(rating)}, _shown_cases(rating)
+    return _told(rating, findings(rating), _all_tables(rating, _shown_cases(rating)))
+
+
+def stage_rating_content(result: StageResult) -> dict[str, Any] | None:
+    """The same of a planetary stage: its gears, and with all factors both meshes, under a spectrum in the worst bins.
+
+    Parameters
+    ----------
+    result : StageResult
+    """
+    stage = result.stage
+    if stage.rating is None or any(getattr(stage, gear).strength is None for gear in MEMBERS):
+        return None
+    try:
+        rating = stage_rating_of(result, warn=False)
+    except InputError as error:  # the report has what there is
+        return {"refused": error.problems, "pictures": ()}
+    of_spectrum, cases = isinstance(rating, OfSpectrum), _shown_cases(rating)
+    worst = rating.most_damaging(MOST_CASES) if isinstance(rating, OfSpectrum) else cases
+    tables = [*_all_tables(rating, cases), *_of_meshes(rating, worst)]
+    return _told(rating, tuple(of_all_bins(rating)) if of_spectrum else (), tables)
+
+
+def _told(rating: OfCases, decisive: tuple[str, ...], tables: Sequence[Table]) -> dict[str, Any]:
+    """What templates take of a rating, with sentences on what decides."""
     captions = {name: picture.caption for name, picture in RATING_PICTURES.items()}
     return {
         "refused": (),
-        "about": rating.scope.removesuffix("; pinion | wheel"),
+        "about": rating.scope.rpartition("; ")[0],
         "safeties": _safeties(rating),
         "findings": decisive,
-        "tables": [*chain.from_iterable(_tables(rating, cases[part]) for part in parts_of(cases, MOST_CASES))],
-        "notes": [note for note in rating.notes() if note not in said],
+        "tables": tables,
+        "notes": [note for note in rating.notes() if note not in decisive],
         "warnings": rating.warnings or (),
-        "pictures": pictures_of(rating_figures(rating), captions, result.scene.title),
+        "pictures": pictures_of(rating_figures(rating), captions, rating.title),
     }
 
 
-def _safeties(rating: Rating) -> Table:
-    """The least safeties of all cases of both gears beside those required, and the shortest lives."""
+def _all_tables(rating: OfCases, cases: Sequence[int]) -> list[Table]:
+    """Tables of all parts of a rating, with so many cases beside each other as have room."""
+    return [*chain.from_iterable(_tables(rating, cases[part]) for part in parts_of(cases, MOST_CASES))]
+
+
+def _of_meshes(rating: StageRating, cases: Sequence[int]) -> Iterator[Table]:
+    """Tables of both meshes of a stage in its words."""
+    for mesh, gears in MESHES.items():
+        for table in _all_tables(getattr(rating, mesh), cases):
+            caption = f"{gears['pinion'].capitalize()} and {gears['wheel']}: {table.caption}"
+            head = tuple(words_of(gears, cell) for cell in table.head)
+            rows = tuple((words_of(gears, label), *cells) for label, *cells in table.rows)
+            yield replace(table, rows=rows, head=head, caption=caption)
+
+
+def _safeties(rating: OfCases) -> Table:
+    """The least safeties of all cases of all gears beside those required, and the shortest lives."""
     rows = []
     safeties, lives = (values.min(axis=0) for values in rating.safeties_and_lives())
     for n, mode in enumerate(rating.modes):
         kind = mode.removeprefix("local_")
         words = FAILURES[kind] if kind == mode else f"{FAILURES[kind]}, local"
-        cells = (shown(float(values[gear, n]), "") for gear in range(len(GEARS)) for values in (safeties, lives))
+        cells = (
+            shown(float(values[gear, n]), "") for gear in range(len(rating.MEMBERS)) for values in (safeties, lives)
+        )
         rows.append((words, plain(rating.required.required_safety(mode)), *cells))
-    heads = (f"{gear}, {what}" for gear in GEARS for what in ("safety", "life [h]"))
-    together = "all bins together" if isinstance(rating, SpectrumRating) else "least of all cases"
+    heads = (f"{gear}, {what}" for gear in rating.MEMBERS for what in ("safety", "life [h]"))
+    together = "all bins together" if isinstance(rating, OfSpectrum) else "least of all cases"
     return Table(tuple(rows), (together, "required", *heads))
 
 
-def _shown_cases(rating: Rating) -> list[int]:
+def _shown_cases(rating: OfCases) -> list[int]:
     """Cases whose factors stand in tables: all torques, of a load spectrum the bins of the largest damage."""
-    return rating.most_damaging() if isinstance(rating, SpectrumRating) else [*range(len(rating.torque))]
+    return rating.most_damaging() if isinstance(rating, OfSpectrum) else [*range(len(rating.torque))]
 
 
-def _tables(rating: Rating, cases: Sequence[int]) -> Iterator[Table]:
-    """Factors of both gears in some cases, a table for each part of the rating."""
+def _tables(rating: OfCases, cases: Sequence[int]) -> Iterator[Table]:
+    """Factors of all gears in some cases, a table for each part of the rating."""
     figures = rating.key_figures()
-    bins = [f"bin {case + 1}, " if isinstance(rating, SpectrumRating) else "" for case in cases]
+    bins = [f"bin {case + 1}, " if isinstance(rating, OfSpectrum) else "" for case in cases]
     torques = [plain(1e-3 * float(rating.torque[case])) for case in cases]
-    heads = [f"{each}{torque} N m, {gear}" for each, torque in zip(bins, torques, strict=True) for gear in GEARS]
+    heads = [
+        f"{each}{torque} N m, {gear}" for each, torque in zip(bins, torques, strict=True) for gear in rating.MEMBERS
+    ]
+    blocks = STAGE_BLOCKS if isinstance(rating, StageRating) else BLOCKS
     caption, rows = "", list[tuple[str, ...]]()
     for name, number in rating.NUMBERS.items():
-        if name in BLOCKS:
+        if name in blocks:
             if rows:
                 yield Table(tuple(rows), ("", *heads), caption)
-            caption, rows = BLOCKS[name].format(rating.standard), []
+            caption, rows = blocks[name].format(rating.standard), []
         if not rating.has(name) or name == "torque" or number.dims == OF_SPECTRUM:
             continue
         head = number.head(name)
@@ -101,13 +154,13 @@ def _tables(rating: Rating, cases: Sequence[int]) -> Iterator[Table]:
     yield Table(tuple(rows), ("", *heads), caption)
 
 
-def _lines(rating: Rating, name: str, head: str) -> Iterator[tuple[str, list[str]]]:
-    """Label and figures of both gears of the lines that a number has in a table."""
+def _lines(rating: OfCases, name: str, head: str) -> Iterator[tuple[str, list[str]]]:
+    """Label and figures of all gears of the lines that a number has in a table."""
     number = rating.NUMBERS[name]
     if number.dims == OF_MODES:
         for mode in rating.modes:
-            yield f"{WORDS[mode]}: {number.text}", [f"{gear}_{mode}_{head}" for gear in GEARS]
+            yield f"{WORDS[mode]}: {number.text}", [f"{gear}_{mode}_{head}" for gear in rating.MEMBERS]
     elif number.dims == OF_GEARS:
-        yield number.label or number.text, [f"{gear}_{head}" for gear in GEARS]
+        yield number.label or number.text, [f"{gear}_{head}" for gear in rating.MEMBERS]
     else:
-        yield number.label or number.text, [head, ""]
+        yield number.label or number.text, [head, *[""] * (len(rating.MEMBERS) - 1)]

@@ -21,7 +21,7 @@ from loaded_tca.plots import (
 )
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
-from loaded_tca.reports.rating_page import rating_content
+from loaded_tca.reports.rating_page import rating_content, stage_rating_content
 from loaded_tca.results.figure import NO_ESTIMATE, Figures, in_percent, labelled
 from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -233,6 +233,7 @@ def stage_content(result: StageResult) -> dict[str, Any]:
         "files": [*result.PARTS.values()],
         "warnings": explained(result.warnings or ()),
         "pictures": pictures_of(stage_figures(result), STAGE_CAPTIONS, result.stage.title),
+        "rating": stage_rating_content(result),
     }
 
 

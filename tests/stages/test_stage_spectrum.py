@@ -10,6 +10,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.output import write_rating
+from loaded_tca.plots import plot_damage, plot_safeties, plot_sn_curves, rating_figures
+from loaded_tca.reports.rating_page import stage_rating_content
 from loaded_tca.stages import StageResult, parse_stage
 from loaded_tca.stages.analyse import _shared, states_of
 from tests.refusals import refused_calls
@@ -230,3 +232,56 @@ def test_spectrum_of_a_file(tmp_path):
     file.write_text("pinion_torque_Nm,hours\n300,4\n", encoding="utf-8")
     with pytest.raises(InputError, match="no column sun_torque_Nm; found pinion_torque_Nm"):
         stage.with_changes({"load.spectrum": str(file)})
+
+
+def test_report_tells_gears_and_both_meshes_in_their_words(monkeypatch):
+    monkeypatch.setattr("loaded_tca.reports.rating_page.rating_figures", lambda _: {})  # seconds, and tested below
+    rating = under(bins((150.0, 9.0), (300.0, 3.0), (480.0, 1.0)))
+    content = stage_rating_content(rating.result)
+    assert content["safeties"].head[0] == "all bins together"
+    assert [float(cell) for cell in content["safeties"].rows[0][2::2]] == pytest.approx(
+        rating.spectrum_safety[:, 0].tolist(), rel=1e-3
+    )
+    captions = [table.caption for table in content["tables"]]
+    assert captions[:2] == ["Loads of sun, planets and ring", "Safeties; of planets the smaller one of both meshes"]
+    assert captions.count("Planet and ring: Roots, ISO 6336-3") == 1  # in the two worst bins
+    assert content["tables"][-1].head[1].endswith("N m, planet")
+    assert "by local stresses what decides is pitting of the sun" in content["findings"][1]
+    assert stage_rating_content(solved()) is None
+    lacking = replace(rating.result, stage=rating.stage.with_changes({"lubricant": None}))
+    (refused,) = stage_rating_content(lacking)["refused"]
+    assert refused.startswith("lubricant: missing")
+
+
+def test_pictures_have_a_bar_and_a_curve_of_each_gear():
+    rating = under(bins((300.0, 3.0), (480.0, 1.0)))
+    (bars,) = plot_safeties(rating).axes
+    order = [0, 2, 1]  # flanks first, each of the standard first
+    assert_allclose([bar.get_width() for bar in bars.patches], rating.spectrum_safety[:, order].T.ravel())
+    damage = plot_damage(rating).axes[1]
+    assert damage.get_xlabel() == "sun torque [N m]"
+    assert sum(bar.get_height() for bar in damage.patches) == pytest.approx(rating.miner_sum[:, 1].sum())
+    curves = plot_sn_curves(rating).axes[1]
+    assert [line.get_label() for line in curves.lines[::2]] == ["sun", "planet", "ring"]
+    assert_allclose(curves.lines[3].get_xdata(), rating.cycles[:, 1])
+    # one mesh alone has the stresses of the planet, times the required safety
+    assert_allclose(curves.lines[3].get_ydata(), 2.4 * rating.sun_mesh.sigma_F[:, 1], rtol=ROUNDING)
+    assert [*rating_figures(rating)] == ["safeties", "rating_sn_curves", "rating_damage"]
+
+
+def test_command_rates_a_stage_again_under_a_spectrum(run, tmp_path, monkeypatch):
+    monkeypatch.setattr("loaded_tca.plots.rating_figures", lambda _: {})
+    result, _ = analysed()
+    replace(result, stage=result.stage.with_changes(SECTIONS | REQUIRED)).save(tmp_path)
+    (tmp_path / "bins.csv").write_text("sun_torque_Nm,hours,reversed\n300,3,\n300,1,true\n", encoding="utf-8")
+    (tmp_path / "root_safety.png").touch()  # of another rating
+    code, text, _ = run("rating", str(tmp_path), "--set", f"load.spectrum={tmp_path / 'bins.csv'}")
+    assert code == 0
+    expected = under(bins((300.0, 3.0)) + bins((300.0, 1.0), reversed=True))
+    assert all(line in text for line in expected.summary().splitlines() if line.startswith("root: "))
+    assert not (tmp_path / "root_safety.png").exists()
+    stored = json.loads((tmp_path / "rating.json").read_text(encoding="utf-8"))
+    assert stored["spectrum"]["ring_root"]["life_h"] == pytest.approx(expected.life_hours[2, 1], rel=1e-6)  # six digits
+    code, _, errors = run("rating", str(tmp_path), "--set", "load.sun_torque_Nm=20")
+    assert code == 2
+    assert "load.sun_torque_Nm: an analysis depends on it; allowed keys of [sun.strength]" in errors[0]
