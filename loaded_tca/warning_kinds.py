@@ -124,6 +124,13 @@ STRIPS_ALIKE = Kind(
     "that: of an aligned pair it rises to either side",
     "analyses on both sides, or a Monte Carlo study; not the spread to first order",
 )
+STRIPS_BESIDE = Kind(
+    "K_Hbeta follows the largest of its strips by {slope:.3g} per {unit}, while the load moves along the face: through "
+    "it and those beside it the derivative is {other:.3g} ({key}; {count} of {keys} keys)",
+    "K_Hbeta is the largest of 30 strips: where the load moves along the face each strip in turn is the largest, and "
+    "derivatives swing about that of the load itself, which changes over more than a strip follow",
+    "take the derivative through three strips for changes that move the load by a strip or more",
+)
 CONTACTS_ALIKE = Kind(
     "{figure}: the largest stresses of two contacts differ by {lacking:.1%}; derivatives are those of the larger one, "
     "and where the other becomes the larger they change by up to {size:.0%} ({key}; {count} of {keys} keys)",

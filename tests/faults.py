@@ -2958,6 +2958,41 @@ FAULTS = (
         "inside[number] += contacts",
         "unloaded/test_contact_span.py::test_ends_farther_away_than_the_angles_looked_at_first_are_found",
     ),
+    Fault(
+        "load factors: what the faces of a hypoid pair part by is that at the nearest point of the path",
+        "results/load_factors.py",
+        "    return moment(azimuths[nearest])[1]",
+        "    return near",
+        "results/test_hypoid_cycle.py::test_common_face_does_not_depend_on_where_the_path_of_contact_runs",
+    ),
+    Fault(
+        "sensitivities: beside strips count as the largest one",
+        "results/face_slopes.py",
+        "for beside in (-1, 0, 1)]",
+        "for beside in (0, 0, 0)]",
+        "results/test_sensitivities_at_edges.py::test_derivatives_of_one_strip_are_told_beside_those_through_three",
+    ),
+    Fault(
+        "bevel ratings: Y_R_relT of nitrided steels is that of ISO 6336-3",
+        "rating/bevel.py",
+        "of_bevels: ClassVar[bool] = True",
+        "of_bevels: ClassVar[bool] = False",
+        "rating/test_bevel.py::test_surface_factor_of_nitrided_bevel_gears_is_that_of_their_own_standard",
+    ),
+    Fault(
+        "ratings of both sides: flanks of the drive side carry the reversed bins, too",
+        "rating/both_sides.py",
+        "sides = of_its_bins(drive, there), of_its_bins(coast, ~there)",
+        "sides = of_its_bins(drive, there), of_its_bins(coast, there)",
+        "rating/test_both_sides.py::test_flanks_of_a_side_have_the_damage_of_the_bins_that_load_them",
+    ),
+    Fault(
+        "ratings of both sides: reversed bins have the load factors of the drive side",
+        "rating/both_sides.py",
+        "np.where(_like(there, values), others[name], values)",
+        "np.where(_like(there, values), values, values)",
+        "rating/test_both_sides.py::test_face_load_factor_of_a_reversed_bin_is_that_of_its_side",
+    ),
 )
 
 

@@ -282,6 +282,8 @@ def _add_rating(command: Command) -> None:
     reader = command("rating", run_by.rating, text, RATING)
     text = "result.nc, or stage.nc of a stage, or the directory that holds it"
     reader.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
+    text = "result of the coast side, whose flanks carry reversed bins: of run --coast, DIR/coast beside DIR/drive"
+    reader.add_argument("--coast", metavar="DIR|FILE", type=_path, help=text)
     text = "another value of a key, for instance rating.life_hours=5000; may be given again for other keys"
     reader.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
     reader.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: beside the result")

@@ -171,13 +171,24 @@ def rating(options: argparse.Namespace) -> None:
     from loaded_tca.stages.result import STAGE_FILE
 
     if result_file(options.result).name == STAGE_FILE:
+        require((options.coast is None, "--coast: not of stages; planets are bent by both meshes as it is"))
         stage, directory = _changed_stage(options)
         of_stage = stage.rating()
         print_summary(of_stage.summary(), _rating_files(of_stage, directory))
         return
     result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
-    rated = result.rating()
+    rated = result.rating(coast=None if options.coast is None else _coast_of(options.coast))
     print_summary(rated.summary(), _rating_files(rated, directory))
+
+
+def _coast_of(place: Path) -> MeshCycle:
+    """Result of a coast side, which a rating takes the flanks of reversed bins from."""
+    from loaded_tca.results.mesh_cycle import MeshCycle
+
+    path = result_file(place)
+    if place.is_dir():
+        require_result(place, path, "loaded-tca rating --coast")
+    return MeshCycle.load(path)
 
 
 def _changed_stage(options: argparse.Namespace) -> tuple[StageResult, Path]:

@@ -23,7 +23,7 @@ from loaded_tca.plots.flanks import ToPicture, both_flanks
 from loaded_tca.plots.pressure_map import FIELDS, POINTS_OF_A_FIELD
 from loaded_tca.plots.root_stress import GEAR_COLOURS
 from loaded_tca.plots.style import ACCENT, COLOURS, DISTINCT_COLOURS, load, torque_label
-from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, ROOT
+from loaded_tca.rating.lives import COAST, FLANK, LOCAL_FLANK, LOCAL_ROOT, ROOT
 from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties, root_safeties, torque_of, worst_case
 from loaded_tca.rating.spectrum import OfSpectrum
 
@@ -39,6 +39,8 @@ SAFETIES = {
     LOCAL_FLANK: "pitting, local",
     ROOT: "tooth breakage, {}-3",
     LOCAL_ROOT: "tooth breakage, local",
+    COAST[FLANK]: "coast flank, {}-2",
+    COAST[LOCAL_FLANK]: "coast flank, local",
 }
 """Kinds of failure, and what pictures call the safety against each, with the standard."""
 
@@ -154,7 +156,7 @@ def plot_safeties(rating: OfCases) -> Figure:
     for row, name in enumerate(names):
         required = rating.required.required_safety(name)
         for gear, member in enumerate(rating.MEMBERS):
-            safety, values = float(least[name][gear]), rating.values(f"{name}_safety")[:, gear]
+            safety, values = float(least[name][gear]), rating.safety_alone(name)[:, gear]
             if not np.isfinite(safety):  # a rim thinner than the standard allows
                 continue
             at, label = row + (gear - 0.5 * (len(rating.MEMBERS) - 1)) * step, member if row == 0 else ""
@@ -168,7 +170,7 @@ def plot_safeties(rating: OfCases) -> Figure:
     axes.invert_yaxis()
     of_bins = "safety of all bins together; strokes: each bin alone"
     axes.set_xlabel(of_bins if isinstance(rating, OfSpectrum) else "safety, the least of all cases; strokes: each case")
-    every = np.concatenate([rating.values(f"{name}_safety").ravel() for name in names])
+    every = np.concatenate([rating.safety_alone(name).ravel() for name in names])
     axes.set_xlim(0.0, 1.15 * float(every[np.isfinite(every)].max()))
     axes.grid(axis="x", alpha=0.3)
     axes.set_axisbelow(True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import cos, pi
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -59,6 +59,7 @@ class BevelInputs(CommonInputs):
 
     scene: SpiralScene
     sheet: BevelSheet
+    of_bevels: ClassVar[bool] = True
 
     @property
     def normal_module(self) -> float:

@@ -6,13 +6,17 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.rating.bevel import BevelInputs, bevel_evaluated, bevel_inputs_of
+from loaded_tca.rating.both_sides import as_coast_side, evaluated_together
 from loaded_tca.rating.evaluate import Evaluated, evaluated
 from loaded_tca.rating.inputs import CommonInputs, Duty, RatingInputs, inputs_of
+from loaded_tca.rating.interpolation import interpolation_error
 from loaded_tca.rating.lives import Endurances, lives_of
 from loaded_tca.rating.rating import WORDS, Rating
 from loaded_tca.rating.solved import solved_loads
@@ -25,7 +29,9 @@ if TYPE_CHECKING:
 
 
 @checked
-def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -> Rating:
+def rating_of(
+    result: CycleNumbers, *, duty: Duty = Duty(), coast: CycleNumbers | None = None, warn: bool = True
+) -> Rating:
     """Rating of a result; see :meth:`loaded_tca.MeshCycle.rating`.
 
     Parameters
@@ -33,6 +39,8 @@ def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -
     result : MeshCycle
     duty : Duty
         How gears are loaded by other mates, as those of a planetary stage.
+    coast : MeshCycle, optional
+        Result of ``scene.coast_side()``, whose flanks carry the reversed bins of a load spectrum.
     warn : bool
         Whether accuracy warnings are given.
 
@@ -40,21 +48,35 @@ def rating_of(result: CycleNumbers, *, duty: Duty = Duty(), warn: bool = True) -
     -------
     Rating
     """
-    with_factors = bevel_inputs_of(result) if isinstance(result.scene, SpiralScene) else inputs_of(result, duty)
-    inputs = replace(with_factors, solved=solved_loads(with_factors))
-    arrays, endurances, notes = numbers_of(inputs)
-    sentences = [kinds.RATED_AT_EDGE.sentence()] if inputs.loads.at_edge.any() else []
+    sides = [_solved_inputs(result, duty)]
+    if coast is not None:
+        sides.append(_solved_inputs(as_coast_side(coast, result), duty))
+    inputs, error = sides[0], np.zeros(0)
+    if coast is None:
+        arrays, endurances, notes = _evaluated(inputs)
+        if inputs.cases.is_spectrum:
+            error = interpolation_error(inputs, endurances, _evaluated)
+    else:
+        (arrays, endurances, notes), error = evaluated_together(*sides, _evaluated)
+    arrays |= lives_of(inputs.cases, endurances, inputs.cycles_per_hour)
+    sentences = [kinds.RATED_AT_EDGE.sentence()] if any(side.loads.at_edge.any() for side in sides) else []
     sentences += _above_static(inputs, endurances)
     kind: type[Rating] = Rating
     if inputs.cases.is_spectrum:
         kind = SpectrumRating
-        more, remarks, warned = of_spectrum(inputs, arrays, endurances, _evaluated)
+        more, remarks, warned = of_spectrum(inputs, arrays, error, of_both_sides=coast is not None)
         arrays, notes, sentences = arrays | more, (*notes, *remarks), [*sentences, *warned]
     about: dict[str, Any] = {"version": result.version, "warnings": "\n".join(sentences)}
     dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*GEARS], mode=[*endurances])
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
     return kind(result, dataset, inputs, endurances, notes)
+
+
+def _solved_inputs(result: CycleNumbers, duty: Duty) -> CommonInputs:
+    """What a rating takes of a result, with its solved loads."""
+    with_factors = bevel_inputs_of(result) if isinstance(result.scene, SpiralScene) else inputs_of(result, duty)
+    return replace(with_factors, solved=solved_loads(with_factors))
 
 
 def _above_static(inputs: CommonInputs, endurances: Endurances) -> Iterator[str]:

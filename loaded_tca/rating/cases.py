@@ -42,6 +42,8 @@ class Cases:
         Whether the damage of all adds up.
     repeated : float
         How often the hours of the bins follow each other in that life; 1 of shares.
+    elsewhere : (c,) array of bool, or None
+        Which cases load flanks that are not those of the result; None: those that are reversed.
     """
 
     torque: Array
@@ -51,6 +53,12 @@ class Cases:
     life_hours: float
     is_spectrum: bool = False
     repeated: float = 1.0
+    elsewhere: Mask | None = None
+
+    @property
+    def on_other_flanks(self) -> Mask:
+        """Which cases (c,) load flanks that are not those of the result."""
+        return self.reversed if self.elsewhere is None else self.elsewhere
 
     @property
     def factor_torque(self) -> Array:

@@ -62,7 +62,7 @@ def both(inputs: CommonInputs, values: object) -> Array:
 
 def on_drive(inputs: CommonInputs, stress: Array) -> Array:
     """Stress (c, ...) of the flanks that are analysed: 0 where a case loads the others."""
-    idle = inputs.cases.reversed
+    idle = inputs.cases.on_other_flanks
     return np.where(idle.reshape(-1, *[1] * (stress.ndim - 1)), 0.0, stress)
 
 

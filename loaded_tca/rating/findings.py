@@ -9,12 +9,14 @@ import numpy as np
 
 from loaded_tca.arrays import GEARS
 from loaded_tca.plain import plain
-from loaded_tca.rating.lives import FLANK, ROOT
+from loaded_tca.rating.lives import COAST, FLANK, ROOT
 
 if TYPE_CHECKING:
     from loaded_tca.rating.rating import OfCases, Rating
 
 FAILURES = {FLANK: "pitting", ROOT: "tooth breakage"}
+"""What decides of the flanks that are analysed, and of roots."""
+ALL_FAILURES = {**FAILURES, COAST[FLANK]: "pitting of the coast flank"}
 
 
 class Worst(NamedTuple):
@@ -75,7 +77,7 @@ def of_all_bins(rating: OfCases) -> Iterator[str]:
         n = of[place]
         damage = rating.values("damage")[:, gear, n]
         sentence = (
-            f"{words} what decides is {FAILURES[_kind(rating.modes[n])]} of the {rating.MEMBERS[gear]}: safety "
+            f"{words} what decides is {ALL_FAILURES[_kind(rating.modes[n])]} of the {rating.MEMBERS[gear]}: safety "
             f"{plain(safeties[gear, n])} in {plain(rating.life_required)} h, required {plain(required[n])}"
         )
         if np.isfinite(damage).all() and damage.sum() > 0.0:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, pi
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -93,6 +93,8 @@ class CommonInputs(ABC):
     cases: Cases
     solved: SolvedLoads
     duty: Duty = field(default=Duty(), kw_only=True)
+    of_bevels: ClassVar[bool] = False
+    """Whether ISO 10300 counts, not ISO 6336."""
 
     @cached_property
     def loads(self) -> SolvedLoads:

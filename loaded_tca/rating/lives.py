@@ -14,6 +14,9 @@ from loaded_tca.reference.iso6336_6 import SNCurve, damages, equivalent_torque, 
 
 FLANK, ROOT, LOCAL_FLANK, LOCAL_ROOT = MODES = "flank", "root", "local_flank", "local_root"
 """Kinds of failure: after the standard, and by the largest local stress."""
+ROOTS = ROOT, LOCAL_ROOT
+COAST = {FLANK: "coast_flank", LOCAL_FLANK: "local_coast_flank"}
+"""The same of the flanks of the coast side, where its result is rated, too."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError
 from loaded_tca.rating.findings import findings
 from loaded_tca.rating.inputs import CommonInputs
-from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurances, OfGears
+from loaded_tca.rating.lives import COAST, FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurances, OfGears
 from loaded_tca.rating.quantities import CASE, NUMBERS, OF_GEARS, OF_MODES, OF_SPECTRUM
 from loaded_tca.results.figure import Figure, Figures, labelled
 from loaded_tca.results.files import RATING
@@ -31,7 +31,14 @@ if TYPE_CHECKING:
     from loaded_tca.scene.rating import RatingSection
 
 NOT_COUNTED = "pitch deviations and load paths beside K_A K_gamma K_v are not in local safeties; Z_X is 1"
-WORDS = {FLANK: "flank", ROOT: "root", LOCAL_FLANK: "local: flank", LOCAL_ROOT: "local: root"}
+WORDS = {
+    FLANK: "flank",
+    ROOT: "root",
+    LOCAL_FLANK: "local: flank",
+    LOCAL_ROOT: "local: root",
+    COAST[FLANK]: "coast flank",
+    COAST[LOCAL_FLANK]: "local: coast flank",
+}
 """Kinds of failure in words."""
 
 
@@ -48,7 +55,7 @@ def _figures(name: str, number: Number, gears: Sequence[str]) -> dict[str, Figur
     else:
         labels = {
             _head(number.head(name), gear, mode): (f"{WORDS[mode]}: {number.text}, {gear}", f"{mode}_safety")
-            for mode in MODES
+            for mode in (*MODES, *COAST.values())
             for gear in gears
         }
     return {
@@ -129,6 +136,15 @@ class OfCases(Result):
         """Safety, and life at the required safety [h], of each load case (c, gear, mode)."""
         safeties = [self.values(f"{mode}_safety") for mode in self.modes]
         return np.stack(safeties, axis=-1), self.values("life_hours")
+
+    def safety_alone(self, mode: str) -> Array:
+        """Safety against a kind of failure of each case alone (c, gear)."""
+        return self.values(f"{mode}_safety")
+
+    def has(self, name: str) -> bool:
+        """Whether the rating has a number, or a safety against a kind of failure of the coast side."""
+        mode = name.removesuffix("_safety")
+        return super().has(name) or (mode in COAST.values() and mode in self.modes)
 
     def figure_arrays(self) -> dict[str, Array]:
         """Return the key figures as arrays (case,) by their names; of what all bins do together the same for each."""
@@ -245,6 +261,14 @@ class Rating(OfCases):
         wanted = self.required
         return f"required S_H {wanted.required_flank_safety:g}, S_F {wanted.required_root_safety:g}; pinion | wheel"
 
+    def safety_alone(self, mode: str) -> Array:
+        """Safety against a kind of failure of each case alone (c, gear); NaN where it loads the other flanks."""
+        reversed_bins = self.inputs.cases.reversed[:, None]
+        if mode in COAST.values():
+            return np.where(reversed_bins, self.values(f"{mode.replace('coast_', '')}_safety"), np.nan)
+        values = super().safety_alone(mode)
+        return values if mode in (ROOT, LOCAL_ROOT) else np.where(reversed_bins, np.nan, values)
+
     def rows(self, figures: Sequence[Figures]) -> list[tuple[str, ...]]:
         """Lines of the summary: label with unit, and a cell for each torque, of both gears where they differ."""
         return rows_of(self, GEARS, self.modes, figures)
@@ -299,6 +323,8 @@ class Rating(OfCases):
         from loaded_tca.rating.slopes import rating_slopes
         from loaded_tca.results.sensitivities import TORQUE
 
+        if COAST[FLANK] in self.endurances:
+            raise InputError("coast: a rating of both sides has no derivatives; rate the result of each side by itself")
         if self.inputs.cases.is_spectrum and TORQUE in keys:
             raise InputError(f"{TORQUE}: a load spectrum has the torques of its bins; allowed are other keys")
         return rating_slopes(self, self.result.sensitivities(keys))

@@ -30,6 +30,7 @@ def root_of(inputs: CommonInputs, place: int) -> tuple[iso6336_3.RootStrength, d
         "normal_module": inputs.normal_module,
         "long_life_factor": inputs.rating.long_life_factor,
         "mean_stress_factor": inputs.duty.mean_stress_factors[place],
+        "of_bevels": inputs.of_bevels,
     }
 
 

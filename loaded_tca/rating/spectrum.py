@@ -11,8 +11,6 @@ import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
-from loaded_tca.rating.interpolation import Evaluate, interpolation_error
-from loaded_tca.rating.lives import Endurances
 from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS, UNDER_LOAD
 from loaded_tca.rating.rating import WORDS, OfCases, Rating, all_figures
 from loaded_tca.rating.roots import REVERSED
@@ -32,11 +30,10 @@ TOLD = 0.01
 
 
 def of_spectrum(
-    inputs: CommonInputs, arrays: dict[str, Array], endurances: Endurances, evaluate: Evaluate
+    inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_both_sides: bool
 ) -> tuple[dict[str, Array], list[str], list[str]]:
     """What a rating of a spectrum has beside: arrays, notes, and sentences of warnings."""
     cases, solved = inputs.cases, inputs.solved
-    error = interpolation_error(inputs, endurances, evaluate)
     more = {
         "pinion_speed": cases.speed,
         "hours": cases.hours,
@@ -44,7 +41,7 @@ def of_spectrum(
         "interpolation_error": error,
         **{name: _loaded(cases.torque, arrays[name]) for name in UNDER_LOAD if name in arrays},
     }
-    return more, [*_notes(inputs, arrays, error)], told_error(error, len(solved.torque))
+    return more, [*_notes(inputs, arrays, error, of_both_sides=of_both_sides)], told_error(error, len(solved.torque))
 
 
 def told_error(error: Array, solved: int) -> list[str]:
@@ -58,7 +55,7 @@ def _loaded(torque: Array, values: Array) -> Array:
     return np.where((torque > 0.0).reshape(-1, *[1] * (values.ndim - 1)), values, nan)
 
 
-def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array) -> Iterator[str]:
+def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_both_sides: bool) -> Iterator[str]:
     """What of a spectrum is assumed or left out."""
     cases, solved, sums = inputs.cases, inputs.solved, arrays["miner_sum"]
     between = cases.between(solved.torque)
@@ -79,11 +76,12 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array) -> Iter
         yield f"{below.sum()} bins lie below {1e-3 * solved.torque[0]:.4g} N m, the smallest torque solved; {part}"
     if cases.reversed.any():
         bins = f"reversed bins ({cases.reversed.sum()} of {len(between)})"
-        yield f"{bins} load the other flanks, which are not analysed: no damage of these is counted"
-        yield (
-            f"{bins} stress roots as the same torques do the other way, with Y_M of R = {REVERSED:g}; the others have "
-            "Y_M by root_stress_ratio"
-        )
+        if of_both_sides:
+            yield f"{bins} load the flanks of the coast side, and stress roots, as its analysis has them"
+        else:
+            yield f"{bins} load the other flanks, which are not analysed: no damage of these is counted"
+            yield f"{bins} stress roots as the same torques do the other way"
+        yield f"{bins} have Y_M of R = {REVERSED:g}; the others have Y_M by root_stress_ratio"
     if abs(cases.repeated - 1.0) > ROUNDING:
         together = f"{cases.life_hours / cases.repeated:g} h"
         yield f"the hours of the bins, {together}, follow each other {cases.repeated:.4g} times"

@@ -3,7 +3,7 @@
 Load at the tip of the virtual gears in the normal section; the section of 30 degrees as in ISO 6336-3; factors for load
 sharing and for contact lines that lie across the tooth. Edition of 2023, whose text was not seen: formulas and their
 numbers as in ``iso10300_1``, checked against samples 1 to 4 of ISO/TR 10300-30:2024. What roots withstand has the
-factors of ISO 6336-3 (``iso6336_3.root_factors``) with q_s and Y_Sa of here.
+factors of ISO 6336-3 (``iso6336_3.root_factors``) with q_s and Y_Sa of here, and Y_R_relT with ``of_bevels``.
 """
 
 from __future__ import annotations

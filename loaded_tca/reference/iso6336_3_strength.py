@@ -34,6 +34,7 @@ _SURFACES = {
     "St": (5.306, 4.203, 0.01, 1.07),
     **dict.fromkeys(("GG", "GGG ferritic", "NT", "NV", "NV nitrocarburized"), (4.299, 3.259, 0.0058, 1.025)),
 }
+_OF_BEVELS = {0.0058: 1.0 / 200.0}  # exponents of ISO 10300-3 in the place of these
 _SIZES = {
     **dict.fromkeys(("St", "V", "GTS", "GGG"), (1.03, 0.006, 30.0)),
     **dict.fromkeys(("Eh", "IF", "NT", "NV", "NV nitrocarburized"), (1.05, 0.010, 25.0)),
@@ -158,13 +159,15 @@ def static_notch_factor(kind: str, stress_correction_factor: float, strength: fl
 
 
 @checked
-def surface_factor(kind: str, roughness: float) -> float:
+def surface_factor(kind: str, roughness: float, *, of_bevels: bool = False) -> float:
     r"""Relative surface factor Y_R_relT of the endurance strength.
 
     .. math:: Y_{R\,relT} = 1.674 - 0.529 (R_z + 1)^{0.1},\qquad 5.306 - 4.203 (R_z + 1)^{0.01},\qquad
         4.299 - 3.259 (R_z + 1)^{0.0058}
 
     for V, GTS, GGG, Eh and IF; for St; for GG, ferritic GGG and nitrided teeth, with 1.12, 1.07 and 1.025 below 1 um.
+    Of bevel gears the last exponent is 1/200. With 0.0058 the factor is 0.994 at the 10 um of test gears, where it is 1
+    by its meaning, with 1/200 1.001.
 
     Parameters
     ----------
@@ -172,10 +175,13 @@ def surface_factor(kind: str, roughness: float) -> float:
         Of the material, one of ``iso6336_5.KINDS``.
     roughness : float [um]
         R_z of the fillet, up to 40 um; rougher ones count as 40 um. No grooves deeper than 2 R_z.
+    of_bevels : bool
+        Whether that of ISO 10300-3 is meant.
 
     References
     ----------
-    ISO 6336-3:2019, formulas (87) to (90); the exponent 0.0058 as IACS UR M56 (revision 4) prints it.
+    ISO 6336-3:2019, formulas (87) to (90); the exponent 0.0058 as IACS UR M56 (revision 4) and the rules of the Korean
+    Register print it. ISO 10300-3:2023, formulas (40) to (42).
 
     Examples
     --------
@@ -183,9 +189,13 @@ def surface_factor(kind: str, roughness: float) -> float:
 
     >>> round(surface_factor("Eh", 20.0), 3)
     0.957
+    >>> [round(surface_factor("NT", 16.0, of_bevels=bevels), 3) for bevels in (False, True)]
+    [0.986, 0.994]
     """
     require_positive(roughness=roughness)
     first, second, exponent, smooth = _SURFACES[material_kind(kind).family]
+    if of_bevels:
+        exponent = _OF_BEVELS.get(exponent, exponent)
     return smooth if roughness < _SMOOTHEST else first - second * (min(roughness, _ROUGHEST) + 1.0) ** exponent
 
 
@@ -409,6 +419,7 @@ def root_factors(
     stress_ratio: ArrayLike = 0.0,
     mean_stress_factor: ArrayLike | None = None,
     long_life_factor: float = LONG_LIFE,
+    of_bevels: bool = False,
 ) -> RootFactors:
     r"""Factors of the strength of roots, and the strength itself.
 
@@ -431,6 +442,8 @@ def root_factors(
         Y_M itself, in the place of that of the stress ratio: 0.7 for idlers and planets.
     long_life_factor : float
         Y_NT at 1e10 load cycles, 0.85 to 1.
+    of_bevels : bool
+        Whether Y_R_relT is that of ISO 10300-3.
 
     Returns
     -------
@@ -459,7 +472,7 @@ def root_factors(
     life = root_curve(kind, long_life_factor=long_life_factor)
     notch = notch_sensitivity_factor(notch_parameter, slip_layer(kind, gear.strength))
     static_notch = static_notch_factor(kind, stress_correction_factor, gear.strength)
-    surface, size = surface_factor(kind, gear.roughness), size_factor(kind, normal_module)
+    surface, size = surface_factor(kind, gear.roughness, of_bevels=of_bevels), size_factor(kind, normal_module)
     mean, static_mean = _mean_stress_factors(gear, stress_correction_factor, stress_ratio, mean_stress_factor)
     basic = gear.limit_stress * TEST_GEAR_CORRECTION
     reference = basic * notch * surface * size * mean

@@ -11,7 +11,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.plain import plain
 from loaded_tca.plots import RATING_PICTURES, rating_figures
 from loaded_tca.rating import rating_of
-from loaded_tca.rating.findings import FAILURES, findings, of_all_bins
+from loaded_tca.rating.findings import ALL_FAILURES, findings, of_all_bins
 from loaded_tca.rating.quantities import OF_GEARS, OF_MODES, OF_SPECTRUM
 from loaded_tca.rating.rating import WORDS, OfCases
 from loaded_tca.rating.spectrum import OfSpectrum
@@ -115,7 +115,7 @@ def _safeties(rating: OfCases) -> Table:
     safeties, lives = (values.min(axis=0) for values in rating.safeties_and_lives())
     for n, mode in enumerate(rating.modes):
         kind = mode.removeprefix("local_")
-        words = FAILURES[kind] if kind == mode else f"{FAILURES[kind]}, local"
+        words = ALL_FAILURES[kind] if kind == mode else f"{ALL_FAILURES[kind]}, local"
         cells = (
             shown(float(values[gear, n]), "") for gear in range(len(rating.MEMBERS)) for values in (safeties, lives)
         )

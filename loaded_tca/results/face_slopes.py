@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
+from loaded_tca.contact.patch import top_weights
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.results.figure_slopes import line_load_slopes
 from loaded_tca.results.load_factors import (
@@ -24,6 +25,7 @@ from loaded_tca.results.load_factors import (
 )
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak
 from loaded_tca.separation.pair_change import AT_ONE_PLACE, PairChange
+from loaded_tca.units import ending_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -106,7 +108,7 @@ def common_face_motions(result: CycleNumbers, changes: Sequence[PairChange | Non
     ruling = [ends[:, 0].argmax(), ends[:, 1].argmin()], [0, 1]
     motions, kinks = np.zeros((2, len(changes), 2))
     for key, change in enumerate(changes):
-        if change is not None and change.of_mounting:
+        if change is not None and not change.of_modifications:
             low, high = (face_ends(side, result.path) for side in (change.below, change.above))
             by_gear = (high - low) / change.difference
             motions[key] = np.where(at_one_place, by_gear.mean(axis=0), by_gear[ruling])
@@ -225,8 +227,29 @@ def rival_strip(
     return rival, float(lacking[rival])
 
 
+def top_strips(result: CycleNumbers) -> list[tuple[list[int], Array]]:
+    """Strips beside the largest one on both sides and that one (torque,), with their weights in a parabola's top.
+
+    Where the largest strip lies at an end of the face, or nothing is loaded, it has all the weight.
+    """
+    count = len(result.torque)
+    largest, weights = np.ones(count, dtype=int), np.tile([[0.0], [1.0], [0.0]], count)
+    for torque, rows in enumerate(result.maps):
+        forces = face_forces(result.gear_pair, result.path, rows)[1]
+        top = int(forces.argmax())
+        if 0 < top < STRIPS - 1:
+            weights[:, torque] = top_weights(forces[top - 1 : top + 2])
+            largest[torque] = top
+        else:
+            largest[torque] = min(max(top, 1), STRIPS - 2)
+            weights[:, torque] = np.eye(3)[top - largest[torque] + 1]
+    return [((largest + beside).tolist(), weights[beside + 1]) for beside in (-1, 0, 1)]
+
+
 TOLD = 0.05
 """Part of a derivative from which on a kink is told."""
+TOLD_BESIDE = 0.1
+"""The same of that through three strips: differences of analyses scatter by as much."""
 LEVEL = 1e-6
 """Relative difference of derivatives between positions that is none."""
 LITTLE = 0.05
@@ -266,6 +289,20 @@ def warn_of_strips(keys: Sequence[str], slopes: Array, kinks: Array, lacking: Se
         words = {"key": keys[own], "count": np.count_nonzero(worst > TOLD), "keys": len(keys)}
         sentence = kinds.STRIPS_ALIKE.sentence(lacking=min(lacking), size=worst[own], **words)
         give_accuracy_warning(sentence, stacklevel=stacklevel + 1)
+
+
+def warn_of_strips_beside(keys: Sequence[str], slopes: Array, through_three: Array, stacklevel: int) -> None:
+    """Tell which derivatives (torque, key) of K_Hbeta are others than those through the strips beside the largest."""
+    sizes = np.abs(through_three - slopes) / np.maximum(np.abs(slopes), np.abs(through_three)).clip(
+        min=np.finfo(float).tiny
+    )
+    worst = np.nan_to_num(sizes).max(axis=0, initial=0.0)
+    if (worst > TOLD_BESIDE).any():
+        own = int(worst.argmax())
+        torque = int(np.nan_to_num(sizes[:, own]).argmax())
+        words = {"key": keys[own], "count": np.count_nonzero(worst > TOLD_BESIDE), "keys": len(keys)}
+        pair = {"slope": slopes[torque, own], "other": through_three[torque, own], "unit": ending_of(keys[own])}
+        give_accuracy_warning(kinds.STRIPS_BESIDE.sentence(**words, **pair), stacklevel=stacklevel + 1)
 
 
 def warn_of_edges(keys: Sequence[str], slopes: Array, kinks: Array, length: float, stacklevel: int) -> None:

@@ -25,6 +25,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loaded_tca.pairs.gear_pair import cylindrical_basis
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -265,15 +267,50 @@ def common_face(pair: GearPair, path: ContactPath) -> tuple[float, float]:
 
 
 def face_ends(pair: GearPair, path: ContactPath) -> Array:
-    """Lower and upper end of the faces of pinion and wheel (2, 2), along the pinion's lengthwise coordinate [mm]."""
-    points = path.point[path.in_contact]
-    radius, _, axial = pair.to_wheel(points)
-    other = pair.wheel.flank.lengthwise_coordinate(radius, axial).value
+    """Lower and upper end of the faces of pinion and wheel (2, 2), along the pinion's lengthwise coordinate [mm].
+
+    Of crossed axes both coordinates part along the path of contact: what they differ by where the middle of the
+    pinion's flank is in mesh counts, which does not depend on positions.
+    """
+    middle = _mesh_point(pair, path)
+    radius, _, axial = pair.to_wheel(middle)
     ends = []
     for flank in (pair.pinion.flank, pair.wheel.flank):
         place = flank.lengthwise_coordinate(*flank.grid(2, 2)).value
         ends.append((float(place.min()), float(place.max())))
-    return np.array(ends) + np.array([[0.0], [float(np.mean(_lengthwise(pair, points) - other))]])
+    apart = _lengthwise(pair, middle) - pair.wheel.flank.lengthwise_coordinate(radius, axial).value
+    return np.array(ends) + np.array([[0.0], [float(apart)]])
+
+
+def _mesh_point(pair: GearPair, path: ContactPath) -> Array:
+    r"""Where the middle of the pinion's flank is in mesh (3,), in the fixed frame [mm].
+
+    That is where its normal has levers about both axes in the ratio of the teeth: with the gradient of the flank, whose
+    moment about the pinion's axis is 1, that about the wheel's axis is :math:`A + B \cos\psi + C \sin\psi` at the
+    azimuth psi. Of the two solutions that next to the path of contact is meant.
+    """
+    flank = pair.pinion.flank
+    rho, z = (float(grid[1, 1]) for grid in flank.grid(3, 3))
+    theta = flank.theta(rho, z)
+    gradient = np.array([-float(theta.rho), 1.0 / rho, -float(theta.z)])
+
+    def moment(azimuth: Array) -> tuple[Array, Array]:
+        basis = cylindrical_basis(azimuth)
+        point = rho * basis[..., 0, :] + [0.0, 0.0, z]
+        return np.cross(point - pair.wheel_origin, gradient @ basis) @ pair.wheel_axes[2], point
+
+    of_three, _ = moment(np.array([0.0, 0.5, 1.0]) * math.pi)
+    mean, cosine = 0.5 * (of_three[0] + of_three[2]), 0.5 * (of_three[0] - of_three[2])
+    sine = of_three[1] - mean
+    points = path.point[path.in_contact]
+    near = points[np.abs(_lengthwise(pair, points)).argmin()]
+    about, before = math.atan2(sine, cosine), math.atan2(near[1], near[0])
+    largest = math.hypot(cosine, sine)
+    wanted = math.copysign(1.0 / pair.ratio, moment(np.array(before))[0]) - mean
+    turn = math.acos(min(max(wanted / largest, -1.0), 1.0))
+    azimuths = np.array([about - turn, about + turn])
+    nearest = np.abs(np.angle(np.exp(1j * (azimuths - before)))).argmin()
+    return moment(azimuths[nearest])[1]
 
 
 def _lengthwise(pair: GearPair, points: Array) -> Array:

@@ -204,7 +204,7 @@ class MeshCycle(CycleNumbers, AnalysisResult):
             supply=supply,
         )
 
-    def rating(self) -> Rating:
+    def rating(self, *, coast: MeshCycle | None = None) -> Rating:
         """Return safeties and lives of flanks and roots, after a standard and by the local stresses.
 
         The standard is ISO 6336, of bevel and hypoid pairs ISO 10300, method B1.
@@ -212,6 +212,12 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         Materials, required safeties, speed and oil are those of the scene: [pinion.strength], [wheel.strength],
         [rating], [operation], [lubricant]. Each torque is a load case for itself; under a load spectrum of the scene,
         ``load.case``, the cases are its bins, and their damage adds up.
+
+        Parameters
+        ----------
+        coast : MeshCycle, optional
+            Result of ``scene.coast_side()``, whose flanks carry the reversed bins of a load spectrum: they are rated,
+            too, as kinds of failure "coast_flank" and "local_coast_flank", and roots carry the loads of both results.
 
         Returns
         -------
@@ -222,7 +228,7 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         ------
         InputError
             With every section that is missing; for pairs outside the standard, and results without load sharing, of
-            fewer than five positions, or under no torque.
+            fewer than five positions, or under no torque; for a coast side of another scene, or without reversed bins.
 
         Warns
         -----
@@ -241,7 +247,7 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         """
         from loaded_tca.rating import rating_of  # which stands above results
 
-        return rating_of(self)
+        return rating_of(self, coast=coast)
 
     def explore(self) -> InteractivePage:
         """Return the interactive page of the result: sliders over positions and torques, all pictures linked.

@@ -20,11 +20,13 @@ from loaded_tca.results.face_slopes import (
     largest_cut,
     peak_cut,
     rival_strip,
+    top_strips,
     warn_of_edges,
     warn_of_end_strips,
     warn_of_face_ends,
     warn_of_grids,
     warn_of_strips,
+    warn_of_strips_beside,
 )
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
@@ -360,12 +362,21 @@ class Sensitivities:
         by_torque, kinks = self._of_largest_strips
         rivals = [rival_strip(result.gear_pair, result.path, rows) for rows in result.maps]
         if any(rivals):
-            others, _ = self._of_strips([None if rival is None else rival[0] for rival in rivals])
+            others, _ = self._of_strips(([None if rival is None else rival[0] for rival in rivals], 1.0))
             lacking = [rival[1] for rival in rivals if rival is not None]
             warn_of_strips(self.keys, by_torque, others - by_torque, lacking, stacklevel=3)
+        if not all(rivals):
+            alike = np.array([rival is not None for rival in rivals])[:, None]
+            through_three = np.where(alike, by_torque, self._through_three_strips)
+            warn_of_strips_beside(self.keys, by_torque, through_three, stacklevel=3)
         warn_of_face_ends(self.keys, by_torque, kinks, stacklevel=3)
         warn_of_end_strips(result, self.keys, *self._common_face, stacklevel=3)
         return by_torque
+
+    @property
+    def _through_three_strips(self) -> Array:
+        """Derivatives (torque, key) of the top of the parabola through the largest strip and those beside it."""
+        return self._of_strips(*top_strips(self.result))[0]
 
     @property
     def face_load_factor_kinks(self) -> Array:
@@ -379,22 +390,27 @@ class Sensitivities:
 
     @cached_property
     def _of_largest_strips(self) -> tuple[Array, Array]:
-        return self._of_strips([None] * len(self.result.torque))
+        return self._of_strips(([None] * len(self.result.torque), 1.0))
 
-    def _of_strips(self, strips: Sequence[int | None]) -> tuple[Array, Array]:
-        """Derivatives (torque, key) of the factor of one strip of the face under each torque, and their kinks.
+    def _of_strips(self, *of_strips: tuple[Sequence[int | None], Array | float]) -> tuple[Array, Array]:
+        """Derivatives (torque, key) of a sum of the factors of strips of the face under each torque, and their kinks.
 
-        A strip None is the largest one.
+        ``of_strips``: a strip for each torque, None the largest one, and its weights (torque,) in the sum.
         """
         kinks = self.growth.no_kinks if self.growth.kinks is None else self.growth.kinks
         motions, gaps = (
             np.concatenate([getattr(one, name) for one in (self.growth, kinks)]) for name in ("motions", "gaps")
         )
-        slopes, by_motion = face_load_factor_changes(
-            self.result, self._grids, self.tangents.grids, motions, np.concatenate(self._common_face), strips
-        )
+        row, by_motion = np.zeros(self.tangents.grid.size), np.zeros((len(self.result.torque), len(motions)))
+        for strips, weights in of_strips:
+            parts = np.broadcast_to(weights, len(by_motion))
+            slopes, moved = face_load_factor_changes(
+                self.result, self._grids, self.tangents.grids, motions, np.concatenate(self._common_face), strips
+            )
+            row += self.tangents.gathered(slopes) * parts[self._grids[0]][self.tangents.grid]
+            by_motion += parts[:, None] * moved
         torques = np.concatenate([self.torques, self._of_levers(kinks)])
-        change = self.tangents.functional_change(self.tangents.gathered(slopes), gaps, torques)
+        change = self.tangents.functional_change(row, gaps, torques)
         for t in range(len(by_motion)):
             by_motion[t] += change[:, self.places[0] == t].sum(axis=1)
         slopes_and_kinks = np.split(by_motion, 2, axis=1)

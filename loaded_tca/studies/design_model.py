@@ -177,7 +177,10 @@ class DesignModel:
         if isinstance(figure, FigureOfStrength) and not is_rated(self.scene):
             way = "; utilisation needs strengths of both gears and [rating]"
         elif isinstance(figure, FigureOfStrength) and name not in figures_of_strength(self.scene):
-            way = f"; {name} needs the pressure of elastic flanks: max_pressure_MPa caps it, limit {figure.stress}"
+            way = (
+                f"; {name} needs the pressure of elastic flanks: max_pressure_MPa caps it; design the scene without "
+                "the cap, and analyse the design with it"
+            )
         elif figure is not None and figure.is_of_roots:
             way = "; root tension needs analysis.root_stress = true"
         elif figure is not None and figure.fewest_positions:

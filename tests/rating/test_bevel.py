@@ -64,6 +64,14 @@ def test_the_hypoid_scene_has_the_printed_virtual_gears_of_sample_2():
     assert_allclose(np.degrees([coast.pressure_angle, coast.effective_pressure_angle]), [22.252, 20.0], atol=0.03)
 
 
+def test_surface_factor_of_nitrided_bevel_gears_is_that_of_their_own_standard():
+    """4.299 - 3.259 (R_z + 1)^(1/200) of ISO 10300-3, formula (42), at 16 um; 0.986 with the exponent of ISO 6336-3."""
+    nitrided = {"kind": "NT", "material": None, "hardness_HV": None}
+    strengths = {f"{gear}.strength": OF_SAMPLE_1[f"{gear}.strength"] | nitrided for gear in ("pinion", "wheel")}
+    rated = bevel_solved(**GIVEN | strengths).rating()
+    assert_allclose(rated.Y_R_relT, 0.9935, atol=5e-5)  # of the printed digits
+
+
 def test_stresses_are_nominal_ones_times_load_factors():
     changes = GIVEN | {"operation.dynamic_factor": 1.2, "rating.face_load_factor": 1.3}
     rated = bevel_solved(**changes).rating()

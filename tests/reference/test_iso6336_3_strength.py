@@ -78,6 +78,8 @@ def test_factors_are_1_at_the_test_gear(kind):
     root = root_factors(gear, notch_parameter=2.5, stress_correction_factor=2.0, normal_module=5.0, cycles=3e6)
     assert_allclose([root.Y_delta_relT, root.Y_delta_relT_static, root.Y_X, root.Y_NT], 1.0, rtol=1e-12)
     assert_allclose(root.Y_R_relT, 1.0, atol=6e-3)
+    # of ISO 10300-3 by up to 0.2 %
+    assert_allclose(surface_factor(kind, 10.0, of_bevels=True), 1.0, atol=2e-3)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -10,8 +10,10 @@ from numpy.testing import assert_allclose
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.flank_maps.conjugate import conjugate_contact
 from loaded_tca.pairs.gear_pair import mating_teeth
+from loaded_tca.results.load_factors import face_ends
 from loaded_tca.tribology import Lubricant
 from loaded_tca.tribology.slices import slices_of
+from loaded_tca.unloaded import trace_contact
 from tests.samples.results import SCENES
 from tests.samples.root_stress import analysed
 from tests.samples.shared import made_once
@@ -171,3 +173,18 @@ def test_teeth_are_as_thick_at_p_as_the_blank_says():
         for tooth, radius, spiral in zip((teeth.pinion, teeth.wheel), radii, spirals, strict=True)
     ]
     assert_allclose(found, [4.922, 3.241], atol=5e-3)
+
+
+@pytest.mark.parametrize("key", ["pinion.modifications.profile_crowning_um", "mounting.offset_mm"])
+def test_common_face_does_not_depend_on_where_the_path_of_contact_runs(key):
+    """Coordinates along both faces part by 0.8 mm over the path of a hypoid pair, which leaps where teeth take turns.
+
+    Crowning moves no end of a face; the offset moves the wheel across its own cone distances, by 0.02 mm for each mm.
+    """
+    base, step = scene(5).with_changes({"analysis.cells": (8, 12)}), 0.04
+    ends = []
+    for part in (-1.0, 0.0, 1.0):
+        pair = base.with_changes({key: part * step if key.startswith("mounting") else 5.0 + 2.0 * part}).pair()
+        ends.append(face_ends(pair, trace_contact(pair, warn=False)))
+    assert_allclose(ends[0], ends[1], rtol=0.0, atol=1e-3)  # of strips 1 mm wide
+    assert_allclose(ends[2], ends[1], rtol=0.0, atol=1e-3)

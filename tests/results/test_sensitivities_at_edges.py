@@ -4,6 +4,7 @@ import re
 import warnings
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from loaded_tca import warning_kinds as kinds
 from loaded_tca.edges.free import edge_compliance
 from loaded_tca.errors import AccuracyWarning, noted_accuracy_warnings
 from loaded_tca.results import gap_growth
-from loaded_tca.results.face_slopes import rival_strip, warn_of_edges
+from loaded_tca.results.face_slopes import rival_strip, top_strips, warn_of_edges, warn_of_strips_beside
 from loaded_tca.results.load_factors import STRIPS, face_forces
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.separation.pair_change import value_at
@@ -233,6 +234,27 @@ def test_a_strip_that_carries_as_much_is_a_kink_of_the_face_load_factor():
     assert_allclose(abs(slope), abs(factors[1] - factors[0]) / 8.0, rtol=0.05)  # over 4 um
 
 
+def test_derivatives_of_one_strip_are_told_beside_those_through_three(monkeypatch):
+    """A parabola of three strips, 1 - (x - 0.3)^2/50, that moves by one strip: its top stays as high as it is."""
+    strips = np.arange(-1.0, 2.0)
+    forces = np.full(STRIPS, 0.5)
+    forces[9:12] = 1.0 - (strips - 0.3) ** 2 / 50.0
+    monkeypatch.setattr("loaded_tca.results.face_slopes.face_forces", lambda *_: (None, forces))
+    result = SimpleNamespace(torque=np.ones(1), maps=[None], gear_pair=None, path=None)
+    rows = top_strips(result)
+    assert [strip for strip, _ in rows] == [[9], [10], [11]]
+    slopes = (strips - 0.3) / 25.0
+    through = sum(part * slope for (_, part), slope in zip(rows, slopes, strict=True))
+    assert_allclose(through, 0.0, atol=1e-12)
+    words = r"by -0\.012 per mm, while .* derivative is \S+ \(second_mm; 1 of 2 keys\)"
+    with pytest.warns(AccuracyWarning, match=words):
+        warn_of_strips_beside(
+            ["first_mm", "second_mm"], np.array([[1.0, slopes[1]]]), np.array([[1.05, through[0]]]), stacklevel=1
+        )
+    forces[0] = 2.0
+    assert [part[0] for _, part in top_strips(result)] == [1.0, 0.0, 0.0]  # at an end of the face there is none beside
+
+
 @pytest.mark.parametrize(
     ("place", "force", "rival"), [(20, 0.995, 20), (20, 0.98, None), (6, 0.9996, 6), (6, 0.995, None)]
 )
@@ -258,8 +280,8 @@ def test_kinks_are_told_by_their_part_of_what_changes_over_the_positions(spread,
 def test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error_and_of_the_face_load_factor():
     """By growing values the wheel tilts by more over the shorter common face, by falling ones it ends the contact.
 
-    Beside analyses over 0.05 mm, by which the end moves an eighth of its cell: by steps of 0.02 to 0.2 mm kinks of the
-    transmission error differ by a sixth, and derivatives of K_Hbeta to one side by 0.2.
+    Beside analyses over 0.1 mm, by which the end moves a quarter of its cell: by steps of 0.03 to 0.2 mm kinks of the
+    transmission error differ by a sixth, and those of K_Hbeta by 0.15.
     """
     at = {"mounting.misalignment_um": 20.0, **FLANKS_ALONE}
     result, length = solved("helical", 32, 3, **at)
@@ -268,16 +290,16 @@ def test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error_and_of_
         slopes = found.transmission_error[0, :, 0]
     with pytest.warns(AccuracyWarning, match=rf"faces of both gears end .*-0\.\d+ per mm .*{OFFSET}; 1 of 2 keys"):
         factor = found.face_load_factor[0, 0]
-    low, high = (solved("helical", 32, 3, **at, **{OFFSET: by})[0] for by in (-0.05, 0.05))
+    low, high = (solved("helical", 32, 3, **at, **{OFFSET: by})[0] for by in (-0.1, 0.1))
     errors, factors = (
         [getattr(one, name)[0] for one in (low, result, high)] for name in ("transmission_error", "face_load_factor")
     )
     kinks = found.transmission_error_kinks[0]
-    assert_allclose(kinks[[0, 2], 0], np.diff(errors, 2, axis=0)[0, [0, 2]] / 0.05, rtol=0.15)
-    middle = (errors[2] - errors[0]) / 0.1 * length
+    assert_allclose(kinks[[0, 2], 0], np.diff(errors, 2, axis=0)[0, [0, 2]] / 0.1, rtol=0.15)
+    middle = (errors[2] - errors[0]) / 0.2 * length
     assert_allclose(slopes * length, middle, rtol=0, atol=0.15 * kinks.max() * length)
-    assert_allclose(factor, (factors[2] - factors[0]) / 0.1, rtol=0, atol=0.2)
-    assert_allclose(found.face_load_factor_kinks[0], [np.diff(factors, 2)[0] / 0.05, 0.0], rtol=0, atol=0.2)
+    assert_allclose(factor, (factors[2] - factors[0]) / 0.2, rtol=0, atol=0.2)
+    assert_allclose(found.face_load_factor_kinks[0], [np.diff(factors, 2)[0] / 0.1, 0.0], rtol=0, atol=0.2)
     assert not kinks[:, 1].any(), "crowning moves neither end"
 
 

@@ -69,6 +69,7 @@ def test_every_default_key_is_one_that_a_result_can_be_derived_by(name):
 
 
 @pytest.mark.filterwarnings("ignore:an edge cuts the slices")
+@pytest.mark.filterwarnings("ignore:K_Hbeta follows the largest of its strips")
 def test_mean_transmission_error_follows_the_centre_distance_as_involutes_do():
     """The driven flank moves along the line of action by sin(alpha_wt) for each mm that the axes part."""
     cycle = result("mesh_cycle_helical", positions=5, torques=(40.0, 260.0))

@@ -1,0 +1,118 @@
+"""Ratings of the flanks of both sides under reversed bins: symmetry of the pair, sums of roots, what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from loaded_tca.errors import InputError
+from loaded_tca.plots import plot_safeties, plot_sn_curves
+from tests.rating.test_spectrum import GIVEN, SLOPES, bins
+from tests.refusals import refusals
+from tests.samples.rating import solved
+from tests.samples.root_stress import analysed
+from tests.samples.root_stress import result as with_roots
+from tests.samples.shared import made_once
+
+FLANKS = {"analysis.root_stress": False}
+MIRRORED = 1e-5
+"""Of damages: the pair is its own mirror image; pressures, whose 14th power they grow with, are solved to 1e-7."""
+
+
+@made_once
+def coast_result(**changes):
+    return analysed(with_roots().scene.with_changes(changes).coast_side())
+
+
+def reversed_first(*rows):
+    """Bins of which the first is reversed."""
+    first, *others = bins(*rows)
+    return [first | {"reversed": True}, *others]
+
+
+def both_sides(cases, changes=FLANKS):
+    """The spur pair under bins, its drive side alone and with the coast side."""
+    spectrum = {"analysis.torques_Nm": (100.0, 200.0), "load.case": cases}
+    whole = solved(**GIVEN | SLOPES | spectrum | changes)
+    return whole.rating(), whole.rating(coast=coast_result(**changes))
+
+
+ROWS = (200.0, 10.0), (100.0, 30.0)
+
+
+def test_flanks_of_a_side_have_the_damage_of_the_bins_that_load_them():
+    spectrum = {"analysis.torques_Nm": (100.0, 200.0), "load.case": bins(*ROWS)}
+    plain = solved(**GIVEN | SLOPES | spectrum | FLANKS).rating()
+    alone, rated = both_sides(reversed_first(*ROWS))
+    damage = rated.dataset.damage
+    for mode in ("flank", "local_flank"):
+        coast = mode.replace("flank", "coast_flank")
+        assert_array_equal(damage.sel(mode=coast)[1], 0.0)
+        assert_array_equal(damage.sel(mode=mode), alone.dataset.damage.sel(mode=mode))
+        # the mirror image of a spur pair is the pair itself, and so is the damage of its other flanks
+        assert_allclose(damage.sel(mode=coast)[0], plain.dataset.damage.sel(mode=mode)[0], rtol=MIRRORED)
+    assert (damage.sel(mode="coast_flank")[0] > 0.0).all()
+    assert_allclose(rated.miner_sum, rated.damage.sum(axis=0))
+    assert_allclose(rated.flank_safety, plain.flank_safety, rtol=MIRRORED)
+
+
+def test_roots_carry_the_bins_of_both_sides():
+    alone, rated = both_sides(reversed_first(*ROWS))
+    # K_Hbeta is given, so that reversed bins stress roots after the standard as the same torque does the other way
+    assert_allclose(rated.dataset.miner_sum.sel(mode="root"), alone.dataset.miner_sum.sel(mode="root"), rtol=MIRRORED)
+    assert_allclose(rated.Y_M, alone.Y_M)
+
+
+@pytest.mark.thorough
+def test_local_roots_of_reversed_bins_have_the_tension_of_the_coast_side():
+    alone, rated = both_sides(reversed_first(*ROWS), {})
+    assert_allclose(rated.local_root_stress, alone.local_root_stress, rtol=1e-3)  # meshes of both sides of a tooth
+    assert_allclose(rated.local_stress_ratio[0], -1.2)
+
+
+def test_face_load_factor_of_a_reversed_bin_is_that_of_its_side():
+    cases = reversed_first(*ROWS)
+    spectrum = {"analysis.torques_Nm": (100.0, 200.0), "load.case": cases, "rating.face_load_factor": "analysis"}
+    whole, coast = solved(**GIVEN | SLOPES | FLANKS | spectrum), coast_result(**FLANKS)
+    crowded = replace(coast, dataset=coast.dataset.assign(face_load_factor=0.0 * coast.dataset.face_load_factor + 3.0))
+    rated = whole.rating(coast=crowded)
+    assert_allclose(rated.K_Hbeta, [3.0, whole.face_load_factor[0]])
+
+
+def test_error_of_the_damage_is_told_for_both_sides():
+    cases = reversed_first((160.0, 10.0), (140.0, 30.0))  # between two torques that were solved: no estimate
+    _, rated = both_sides(cases)
+    assert np.isnan(rated.interpolation_error).all()
+    assert any("load the flanks of the coast side, and stress roots" in note for note in rated.notes())
+
+
+def test_pictures_and_tables_have_the_coast_flanks():
+    _, rated = both_sides(reversed_first(*ROWS))
+    assert "coast flank: safety in the required life" in rated.summary()
+    assert rated.key_figures()[0]["pinion_coast_flank_spectrum_safety"] == rated.dataset.spectrum_safety.sel(
+        gear="pinion", mode="coast_flank"
+    )
+    labels = [label.get_text() for label in plot_safeties(rated).axes[0].get_yticklabels()]
+    assert labels[-2:] == ["coast flank, ISO 6336-2", "coast flank, local"]
+    assert len([axes for axes in plot_sn_curves(rated).axes if axes.get_visible()]) == len(rated.modes)
+    with pytest.raises(InputError, match="a rating of both sides has no derivatives"):
+        rated.sensitivities(["pinion.modifications.lead_crowning_um"])
+
+
+def refused(cases, coast_changes):
+    spectrum = {"analysis.torques_Nm": (100.0, 200.0), "load.case": cases}
+    whole, coast = solved(**GIVEN | FLANKS | spectrum), coast_result(**FLANKS)
+    return whole.rating(coast=replace(coast, scene=coast.scene.with_changes(coast_changes)))
+
+
+test_refusals_of_coast_sides = refusals(
+    refused,
+    (bins(*ROWS), {}, "coast: the scene has no load spectrum with reversed bins"),
+    (reversed_first(*ROWS), {"pair.driving": "pinion"}, r"coast: \[pair\] of its scene is not that of coast_side"),
+    (
+        reversed_first(*ROWS),
+        {"pinion.face_width_mm": 21.0},
+        r"coast: \[pinion\] of its scene is not that of",
+    ),
+)
