@@ -2943,6 +2943,20 @@ FAULTS = (
         'rule(("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda _, several',
         "scene/test_double_helical_scene.py::test_refused",
     ),
+    Fault(
+        "double helical pairs: the whole gear is rated with the whole torque on the face of a half",
+        "double_helical/rating.py",
+        "_under(scene, result.half_a, 0.5 * torques,",
+        "_under(scene, result.half_a, torques,",
+        "double_helical/test_rating.py::test_whole_gear_has_the_torque_on_both_widths",
+    ),
+    Fault(
+        "double helical pairs: the better half counts in ratings",
+        "double_helical/rating.py",
+        "np.maximum if name in LARGEST else np.minimum",
+        "np.minimum if name in LARGEST else np.maximum",
+        "double_helical/test_rating.py::test_worse_half_counts",
+    ),
 )
 
 

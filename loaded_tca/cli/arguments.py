@@ -93,7 +93,7 @@ Friction of the teeth alone; docs/guide/efficiency_and_scuffing.md says more."""
 RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubricant] of the scene say what the gears
 are made of, what is required and how they run, of a stage [sun.strength], [planet.strength] and [ring.strength]; --set
 gives or changes them, and the load spectrum of a pair: load.spectrum=FILE, with torques up to the largest that was
-solved. Without one each torque stands for itself.
+solved. Without one each torque stands for itself. Of a double helical pair both halves are rated under their shares.
 
 files in DIR:
   rating.json               safeties, damage, lives and every factor of each torque or bin, and of all bins together

@@ -16,12 +16,12 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.analysis import analyse
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices
-from loaded_tca.double_helical.balance import HalfLaw, Halves, Shares, shared
+from loaded_tca.double_helical.balance import Shares
+from loaded_tca.double_helical.laws import balance_of
 from loaded_tca.double_helical.result import FACES, DoubleHelicalResult
 from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import (
     ConvergenceError,
-    GeometryError,
     give_accuracy_warning,
     named,
     noted_accuracy_warnings,
@@ -116,7 +116,7 @@ def _settled(scene: DoubleHelicalScene, axial: float, shown: _Progress) -> list[
     for _ in range(MOST_ROUNDS):
         scenes = scene.half_scenes(axial, [[1e-3 * torque for torque in of_half] for of_half in torques])
         analysed = _analysed(scenes, shown)
-        state = _balanced(scene, analysed)
+        state = balance_of(scene, [half.cycle for half in analysed], np.asarray(scene.torques))
         places, wanted = _places(scene, state), _wanted(scene, state, torques)
         moved = float(places.mean())
         groups = _groups(places, FACES * scene.narrow_half)
@@ -196,35 +196,6 @@ def _of_half(sentence: str) -> str:
     return f"{sentence[:-1]}; N m: the torque of the half)" if is_under_torque(sentence) else sentence
 
 
-def _balanced(scene: DoubleHelicalScene, analysed: Sequence[_Half]) -> Shares:
-    """Balance of both halves."""
-    laws = []
-    for name, half in zip(HALVES, analysed, strict=True):
-        with named(f"half {name}"):
-            laws.append(_law(half.cycle, scene.axial_rate))
-    geometry = scene.geometry
-    stiffness = math.inf if geometry.floating == "none" else 1e3 * geometry.axial_stiffness_N_per_um
-    total = np.asarray(scene.torques) / scene.mesh().pinion.base_radius
-    return shared(Halves((laws[0], laws[1]), scene.parted, scene.axial_rate, stiffness), total)
-
-
-def _law(cycle: MeshCycle, axial_rate: float) -> HalfLaw:
-    """How far the flanks of a half give way at the base circle, without what its axial offset brings together."""
-    scene, pair = cycle.scene, cycle.gear_pair
-    assert isinstance(scene, CylindricalScene)
-    offset = scene.mounting.axial_offset_mm
-    length = -pair.driving * pair.base_radii[1]
-    deflection = length * cycle.transmission_error
-    if not np.isfinite(deflection).all():
-        raise GeometryError("its flanks are out of contact at some positions, where it cannot share a torque")
-    return HalfLaw(
-        force=cycle.torque / pair.base_radii[0],
-        deflection=deflection - axial_rate * offset,
-        compliance=1.0 / (1e3 * cycle.face_width * cycle.mesh_stiffness),
-        unloaded=length * cycle.unloaded_transmission_error - axial_rate * offset,
-    )
-
-
 def _places(scene: DoubleHelicalScene, state: Shares) -> Array:
     """Mean places (torque,) of the wheel along the axis over the pitch [mm]."""
     return np.asarray(scene.mounting.axial_offset_mm + state.motion.mean(axis=1))
@@ -241,12 +212,11 @@ def _groups(places: Array, span: float) -> list[Indices]:
 
 
 def _under(scene: DoubleHelicalScene, rows: Indices) -> DoubleHelicalScene:
-    """The scene under some of its torques."""
-    torques = scene.analysis.torques_Nm
-    assert torques is not None  # one torque has one place
-    changed = scene.with_changes({"analysis.torques_Nm": [torques[row] for row in rows.tolist()]})
-    assert isinstance(changed, DoubleHelicalScene)
-    return changed
+    """The scene under some of its torques, without the load spectrum that these are of."""
+    torques = [1e-3 * scene.torques[row] for row in rows.tolist()]
+    load = replace(scene.load, pinion_torque_Nm=torques[-1], case=None)
+    analysis = replace(scene.analysis, torques_Nm=tuple(torques))
+    return replace(scene, load=load, analysis=analysis, rating=scene.rating_of_halves)
 
 
 def _wanted(scene: DoubleHelicalScene, state: Shares, torques: Sequence[Sequence[float]]) -> list[list[float]]:
@@ -301,7 +271,7 @@ def _result(scene: DoubleHelicalScene, places: Sequence[_Place]) -> DoubleHelica
 def _joined(scene: DoubleHelicalScene, parts: Sequence[dict[str, Array]]) -> dict[str, Array]:
     """Arrays of the result, from those under the torques at each place."""
     torques = np.concatenate([part["torque"] for part in parts])
-    rows = np.array([int(np.flatnonzero(torques == torque)[0]) for torque in scene.torques])
+    rows = np.array([int(np.abs(torques - torque).argmin()) for torque in scene.torques])  # through N m
     return {
         name: np.concatenate([part[name] for part in parts])[rows] if "torque" in number.dims else parts[0][name]
         for name, number in DoubleHelicalResult.NUMBERS.items()

@@ -26,6 +26,8 @@ from loaded_tca.units import MICROMETRES
 if TYPE_CHECKING:
     import xarray
 
+    from loaded_tca.double_helical.rating import DoubleHelicalRating
+
 PAIR_FILE = "double_helical.nc"
 """Name of the file of both halves together."""
 FACES = 1e-3
@@ -204,9 +206,9 @@ class DoubleHelicalResult(JoinedResult):
                         f"under {shown_torque(torque)} half {name} carries nothing at {words} positions: its flanks "
                         "stand farther apart than those of the other half give way"
                     )
-        return (*sentences, *self._notes_of_places())
+        return (*sentences, *self.notes_of_places())
 
-    def _notes_of_places(self) -> list[str]:
+    def notes_of_places(self) -> list[str]:
         """Sentences on torques under which the mesh cycles of both halves are those of another place."""
         places = self.axial_motion.mean(axis=1)
         largest = int(self.torque.argmax())
@@ -217,6 +219,32 @@ class DoubleHelicalResult(JoinedResult):
             for torque, way in zip(self.torque.tolist(), (places - places[largest]).tolist(), strict=True)
             if abs(way) > FACES * self.scene.narrow_half
         ]
+
+    def rating(self) -> DoubleHelicalRating:
+        """Return safeties, damage and lives of both halves under their shares, and of the whole gear after ISO 6336.
+
+        Each half is rated under the largest of its shares over the pitch with its own load factors; under a load
+        spectrum its share is that of each bin. Of the pair the worse half counts.
+
+        Returns
+        -------
+        loaded_tca.double_helical.DoubleHelicalRating
+            ``half_a``, ``half_b`` and ``whole`` with every factor; ``flank_safety`` and its sisters over case and gear,
+            ``damage`` and ``life_hours`` over kinds of failure, too.
+
+        Raises
+        ------
+        InputError
+            If a section that it needs is missing, as of :meth:`loaded_tca.MeshCycle.rating`, or a half carries nothing.
+
+        Warns
+        -----
+        AccuracyWarning
+            As there, of both halves.
+        """
+        from loaded_tca.double_helical.rating import double_helical_rating_of  # which takes results
+
+        return double_helical_rating_of(self)
 
     @classmethod
     def parts_of(

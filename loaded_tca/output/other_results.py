@@ -11,8 +11,8 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS
 from loaded_tca.output.result_files import csv_table, json_text, known
 from loaded_tca.plain import lasting
-from loaded_tca.rating import SpectrumRating
 from loaded_tca.rating.quantities import OF_SPECTRUM
+from loaded_tca.rating.spectrum import OfBins
 from loaded_tca.results.files import Buffer, FilePath, replace_together
 from loaded_tca.supports import RollingBearing
 from loaded_tca.tribology.quantities import COLUMNS
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from loaded_tca.double_helical import DoubleHelicalResult
+    from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult
     from loaded_tca.flank_maps.ease_off_map import EaseOffMap
     from loaded_tca.loaded.shaft_lines import ShaftLine
     from loaded_tca.rating import Rating
@@ -149,13 +149,16 @@ RATING_FILES = "rating.json", "rating.csv"
 
 @checked
 def write_rating(
-    rating: Rating | StageRating, directory: FilePath, more: Mapping[str, Buffer] = {}, outdated: Iterable[str] = ()
+    rating: Rating | StageRating | DoubleHelicalRating,
+    directory: FilePath,
+    more: Mapping[str, Buffer] = {},
+    outdated: Iterable[str] = (),
 ) -> tuple[Path, ...]:
     """Write ``rating.json`` and ``rating.csv``, all files or none.
 
     Parameters
     ----------
-    rating : Rating or StageRating
+    rating : Rating, StageRating or DoubleHelicalRating
     directory : str or path
         Made if it does not exist.
     more : mapping of str to bytes
@@ -173,15 +176,18 @@ def write_rating(
     InputError
         If they cannot be written.
     """
-    beside = {"spectrum": spectrum_figures(rating)} if isinstance(rating, SpectrumRating) else {}
+    beside = {"spectrum": spectrum_figures(rating)} if isinstance(rating, OfBins) else {}
     text = figures_json(rating, **beside, notes=rating.notes(), warnings=rating.warnings or ())
     contents = text.encode(), csv_table(rating.to_table()).encode()
     files = {**dict(zip(RATING_FILES, contents, strict=True)), **more}
     return replace_together(directory, files, {*outdated} - {*files})
 
 
-def spectrum_figures(rating: SpectrumRating) -> dict[str, Any]:
-    """What all bins do together: hours, and for each kind of failure of each gear its numbers, null where not known."""
+def spectrum_figures(rating: OfBins) -> dict[str, Any]:
+    """What all bins do together: hours, and for each kind of failure of each gear its numbers, null where not known.
+
+    Of double helical pairs those of each half, too.
+    """
     rows = rating.key_figures()[0]
     together: dict[str, Any] = {
         f"{gear}_{mode}": {
@@ -193,7 +199,13 @@ def spectrum_figures(rating: SpectrumRating) -> dict[str, Any]:
         for gear in GEARS
         for mode in rating.modes
     }
-    return {"required_life_h": rating.life_required, "bins": len(rating.torque), **together}
+    halves = zip(("half_a", "half_b"), getattr(rating, "halves", ()), strict=False)
+    return {
+        "required_life_h": rating.life_required,
+        "bins": len(rating.torque),
+        **together,
+        **{name: spectrum_figures(half) for name, half in halves},
+    }
 
 
 @checked
@@ -250,7 +262,10 @@ def stage_json(result: StageResult) -> str:
 
 @checked
 def write_double_helical(
-    result: DoubleHelicalResult, directory: FilePath, more: Mapping[str, Buffer] = {}
+    result: DoubleHelicalResult,
+    directory: FilePath,
+    more: Mapping[str, Buffer] = {},
+    outdated: Iterable[str] = (),
 ) -> tuple[Path, ...]:
     """Write a double helical pair, its figures and its table, all files or none.
 
@@ -261,6 +276,8 @@ def write_double_helical(
         Made if it does not exist.
     more : mapping of str to bytes
         Contents of files to write with these, by their names: pictures.
+    outdated : iterable of str
+        Names of files to remove that an older result has.
 
     Returns
     -------
@@ -276,7 +293,7 @@ def write_double_helical(
     text = figures_json(result, notes=result.notes(), warnings=result.warnings or ())
     table = csv_table(result.to_table())
     files = {"double_helical.json": text.encode(), "double_helical.csv": table.encode()}
-    return replace_together(directory, {**result.contents(), **files, **more})
+    return replace_together(directory, {**result.contents(), **files, **more}, outdated)
 
 
 FORCES = "force_x_N", "force_y_N", "force_z_N", "moment_x_Nm", "moment_y_Nm", "moment_z_Nm"

@@ -53,6 +53,10 @@ class Duty:
         Y_M of pinion and wheel, where it does not follow from a stress ratio.
     stress_ratios : (array (c,) or None, array (c,) or None)
         Smallest over largest computed root stress of a turn, where other mates add to those of the mesh.
+    torque : array (c,), optional
+        Pinion torques of load cases that stand for themselves [N mm], at least 0; default: those of the result.
+    face_load_factor : array (c,), optional
+        K_Hbeta; default: as the scene asks.
     """
 
     mesh_load_factor: Array | float = 1.0
@@ -60,6 +64,8 @@ class Duty:
     wheel_is_held: bool = False
     mean_stress_factors: tuple[float | None, float | None] = (None, None)
     stress_ratios: tuple[Array | None, Array | None] = (None, None)
+    torque: Array | None = None
+    face_load_factor: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,11 +201,13 @@ def inputs_of(result: CycleNumbers, duty: Duty = Duty()) -> RatingInputs:
     outside = [
         f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
     ]
-    return RatingInputs(result, scene, **common_inputs(result, outside), mesh=scene.mesh(), duty=duty)
+    return RatingInputs(result, scene, **common_inputs(result, outside, duty.torque), mesh=scene.mesh(), duty=duty)
 
 
-def common_inputs(result: CycleNumbers, outside: Sequence[str] = ()) -> dict[str, Any]:
+def common_inputs(result: CycleNumbers, outside: Sequence[str] = (), several: Array | None = None) -> dict[str, Any]:
     """What every rating takes of a result and the sections of its scene: fields of ``CommonInputs`` but the first two.
+
+    ``several`` are torques of load cases [N mm] that stand in the place of those of the result.
 
     Raises
     ------
@@ -219,7 +227,7 @@ def common_inputs(result: CycleNumbers, outside: Sequence[str] = ()) -> dict[str
     problems += problems_of_cases(scene, float(torques.max()))
     if problems := [*problems, *outside]:
         raise InputError(problems)
-    cases = cases_of(scene, torques)
+    cases = cases_of(scene, torques if several is None else several)
     return {
         "strengths": (scene.pinion.strength, scene.wheel.strength),
         "rating": scene.rating,

@@ -108,6 +108,11 @@ class OfCases(Result):
     def modes(self) -> tuple[str, ...]:
         """Kinds of failure that are rated."""
 
+    @property
+    @abstractmethod
+    def life_required(self) -> float:
+        """The life that is required [h]."""
+
     def figure_arrays(self) -> dict[str, Array]:
         """Return the key figures as arrays (case,) by their names; of what all bins do together the same for each."""
         columns, count = {}, len(self.torque)

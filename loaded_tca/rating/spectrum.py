@@ -14,7 +14,7 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.rating.interpolation import Evaluate, interpolation_error
 from loaded_tca.rating.lives import Endurances
 from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS, UNDER_LOAD
-from loaded_tca.rating.rating import WORDS, Rating, all_figures
+from loaded_tca.rating.rating import WORDS, OfCases, Rating, all_figures
 from loaded_tca.rating.roots import REVERSED
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.summary import shown, summary_of
@@ -86,36 +86,12 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array) -> Iter
         yield f"the hours of the bins, {together}, follow each other {cases.repeated:.4g} times"
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class SpectrumRating(Rating):
-    """Safeties and lives under a load spectrum: cases are its bins.
-
-    ``damage`` of each bin, in the required life at the required safeties, adds up to ``miner_sum``; ``life_hours`` is
-    the required life over that sum, ``spectrum_safety`` the safety on stress at which it is 1, ``equivalent_torque``
-    that of the same damage over the same load cycles by the first line of the S-N curve, ``interpolation_error`` by
-    which part the sum may be wrong: all over gears and kinds of failure. Safeties over cases are those of a bin alone
-    in its own load cycles.
-    """
-
-    NUMBERS: ClassVar = SPECTRUM_NUMBERS
-    FIGURES: ClassVar = all_figures(SPECTRUM_NUMBERS)
-
-    @property
-    def _standards(self) -> str:
-        return f"{super()._standards}, ISO 6336-6:2019 with {len(self.torque)} bins"
-
-    @property
-    def _speed(self) -> str:
-        least, most = self.pinion_speed.min(), self.pinion_speed.max()
-        return f"{least:g} rpm" if least == most else f"{least:g} to {most:g} rpm"
-
-    def safeties_and_lives(self) -> tuple[Array, Array]:
-        """Safety in the required life, and life at the required safety [h], of all bins together (1, gear, mode)."""
-        return self.values("spectrum_safety")[None], self.values("life_hours")[None]
+class OfBins(OfCases):
+    """Numbers of the bins of a load spectrum, and of all of them together: over ``gear`` and ``mode``."""
 
     def spectrum_rows(self) -> list[tuple[str, ...]]:
         """Lines on all bins together: label with unit, and a cell for each gear."""
-        rows: list[tuple[str, ...]] = [("spectrum", *GEARS)]
+        rows: list[tuple[str, ...]] = [("spectrum", *self.MEMBERS)]
         for n, mode in enumerate(self.modes):
             for name, number in self.NUMBERS.items():
                 if number.dims == OF_SPECTRUM:
@@ -140,6 +116,34 @@ class SpectrumRating(Rating):
         numbered = [("bin", *(f"{place + 1}" for place in some)), *self.rows([figures[place] for place in some])]
         *_, table = summary_of("", which, numbered, sentences).split("\n", 1)
         return f"{together}\n\n{table}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SpectrumRating(OfBins, Rating):
+    """Safeties and lives under a load spectrum: cases are its bins.
+
+    ``damage`` of each bin, in the required life at the required safeties, adds up to ``miner_sum``; ``life_hours`` is
+    the required life over that sum, ``spectrum_safety`` the safety on stress at which it is 1, ``equivalent_torque``
+    that of the same damage over the same load cycles by the first line of the S-N curve, ``interpolation_error`` by
+    which part the sum may be wrong: all over gears and kinds of failure. Safeties over cases are those of a bin alone
+    in its own load cycles.
+    """
+
+    NUMBERS: ClassVar = SPECTRUM_NUMBERS
+    FIGURES: ClassVar = all_figures(SPECTRUM_NUMBERS)
+
+    @property
+    def _standards(self) -> str:
+        return f"{super()._standards}, ISO 6336-6:2019 with {len(self.torque)} bins"
+
+    @property
+    def _speed(self) -> str:
+        least, most = self.pinion_speed.min(), self.pinion_speed.max()
+        return f"{least:g} rpm" if least == most else f"{least:g} to {most:g} rpm"
+
+    def safeties_and_lives(self) -> tuple[Array, Array]:
+        """Safety in the required life, and life at the required safety [h], of all bins together (1, gear, mode)."""
+        return self.values("spectrum_safety")[None], self.values("life_hours")[None]
 
     def _short(self) -> list[str]:
         sentences = []

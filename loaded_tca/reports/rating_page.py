@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from loaded_tca.arrays import GEARS
+from loaded_tca.double_helical.rating import double_helical_rating_of
 from loaded_tca.errors import InputError
 from loaded_tca.plain import plain
 from loaded_tca.plots import RATING_PICTURES, rating_figures
 from loaded_tca.rating import Rating, SpectrumRating, rating_of
 from loaded_tca.rating.findings import FAILURES, findings
 from loaded_tca.rating.quantities import OF_GEARS, OF_MODES, OF_SPECTRUM
-from loaded_tca.rating.rating import WORDS
+from loaded_tca.rating.rating import WORDS, OfCases, rows_of
+from loaded_tca.rating.spectrum import OfBins
 from loaded_tca.reports.page import Table, parts_of, pictures_of
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.summary import shown
+from loaded_tca.scene.double_helical import HALVES
 from loaded_tca.scene.rating import is_rated
 
 if TYPE_CHECKING:
+    from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult
     from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.scene import Scene
 
 MOST_CASES = 2
 """With a column for each gear in one table of a page."""
@@ -41,12 +47,30 @@ def rating_content(result: MeshCycle) -> dict[str, Any] | None:
     ----------
     result : MeshCycle
     """
-    if not is_rated(result.scene):
+    return _rated(result.scene, lambda: _of_pair(rating_of(result, warn=False)))
+
+
+def halves_rating_content(result: DoubleHelicalResult) -> dict[str, Any] | None:
+    """Return the same of a double helical pair: the safeties of both halves, then all of each half.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+    """
+    return _rated(result.scene, lambda: _of_halves(double_helical_rating_of(result, warn=False)))
+
+
+def _rated(scene: Scene, content: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
+    """The content of a rating, why there is none, or None if the scene has no strengths or no [rating]."""
+    if not is_rated(scene):
         return None
     try:
-        rating = rating_of(result, warn=False)
+        return content()
     except InputError as error:  # the report has what there is
         return {"refused": error.problems, "pictures": ()}
+
+
+def _of_pair(rating: Rating) -> dict[str, Any]:
     decisive, said, cases = findings(rating), {*findings(rating)}, _shown_cases(rating)
     captions = {name: picture.caption for name, picture in RATING_PICTURES.items()}
     return {
@@ -57,7 +81,29 @@ def rating_content(result: MeshCycle) -> dict[str, Any] | None:
         "tables": [*chain.from_iterable(_tables(rating, cases[part]) for part in parts_of(cases, MOST_CASES))],
         "notes": [note for note in rating.notes() if note not in said],
         "warnings": rating.warnings or (),
-        "pictures": pictures_of(rating_figures(rating), captions, result.scene.title),
+        "pictures": pictures_of(rating_figures(rating), captions, rating.scene.title),
+    }
+
+
+def _of_halves(rating: DoubleHelicalRating) -> dict[str, Any]:
+    cases = _shown_cases(rating)
+    figures = [rating.key_figures()[case] for case in cases]
+    torques = [f"{plain(1e-3 * float(rating.torque[case]))} N m" for case in cases]
+    rows = rows_of(rating, GEARS, rating.modes, figures)[1:]
+    tables = []
+    for name, half in zip(HALVES, rating.halves, strict=True):
+        parts = chain.from_iterable(_tables(half, cases[part]) for part in parts_of(cases, MOST_CASES))
+        of_half = [replace(_safeties(half), caption="safeties and lives"), *parts]
+        tables += [replace(table, caption=f"Half {name}: {table.caption}") for table in of_half]
+    return {
+        "refused": (),
+        "about": rating.scope.removesuffix("; pinion | wheel"),
+        "safeties": Table(tuple(rows), ("pinion | wheel", *torques), "Both halves together"),
+        "findings": (),
+        "tables": tables,
+        "notes": rating.notes(),
+        "warnings": rating.warnings or (),
+        "pictures": (),
     }
 
 
@@ -75,9 +121,9 @@ def _safeties(rating: Rating) -> Table:
     return Table(tuple(rows), (together, "required", *heads))
 
 
-def _shown_cases(rating: Rating) -> list[int]:
+def _shown_cases(rating: OfCases) -> list[int]:
     """Cases whose factors stand in tables: all torques, of a load spectrum the bins of the largest damage."""
-    return rating.most_damaging() if isinstance(rating, SpectrumRating) else [*range(len(rating.torque))]
+    return rating.most_damaging() if isinstance(rating, OfBins) else [*range(len(rating.torque))]
 
 
 def _tables(rating: Rating, cases: Sequence[int]) -> Iterator[Table]:

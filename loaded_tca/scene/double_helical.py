@@ -22,6 +22,7 @@ from loaded_tca.scene.cylindrical import CylindricalScene, MountingErrors
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.parse import scene_from_table, variant
+from loaded_tca.scene.rating import RatingSection
 from loaded_tca.scene.section import Rule, Section, contents, rule, subsection
 from loaded_tca.scene.sections import ERROR_mm, Modifications
 
@@ -167,11 +168,6 @@ class DoubleHelicalScene(CylindricalScene):
         rule(
             ("analysis.load_sharing",), bool, "found false; allowed true: the tooth pairs of both halves share the load"
         ),
-        rule(
-            ("load",),
-            lambda load: load.case is None,
-            "found a load spectrum; not allowed of double helical pairs: give its torques as analysis.torques_Nm",
-        ),
         rule(("analysis.torques_Nm",), lambda several: all(several or ()), SHARED),
         rule(
             ("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda torque, several: several or torque != 0.0, SHARED
@@ -221,10 +217,11 @@ class DoubleHelicalScene(CylindricalScene):
 
     def _half(self, half: int, axial_mm: float, torques: tuple[float, ...]) -> CylindricalScene:
         mounting = self._mounting_of_half(half, axial_mm)
-        load = replace(self.load, pinion_torque_Nm=torques[-1])
+        load = replace(self.load, pinion_torque_Nm=torques[-1], case=None)
         analysis = replace(self.analysis, torques_Nm=torques)
         title = f"{self.title}: half {HALVES[half]}".strip(": ")
         changes = {"title": title, "mounting": mounting, "load": load, "analysis": analysis}
+        changes["rating"] = self.rating_of_halves
         scene = scene_from_table({**contents(self), **self._gears_of_half(half), **changes})
         assert isinstance(scene, CylindricalScene)
         return scene
@@ -254,6 +251,12 @@ class DoubleHelicalScene(CylindricalScene):
             "axial_offset_mm": beside,
         }
         return {name: value + own.get(name, 0.0) + 0.0 for name, value in {"misalignment_um": 0.0, **errors}.items()}
+
+    @property
+    def rating_of_halves(self) -> RatingSection | None:
+        """What is required of each half, whose scene has no load spectrum: for the hours of that of the pair."""
+        wanted = self.rating
+        return wanted if wanted is None or wanted.life_hours else replace(wanted, life_hours=self.load.hours)
 
     def half_width(self, gear: cylindrical.GearSection) -> float:
         """Face width of a half of a gear [mm]."""

@@ -86,6 +86,11 @@ class StageRating(OfCases):
         return self.sun_mesh.modes
 
     @property
+    def life_required(self) -> float:
+        """The life that is required [h]."""
+        return self.sun_mesh.life_required
+
+    @property
     def scope(self) -> str:
         """Speeds, hours and what is required, in words."""
         wanted, operation = self.stage.rating, self.stage.operation

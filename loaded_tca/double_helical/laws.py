@@ -1,0 +1,56 @@
+"""What both halves give way by, read off their mesh cycles, and their balance under any torques."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.double_helical.balance import HalfLaw, Halves, Shares, shared
+from loaded_tca.errors import GeometryError, named
+from loaded_tca.results import MeshCycle
+from loaded_tca.scene.cylindrical import CylindricalScene
+from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
+
+
+def half_law(cycle: MeshCycle, axial_rate: float) -> HalfLaw:
+    """How far the flanks of a half give way at the base circle, without what its axial offset brings together."""
+    scene, pair = cycle.scene, cycle.gear_pair
+    assert isinstance(scene, CylindricalScene)
+    offset = scene.mounting.axial_offset_mm
+    length = -pair.driving * pair.base_radii[1]
+    deflection = length * cycle.transmission_error
+    if not np.isfinite(deflection).all():
+        raise GeometryError("its flanks are out of contact at some positions, where it cannot share a torque")
+    return HalfLaw(
+        force=cycle.torque / pair.base_radii[0],
+        deflection=deflection - axial_rate * offset,
+        compliance=1.0 / (1e3 * cycle.face_width * cycle.mesh_stiffness),
+        unloaded=length * cycle.unloaded_transmission_error - axial_rate * offset,
+    )
+
+
+def axial_stiffness(scene: DoubleHelicalScene) -> float:
+    """Stiffness of the axial support of the floating gear [N/mm]; 0: nothing holds it, inf: none floats."""
+    geometry = scene.geometry
+    return math.inf if geometry.floating == "none" else 1e3 * geometry.axial_stiffness_N_per_um
+
+
+def balance_of(scene: DoubleHelicalScene, cycles: Sequence[MeshCycle], torques: Array) -> Shares:
+    """Balance of both halves under pinion torques (t,) [N mm] of both, above 0.
+
+    Parameters
+    ----------
+    scene : DoubleHelicalScene
+    cycles : (MeshCycle, MeshCycle)
+        Of the halves.
+    torques : (t,) array [N mm]
+    """
+    laws = []
+    for name, cycle in zip(HALVES, cycles, strict=True):
+        with named(f"half {name}"):
+            laws.append(half_law(cycle, scene.axial_rate))
+    total = np.asarray(torques) / scene.mesh().pinion.base_radius
+    return shared(Halves((laws[0], laws[1]), scene.parted, scene.axial_rate, axial_stiffness(scene)), total)
