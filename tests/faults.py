@@ -2508,7 +2508,7 @@ FAULTS = (
     Fault(
         "double helical pairs: the place of a floating gear that moves on at the last step counts as settled",
         "double_helical/analyse.py",
-        "    if not settled:\n",
+        "    if not stands:\n",
         "    if float(np.abs(places - axial).max()) > FACES * scene.narrow_half:\n",
         "double_helical/test_analyse.py::test_a_place_that_does_not_settle_is_an_error",
     ),
@@ -2956,6 +2956,20 @@ FAULTS = (
         "np.maximum if name in LARGEST else np.minimum",
         "np.minimum if name in LARGEST else np.maximum",
         "double_helical/test_rating.py::test_worse_half_counts",
+    ),
+    Fault(
+        "double helical pairs: an apex that runs out sets the flanks of both halves back alike",
+        "scene/double_helical.py",
+        "rate = SIGNS[half] * (-1.0, 1.0)[number] * self.axial_rate",
+        "rate = (-1.0, 1.0)[number] * self.axial_rate",
+        "double_helical/test_revolution.py::test_floating_gear_follows_an_apex_that_runs_out",
+    ),
+    Fault(
+        "double helical pairs: half b has the pitch deviations of half a in whole revolutions",
+        "scene/double_helical.py",
+        "            if half and of_half is not None:\n                own |= {section: value",
+        "            if half and of_half is not None:\n                own |= {} if of_half.pitch else {section: value",
+        "double_helical/test_revolution.py::test_eccentric_halves_of_opposite_phases_shuttle_by_their_closed_form",
     ),
 )
 

@@ -146,7 +146,8 @@ REVOLUTION = """files in DIR:
   revolution_shares.png     share of every tooth as a band, highest pressure of every tooth
   revolution_waterfall.png  orders over the torque; of two torques or more
 [pinion.pitch], [wheel.pitch] and [revolution] of the scene say where the teeth stand and which pitches follow each
-other; docs/guide/whole_revolutions.md says more."""
+other; docs/guide/whole_revolutions.md says more. Of a double helical pair: double_helical_revolution.nc, .json, .csv,
+double_helical_orders.csv, half_a_revolution.nc and half_b_revolution.nc, and halves_revolution_*.png."""
 STAGE = """files in DIR:
   stage.nc, sun_mesh.nc, ring_mesh.nc
                             everything, to be read by loaded_tca.stages.StageResult.load; the meshes are results as

@@ -144,15 +144,33 @@ def revolution(options: argparse.Namespace) -> None:
     from loaded_tca.plots import png_of
     from loaded_tca.plots.revolution import revolution_figures
     from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
+    from loaded_tca.scene.double_helical import DoubleHelicalScene
 
     scene, directory = scene_of(options), options.out
     check_place(directory)
+    if isinstance(scene, DoubleHelicalScene):
+        _double_helical_revolution(scene, directory)
+        return
     effort = expected_revolution_effort(scene)
     with progress_bar(effort, "states", effort.contacts // 2) as progress:
         result = analyse_revolution(scene, progress=progress)
     pictures = {f"{name}.png": png_of(figure) for name, figure in revolution_figures(result).items()}
     written = write_revolution(result, directory, pictures)
     print_summary(result.summary(), written)
+
+
+def _double_helical_revolution(scene: DoubleHelicalScene, directory: Path) -> None:
+    """Analyse a whole revolution of a double helical pair, write everything, and show the summary."""
+    from loaded_tca.double_helical import analyse_double_helical_revolution
+    from loaded_tca.double_helical.revolution import expected_halves_revolution_effort
+    from loaded_tca.output.other_results import write_halves_revolution
+    from loaded_tca.plots import halves_revolution_figures, png_of
+
+    effort = expected_halves_revolution_effort(scene)
+    with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
+        result = analyse_double_helical_revolution(scene, progress=progress)
+    pictures = {f"{name}.png": png_of(figure) for name, figure in halves_revolution_figures(result).items()}
+    print_summary(result.summary(), write_halves_revolution(result, directory, pictures))
 
 
 def tribology(options: argparse.Namespace) -> None:

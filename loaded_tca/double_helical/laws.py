@@ -1,4 +1,4 @@
-"""What both halves give way by, read off their mesh cycles, and their balance under any torques."""
+"""What both halves give way by, read off their mesh cycles or revolutions, and their balance under any torques."""
 
 from __future__ import annotations
 
@@ -10,14 +10,22 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.double_helical.balance import HalfLaw, Halves, Shares, shared
 from loaded_tca.errors import GeometryError, named
-from loaded_tca.results import MeshCycle
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results import MeshCycle, Revolution
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
 
 
-def half_law(cycle: MeshCycle, axial_rate: float) -> HalfLaw:
+def gears_of(cycle: MeshCycle | Revolution) -> GearPair:
+    """The gears of a half in space."""
+    return cycle.gear_pair if isinstance(cycle, MeshCycle) else cycle.scene.pair()
+
+
+def half_law(cycle: MeshCycle | Revolution, axial_rate: float) -> HalfLaw:
     """How far the flanks of a half give way at the base circle, without what its axial offset brings together."""
-    scene, pair = cycle.scene, cycle.gear_pair
+    scene, pair = cycle.scene, gears_of(cycle)
+    of_cycle = isinstance(cycle, MeshCycle)
+    unloaded = cycle.unloaded_transmission_error if of_cycle else cycle.rigid_transmission_error
     assert isinstance(scene, CylindricalScene)
     offset = scene.mounting.axial_offset_mm
     length = -pair.driving * pair.base_radii[1]
@@ -28,7 +36,7 @@ def half_law(cycle: MeshCycle, axial_rate: float) -> HalfLaw:
         force=cycle.torque / pair.base_radii[0],
         deflection=deflection - axial_rate * offset,
         compliance=1.0 / (1e3 * cycle.face_width * cycle.mesh_stiffness),
-        unloaded=length * cycle.unloaded_transmission_error - axial_rate * offset,
+        unloaded=length * unloaded - axial_rate * offset,
     )
 
 
@@ -38,13 +46,13 @@ def axial_stiffness(scene: DoubleHelicalScene) -> float:
     return math.inf if geometry.floating == "none" else 1e3 * geometry.axial_stiffness_N_per_um
 
 
-def balance_of(scene: DoubleHelicalScene, cycles: Sequence[MeshCycle], torques: Array) -> Shares:
+def balance_of(scene: DoubleHelicalScene, cycles: Sequence[MeshCycle | Revolution], torques: Array) -> Shares:
     """Balance of both halves under pinion torques (t,) [N mm] of both, above 0.
 
     Parameters
     ----------
     scene : DoubleHelicalScene
-    cycles : (MeshCycle, MeshCycle)
+    cycles : two of MeshCycle, or of Revolution
         Of the halves.
     torques : (t,) array [N mm]
     """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -13,7 +13,7 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
-from loaded_tca.results import MeshCycle
+from loaded_tca.results import MeshCycle, Revolution
 from loaded_tca.results.declared import CYCLE, Asked, Number, Row, numbers
 from loaded_tca.results.figure import Figure
 from loaded_tca.results.files import DOUBLE_HELICAL
@@ -263,13 +263,19 @@ class DoubleHelicalResult(JoinedResult):
         """Both mesh cycles, of the files beside that of the pair."""
         places = [path.parent / name for name in cls.PARTS.values()]
         cycles = [MeshCycle.load(place) for place in places]
-        for half, (place, cycle) in enumerate(zip(places, cycles, strict=True)):
-            torques = [1e-3 * torque for torque in cycle.scene.torques]
-            expected, found = subject.half_scenes(0.0, [torques, torques])[half], cycle.scene
-            assert isinstance(found, CylindricalScene)  # half a pair
-            stands = replace(
-                expected.mounting, axial_offset_mm=found.mounting.axial_offset_mm
-            )  # where the gear floats to
-            if found != replace(expected, mounting=stands, load=found.load, analysis=found.analysis):
-                raise InputError(f"{place}: the mesh cycle of another pair than {PAIR_FILE} beside it")
+        in_the_scene(subject, places, cycles, cls.FILE)
         return dict(zip(cls.PARTS, cycles, strict=True))
+
+
+def in_the_scene(
+    subject: DoubleHelicalScene, places: Sequence[Path], halves: Sequence[MeshCycle | Revolution], beside: str
+) -> None:
+    """Refuse results of halves that are not those of a scene, wherever the gear floats to and under any torques."""
+    for half, (place, cycle) in enumerate(zip(places, halves, strict=True)):
+        torques = [1e-3 * torque for torque in cycle.scene.torques]
+        expected, found = subject.half_scenes(0.0, [torques, torques])[half], cycle.scene
+        assert isinstance(found, CylindricalScene)  # half a pair
+        stands = replace(expected.mounting, axial_offset_mm=found.mounting.axial_offset_mm)
+        if found != replace(expected, mounting=stands, load=found.load, analysis=found.analysis):
+            what = "mesh cycle" if isinstance(cycle, MeshCycle) else "revolution"
+            raise InputError(f"{place}: the {what} of another pair than {beside} beside it")
