@@ -2971,6 +2971,20 @@ FAULTS = (
         "            if half and of_half is not None:\n                own |= {} if of_half.pitch else {section: value",
         "double_helical/test_revolution.py::test_eccentric_halves_of_opposite_phases_shuttle_by_their_closed_form",
     ),
+    Fault(
+        "double helical pairs: derivatives leave out that the whole force rises with the torque",
+        "double_helical/sensitivities.py",
+        "first = (of_b - of_a + (soft_b + yields) * whole) /",
+        "first = (of_b - of_a) /",
+        "double_helical/test_sensitivities.py::test_balance_grows_as_differences_of_it",
+    ),
+    Fault(
+        "double helical pairs: derivatives of half b take the flanks of half a",
+        "double_helical/sensitivities.py",
+        "return ({} if replaced else {key: 1.0}), 0.0",
+        "return {key: 1.0}, 0.0",
+        "double_helical/test_sensitivities.py::test_halves_change_with_mounting_errors_of_the_whole_wheel",
+    ),
 )
 
 

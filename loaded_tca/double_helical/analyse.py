@@ -10,14 +10,13 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import scipy
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.analysis import analyse
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.double_helical.balance import Shares
-from loaded_tca.double_helical.laws import balance_of, gears_of
+from loaded_tca.double_helical.laws import balance_of, between_torques, gears_of
 from loaded_tca.double_helical.result import FACES, DoubleHelicalResult
 from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import (
@@ -386,21 +385,8 @@ def of_halves(
     """Numbers (t, n, half) between those (k, n) under the torques of the mesh cycles, at torques (t, n, half)."""
     return np.stack(
         [
-            _between(cycle.torque, of_half, torques[..., half], known_at_zero)
+            between_torques(cycle.torque, of_half, torques[..., half], known_at_zero)
             for half, (cycle, of_half) in enumerate(zip(cycles, values, strict=True))
         ],
         axis=-1,
     )
-
-
-def _between(nodes: Array, values: Array, torques: Array, known_at_zero: bool) -> Array:
-    """Numbers (t, n) under torques (t, n), between those (k, n) under the torques of a mesh cycle."""
-    if known_at_zero:
-        nodes, values = np.append(0.0, nodes), np.concatenate([np.zeros_like(values[:1]), values])
-    elif len(nodes) == 1:
-        return np.broadcast_to(values, torques.shape)
-    inside = np.clip(torques, nodes[0], nodes[-1])
-    numbers = np.full_like(inside, math.nan)
-    for n in np.flatnonzero(np.isfinite(values).all(axis=0)):  # a pitch of one position has no load factors
-        numbers[:, n] = scipy.interpolate.PchipInterpolator(nodes, values[:, n])(inside[:, n])
-    return numbers

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 
 from loaded_tca.arrays import Array
 from loaded_tca.double_helical.balance import HalfLaw, Halves, Shares, shared
@@ -62,3 +63,16 @@ def balance_of(scene: DoubleHelicalScene, cycles: Sequence[MeshCycle | Revolutio
             laws.append(half_law(cycle, scene.axial_rate))
     total = np.asarray(torques) / scene.mesh().pinion.base_radius
     return shared(Halves((laws[0], laws[1]), scene.parted, scene.axial_rate, axial_stiffness(scene)), total)
+
+
+def between_torques(nodes: Array, values: Array, torques: Array, known_at_zero: bool) -> Array:
+    """Numbers (t, n) under torques (t, n), between those (k, n) under the torques of a mesh cycle."""
+    if known_at_zero:
+        nodes, values = np.append(0.0, nodes), np.concatenate([np.zeros_like(values[:1]), values])
+    elif len(nodes) == 1:
+        return np.broadcast_to(values, torques.shape)
+    inside = np.clip(torques, nodes[0], nodes[-1])
+    numbers = np.full_like(inside, math.nan)
+    for n in np.flatnonzero(np.isfinite(values).all(axis=0)):  # a pitch of one position has no load factors
+        numbers[:, n] = scipy.interpolate.PchipInterpolator(nodes, values[:, n])(inside[:, n])
+    return numbers

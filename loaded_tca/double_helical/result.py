@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     import xarray
 
     from loaded_tca.double_helical.rating import DoubleHelicalRating
+    from loaded_tca.double_helical.sensitivities import DoubleHelicalSensitivities
 
 PAIR_FILE = "double_helical.nc"
 """Name of the file of both halves together."""
@@ -245,6 +246,35 @@ class DoubleHelicalResult(JoinedResult):
         from loaded_tca.double_helical.rating import double_helical_rating_of  # which takes results
 
         return double_helical_rating_of(self)
+
+    def sensitivities(self, keys: Sequence[str]) -> DoubleHelicalSensitivities:
+        """Return the derivatives with respect to keys of the scene, of both halves together.
+
+        Those of the halves (:meth:`loaded_tca.MeshCycle.sensitivities`) by the chain rule through the share of the
+        torque and the axial motion, of which the balance at each position is differentiated; between torques that were
+        analysed they are interpolated.
+
+        Parameters
+        ----------
+        keys : sequence of str
+            ``load.pinion_torque_Nm``, ``pair.apex_offset_mm``, mounting errors, those of half b too, and modifications
+            of both gears: of both halves, where half b has none of its own, or of ``pinion.half_b``.
+
+        Returns
+        -------
+        DoubleHelicalSensitivities
+            ``transmission_error``, ``peak_to_peak``, ``axial_motion``, ``torque_share``, ``peak_pressure`` and
+            ``line_load``, each over keys last.
+
+        Raises
+        ------
+        InputError
+            With every key that is unknown, given twice, or not among these, and where the gear stands elsewhere under
+            other torques.
+        """
+        from loaded_tca.double_helical.sensitivities import double_helical_sensitivities  # which takes results
+
+        return double_helical_sensitivities(self, keys)
 
     @classmethod
     def parts_of(

@@ -247,7 +247,7 @@ class DoubleHelicalScene(CylindricalScene):
         return scenes[0], scenes[1]
 
     def _half(self, half: int, axial_mm: float, torques: tuple[float, ...]) -> CylindricalScene:
-        mounting = self._mounting_of_half(half, axial_mm)
+        mounting = self.mounting_of_half(half, axial_mm)
         load = replace(self.load, pinion_torque_Nm=torques[-1], case=None)
         analysis = replace(self.analysis, torques_Nm=torques)
         title = f"{self.title}: half {HALVES[half]}".strip(": ")
@@ -283,7 +283,7 @@ class DoubleHelicalScene(CylindricalScene):
             sections[name] = own | {"face_width_mm": self.half_width(gear)}
         return sections
 
-    def _mounting_of_half(self, half: int, axial_mm: float) -> dict[str, float]:
+    def mounting_of_half(self, half: int, axial_mm: float) -> dict[str, float]:
         """Mounting errors of a half: of the whole wheel, which turns about the middle of its groove, and its own."""
         sign, lever = SIGNS[half], self._wheel_lever
         beside = sign * axial_mm + lever - 0.25 * (self.pinion.face_width_mm + self.geometry.gap_mm)
