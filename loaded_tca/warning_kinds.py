@@ -401,6 +401,13 @@ SHARES_OF_HALVES = Kind(
     "told by how much compliances and deflections of neighbouring torques disagree",
     "a gear that floats, halves that are alike, or more crowning and relief, so that contacts stay off the edges",
 )
+SHUTTLES = Kind(
+    "the {gear} shuttles along its axis by up to {way:.3g} um from its mean place, more than a thousandth of the width "
+    "of a half",
+    "flanks are analysed where the floating gear stands in the mean: ends of the faces, crowning and reliefs move with "
+    "it by as much, which pressures leave out; the motion itself and the shares have it",
+    "smaller apex runout and slopes; the change of the face load factor by `pair.apex_offset_mm` of that size",
+)
 MEASURED_HALF = Kind(
     "half {half} of the {gear} has a measured flank that the other half has not, between gears that are held along "
     "the axes: it is turned onto its pitch point, so that shares leave out how it stands against the other half",

@@ -2508,7 +2508,7 @@ FAULTS = (
     Fault(
         "double helical pairs: the place of a floating gear that moves on at the last step counts as settled",
         "double_helical/analyse.py",
-        "    if not settled:\n",
+        "    if not stands:\n",
         "    if float(np.abs(places - axial).max()) > FACES * scene.narrow_half:\n",
         "double_helical/test_analyse.py::test_a_place_that_does_not_settle_is_an_error",
     ),
@@ -2992,6 +2992,48 @@ FAULTS = (
         "np.where(_like(there, values), others[name], values)",
         "np.where(_like(there, values), values, values)",
         "rating/test_both_sides.py::test_face_load_factor_of_a_reversed_bin_is_that_of_its_side",
+    ),
+    Fault(
+        "double helical pairs: the whole gear is rated with the whole torque on the face of a half",
+        "double_helical/rating.py",
+        "_under(scene, result.half_a, 0.5 * torques,",
+        "_under(scene, result.half_a, torques,",
+        "double_helical/test_rating.py::test_whole_gear_has_the_torque_on_both_widths",
+    ),
+    Fault(
+        "double helical pairs: the better half counts in ratings",
+        "double_helical/rating.py",
+        "np.maximum if name in LARGEST else np.minimum",
+        "np.minimum if name in LARGEST else np.maximum",
+        "double_helical/test_rating.py::test_worse_half_counts",
+    ),
+    Fault(
+        "double helical pairs: an apex that runs out sets the flanks of both halves back alike",
+        "scene/double_helical.py",
+        "rate = SIGNS[half] * (-1.0, 1.0)[number] * self.axial_rate",
+        "rate = (-1.0, 1.0)[number] * self.axial_rate",
+        "double_helical/test_revolution.py::test_floating_gear_follows_an_apex_that_runs_out",
+    ),
+    Fault(
+        "double helical pairs: half b has the pitch deviations of half a in whole revolutions",
+        "scene/double_helical.py",
+        "            if half and of_half is not None:\n                own |= {section: value",
+        "            if half and of_half is not None:\n                own |= {} if of_half.pitch else {section: value",
+        "double_helical/test_revolution.py::test_eccentric_halves_of_opposite_phases_shuttle_by_their_closed_form",
+    ),
+    Fault(
+        "double helical pairs: derivatives leave out that the whole force rises with the torque",
+        "double_helical/sensitivities.py",
+        "first = (of_b - of_a + (soft_b + yields) * whole) /",
+        "first = (of_b - of_a) /",
+        "double_helical/test_sensitivities.py::test_balance_grows_as_differences_of_it",
+    ),
+    Fault(
+        "double helical pairs: derivatives of half b take the flanks of half a",
+        "double_helical/sensitivities.py",
+        "return ({} if replaced else {key: 1.0}), 0.0",
+        "return {key: 1.0}, 0.0",
+        "double_helical/test_sensitivities.py::test_halves_change_with_mounting_errors_of_the_whole_wheel",
     ),
 )
 

@@ -70,7 +70,7 @@ def test_check_describes_both_halves(capsys):
     assert sum(line.startswith("half ") for line in lines) == 2
 
 
-@pytest.mark.parametrize("command", ["revolution", "vh", "ease-off", "measured"])
+@pytest.mark.parametrize("command", ["vh", "ease-off", "measured"])
 def test_commands_that_take_one_pair_refuse_two_halves(command, tmp_path, capsys):
     assert main([command, str(SCENE), "--out", str(tmp_path)]) == 2
     assert "pair.double_helical: found true; of both halves together" in capsys.readouterr().err

@@ -93,7 +93,7 @@ Friction of the teeth alone; docs/guide/efficiency_and_scuffing.md says more."""
 RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubricant] of the scene say what the gears
 are made of, what is required and how they run, of a stage [sun.strength], [planet.strength] and [ring.strength]; --set
 gives or changes them, and the load spectrum: load.spectrum=FILE, with torques up to the largest that was solved.
-Without one each torque stands for itself.
+Without one each torque stands for itself. Of a double helical pair both halves are rated under their shares.
 
 files in DIR:
   rating.json               safeties, damage, lives and every factor of each torque or bin, and of all bins together
@@ -146,7 +146,8 @@ REVOLUTION = """files in DIR:
   revolution_shares.png     share of every tooth as a band, highest pressure of every tooth
   revolution_waterfall.png  orders over the torque; of two torques or more
 [pinion.pitch], [wheel.pitch] and [revolution] of the scene say where the teeth stand and which pitches follow each
-other; docs/guide/whole_revolutions.md says more."""
+other; docs/guide/whole_revolutions.md says more. Of a double helical pair: double_helical_revolution.nc, .json, .csv,
+double_helical_orders.csv, half_a_revolution.nc and half_b_revolution.nc, and halves_revolution_*.png."""
 STAGE = """files in DIR:
   stage.nc, sun_mesh.nc, ring_mesh.nc
                             everything, to be read by loaded_tca.stages.StageResult.load; the meshes are results as

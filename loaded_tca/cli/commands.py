@@ -32,6 +32,7 @@ from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_s
 from loaded_tca.errors import InputError, require
 
 if TYPE_CHECKING:
+    from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult
     from loaded_tca.rating import Rating
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
@@ -124,7 +125,7 @@ def _run_double_helical(scene: DoubleHelicalScene, directory: Path) -> None:
     from loaded_tca.double_helical import analyse_double_helical
     from loaded_tca.double_helical.analyse import expected_double_helical_effort
     from loaded_tca.double_helical.result import PAIR_FILE
-    from loaded_tca.output.other_results import write_double_helical
+    from loaded_tca.output.other_results import RATING_FILES, write_double_helical
     from loaded_tca.plots import double_helical_figures, png_of
 
     require_place_of(directory, PAIR_FILE)
@@ -132,7 +133,9 @@ def _run_double_helical(scene: DoubleHelicalScene, directory: Path) -> None:
     with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
         result = analyse_double_helical(scene, progress=progress)
     pictures = {f"{name}.png": png_of(figure) for name, figure in double_helical_figures(result).items()}
-    print_summary(result.summary(), write_double_helical(result, directory, pictures))
+    written = write_double_helical(result, directory, pictures, outdated=RATING_FILES)
+    files, rating_text = _rated(result, directory)
+    print_summary("\n\n".join(filter(None, (result.summary(), rating_text))), [*written, *files])
 
 
 def revolution(options: argparse.Namespace) -> None:
@@ -141,15 +144,33 @@ def revolution(options: argparse.Namespace) -> None:
     from loaded_tca.plots import png_of
     from loaded_tca.plots.revolution import revolution_figures
     from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
+    from loaded_tca.scene.double_helical import DoubleHelicalScene
 
     scene, directory = scene_of(options), options.out
     check_place(directory)
+    if isinstance(scene, DoubleHelicalScene):
+        _double_helical_revolution(scene, directory)
+        return
     effort = expected_revolution_effort(scene)
     with progress_bar(effort, "states", effort.contacts // 2) as progress:
         result = analyse_revolution(scene, progress=progress)
     pictures = {f"{name}.png": png_of(figure) for name, figure in revolution_figures(result).items()}
     written = write_revolution(result, directory, pictures)
     print_summary(result.summary(), written)
+
+
+def _double_helical_revolution(scene: DoubleHelicalScene, directory: Path) -> None:
+    """Analyse a whole revolution of a double helical pair, write everything, and show the summary."""
+    from loaded_tca.double_helical import analyse_double_helical_revolution
+    from loaded_tca.double_helical.revolution import expected_halves_revolution_effort
+    from loaded_tca.output.other_results import write_halves_revolution
+    from loaded_tca.plots import halves_revolution_figures, png_of
+
+    effort = expected_halves_revolution_effort(scene)
+    with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
+        result = analyse_double_helical_revolution(scene, progress=progress)
+    pictures = {f"{name}.png": png_of(figure) for name, figure in halves_revolution_figures(result).items()}
+    print_summary(result.summary(), write_halves_revolution(result, directory, pictures))
 
 
 def tribology(options: argparse.Namespace) -> None:
@@ -168,16 +189,16 @@ def tribology(options: argparse.Namespace) -> None:
 
 def rating(options: argparse.Namespace) -> None:
     """Write safeties and lives of a result with all factors and pictures, and show the table."""
-    from loaded_tca.stages.result import STAGE_FILE
-
-    if result_file(options.result).name == STAGE_FILE:
-        require((options.coast is None, "--coast: not of stages; planets are bent by both meshes as it is"))
-        stage, directory = _changed_stage(options)
-        of_stage = stage.rating()
-        print_summary(of_stage.summary(), _rating_files(of_stage, directory))
-        return
-    result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
-    rated = result.rating(coast=None if options.coast is None else _coast_of(options.coast))
+    result: MeshCycle | StageResult | DoubleHelicalResult
+    rated: Rating | StageRating | DoubleHelicalRating
+    kind = _joined_kind(result_file(options.result))
+    if kind is None:
+        result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
+        rated = result.rating(coast=None if options.coast is None else _coast_of(options.coast))
+    else:
+        require((options.coast is None, f"--coast: not of a {kind.FILE}; allowed with the result of one pair"))
+        result, directory = _changed_joined(options, kind)
+        rated = result.rating()
     print_summary(rated.summary(), _rating_files(rated, directory))
 
 
@@ -191,20 +212,35 @@ def _coast_of(place: Path) -> MeshCycle:
     return MeshCycle.load(path)
 
 
-def _changed_stage(options: argparse.Namespace) -> tuple[StageResult, Path]:
-    """Result of a stage with what its rating is to take otherwise, and where its files go."""
+def _joined_kind(path: Path) -> type[StageResult | DoubleHelicalResult] | None:
+    """Kind of the result of a file that joins mesh cycles; None: it is none of them."""
+    from loaded_tca.double_helical import DoubleHelicalResult
     from loaded_tca.stages import StageResult
 
+    kinds: tuple[type[StageResult | DoubleHelicalResult], ...] = (StageResult, DoubleHelicalResult)
+    return next((kind for kind in kinds if path.name == kind.FILE), None)
+
+
+def _changed_joined(
+    options: argparse.Namespace, kind: type[StageResult | DoubleHelicalResult]
+) -> tuple[StageResult | DoubleHelicalResult, Path]:
+    """Result that joins mesh cycles with what its rating is to take otherwise, and where its files go."""
+    from loaded_tca.scene import Scene
+    from loaded_tca.scene.section import writing_at
+
     path = result_file(options.result)
-    result = StageResult.load(path)
+    result = kind.load(path)
     directory = options.out or path.parent
     check_place(directory)
-    changes = changes_of(options)
-    require(*((_is_of_rating(key, STAGE_STRENGTHS), f"--set {key}: {OF_STAGE_RATING}") for key in changes))
-    return replace(result, stage=result.stage.with_changes(changes)) if changes else result, directory
+    subject, changes = getattr(result, kind.SUBJECT), changes_of(options)
+    of_scene = isinstance(subject, Scene)
+    strengths, allowed = (STRENGTHS, OF_RATING) if of_scene else (STAGE_STRENGTHS, OF_STAGE_RATING)
+    keys = ((key, writing_at(subject, key)[0] if of_scene else key) for key in changes)
+    require(*((_is_of_rating(name, strengths), f"--set {key}: {allowed}") for key, name in keys))
+    return replace(result, **{kind.SUBJECT: subject.with_changes(changes)}) if changes else result, directory
 
 
-def _rating_files(rated: Rating | StageRating, directory: Path) -> tuple[Path, ...]:
+def _rating_files(rated: Rating | StageRating | DoubleHelicalRating, directory: Path) -> tuple[Path, ...]:
     """Write a rating with its pictures; those of an older one that it does not have go."""
     from loaded_tca.output.other_results import write_rating
     from loaded_tca.plots import RATING_PICTURES, png_of, rating_figures
@@ -213,7 +249,7 @@ def _rating_files(rated: Rating | StageRating, directory: Path) -> tuple[Path, .
     return write_rating(rated, directory, pictures, outdated=[f"{name}.png" for name in RATING_PICTURES])
 
 
-def _rated(result: MeshCycle | StageResult, directory: Path) -> tuple[list[Path], str]:
+def _rated(result: MeshCycle | StageResult | DoubleHelicalResult, directory: Path) -> tuple[list[Path], str]:
     """Files of the rating of a result whose scene or stage has [rating], and its summary, or why it cannot be rated."""
     if getattr(result, result.SUBJECT).rating is None:
         return [], ""

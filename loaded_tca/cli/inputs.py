@@ -149,6 +149,7 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
 
 def require_result(directory: Path, path: Path, command: str) -> None:
     """Refuse a directory without a result that holds something else, in words that say what to give instead."""
+    from loaded_tca.double_helical.revolution import HALVES_REVOLUTION_FILE
     from loaded_tca.output.other_results import REVOLUTION_FILES, TRIBOLOGY_FILES
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.output.tables import COMPARISON, COMPARISON_DATA
@@ -156,7 +157,7 @@ def require_result(directory: Path, path: Path, command: str) -> None:
     if path.exists():
         return
     parts = [one.name for one in sorted(directory.iterdir()) if (one / RESULT).is_file()]
-    if (directory / REVOLUTION_FILES[0]).is_file():
+    if (directory / REVOLUTION_FILES[0]).is_file() or (directory / HALVES_REVOLUTION_FILE).is_file():
         raise InputError(
             f"{directory}: holds a whole revolution, of which '{command}' takes none: its numbers are in "
             "revolution.json and its tables; give the directory of 'loaded-tca run'"

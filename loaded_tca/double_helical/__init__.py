@@ -6,8 +6,16 @@ from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
     from loaded_tca.double_helical.analyse import analyse_double_helical
+    from loaded_tca.double_helical.rating import DoubleHelicalRating
     from loaded_tca.double_helical.result import DoubleHelicalResult
+    from loaded_tca.double_helical.revolution import DoubleHelicalRevolution, analyse_double_helical_revolution
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
-__all__ = ["DoubleHelicalResult", "analyse_double_helical"]
+__all__ = [
+    "DoubleHelicalRating",
+    "DoubleHelicalResult",
+    "DoubleHelicalRevolution",
+    "analyse_double_helical",
+    "analyse_double_helical_revolution",
+]

@@ -7,30 +7,36 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import scipy
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.analysis import analyse
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices
-from loaded_tca.double_helical.balance import HalfLaw, Halves, Shares, shared
+from loaded_tca.double_helical.balance import Shares
+from loaded_tca.double_helical.laws import balance_of, between_torques, gears_of
 from loaded_tca.double_helical.result import FACES, DoubleHelicalResult
 from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import (
     ConvergenceError,
-    GeometryError,
     give_accuracy_warning,
     named,
     noted_accuracy_warnings,
 )
 from loaded_tca.plain import plain
 from loaded_tca.results import MeshCycle
+from loaded_tca.results.revolution import Revolution
 from loaded_tca.results.warnings import is_under_torque
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import HALVES, SIGNS, DoubleHelicalScene
+from loaded_tca.units import MICROMETRES
+
+if TYPE_CHECKING:
+    import xarray
+
+    from loaded_tca.results.result import AnalysisResult
 
 ACCURATE, WARNED = 1e-4, 1e-3
 """Estimated error of a share with which no more torques are analysed, and above which a warning says so."""
@@ -46,14 +52,29 @@ MOST_ROUNDS = 6
 Progress = Callable[[int, int], None]
 
 
+class HalfAnalysis(NamedTuple):
+    """How a half is analysed, over a pitch or over whole turns, and at how many positions.
+
+    Attributes
+    ----------
+    solve : callable
+        Of the scene of a half and of a progress: its mesh cycle, or its revolution.
+    positions : callable
+        Of the scene of a half: how many it has.
+    """
+
+    solve: Callable[[CylindricalScene, Progress], MeshCycle | Revolution]
+    positions: Callable[[CylindricalScene], int]
+
+
 class _Half(NamedTuple):
     """A half that was analysed, with the accuracy warnings."""
 
-    cycle: MeshCycle
+    cycle: MeshCycle | Revolution
     warnings: list[str]
 
 
-class _Place(NamedTuple):
+class Place(NamedTuple):
     """Both halves where the floating gear stands under the torques of a scene, and their balance there."""
 
     scene: DoubleHelicalScene
@@ -61,8 +82,8 @@ class _Place(NamedTuple):
     state: Shares
 
     @property
-    def cycles(self) -> list[MeshCycle]:
-        """Mesh cycles of both halves."""
+    def cycles(self) -> list[Any]:
+        """Mesh cycles, or revolutions, of both halves."""
         return [half.cycle for half in self.halves]
 
 
@@ -107,32 +128,36 @@ def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None 
     >>> result.axial_motion.round(6).tolist()
     [[0.01]]
     """
-    return _result(scene, _settled(scene, scene.mounting.axial_offset_mm, _Progress(progress)))
+    over_a_pitch = HalfAnalysis(analyse, lambda half: half.analysis.positions)
+    places = settled(scene, scene.mounting.axial_offset_mm, StatesDone(progress), over_a_pitch)
+    dataset = joined(DoubleHelicalResult, scene, places, [_arrays(place) for place in places])
+    half_a, half_b = largest_place(places).cycles
+    return DoubleHelicalResult(scene=scene, dataset=dataset, half_a=half_a, half_b=half_b)
 
 
-def _settled(scene: DoubleHelicalScene, axial: float, shown: _Progress) -> list[_Place]:
+def settled(scene: DoubleHelicalScene, axial: float, shown: StatesDone, way: HalfAnalysis) -> list[Place]:
     """Analyses of both halves where the floating gear stands [mm]: one for all torques, or more where it moves far."""
     torques = _even_torques(scene)
     for _ in range(MOST_ROUNDS):
         scenes = scene.half_scenes(axial, [[1e-3 * torque for torque in of_half] for of_half in torques])
-        analysed = _analysed(scenes, shown)
-        state = _balanced(scene, analysed)
+        analysed = _analysed(scenes, shown, way)
+        state = balance_of(scene, [half.cycle for half in analysed], np.asarray(scene.torques))
         places, wanted = _places(scene, state), _wanted(scene, state, torques)
         moved = float(places.mean())
         groups = _groups(places, FACES * scene.narrow_half)
         if len(groups) > 1:
-            parts = (_settled(_under(scene, rows), float(places[rows].mean()), shown) for rows in groups)
+            parts = (settled(_under(scene, rows), float(places[rows].mean()), shown, way) for rows in groups)
             return [place for part in parts for place in part]
-        settled = float(np.abs(places - axial).max()) <= FACES * scene.narrow_half
-        if settled and wanted == torques:
+        stands = float(np.abs(places - axial).max()) <= FACES * scene.narrow_half
+        if stands and wanted == torques:
             break
-        axial, torques = axial if settled else moved, wanted
-    if not settled:
+        axial, torques = axial if stands else moved, wanted
+    if not stands:
         raise ConvergenceError(
             f"pair.floating: the place of the {scene.geometry.floating} along its axis, {plain(moved)} mm, is not "
             f"settled in {MOST_ROUNDS} steps"
         )
-    return [_Place(scene, analysed, state)]
+    return [Place(scene, analysed, state)]
 
 
 def expected_double_helical_effort(scene: DoubleHelicalScene) -> Effort:
@@ -156,33 +181,36 @@ def _even_torques(scene: DoubleHelicalScene) -> list[list[float]]:
     return [even, [*even]]
 
 
-class _Progress:
+class StatesDone:
     """States that are done, of all that are known to be needed."""
 
     def __init__(self, progress: Progress | None) -> None:
         self.progress, self.before, self.total = progress, 0, 0
 
     def start(self, states: int) -> None:
+        """Begin with so many further states."""
         self.before, self.total = self.total, self.total + states
 
     def __call__(self, done: int, _: int) -> None:
+        """Report the states that are done of those since the last start."""
         if self.progress is not None:
             self.progress(self.before + done, self.total)
 
 
-def _analysed(scenes: Sequence[CylindricalScene], shown: _Progress) -> tuple[_Half, _Half]:
-    """Mesh cycles of both halves; halves that are alike are analysed once."""
+def _analysed(scenes: Sequence[CylindricalScene], shown: StatesDone, way: HalfAnalysis) -> tuple[_Half, _Half]:
+    """Both halves; halves that are alike are analysed once."""
     first, second = scenes
     alike = _are_alike(first, second)
     halves: list[_Half] = []
     for half, one in enumerate(scenes[: 1 if alike else 2]):
-        shown.start(len(one.torques) * one.analysis.positions)
+        shown.start(len(one.torques) * way.positions(one))
         name = "both halves" if alike else f"half {HALVES[half]}"
         with named(name), noted_accuracy_warnings(given=False, alone=True) as sentences:
-            halves.append(_Half(analyse(one, shown), [f"{name}: {_of_half(sentence)}" for sentence in sentences]))
+            halves.append(_Half(way.solve(one, shown), [f"{name}: {_of_half(sentence)}" for sentence in sentences]))
     if alike:
         cycle = halves[0].cycle
-        halves.append(_Half(replace(cycle, scene=second, states=None), []))
+        same = replace(cycle, scene=second)
+        halves.append(_Half(replace(same, states=None) if isinstance(same, MeshCycle) else same, []))
     return halves[0], halves[1]
 
 
@@ -194,35 +222,6 @@ def _are_alike(first: CylindricalScene, second: CylindricalScene) -> bool:
 def _of_half(sentence: str) -> str:
     """A sentence whose torques, if it has any, are said to be those of the half."""
     return f"{sentence[:-1]}; N m: the torque of the half)" if is_under_torque(sentence) else sentence
-
-
-def _balanced(scene: DoubleHelicalScene, analysed: Sequence[_Half]) -> Shares:
-    """Balance of both halves."""
-    laws = []
-    for name, half in zip(HALVES, analysed, strict=True):
-        with named(f"half {name}"):
-            laws.append(_law(half.cycle, scene.axial_rate))
-    geometry = scene.geometry
-    stiffness = math.inf if geometry.floating == "none" else 1e3 * geometry.axial_stiffness_N_per_um
-    total = np.asarray(scene.torques) / scene.mesh().pinion.base_radius
-    return shared(Halves((laws[0], laws[1]), scene.parted, scene.axial_rate, stiffness), total)
-
-
-def _law(cycle: MeshCycle, axial_rate: float) -> HalfLaw:
-    """How far the flanks of a half give way at the base circle, without what its axial offset brings together."""
-    scene, pair = cycle.scene, cycle.gear_pair
-    assert isinstance(scene, CylindricalScene)
-    offset = scene.mounting.axial_offset_mm
-    length = -pair.driving * pair.base_radii[1]
-    deflection = length * cycle.transmission_error
-    if not np.isfinite(deflection).all():
-        raise GeometryError("its flanks are out of contact at some positions, where it cannot share a torque")
-    return HalfLaw(
-        force=cycle.torque / pair.base_radii[0],
-        deflection=deflection - axial_rate * offset,
-        compliance=1.0 / (1e3 * cycle.face_width * cycle.mesh_stiffness),
-        unloaded=length * cycle.unloaded_transmission_error - axial_rate * offset,
-    )
 
 
 def _places(scene: DoubleHelicalScene, state: Shares) -> Array:
@@ -241,12 +240,11 @@ def _groups(places: Array, span: float) -> list[Indices]:
 
 
 def _under(scene: DoubleHelicalScene, rows: Indices) -> DoubleHelicalScene:
-    """The scene under some of its torques."""
-    torques = scene.analysis.torques_Nm
-    assert torques is not None  # one torque has one place
-    changed = scene.with_changes({"analysis.torques_Nm": [torques[row] for row in rows.tolist()]})
-    assert isinstance(changed, DoubleHelicalScene)
-    return changed
+    """The scene under some of its torques, without the load spectrum that these are of."""
+    torques = [1e-3 * scene.torques[row] for row in rows.tolist()]
+    load = replace(scene.load, pinion_torque_Nm=torques[-1], case=None)
+    analysis = replace(scene.analysis, torques_Nm=tuple(torques))
+    return replace(scene, load=load, analysis=analysis, rating=scene.rating_of_halves)
 
 
 def _wanted(scene: DoubleHelicalScene, state: Shares, torques: Sequence[Sequence[float]]) -> list[list[float]]:
@@ -276,12 +274,20 @@ def _add(torques: list[float], more: Sequence[float], even: float) -> None:
             torques.append(asked)
 
 
-def _result(scene: DoubleHelicalScene, places: Sequence[_Place]) -> DoubleHelicalResult:
-    """The result, with the warnings of both halves; their mesh cycles are those under the largest torque."""
-    cycles = max(places, key=lambda place: max(place.scene.torques)).cycles
+def largest_place(places: Sequence[Place]) -> Place:
+    """Where the floating gear stands under the largest torque."""
+    return max(places, key=lambda place: max(place.scene.torques))
+
+
+def joined(
+    kind: type[AnalysisResult], scene: DoubleHelicalScene, places: Sequence[Place], parts: Sequence[dict[str, Array]]
+) -> xarray.Dataset:
+    """Dataset of a kind of result, of its arrays at each place, with the warnings of both halves, which are given."""
     with noted_accuracy_warnings(given=False) as own:
         if (worst := max(float(place.state.error.max()) for place in places)) > WARNED:
             give_accuracy_warning(kinds.SHARES_OF_HALVES.sentence(error=worst))
+        if (way := max(map(_shuttle, places))) > FACES * scene.narrow_half:
+            give_accuracy_warning(kinds.SHUTTLES.sentence(gear=scene.geometry.floating, way=MICROMETRES * way))
         if not scene.floats_freely:
             for half, gear in scene.measured_halves:
                 give_accuracy_warning(kinds.MEASURED_HALF.sentence(half=half, gear=gear))
@@ -289,39 +295,50 @@ def _result(scene: DoubleHelicalScene, places: Sequence[_Place]) -> DoubleHelica
     sentences = [*dict.fromkeys(sentence for half in halves for sentence in half.warnings), *own]
     for sentence in sentences:
         give_accuracy_warning(sentence)
-    dataset = DoubleHelicalResult.dataset_of(
-        _joined(scene, [_arrays(place) for place in places]),
+    return kind.dataset_of(
+        _under_all(kind, scene, parts),
         version=version("loaded_tca"),
         date=datetime.now(UTC).isoformat(timespec="seconds"),
         warnings="\n".join(sentences),
     )
-    return DoubleHelicalResult(scene=scene, dataset=dataset, half_a=cycles[0], half_b=cycles[1])
 
 
-def _joined(scene: DoubleHelicalScene, parts: Sequence[dict[str, Array]]) -> dict[str, Array]:
-    """Arrays of the result, from those under the torques at each place."""
+def _shuttle(place: Place) -> float:
+    """How far the floating gear is from its mean place over the positions at the most [mm]."""
+    motion = place.state.motion
+    return float(np.abs(motion - motion.mean(axis=1, keepdims=True)).max())
+
+
+def _under_all(
+    kind: type[AnalysisResult], scene: DoubleHelicalScene, parts: Sequence[dict[str, Array]]
+) -> dict[str, Array]:
+    """Arrays of a result, from those under the torques at each place."""
     torques = np.concatenate([part["torque"] for part in parts])
-    rows = np.array([int(np.flatnonzero(torques == torque)[0]) for torque in scene.torques])
+    rows = np.array([int(np.abs(torques - torque).argmin()) for torque in scene.torques])  # through N m
     return {
         name: np.concatenate([part[name] for part in parts])[rows] if "torque" in number.dims else parts[0][name]
-        for name, number in DoubleHelicalResult.NUMBERS.items()
+        for name, number in kind.NUMBERS.items()
         if name in parts[0]
     }
 
 
-def _arrays(place: _Place) -> dict[str, Array]:
-    """Arrays of the result at one place."""
-    scene, cycles, state = place.scene, place.cycles, place.state
-    pair, torques = cycles[0].gear_pair, np.asarray(scene.torques)
+def carried_by(place: Place) -> Array:
+    """Torques of both halves (t, n, half) [N mm]."""
+    return np.asarray(place.scene.mesh().pinion.base_radius * place.state.force)
+
+
+def balance_arrays(place: Place) -> dict[str, Array]:
+    """Arrays of any result at one place that follow from the balance."""
+    scene, state = place.scene, place.state
+    pair = gears_of(place.cycles[0])
     base = pair.base_radii
     width = 2.0 * scene.narrow_half
-    carried = base[0] * state.force
     axial = scene.axial_rate * state.force * np.asarray(SIGNS)
     share = state.force / state.force.sum(axis=-1, keepdims=True)
     toward = {"none": 0.0, "pinion": -1.0, "wheel": 1.0}[scene.geometry.floating]
-    arrays = {
-        "torque": torques,
-        "pinion_angle": cycles[0].pinion_angle,
+    return {
+        "torque": np.asarray(scene.torques),
+        "pinion_angle": place.cycles[0].pinion_angle,
         "wheel_base_radius": np.float64(base[1]),
         "face_width": np.float64(width),
         "transmission_error": -pair.driving * state.approach / base[1],
@@ -333,48 +350,43 @@ def _arrays(place: _Place) -> dict[str, Array]:
         "share_error": state.error,
         "share_factor": 2.0 * share.max(axis=(1, 2)),
     }
-    of_positions = {name: [_largest(cycle, name) for cycle in cycles] for name in ("peak_pressure", "line_load")}
+
+
+def _arrays(place: Place) -> dict[str, Array]:
+    """Arrays of the result at one place."""
+    scene, cycles = place.scene, place.cycles
+    arrays, carried = balance_arrays(place), carried_by(place)
+    of_positions = {
+        name: [largest_of_pairs(cycle, name) for cycle in cycles] for name in ("peak_pressure", "line_load")
+    }
     for name, values in of_positions.items():
-        arrays[name] = _of_halves(cycles, values, carried)
+        arrays[name] = of_halves(cycles, values, carried)
     mean = carried.mean(axis=1)[:, None]
     factors = [cycle.face_load_factor[:, None] for cycle in cycles]
-    known = _of_halves(cycles, factors, mean, known_at_zero=False)
+    known = of_halves(cycles, factors, mean, known_at_zero=False)
     arrays["face_load_factor"] = np.where(mean > 0.0, known, math.nan)[:, 0]
     if scene.analysis.root_stress:
         tensions = [
-            _of_halves(cycles, [np.nan_to_num(cycle.root_tension[..., gear]) for cycle in cycles], carried).max(axis=1)
+            of_halves(cycles, [np.nan_to_num(cycle.root_tension[..., gear]) for cycle in cycles], carried).max(axis=1)
             for gear in range(2)
         ]
         arrays["root_tension"] = np.stack(tensions, axis=-1)
     return arrays
 
 
-def _largest(cycle: MeshCycle, name: str) -> Array:
+def largest_of_pairs(cycle: MeshCycle | Revolution, name: str) -> Array:
     """Largest value of the tooth pairs (torques, positions), 0 where nothing is loaded."""
     return np.asarray(np.nan_to_num(cycle.values(name)).max(axis=-1))
 
 
-def _of_halves(
-    cycles: Sequence[MeshCycle], values: Sequence[Array], torques: Array, known_at_zero: bool = True
+def of_halves(
+    cycles: Sequence[MeshCycle | Revolution], values: Sequence[Array], torques: Array, known_at_zero: bool = True
 ) -> Array:
     """Numbers (t, n, half) between those (k, n) under the torques of the mesh cycles, at torques (t, n, half)."""
     return np.stack(
         [
-            _between(cycle.torque, of_half, torques[..., half], known_at_zero)
+            between_torques(cycle.torque, of_half, torques[..., half], known_at_zero)
             for half, (cycle, of_half) in enumerate(zip(cycles, values, strict=True))
         ],
         axis=-1,
     )
-
-
-def _between(nodes: Array, values: Array, torques: Array, known_at_zero: bool) -> Array:
-    """Numbers (t, n) under torques (t, n), between those (k, n) under the torques of a mesh cycle."""
-    if known_at_zero:
-        nodes, values = np.append(0.0, nodes), np.concatenate([np.zeros_like(values[:1]), values])
-    elif len(nodes) == 1:
-        return np.broadcast_to(values, torques.shape)
-    inside = np.clip(torques, nodes[0], nodes[-1])
-    numbers = np.full_like(inside, math.nan)
-    for n in np.flatnonzero(np.isfinite(values).all(axis=0)):  # a pitch of one position has no load factors
-        numbers[:, n] = scipy.interpolate.PchipInterpolator(nodes, values[:, n])(inside[:, n])
-    return numbers

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -13,7 +13,7 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
-from loaded_tca.results import MeshCycle
+from loaded_tca.results import MeshCycle, Revolution
 from loaded_tca.results.declared import CYCLE, Asked, Number, Row, numbers
 from loaded_tca.results.figure import Figure
 from loaded_tca.results.files import DOUBLE_HELICAL
@@ -25,6 +25,9 @@ from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
     import xarray
+
+    from loaded_tca.double_helical.rating import DoubleHelicalRating
+    from loaded_tca.double_helical.sensitivities import DoubleHelicalSensitivities
 
 PAIR_FILE = "double_helical.nc"
 """Name of the file of both halves together."""
@@ -204,9 +207,9 @@ class DoubleHelicalResult(JoinedResult):
                         f"under {shown_torque(torque)} half {name} carries nothing at {words} positions: its flanks "
                         "stand farther apart than those of the other half give way"
                     )
-        return (*sentences, *self._notes_of_places())
+        return (*sentences, *self.notes_of_places())
 
-    def _notes_of_places(self) -> list[str]:
+    def notes_of_places(self) -> list[str]:
         """Sentences on torques under which the mesh cycles of both halves are those of another place."""
         places = self.axial_motion.mean(axis=1)
         largest = int(self.torque.argmax())
@@ -217,6 +220,61 @@ class DoubleHelicalResult(JoinedResult):
             for torque, way in zip(self.torque.tolist(), (places - places[largest]).tolist(), strict=True)
             if abs(way) > FACES * self.scene.narrow_half
         ]
+
+    def rating(self) -> DoubleHelicalRating:
+        """Return safeties, damage and lives of both halves under their shares, and of the whole gear after ISO 6336.
+
+        Each half is rated under the largest of its shares over the pitch with its own load factors; under a load
+        spectrum its share is that of each bin. Of the pair the worse half counts.
+
+        Returns
+        -------
+        loaded_tca.double_helical.DoubleHelicalRating
+            ``half_a``, ``half_b`` and ``whole`` with every factor; ``flank_safety`` and its sisters over case and gear,
+            ``damage`` and ``life_hours`` over kinds of failure, too.
+
+        Raises
+        ------
+        InputError
+            If a section that it needs is missing, as of :meth:`loaded_tca.MeshCycle.rating`, or a half carries nothing.
+
+        Warns
+        -----
+        AccuracyWarning
+            As there, of both halves.
+        """
+        from loaded_tca.double_helical.rating import double_helical_rating_of  # which takes results
+
+        return double_helical_rating_of(self)
+
+    def sensitivities(self, keys: Sequence[str]) -> DoubleHelicalSensitivities:
+        """Return the derivatives with respect to keys of the scene, of both halves together.
+
+        Those of the halves (:meth:`loaded_tca.MeshCycle.sensitivities`) by the chain rule through the share of the
+        torque and the axial motion, of which the balance at each position is differentiated; between torques that were
+        analysed they are interpolated.
+
+        Parameters
+        ----------
+        keys : sequence of str
+            ``load.pinion_torque_Nm``, ``pair.apex_offset_mm``, mounting errors, those of half b too, and modifications
+            of both gears: of both halves, where half b has none of its own, or of ``pinion.half_b``.
+
+        Returns
+        -------
+        DoubleHelicalSensitivities
+            ``transmission_error``, ``peak_to_peak``, ``axial_motion``, ``torque_share``, ``peak_pressure`` and
+            ``line_load``, each over keys last.
+
+        Raises
+        ------
+        InputError
+            With every key that is unknown, given twice, or not among these, and where the gear stands elsewhere under
+            other torques.
+        """
+        from loaded_tca.double_helical.sensitivities import double_helical_sensitivities  # which takes results
+
+        return double_helical_sensitivities(self, keys)
 
     @classmethod
     def parts_of(
@@ -235,13 +293,19 @@ class DoubleHelicalResult(JoinedResult):
         """Both mesh cycles, of the files beside that of the pair."""
         places = [path.parent / name for name in cls.PARTS.values()]
         cycles = [MeshCycle.load(place) for place in places]
-        for half, (place, cycle) in enumerate(zip(places, cycles, strict=True)):
-            torques = [1e-3 * torque for torque in cycle.scene.torques]
-            expected, found = subject.half_scenes(0.0, [torques, torques])[half], cycle.scene
-            assert isinstance(found, CylindricalScene)  # half a pair
-            stands = replace(
-                expected.mounting, axial_offset_mm=found.mounting.axial_offset_mm
-            )  # where the gear floats to
-            if found != replace(expected, mounting=stands, load=found.load, analysis=found.analysis):
-                raise InputError(f"{place}: the mesh cycle of another pair than {PAIR_FILE} beside it")
+        in_the_scene(subject, places, cycles, cls.FILE)
         return dict(zip(cls.PARTS, cycles, strict=True))
+
+
+def in_the_scene(
+    subject: DoubleHelicalScene, places: Sequence[Path], halves: Sequence[MeshCycle | Revolution], beside: str
+) -> None:
+    """Refuse results of halves that are not those of a scene, wherever the gear floats to and under any torques."""
+    for half, (place, cycle) in enumerate(zip(places, halves, strict=True)):
+        torques = [1e-3 * torque for torque in cycle.scene.torques]
+        expected, found = subject.half_scenes(0.0, [torques, torques])[half], cycle.scene
+        assert isinstance(found, CylindricalScene)  # half a pair
+        stands = replace(expected.mounting, axial_offset_mm=found.mounting.axial_offset_mm)
+        if found != replace(expected, mounting=stands, load=found.load, analysis=found.analysis):
+            what = "mesh cycle" if isinstance(cycle, MeshCycle) else "revolution"
+            raise InputError(f"{place}: the {what} of another pair than {beside} beside it")

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from loaded_tca.double_helical import DoubleHelicalResult
+    from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult, DoubleHelicalRevolution
     from loaded_tca.flank_maps.ease_off_map import EaseOffMap
     from loaded_tca.loaded.shaft_lines import ShaftLine
     from loaded_tca.rating import Rating
     from loaded_tca.results.result import Result
-    from loaded_tca.results.revolution import Revolution
+    from loaded_tca.results.revolution import OverTurns, Revolution
     from loaded_tca.stages import StageRating, StageResult
     from loaded_tca.tribology import Tribology
 
@@ -91,13 +91,18 @@ def teeth_csv(revolution: Revolution) -> str:
 
 def orders_csv(revolution: Revolution) -> str:
     """Return a row for each order of the transmission error: rigid, and under each torque."""
+    return csv_table(order_columns(revolution))
+
+
+def order_columns(revolution: OverTurns) -> dict[str, Any]:
+    """Columns of the orders of the transmission error: their kinds, rigid amplitudes, and those under each torque."""
     rigid = revolution.spectrum(rigid=True)
     gear = GEARS[revolution.counted_by]
-    columns = {f"order_of_{gear}": rigid.order, "kind": np.array(rigid.kind, dtype=object)}
+    columns: dict[str, Any] = {f"order_of_{gear}": rigid.order, "kind": np.array(rigid.kind, dtype=object)}
     columns["rigid_amplitude_um"] = rigid.amplitude
     for t, torque in enumerate(revolution.torque):
         columns[f"amplitude_at_{1e-3 * torque:.6g}_Nm_um"] = revolution.spectrum(t).amplitude
-    return csv_table(columns)
+    return columns
 
 
 DATA, TABLE, SLICES = TRIBOLOGY_FILES = "tribology.nc", "tribology.csv", "tribology_slices.csv"
@@ -149,13 +154,16 @@ RATING_FILES = "rating.json", "rating.csv"
 
 @checked
 def write_rating(
-    rating: Rating | StageRating, directory: FilePath, more: Mapping[str, Buffer] = {}, outdated: Iterable[str] = ()
+    rating: Rating | StageRating | DoubleHelicalRating,
+    directory: FilePath,
+    more: Mapping[str, Buffer] = {},
+    outdated: Iterable[str] = (),
 ) -> tuple[Path, ...]:
     """Write ``rating.json`` and ``rating.csv``, all files or none.
 
     Parameters
     ----------
-    rating : Rating or StageRating
+    rating : Rating, StageRating or DoubleHelicalRating
     directory : str or path
         Made if it does not exist.
     more : mapping of str to bytes
@@ -181,7 +189,10 @@ def write_rating(
 
 
 def spectrum_figures(rating: OfSpectrum) -> dict[str, Any]:
-    """What all bins do together: hours, and for each kind of failure of each gear its numbers, null where not known."""
+    """What all bins do together: hours, and for each kind of failure of each gear its numbers, null where not known.
+
+    Of double helical pairs those of each half, too.
+    """
     rows = rating.key_figures()[0]
     together: dict[str, Any] = {
         f"{gear}_{mode}": {
@@ -193,7 +204,13 @@ def spectrum_figures(rating: OfSpectrum) -> dict[str, Any]:
         for gear in rating.MEMBERS
         for mode in rating.modes
     }
-    return {"required_life_h": rating.life_required, "bins": len(rating.torque), **together}
+    halves = zip(("half_a", "half_b"), getattr(rating, "halves", ()), strict=False)
+    return {
+        "required_life_h": rating.life_required,
+        "bins": len(rating.torque),
+        **together,
+        **{name: spectrum_figures(half) for name, half in halves},
+    }
 
 
 @checked
@@ -250,7 +267,10 @@ def stage_json(result: StageResult) -> str:
 
 @checked
 def write_double_helical(
-    result: DoubleHelicalResult, directory: FilePath, more: Mapping[str, Buffer] = {}
+    result: DoubleHelicalResult,
+    directory: FilePath,
+    more: Mapping[str, Buffer] = {},
+    outdated: Iterable[str] = (),
 ) -> tuple[Path, ...]:
     """Write a double helical pair, its figures and its table, all files or none.
 
@@ -261,6 +281,8 @@ def write_double_helical(
         Made if it does not exist.
     more : mapping of str to bytes
         Contents of files to write with these, by their names: pictures.
+    outdated : iterable of str
+        Names of files to remove that an older result has.
 
     Returns
     -------
@@ -276,7 +298,45 @@ def write_double_helical(
     text = figures_json(result, notes=result.notes(), warnings=result.warnings or ())
     table = csv_table(result.to_table())
     files = {"double_helical.json": text.encode(), "double_helical.csv": table.encode()}
-    return replace_together(directory, {**result.contents(), **files, **more})
+    return replace_together(directory, {**result.contents(), **files, **more}, outdated)
+
+
+@checked
+def write_halves_revolution(
+    result: DoubleHelicalRevolution, directory: FilePath, more: Mapping[str, Buffer] = {}
+) -> tuple[Path, ...]:
+    """Write a whole revolution of a double helical pair and its tables, all files or none.
+
+    Parameters
+    ----------
+    result : DoubleHelicalRevolution
+    directory : str or path
+        Made if it does not exist.
+    more : mapping of str to bytes
+        Contents of files to write with these, by their names: pictures.
+
+    Returns
+    -------
+    tuple of Path
+        ``double_helical_revolution.nc``, ``half_a_revolution.nc``, ``half_b_revolution.nc``,
+        ``double_helical_revolution.json``, ``double_helical_revolution.csv``, ``double_helical_orders.csv``, and those
+        of ``more``.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    orders = order_columns(result)
+    for t, torque in enumerate(result.torque):
+        orders[f"axial_motion_at_{1e-3 * torque:.6g}_Nm_um"] = result.axial_spectrum(t).amplitude
+    files = {
+        "double_helical_revolution.json": figures_json(result, warnings=result.warnings or ()),
+        "double_helical_revolution.csv": csv_table(result.to_table()),
+        "double_helical_orders.csv": csv_table(orders),
+    }
+    texts = {name: text.encode() for name, text in files.items()}
+    return replace_together(directory, {**result.contents(), **texts, **more})
 
 
 FORCES = "force_x_N", "force_y_N", "force_z_N", "moment_x_Nm", "moment_y_Nm", "moment_z_Nm"

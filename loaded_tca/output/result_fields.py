@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from loaded_tca.double_helical import DoubleHelicalResult
+from loaded_tca.double_helical import DoubleHelicalResult, DoubleHelicalRevolution
 from loaded_tca.rating.quantities import NUMBERS as RATING_NUMBERS
 from loaded_tca.rating.quantities import SPECTRUM_NUMBERS
 from loaded_tca.results.declared import PAIRS, Number
@@ -47,6 +47,7 @@ def describe_results() -> str:
         "Whole revolutions; on supports those of above, too": _numbers(of_turns),
         "Planetary stages": _numbers(StageResult.NUMBERS),
         "Double helical pairs; axial directions are those of half a": _numbers(DoubleHelicalResult.NUMBERS),
+        "Whole revolutions of double helical pairs": _numbers(DoubleHelicalRevolution.NUMBERS),
         "Tribology; of several speeds most with an axis `speed`": _numbers(NUMBERS, of_torques=True),
         "Rating": _numbers(RATING_NUMBERS, of_torques=True),
         "Rating under a load spectrum, beside or in the place of these": _numbers(

@@ -7,9 +7,10 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib.figure import Figure
 
-from loaded_tca.double_helical import DoubleHelicalResult
+from loaded_tca.double_helical import DoubleHelicalResult, DoubleHelicalRevolution
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
+from loaded_tca.plots.revolution import plot_revolution_error, plot_revolution_spectrum
 from loaded_tca.results.load_factors import face_forces
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.double_helical import HALVES, SIGNS
@@ -18,7 +19,7 @@ LEAST_um = 0.02
 """Least height of a panel of motions and errors."""
 
 
-def _finished(figure: Figure, result: DoubleHelicalResult, shown: str, *rest: str) -> Figure:
+def _finished(figure: Figure, result: DoubleHelicalResult | DoubleHelicalRevolution, shown: str, *rest: str) -> Figure:
     handles, labels = figure.axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize="small")
     style.write_title(figure, result.scene.title, shown, *rest)
@@ -63,7 +64,9 @@ def plot_halves_face_load(result: DoubleHelicalResult, torque: int | None = None
     return _finished(figure, result, f"load over both halves, pinion torque {shown_torque(result.torque[torque])}")
 
 
-def _over_the_pitch(result: DoubleHelicalResult, number: Callable[[int], np.ndarray], label: str, shown: str) -> Figure:
+def _over_the_pitch(
+    result: DoubleHelicalResult | DoubleHelicalRevolution, number: Callable[[int], np.ndarray], label: str, shown: str
+) -> Figure:
     """Curves over the pinion angle, one for each torque."""
     figure, axes = style.one_panel()
     angle = np.degrees(result.pinion_angle)
@@ -75,19 +78,20 @@ def _over_the_pitch(result: DoubleHelicalResult, number: Callable[[int], np.ndar
     return _finished(figure, result, shown)
 
 
-def plot_halves_axial_motion(result: DoubleHelicalResult) -> Figure:
-    """Motion of the floating gear along its axis over a pitch, under each torque.
+def plot_halves_axial_motion(result: DoubleHelicalResult | DoubleHelicalRevolution) -> Figure:
+    """Motion of the floating gear along its axis over a pitch, or over a whole revolution, under each torque.
 
     Parameters
     ----------
-    result : DoubleHelicalResult
+    result : DoubleHelicalResult or DoubleHelicalRevolution
 
     Returns
     -------
     matplotlib.figure.Figure
     """
     gear = result.scene.geometry.floating
-    label, shown = f"motion of the {gear} towards half a [µm]", f"axial motion of the {gear} over a pitch"
+    over = "a pitch" if isinstance(result, DoubleHelicalResult) else f"{result.pitches} pitches"
+    label, shown = f"motion of the {gear} towards half a [µm]", f"axial motion of the {gear} over {over}"
     return _over_the_pitch(result, lambda torque: 1e3 * result.axial_motion[torque], label, shown)
 
 
@@ -175,3 +179,28 @@ def double_helical_figures(result: DoubleHelicalResult) -> dict[str, Figure]:
         "halves_face_load": result.dataset.sizes["position"] == 1,
     }
     return {name: draw(result) for name, draw in DOUBLE_HELICAL_PICTURES.items() if not without.get(name)}
+
+
+HALVES_REVOLUTION_PICTURES: dict[str, Callable[[DoubleHelicalRevolution], Figure]] = {
+    "halves_revolution_error": plot_revolution_error,
+    "halves_revolution_spectrum": plot_revolution_spectrum,
+    "halves_revolution_axial_motion": plot_halves_axial_motion,
+}
+"""Name of the file of ``loaded-tca revolution`` of a double helical pair -> how it is drawn."""
+
+
+def halves_revolution_figures(revolution: DoubleHelicalRevolution) -> dict[str, Figure]:
+    """Draw every picture of a whole revolution of a double helical pair that it has.
+
+    Parameters
+    ----------
+    revolution : DoubleHelicalRevolution
+
+    Returns
+    -------
+    dict of str to matplotlib.figure.Figure
+        By the names of ``HALVES_REVOLUTION_PICTURES``.
+    """
+    moves = revolution.scene.geometry.floating != "none"
+    pictures = HALVES_REVOLUTION_PICTURES.items()
+    return {name: draw(revolution) for name, draw in pictures if moves or draw is not plot_halves_axial_motion}

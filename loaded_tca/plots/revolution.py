@@ -11,7 +11,7 @@ from loaded_tca.errors import require
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.results.quantities import GEARS
-from loaded_tca.results.revolution import Revolution
+from loaded_tca.results.revolution import OverTurns, Revolution
 from loaded_tca.results.summary import shown_torque
 
 RIGID = "0.35"
@@ -27,11 +27,11 @@ LEAST_SHOWN = 1e-4
 """Amplitude [um] below which orders are not told from each other."""
 
 
-def _scope(revolution: Revolution) -> str:
+def _scope(revolution: OverTurns) -> str:
     return f"{revolution.pitches} pitches, {revolution.per_pitch} positions each"
 
 
-def plot_revolution_error(revolution: Revolution) -> Figure:
+def plot_revolution_error(revolution: OverTurns) -> Figure:
     """Transmission error over the revolution: rigid, and under each torque less its mean.
 
     Parameters
@@ -79,7 +79,7 @@ def plot_revolution_error(revolution: Revolution) -> Figure:
     return figure
 
 
-def plot_revolution_spectrum(revolution: Revolution, torque: int | None = None) -> Figure:
+def plot_revolution_spectrum(revolution: OverTurns, torque: int | None = None) -> Figure:
     """Orders of the transmission error, mesh orders, sidebands and orders of rotation told apart.
 
     Parameters
@@ -115,7 +115,7 @@ def plot_revolution_spectrum(revolution: Revolution, torque: int | None = None) 
     named = groups != "other"
     axes.plot(order[named], rigid[named], "_", color="black", markersize=5.0, label="the same without load")
     axes.set_yscale("log")
-    axes.set_ylim(LEAST_SHOWN, 3.0 * max(float(amplitude.max()), float(rigid.max()), 10.0 * LEAST_SHOWN))
+    axes.set_ylim(LEAST_SHOWN, 3.0 * max(amplitude.max(initial=10.0 * LEAST_SHOWN), rigid.max(initial=0.0)))
     gear = GEARS[revolution.counted_by]
     axes.set_xlabel(f"order of the {gear}'s rotation ({gear}: {teeth} teeth)")
     axes.set_ylabel("amplitude at the wheel's base circle [µm]")

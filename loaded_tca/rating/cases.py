@@ -62,8 +62,9 @@ class Cases:
 
     @property
     def factor_torque(self) -> Array:
-        """Torques (c,) that load factors are found at [N mm]: of bins from a part of the largest on."""
-        return np.maximum(self.torque, LEAST_PART * self.torque.max()) if self.is_spectrum else self.torque
+        """Torques (c,) that load factors are found at [N mm]: of bins and without load from a part of the largest."""
+        least = LEAST_PART * self.torque.max()
+        return np.where(self.torque > 0.0, np.maximum(self.torque, least if self.is_spectrum else 0.0), least)
 
     def between(self, solved: Array) -> Mask:
         """Which cases (c,) have a torque that is none of those solved [N mm]; idle ones ask for none."""

@@ -55,6 +55,8 @@ class Duty:
         Smallest over largest computed root stress of a turn under these, where other mates add to those of the mesh.
     cases : Cases or None
         Those of the mesh; None: those of its scene.
+    case_mesh_load_factor, case_face_load_factor : array (c,), optional
+        K_gamma and K_Hbeta under the cases; default: as the torques of the result have them, and as the scene asks.
     """
 
     mesh_load_factor: Array | float = 1.0
@@ -63,6 +65,8 @@ class Duty:
     mean_stress_factors: tuple[float | None, float | None] = (None, None)
     stress_ratios: tuple[Array | None, Array | None] = (None, None)
     cases: Cases | None = None
+    case_mesh_load_factor: Array | None = None
+    case_face_load_factor: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +104,8 @@ class CommonInputs(ABC):
     def loads(self) -> SolvedLoads:
         """Under the torques of the cases; one mate of all carries the whole torque at the most."""
         loads = self.solved.at(self.cases.factor_torque)
+        if self.duty.case_mesh_load_factor is not None:
+            return replace(loads, mesh_load_factor=self.duty.case_mesh_load_factor)
         most = max(float(self.solved.mesh_load_factor.max()), *self.duty.meshes)
         return replace(loads, mesh_load_factor=np.minimum(loads.mesh_load_factor, most))
 

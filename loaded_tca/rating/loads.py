@@ -48,6 +48,8 @@ def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...
 
 def flank_face_load_factor(inputs: CommonInputs) -> Array:
     """K_Hbeta (c,): of the analysis, from 1 on, or given."""
+    if inputs.duty.case_face_load_factor is not None:
+        return inputs.duty.case_face_load_factor
     wanted, ones = inputs.rating.face_load_factor, np.ones(len(inputs.torque))
     return np.maximum(ones * (inputs.loads.face_load_factor if wanted == ANALYSIS else float(wanted)), 1.0)
 

@@ -8,6 +8,7 @@ from loaded_tca.output.double_helical_overview import HELD, geometry_of_halves, 
 from loaded_tca.plots import DOUBLE_HELICAL_CAPTIONS, double_helical_figures
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
+from loaded_tca.reports.rating_page import halves_rating_content
 from loaded_tca.reports.result_page import MOST_TORQUES, explained
 from loaded_tca.results.summary import shown
 
@@ -32,6 +33,7 @@ def double_helical_content(result: DoubleHelicalResult) -> dict[str, Any]:
         **halves_geometry(scene),
         "key_figures": [_figures(result, part) for part in parts_of(result.torque.tolist(), MOST_TORQUES)],
         "notes": result.notes(),
+        "rating": halves_rating_content(result),
         "files": [*result.PARTS.values()],
         "warnings": explained(result.warnings or ()),
         "pictures": pictures_of(double_helical_figures(result), DOUBLE_HELICAL_CAPTIONS, scene.title),

@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
+from loaded_tca.arrays import GEARS
+from loaded_tca.double_helical.rating import double_helical_rating_of
 from loaded_tca.errors import InputError
 from loaded_tca.plain import plain
 from loaded_tca.plots import RATING_PICTURES, rating_figures
 from loaded_tca.rating import rating_of
 from loaded_tca.rating.findings import ALL_FAILURES, findings, of_all_bins
 from loaded_tca.rating.quantities import OF_GEARS, OF_MODES, OF_SPECTRUM
-from loaded_tca.rating.rating import WORDS, OfCases
+from loaded_tca.rating.rating import WORDS, OfCases, rows_of
 from loaded_tca.rating.spectrum import OfSpectrum
 from loaded_tca.reports.page import Table, parts_of, pictures_of
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.summary import shown
+from loaded_tca.scene.double_helical import HALVES
 from loaded_tca.scene.rating import is_rated
 from loaded_tca.stages.rating import MEMBERS, MESHES, StageRating, stage_rating_of
 from loaded_tca.stages.sections import words_of
 
 if TYPE_CHECKING:
+    from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult
+    from loaded_tca.rating import Rating
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.stages import StageResult
 
@@ -50,29 +55,46 @@ def rating_content(result: MeshCycle) -> dict[str, Any] | None:
     ----------
     result : MeshCycle
     """
-    if not is_rated(result.scene):
-        return None
-    try:
-        rating = rating_of(result, warn=False)
-    except InputError as error:  # the report has what there is
-        return {"refused": error.problems, "pictures": ()}
-    return _told(rating, findings(rating), _all_tables(rating, _shown_cases(rating)))
+    return _rated(is_rated(result.scene), lambda: _of_pair(rating_of(result, warn=False)))
+
+
+def halves_rating_content(result: DoubleHelicalResult) -> dict[str, Any] | None:
+    """Return the same of a double helical pair: the safeties of both halves, then all of each half.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+    """
+    return _rated(is_rated(result.scene), lambda: _of_halves(double_helical_rating_of(result, warn=False)))
 
 
 def stage_rating_content(result: StageResult) -> dict[str, Any] | None:
-    """The same of a planetary stage: its gears, and with all factors both meshes, under a spectrum in the worst bins.
+    """Return the same of a planetary stage: its gears, then both meshes, under a spectrum in the worst bins.
 
     Parameters
     ----------
     result : StageResult
     """
     stage = result.stage
-    if stage.rating is None or any(getattr(stage, gear).strength is None for gear in MEMBERS):
+    asked = stage.rating is not None and all(getattr(stage, gear).strength is not None for gear in MEMBERS)
+    return _rated(asked, lambda: _of_stage(stage_rating_of(result, warn=False)))
+
+
+def _rated(asked: bool, content: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
+    """The content of a rating, why there is none, or None where strengths or [rating] are not given."""
+    if not asked:
         return None
     try:
-        rating = stage_rating_of(result, warn=False)
+        return content()
     except InputError as error:  # the report has what there is
         return {"refused": error.problems, "pictures": ()}
+
+
+def _of_pair(rating: Rating) -> dict[str, Any]:
+    return _told(rating, findings(rating), _all_tables(rating, _shown_cases(rating)))
+
+
+def _of_stage(rating: StageRating) -> dict[str, Any]:
     of_spectrum, cases = isinstance(rating, OfSpectrum), _shown_cases(rating)
     worst = rating.most_damaging(MOST_CASES) if isinstance(rating, OfSpectrum) else cases
     tables = [*_all_tables(rating, cases), *_of_meshes(rating, worst)]
@@ -91,6 +113,27 @@ def _told(rating: OfCases, decisive: tuple[str, ...], tables: Sequence[Table]) -
         "notes": [note for note in rating.notes() if note not in decisive],
         "warnings": rating.warnings or (),
         "pictures": pictures_of(rating_figures(rating), captions, rating.title),
+    }
+
+
+def _of_halves(rating: DoubleHelicalRating) -> dict[str, Any]:
+    cases = _shown_cases(rating)
+    figures = [rating.key_figures()[case] for case in cases]
+    torques = [f"{plain(1e-3 * float(rating.torque[case]))} N m" for case in cases]
+    rows = rows_of(rating, GEARS, rating.modes, figures)[1:]
+    tables = []
+    for name, half in zip(HALVES, rating.halves, strict=True):
+        of_half = [replace(_safeties(half), caption="safeties and lives"), *_all_tables(half, cases)]
+        tables += [replace(table, caption=f"Half {name}: {table.caption}") for table in of_half]
+    return {
+        "refused": (),
+        "about": rating.scope.removesuffix("; pinion | wheel"),
+        "safeties": Table(tuple(rows), ("pinion | wheel", *torques), "Both halves together"),
+        "findings": (),
+        "tables": tables,
+        "notes": rating.notes(),
+        "warnings": rating.warnings or (),
+        "pictures": (),
     }
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes
 FORMAT = "loaded_tca"
 REVOLUTION, STAGE, TRIBOLOGY, RATING = "revolution", "stage", "tribology", "rating"
 STUDY, DESIGN, DOUBLE_HELICAL = "study", "design", "double helical pair"
+HALVES_OVER_TURNS = "double helical revolution"
 """Attribute ``kind`` of files that hold something else than the result of a mesh cycle."""
 KINDS = {
     REVOLUTION: ("a whole revolution", "read it with Revolution.load"),
@@ -36,6 +37,11 @@ KINDS = {
     DOUBLE_HELICAL: (
         "a double helical pair",
         "half_a.nc and half_b.nc beside it are such results; DoubleHelicalResult.load reads the pair",
+    ),
+    HALVES_OVER_TURNS: (
+        "a whole revolution of a double helical pair",
+        "half_a_revolution.nc and half_b_revolution.nc beside it are revolutions of the halves; "
+        "DoubleHelicalRevolution.load reads the pair",
     ),
     TRIBOLOGY: ("tribology", "its numbers are read off a result again by result.tribology()"),
     RATING: ("a rating", "its numbers are read off a result again by result.rating()"),

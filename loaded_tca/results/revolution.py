@@ -75,7 +75,7 @@ REVOLUTION_QUANTITIES: dict[str, Number] = {
 
 
 class Spectrum(NamedTuple):
-    """Amplitudes of the transmission error over the orders of a gear.
+    """Amplitudes of the transmission error, or of another curve, over the orders of a gear.
 
     Attributes
     ----------
@@ -168,37 +168,10 @@ FIGURES: dict[str, Figure] = {
 """Key figures of a revolution by their names."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Revolution(AnalysisResult):
-    """Loaded contact over the positions of a whole revolution, under each torque.
-
-    Attributes
-    ----------
-    scene : Scene
-        What was analysed.
-    dataset : xarray.Dataset
-        Numbers of ``REVOLUTION_QUANTITIES``, of gears on supports also motions of both gears and forces on bearings,
-        with their units, over torque [N mm], position (``pinion_angle`` [rad]) and
-        pair; NaN where a pair carries nothing, but its force and share, which are zero.
-    maps : mapping
-        Pressure maps by the indices of torque and position, for each pair one or None, of the positions whose maps were
-        asked for; files do not have them.
-    """
-
-    KIND: ClassVar = REVOLUTION
-    WHAT: ClassVar = "a whole revolution"
-    TITLE: ClassVar = "Whole revolution"
-    NUMBERS: ClassVar = REVOLUTION_QUANTITIES
-    COORDINATES: ClassVar = COORDINATES
-    FIGURES: ClassVar = FIGURES
+class OverTurns(AnalysisResult):
+    """Curves over the positions of a whole revolution, under each torque, and their orders of both gears."""
 
     scene: Scene
-    dataset: xarray.Dataset
-    maps: Mapping[tuple[int, int], tuple[PressureMap | None, ...]] = field(default_factory=dict)
-
-    def __repr__(self) -> str:
-        torques, positions = (self.dataset.sizes[name] for name in CYCLE)
-        return f"Revolution({self.pitches} pitches x {self.per_pitch} positions, {torques} torques, {positions} each)"
 
     @cached_property
     def teeth(self) -> tuple[int, int]:
@@ -248,7 +221,10 @@ class Revolution(AnalysisResult):
             amplitudes leak into neighbouring orders.
         """
         torque = index_or_largest(self.torque, torque)
-        curve = self.error_um(None if rigid else torque)
+        return self.orders_of(self.error_um(None if rigid else torque))
+
+    def orders_of(self, curve: Array) -> Spectrum:
+        """Amplitudes of a curve over the positions (n,), in its unit; see ``spectrum``."""
         cycles = np.arange(1, (len(curve) - 1) // 2 + 1)
         amplitude = 2.0 / len(curve) * np.abs(np.fft.rfft(curve))[cycles]
         kind = np.array([self._kind(count) for count in cycles.tolist()], dtype=str)
@@ -301,6 +277,48 @@ class Revolution(AnalysisResult):
         """Whether the revolution is whole turns of every gear whose teeth deviate."""
         return not open_turns(self.scene, self.pitches)
 
+    def under(self, torque: int) -> UnderTorque:
+        """What figures are read off: the revolution under a torque, by its index."""
+        return UnderTorque(self, torque)
+
+    @property
+    def scope(self) -> str:
+        """Pitches and positions, in words."""
+        return f"{self.pitches} pitches, {self.per_pitch} positions each, teeth counted from 0"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Revolution(OverTurns):
+    """Loaded contact over the positions of a whole revolution, under each torque.
+
+    Attributes
+    ----------
+    scene : Scene
+        What was analysed.
+    dataset : xarray.Dataset
+        Numbers of ``REVOLUTION_QUANTITIES``, of gears on supports also motions of both gears and forces on bearings,
+        with their units, over torque [N mm], position (``pinion_angle`` [rad]) and
+        pair; NaN where a pair carries nothing, but its force and share, which are zero.
+    maps : mapping
+        Pressure maps by the indices of torque and position, for each pair one or None, of the positions whose maps were
+        asked for; files do not have them.
+    """
+
+    KIND: ClassVar = REVOLUTION
+    WHAT: ClassVar = "a whole revolution"
+    TITLE: ClassVar = "Whole revolution"
+    NUMBERS: ClassVar = REVOLUTION_QUANTITIES
+    COORDINATES: ClassVar = COORDINATES
+    FIGURES: ClassVar = FIGURES
+
+    scene: Scene
+    dataset: xarray.Dataset
+    maps: Mapping[tuple[int, int], tuple[PressureMap | None, ...]] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        torques, positions = (self.dataset.sizes[name] for name in CYCLE)
+        return f"Revolution({self.pitches} pitches x {self.per_pitch} positions, {torques} torques, {positions} each)"
+
     def by_tooth(self, gear: str = "wheel") -> xarray.Dataset:
         """Return what each tooth of a gear carries at the most in the revolution.
 
@@ -336,15 +354,6 @@ class Revolution(AnalysisResult):
         parts = {name: (("torque", "tooth"), array, self.dataset[name].attrs) for name, array in largest.items()}
         parts["pinion_angle"] = (("torque", "tooth"), where, self.dataset["pinion_angle"].attrs)
         return xarray.Dataset(parts, {"torque": self.torque, "tooth": np.arange(count)})
-
-    def under(self, torque: int) -> UnderTorque:
-        """What figures are read off: the revolution under a torque, by its index."""
-        return UnderTorque(self, torque)
-
-    @property
-    def scope(self) -> str:
-        """Pitches and positions, in words."""
-        return f"{self.pitches} pitches, {self.per_pitch} positions each, teeth counted from 0"
 
     def at_position(self, name: str) -> Array:
         """Numbers of tooth pair 0, or of the one next to it, at each position."""

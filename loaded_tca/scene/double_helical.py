@@ -10,10 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, ClassVar, Literal
 
-from loaded_tca.arrays import GEARS
+import numpy as np
+
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, named
 from loaded_tca.gears import CylindricalMesh
 from loaded_tca.pairs.gear_pair import GearPair, Sense, signs_of
@@ -22,6 +24,8 @@ from loaded_tca.scene.cylindrical import CylindricalScene, MountingErrors
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.parse import scene_from_table, variant
+from loaded_tca.scene.pitch import Pitch
+from loaded_tca.scene.rating import RatingSection
 from loaded_tca.scene.section import Rule, Section, contents, rule, subsection
 from loaded_tca.scene.sections import ERROR_mm, Modifications
 from loaded_tca.scene.variants import OF_HALVES
@@ -32,14 +36,14 @@ HALVES = "a", "b"
 SIGNS = 1.0, -1.0
 """Of z of the pair, along the z of each half, which runs outwards."""
 ONE_BY_ONE = (
-    "found true; of both halves together 'loaded-tca run' and 'loaded-tca check' tell, in Python "
-    "loaded_tca.double_helical.analyse_double_helical; each half is a pair by itself: half_a.nc and half_b.nc of a "
-    "result, scene.halves, and as a scene, with its measured flanks, scene.half_scenes(0.0)"
+    "found true; of both halves together 'loaded-tca run', 'revolution' and 'check' tell, in Python "
+    "loaded_tca.double_helical.analyse_double_helical and analyse_double_helical_revolution; each half is a pair by "
+    "itself: half_a.nc and half_b.nc of a result, scene.halves, and as a scene, with its measured flanks, "
+    "scene.half_scenes(0.0)"
 )
 SHARED = "found a torque of 0; allowed above 0: the halves share a torque"
 NOT_OF_HALVES = {
-    "pitch": "whole revolutions are not analysed; give the half by itself, as a helical pair",
-    "tooth": "whole revolutions are not analysed; give the half by itself, as a helical pair",
+    "tooth": "teeth have the flanks of their half; give the half by itself, as a helical pair",
     "shaft": "the gears stand on rigid axes, but for pair.floating and pair.axial_stiffness_N_per_um",
     "support": "the gears stand on rigid axes, but for pair.floating and pair.axial_stiffness_N_per_um",
 }
@@ -87,13 +91,16 @@ class Geometry(cylindrical.Geometry):
 
 @dataclass(frozen=True, kw_only=True)
 class HalfSection(Section):
-    """[pinion.half_b], [wheel.half_b]: what the flanks of half b have instead of those of half a."""
+    """[pinion.half_b], [wheel.half_b]: what the teeth of half b have instead of those of half a."""
 
     modifications: Modifications | None = subsection(
         Modifications, "material removed from the flanks of half b, instead of that of half a", optional=True
     )
     flank: FlankForm | None = subsection(
         FlankForm, "how the flanks of half b are described, instead of those of half a", optional=True
+    )
+    pitch: Pitch | None = subsection(
+        Pitch, "where the teeth of half b stand beside their nominal places, instead of those of half a", optional=True
     )
 
 
@@ -105,11 +112,26 @@ class GearSection(cylindrical.GearSection):
         above_zero(10000.0), "overall face width b of both halves with the groove; a half has (b - gap_mm)/2"
     )
     half_b: HalfSection | None = subsection(
-        HalfSection, "flanks of half b, where they differ from those of half a", optional=True
+        HalfSection, "teeth of half b, where they differ from those of half a", optional=True
+    )
+    apex_runout_um: float = key(
+        Number(0.0, 10000.0),
+        "axial runout of the apex of the teeth, peak to peak in a turn, in whole revolutions",
+        0.0,
+    )
+    apex_runout_phase_deg: float = key(
+        Number(-360.0, 360.0),
+        "by how much the gear turns from where tooth 0 meshes until its apex lies nearest to half a",
+        0.0,
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *cylindrical.GearSection.rules,
+        rule(
+            ("apex_runout_phase_deg", "apex_runout_um"),
+            lambda phase, runout: phase == 0.0 or runout > 0.0,
+            "found {0:g} without apex_runout_um, whose phase it is",
+        ),
         *(
             Rule(
                 (name,),
@@ -118,6 +140,17 @@ class GearSection(cylindrical.GearSection):
             for name, why in NOT_OF_HALVES.items()
         ),
     )
+
+    @property
+    def teeth_differ(self) -> bool:
+        """Whether a tooth of a half has a place of its own."""
+        of_half_b = None if self.half_b is None else self.half_b.pitch
+        return super().teeth_differ or self.apex_runout_um > 0.0 or (of_half_b is not None and of_half_b.is_given)
+
+    def apex(self) -> Array:
+        """Where the apex of the teeth lies as each of them meshes (teeth,) [mm], positive towards half a."""
+        turned = 2.0 * math.pi / self.teeth * np.arange(self.teeth) - math.radians(self.apex_runout_phase_deg)
+        return 0.5e-3 * self.apex_runout_um * np.cos(turned)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,16 +199,10 @@ class DoubleHelicalScene(CylindricalScene):
         rule(
             ("analysis.load_sharing",), bool, "found false; allowed true: the tooth pairs of both halves share the load"
         ),
-        rule(
-            ("load",),
-            lambda load: load.case is None,
-            "found a load spectrum; not allowed of double helical pairs: give its torques as analysis.torques_Nm",
-        ),
         rule(("analysis.torques_Nm",), lambda several: all(several or ()), SHARED),
         rule(
             ("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda torque, several: several or torque != 0.0, SHARED
         ),
-        rule(("revolution",), lambda given: given is None, f"found a section; not allowed: {NOT_OF_HALVES['pitch']}"),
     )
 
     def __post_init__(self) -> None:
@@ -213,27 +240,43 @@ class DoubleHelicalScene(CylindricalScene):
         return scenes[0], scenes[1]
 
     def _half(self, half: int, axial_mm: float, torques: tuple[float, ...]) -> CylindricalScene:
-        mounting = self._mounting_of_half(half, axial_mm)
-        load = replace(self.load, pinion_torque_Nm=torques[-1])
+        mounting = self.mounting_of_half(half, axial_mm)
+        load = replace(self.load, pinion_torque_Nm=torques[-1], case=None)
         analysis = replace(self.analysis, torques_Nm=torques)
         title = f"{self.title}: half {HALVES[half]}".strip(": ")
         changes = {"title": title, "mounting": mounting, "load": load, "analysis": analysis}
+        changes["rating"] = self.rating_of_halves
         scene = scene_from_table({**contents(self), **self._gears_of_half(half), **changes})
         assert isinstance(scene, CylindricalScene)
-        return scene
+        pitches = {name: self._pitch_with_apex(scene, half, number) for number, name in enumerate(GEARS)}
+        gears = {name: replace(getattr(scene, name), pitch=pitch) for name, pitch in pitches.items()}
+        return replace(scene, **gears)
+
+    def _pitch_with_apex(self, scene: CylindricalScene, half: int, number: int) -> Pitch | None:
+        """Pitch deviations of a gear of a half; an apex beside its place sets the flanks of one half back, too."""
+        gear: GearSection = (self.pinion, self.wheel)[number]
+        pitch = (scene.pinion, scene.wheel)[number].pitch
+        if gear.apex_runout_um == 0.0:
+            return pitch
+        rate = SIGNS[half] * (-1.0, 1.0)[number] * self.axial_rate
+        index = 1e3 * rate * gear.apex()
+        if pitch is None:
+            return Pitch(index_um=tuple(index.tolist()))
+        index = index + pitch.index(gear.teeth, partial(scene.pitch_tolerances, number))
+        return Pitch(index_um=tuple(index.tolist()), runout_um=pitch.runout_um, runout_phase_deg=pitch.runout_phase_deg)
 
     def _gears_of_half(self, half: int) -> dict[str, Any]:
         """Sections of both gears of a half, and what they have in common."""
         sections = {"pair": {k: v for k, v in contents(self.geometry).items() if k not in OF_HALVES}}
         for name, gear in zip(GEARS, (self.pinion, self.wheel), strict=True):
-            own = contents(gear)
+            own = {key: value for key, value in contents(gear).items() if not key.startswith("apex_runout")}
             of_half: HalfSection | None = own.pop("half_b")
             if half and of_half is not None:
                 own |= {section: value for section, value in contents(of_half).items() if value is not None}
             sections[name] = own | {"face_width_mm": self.half_width(gear)}
         return sections
 
-    def _mounting_of_half(self, half: int, axial_mm: float) -> dict[str, float]:
+    def mounting_of_half(self, half: int, axial_mm: float) -> dict[str, float]:
         """Mounting errors of a half: of the whole wheel, which turns about the middle of its groove, and its own."""
         sign, lever = SIGNS[half], self._wheel_lever
         beside = sign * axial_mm + lever - 0.25 * (self.pinion.face_width_mm + self.geometry.gap_mm)
@@ -247,6 +290,12 @@ class DoubleHelicalScene(CylindricalScene):
             "axial_offset_mm": beside,
         }
         return {name: value + own.get(name, 0.0) + 0.0 for name, value in {"misalignment_um": 0.0, **errors}.items()}
+
+    @property
+    def rating_of_halves(self) -> RatingSection | None:
+        """What is required of each half, whose scene has no load spectrum: for the hours of that of the pair."""
+        wanted = self.rating
+        return wanted if wanted is None or wanted.life_hours else replace(wanted, life_hours=self.load.hours)
 
     def half_width(self, gear: cylindrical.GearSection) -> float:
         """Face width of a half of a gear [mm]."""

@@ -143,7 +143,7 @@ def test_a_place_that_does_not_settle_is_an_error(equal_halves, one_half, monkey
 def test_a_torque_in_a_list_has_the_numbers_that_it_has_alone(equal_halves, one_half, monkeypatch):
     rate, length = equal_halves.axial_rate, -one_half.gear_pair.driving * one_half.gear_pair.base_radii[1]
 
-    def where_they_stand(scenes, _):  # helices turn into themselves; pressures grow where faces lie beside each other
+    def where_they_stand(scenes, *_):  # helices turn into themselves; pressures grow where faces lie beside each other
         halves = []
         for scene in scenes:
             offset, numbers = scene.mounting.axial_offset_mm, one_half.dataset
@@ -200,7 +200,7 @@ def test_halves_out_of_reach_of_each_other_are_told_and_analysed_under_what_they
 ):
     asked = []
 
-    def ready(scenes, _):
+    def ready(scenes, *_):
         asked.append(scenes[0].torques)
         return 2 * (analyses._Half(one_half, []),)
 

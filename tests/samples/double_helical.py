@@ -3,7 +3,7 @@
 import warnings
 from pathlib import Path
 
-from loaded_tca import AccuracyWarning, read_scene
+from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.double_helical import analyse_double_helical
 from tests.samples.shared import made_once
 
@@ -36,3 +36,11 @@ def analysed():
         warnings.simplefilter("always", AccuracyWarning)
         result = analyse_double_helical(unlike_halves())
     return result, [str(one.message) for one in given]
+
+
+@made_once
+def half_over_a_pitch():
+    """Mesh cycle of one of two equal halves at five positions under 400, 800 and 1200 N m."""
+    scene = equal_halves().with_changes({"analysis.positions": 5, "analysis.cells": [8, 8]})
+    with warnings.catch_warnings(action="ignore"):  # contacts reach edges
+        return analyse(scene.half_scenes(0.0, 2 * [[400.0, 800.0, 1200.0]])[0])

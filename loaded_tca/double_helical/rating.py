@@ -1,0 +1,288 @@
+"""Rating of a double helical pair: each half under its share, the whole gear with b = 2 b_B, the smaller safeties."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from loaded_tca.arrays import GEARS, Array
+from loaded_tca.double_helical.laws import balance_of
+from loaded_tca.errors import InputError, give_accuracy_warning, named, require
+from loaded_tca.plain import plain
+from loaded_tca.rating import Rating, rating_of
+from loaded_tca.rating.cases import cases_of, problems_of_cases
+from loaded_tca.rating.inputs import Duty, missing_sections
+from loaded_tca.rating.quantities import CASE, NUMBERS, OF_GEARS, SPECTRUM_NUMBERS
+from loaded_tca.rating.rating import NOT_COUNTED, OfCases, all_figures, rows_of
+from loaded_tca.rating.spectrum import OfSpectrum
+from loaded_tca.results import MeshCycle
+from loaded_tca.results.declared import Number
+from loaded_tca.results.figure import Figures
+from loaded_tca.results.summary import shown_torque
+from loaded_tca.scene.double_helical import HALVES
+
+if TYPE_CHECKING:
+    import xarray
+
+    from loaded_tca.double_helical.result import DoubleHelicalResult
+    from loaded_tca.scene.double_helical import DoubleHelicalScene
+    from loaded_tca.scene.rating import RatingSection
+
+_SAFETIES = "flank_safety", "root_safety", "local_flank_safety", "local_root_safety"
+_OF_CASES = {
+    "K_A": NUMBERS["K_A"],
+    "K_gamma": Number(
+        CASE, "1", "largest share of a half over an even one", label="K_gamma: largest share of a half over an even one"
+    ),
+    "K_Hbeta": Number(CASE, "1", "K_Hbeta of the worse half", label="K_Hbeta of the worse half"),
+    "whole_flank_safety": Number(OF_GEARS, "1", "whole gear, b = 2 b_B: safety against pitting S_H"),
+    "whole_root_safety": Number(OF_GEARS, "1", "whole gear, b = 2 b_B: safety against tooth breakage S_F"),
+    **{name: NUMBERS[name].changed(text=f"smaller of both halves: {NUMBERS[name].text}") for name in _SAFETIES},
+}
+PAIR_RATING_NUMBERS: dict[str, Number] = {
+    "torque": NUMBERS["torque"],
+    **_OF_CASES,
+    **{name: NUMBERS[name] for name in ("damage", "life_hours")},
+}
+PAIR_SPECTRUM_NUMBERS: dict[str, Number] = {
+    **{name: SPECTRUM_NUMBERS[name] for name in ("torque", "pinion_speed", "hours", "reversed")},
+    **_OF_CASES,
+    **{
+        name: SPECTRUM_NUMBERS[name]
+        for name in ("damage", "miner_sum", "life_hours", "spectrum_safety", "interpolation_error")
+    },
+}
+"""Names in the datasets of both kinds: of both halves the worse one."""
+LARGEST = "damage", "miner_sum", "interpolation_error"
+"""Numbers of which the larger of both halves counts."""
+UNEVEN = 0.01
+"""Of the share of a half over a pitch, over its mean: from which on a note says that it is rated under the largest."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DoubleHelicalRating(OfCases):
+    """Safeties and lives of a double helical pair; every name of ``NUMBERS`` is an attribute.
+
+    Attributes
+    ----------
+    result : DoubleHelicalResult
+    half_a, half_b : Rating
+        Each half under its own torque, the largest of its shares over the pitch, with every factor.
+    whole : Rating
+        The whole gear as ISO 6336 has it: half the torque on the face of a half, which is the torque on b = 2 b_B, with
+        K_gamma of the larger share and K_Hbeta of the worse half. Its local stresses are those of half a.
+    dataset : xarray.Dataset
+        Numbers with their units, over ``case``, each of a ``torque`` of both halves, ``gear`` and ``mode``.
+    """
+
+    TITLE: ClassVar = "Rating of a double helical pair"
+    NUMBERS: ClassVar = PAIR_RATING_NUMBERS
+    FIGURES: ClassVar = all_figures(PAIR_RATING_NUMBERS)
+
+    result: DoubleHelicalResult
+    half_a: Rating
+    half_b: Rating
+    whole: Rating
+    dataset: xarray.Dataset
+
+    def __repr__(self) -> str:
+        flank, root = self.flank_safety.min(), self.root_safety.min()
+        return f"{type(self).__name__}({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
+
+    @property
+    def scene(self) -> DoubleHelicalScene:
+        """Scene of the result."""
+        return self.result.scene
+
+    @property
+    def halves(self) -> tuple[Rating, Rating]:
+        """Ratings of half a and half b."""
+        return self.half_a, self.half_b
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """Kinds of failure that are rated."""
+        return self.half_a.modes
+
+    @property
+    def required(self) -> RatingSection:
+        """What the scene requires."""
+        return self.half_a.required
+
+    @property
+    def life_required(self) -> float:
+        """The life that is required [h]."""
+        return self.half_a.life_required
+
+    @property
+    def scope(self) -> str:
+        """Speed, hours and what is required, in words."""
+        return f"two halves, {self.half_a.scope}"
+
+    def figure_arrays(self) -> dict[str, Array]:
+        """Return the figures (case,) of the pair, and of its halves, which begin with their names."""
+        columns = super().figure_arrays()
+        for name, rating in zip(HALVES, self.halves, strict=True):
+            columns |= {_of_half(name, figure): values for figure, values in rating.figure_arrays().items()}
+        return columns
+
+    def rows(self, figures: Sequence[Figures]) -> list[tuple[str, ...]]:
+        """Lines of the summary: of the pair, then of both halves with all factors."""
+        rows = rows_of(self, GEARS, self.modes, figures)
+        for name, rating in zip(HALVES, self.halves, strict=True):
+            start = _of_half(name, "")
+            of_half = [
+                {key.removeprefix(start): value for key, value in row.items() if key.startswith(start)}
+                for row in figures
+            ]
+            rows.append((f"half {name}, under its share", *("" for _ in figures)))
+            rows += [(f"  {label}", *cells) for label, *cells in rating.rows(of_half)]
+        return rows
+
+    def notes(self) -> tuple[str, ...]:
+        """What decides in each half, what lies outside the ranges of the standard, which safeties are too small."""
+        sentences = [
+            f"half {name}: {note}"
+            for name, rating in zip(HALVES, self.halves, strict=True)
+            for note in rating.notes()
+            if note != NOT_COUNTED
+        ]
+        return (*_of_pair(self), *sentences, NOT_COUNTED)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DoubleHelicalSpectrumRating(OfSpectrum, DoubleHelicalRating):
+    """The same under a load spectrum: cases are its bins, whose torque the halves share bin by bin.
+
+    ``miner_sum`` is the larger of both halves, ``life_hours`` and ``spectrum_safety`` the smaller.
+    """
+
+    NUMBERS: ClassVar = PAIR_SPECTRUM_NUMBERS
+    FIGURES: ClassVar = all_figures(PAIR_SPECTRUM_NUMBERS)
+
+    def spectrum_rows(self) -> list[tuple[str, ...]]:
+        """Lines on all bins together: of the worse half, then of each."""
+        rows = super().spectrum_rows()
+        for name, rating in zip(HALVES, self.halves, strict=True):
+            assert isinstance(rating, OfSpectrum)
+            rows += [(f"half {name}, under its share", *("" for _ in GEARS))]
+            rows += [(f"  {label}", *cells) for label, *cells in rating.spectrum_rows()[1:]]
+        return rows
+
+
+def _of_half(name: str, figure: str) -> str:
+    """Name of a figure of a half."""
+    return f"half_{name}_{figure}"
+
+
+def double_helical_rating_of(result: DoubleHelicalResult, *, warn: bool = True) -> DoubleHelicalRating:
+    """Rating of a double helical pair; see :meth:`loaded_tca.double_helical.DoubleHelicalResult.rating`.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+    warn : bool
+        Whether accuracy warnings are given.
+
+    Returns
+    -------
+    DoubleHelicalRating
+    """
+    scene = result.scene
+    sections = {f"{gear}.strength": getattr(scene, gear).strength for gear in GEARS}
+    problems = missing_sections({**sections, "rating": scene.rating, "lubricant": scene.lubricant})
+    if problems := [*problems, *problems_of_cases(scene.load, scene.operation, sections, float(result.torque.max()))]:
+        raise InputError(problems)
+    bins = scene.load.case
+    torques = np.asarray(result.torque if bins is None else [1e3 * case.pinion_torque_Nm for case in bins])
+    shares = _largest_shares(result, torques)
+    ratings = []
+    for half, (name, cycle) in enumerate(zip(HALVES, result.halves, strict=True)):
+        with named(f"half {name}"):
+            ratings.append(_under(scene, cycle, torques * shares[:, half]))
+    half_a, half_b = ratings
+    face = np.fmax(np.fmax(half_a.K_Hbeta, half_b.K_Hbeta), 1.0)  # NaN of idle bins
+    whole = _under(scene, result.half_a, 0.5 * torques, 2.0 * shares.max(axis=1), face)
+    kind = DoubleHelicalRating if bins is None else DoubleHelicalSpectrumRating
+    arrays = {name: _worse(name, *ratings) for name in kind.NUMBERS if half_a.has(name)}
+    arrays |= {"torque": torques, "K_gamma": whole.K_gamma, "K_Hbeta": face}
+    arrays |= {"whole_flank_safety": whole.flank_safety, "whole_root_safety": whole.root_safety}
+    sentences = [
+        f"half {name}: {sentence}"
+        for name, rating in zip(HALVES, ratings, strict=True)
+        for sentence in rating.warnings or ()
+    ]
+    for sentence in sentences if warn else ():
+        give_accuracy_warning(sentence, stacklevel=3)
+    about: dict[str, Any] = {"version": half_a.version, "warnings": "\n".join(sentences)}
+    dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*GEARS], mode=[*half_a.modes])
+    return kind(result, half_a, half_b, whole, dataset)
+
+
+def _largest_shares(result: DoubleHelicalResult, torques: Array) -> Array:
+    """Largest shares (c, half) over the pitch under torques (c,) of both halves [N mm]; even under none."""
+    loaded = torques > 0.0
+    shares = np.full((len(torques), len(HALVES)), 0.5)
+    force = balance_of(result.scene, result.halves, torques[loaded]).force
+    shares[loaded] = (force / force.sum(axis=-1, keepdims=True)).max(axis=1)
+    return shares
+
+
+def _under(
+    scene: DoubleHelicalScene,
+    cycle: MeshCycle,
+    torques: Array,
+    load_factor: Array | float = 1.0,
+    face_factor: Array | None = None,
+) -> Rating:
+    """Rating of the mesh of a half under torques (c,) [N mm], of bins where the pair has a load spectrum.
+
+    What a share exceeds the largest torque that was solved by, a thousandth at most, multiplies loads as K_gamma.
+    """
+    require((bool(torques.any()), "carries nothing under any torque: there is nothing to rate; rate the other half"))
+    largest = float(cycle.torque.max())
+    within = np.minimum(torques, largest)
+    more = load_factor * np.divide(torques, within, out=np.ones_like(torques), where=within > 0.0)
+    half, bins = cycle.scene, scene.load.case
+    sections = {name: getattr(scene, name) for name in ("operation", "lubricant")}
+    gears = {gear: replace(getattr(half, gear), strength=getattr(scene, gear).strength) for gear in GEARS}
+    load = half.load
+    if bins is not None:
+        highest = max(half.analysis.torques_Nm or (1e-3 * largest,))  # as its scene has it
+        of_half = (min(1e-3 * torque, highest) for torque in within.tolist())
+        load = replace(
+            load,
+            pinion_torque_Nm=None,
+            case=tuple(replace(case, pinion_torque_Nm=part) for case, part in zip(bins, of_half, strict=True)),
+        )
+    rated = replace(half, **gears, **sections, load=load, rating=scene.rating if bins else scene.rating_of_halves)
+    duty = Duty(cases=cases_of(rated, within), case_mesh_load_factor=more, case_face_load_factor=face_factor)
+    return rating_of(replace(cycle, scene=rated, states=None), duty=duty, warn=False)
+
+
+def _worse(name: str, half_a: Rating, half_b: Rating) -> Array:
+    """A number of the half that is worse."""
+    worse: Callable[[Array, Array], Array] = np.maximum if name in LARGEST else np.minimum
+    return worse(half_a.values(name), half_b.values(name))
+
+
+def _of_pair(rating: DoubleHelicalRating) -> Iterator[str]:
+    """Sentences on how the halves share the torque in a rating."""
+    scene, result = rating.scene, rating.result
+    if not scene.floats_freely:
+        yield "each half is rated under the largest of its shares over the pitch"
+    shares = result.torque_share
+    span, mean = np.ptp(shares, axis=1), shares.mean(axis=1)
+    if (span > UNEVEN * mean).any():
+        torque, half = (int(n) for n in np.unravel_index(span.argmax(), span.shape))
+        yield (
+            f"the share of half {HALVES[half]} is {plain(100.0 * mean[torque, half], 3)} % of the torque in the mean "
+            f"and {plain(100.0 * shares[torque, :, half].max(), 3)} % at most under "
+            f"{shown_torque(result.torque[torque])}: life under the largest is on the safe side"
+        )
+    if any(case.reversed for case in scene.load.case or ()):
+        yield "reversed bins are shared as the same torques are the other way"
+    yield from (f"{note}; stresses are those there" for note in result.notes_of_places())

@@ -1,0 +1,224 @@
+"""Whole revolutions of double helical pairs: the balance of both halves at every position, each tooth at its place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from loaded_tca.arguments import checked
+from loaded_tca.arrays import Array
+from loaded_tca.double_helical.analyse import (
+    HalfAnalysis,
+    Place,
+    Progress,
+    StatesDone,
+    balance_arrays,
+    carried_by,
+    joined,
+    largest_of_pairs,
+    largest_place,
+    of_halves,
+    settled,
+)
+from loaded_tca.double_helical.laws import gears_of
+from loaded_tca.double_helical.result import FIGURES, NUMBERS, in_the_scene
+from loaded_tca.effort import Effort
+from loaded_tca.results.declared import Number
+from loaded_tca.results.figure import Figure
+from loaded_tca.results.files import HALVES_OVER_TURNS
+from loaded_tca.results.result import JoinedResult
+from loaded_tca.results.revolution import FIGURES as OF_TURNS
+from loaded_tca.results.revolution import OverTurns, Revolution, Spectrum
+from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
+from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
+from loaded_tca.scene.pitch import Revolution as RevolutionSection
+from loaded_tca.units import MICROMETRES
+
+if TYPE_CHECKING:
+    import xarray
+
+    from loaded_tca.results.revolution import UnderTorque
+
+HALVES_REVOLUTION_FILE = "double_helical_revolution.nc"
+"""Name of the file of both halves together."""
+_LEFT_OUT = "line_load", "face_load_factor"
+HALVES_REVOLUTION_NUMBERS: dict[str, Number] = {
+    **{name: number for name, number in NUMBERS.items() if name not in _LEFT_OUT},
+    "pinion_angle": NUMBERS["pinion_angle"].changed(text="angle of the pinion phi1, from 0 at the first position"),
+    "rigid_transmission_error": Number(
+        ("position",),
+        "rad",
+        "transmission error without load, absolute, of both halves together",
+        columns=("rigid_transmission_error_um",),
+    ),
+}
+"""Numbers of a revolution of a double helical pair."""
+
+
+def _order(kind: str, under: UnderTorque) -> float:
+    spectrum = under.result.axial_spectrum(under.row)
+    return float(spectrum.amplitude[spectrum.kind == kind].sum())
+
+
+HALVES_REVOLUTION_FIGURES: dict[str, Figure] = {
+    **{name: figure for name, figure in OF_TURNS.items() if "single_flank" in name or name == "first_mesh_order_um"},
+    **{name: figure for name, figure in FIGURES.items() if not any(left in name for left in (*_LEFT_OUT, "root"))},
+    "axial_motion_span_um": replace(FIGURES["axial_motion_span_um"], label="  over the revolution, peak to peak"),
+    **{
+        f"axial_motion_{kind.replace(' ', '_')}_um": Figure(
+            of=partial(_order, kind), label=f"  amplitude of order {kind}"
+        )
+        for kind in ("pinion 1", "wheel 1", "mesh 1")
+    },
+}
+"""Key figures by their names."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class DoubleHelicalRevolution(OverTurns, JoinedResult):
+    """Both halves of a double helical pair over a whole revolution, under each torque.
+
+    Attributes
+    ----------
+    scene : DoubleHelicalScene
+        What was analysed.
+    dataset : xarray.Dataset
+        Numbers of ``HALVES_REVOLUTION_NUMBERS`` with their units, over torque [N mm], position and half.
+    half_a, half_b : Revolution
+        Of each half, under the torques between which its shares lie.
+    """
+
+    KIND: ClassVar = HALVES_OVER_TURNS
+    WHAT: ClassVar = "a whole revolution of a double helical pair"
+    TITLE: ClassVar = "Whole revolution of a double helical pair"
+    NUMBERS: ClassVar = HALVES_REVOLUTION_NUMBERS
+    COORDINATES: ClassVar = ("torque", "pinion_angle")
+    FIGURES: ClassVar = HALVES_REVOLUTION_FIGURES
+    FILE: ClassVar = HALVES_REVOLUTION_FILE
+    PARTS: ClassVar = {"half_a": "half_a_revolution.nc", "half_b": "half_b_revolution.nc"}
+
+    scene: DoubleHelicalScene
+    dataset: xarray.Dataset
+    half_a: Revolution
+    half_b: Revolution
+
+    def __repr__(self) -> str:
+        return f"DoubleHelicalRevolution({self.pitches} pitches x {self.per_pitch} positions)"
+
+    @property
+    def halves(self) -> tuple[Revolution, Revolution]:
+        """Revolutions of half a and half b."""
+        return self.half_a, self.half_b
+
+    def along(self, axis: str) -> list[Any]:
+        """What counts along an axis: halves by their names, too."""
+        return [*HALVES] if axis == "half" else super().along(axis)
+
+    def axial_spectrum(self, torque: int) -> Spectrum:
+        """Amplitudes [um] of the axial motion of the floating gear over the orders of a gear, as ``spectrum`` has them.
+
+        Parameters
+        ----------
+        torque : int
+            Index of the torque.
+
+        Returns
+        -------
+        Spectrum
+        """
+        return self.orders_of(MICROMETRES * self.axial_motion[torque])
+
+    @classmethod
+    def parts_beside(cls, path: Path, subject: DoubleHelicalScene) -> dict[str, Any]:
+        """Both revolutions, of the files beside that of the pair."""
+        places = [path.parent / name for name in cls.PARTS.values()]
+        halves = [Revolution.load(place) for place in places]
+        in_the_scene(subject, places, halves, cls.FILE)
+        return dict(zip(cls.PARTS, halves, strict=True))
+
+
+@checked
+def analyse_double_helical_revolution(
+    scene: DoubleHelicalScene, progress: Progress | None = None
+) -> DoubleHelicalRevolution:
+    """Analyse a whole revolution of a double helical pair: at every position both halves share the torque.
+
+    Teeth of both halves stand at their own places by ``[pinion.pitch]``, ``[pinion.half_b.pitch]`` and
+    ``pinion.apex_runout_um``, and by those of the wheel; the floating gear shuttles along its axis so that the axial
+    forces of its halves balance at every position.
+
+    Parameters
+    ----------
+    scene : DoubleHelicalScene
+    progress : callable, optional
+        Called as ``progress(done, total)`` with the states of both halves; where shares differ, the total grows.
+
+    Returns
+    -------
+    DoubleHelicalRevolution
+
+    Raises
+    ------
+    InputError, GeometryError, ConvergenceError
+        As of :func:`loaded_tca.analyse_revolution` for both halves, and if the floating gear does not settle.
+
+    Warns
+    -----
+    AccuracyWarning
+        As there, and as of :func:`analyse_double_helical`.
+
+    Examples
+    --------
+    >>> from loaded_tca import read_scene
+    >>> quick = {"analysis.compliance": "contact", "load.pinion_torque_Nm": 20.0, "analysis.cells": [8, 8]}
+    >>> quick |= {"pinion.half_b": None, "pair.apex_offset_mm": 0.01, "revolution.pitches": 1}
+    >>> scene = read_scene("examples/scenes/double_helical.toml").with_changes(quick)
+    >>> import warnings
+    >>> with warnings.catch_warnings(action="ignore"):  # of few cells
+    ...     revolution = analyse_double_helical_revolution(scene.with_changes({"revolution.positions_per_pitch": 1}))
+    >>> revolution.axial_motion.round(6).tolist()
+    [[0.01]]
+    """
+    way = HalfAnalysis(analyse_revolution, _positions)
+    places = settled(scene, scene.mounting.axial_offset_mm, StatesDone(progress), way)
+    dataset = joined(DoubleHelicalRevolution, scene, places, [_arrays(place) for place in places])
+    half_a, half_b = largest_place(places).cycles
+    return DoubleHelicalRevolution(scene=scene, dataset=dataset, half_a=half_a, half_b=half_b)
+
+
+def expected_halves_revolution_effort(scene: DoubleHelicalScene) -> Effort:
+    """Estimate of what a revolution takes where halves share evenly."""
+    effort = expected_revolution_effort(scene.half_scenes(scene.mounting.axial_offset_mm)[0])
+    return replace(effort, contacts=2 * effort.contacts, states=2.0 * effort.states)
+
+
+def _positions(scene: Any) -> int:
+    """Positions of a revolution of a half."""
+    asked = scene.revolution or RevolutionSection()
+    return int(asked.count((scene.pinion.teeth, scene.wheel.teeth)) * asked.positions_per_pitch)
+
+
+def _arrays(place: Place) -> dict[str, Array]:
+    """Arrays of the result at one place."""
+    pressures = [largest_of_pairs(cycle, "peak_pressure") for cycle in place.cycles]
+    return balance_arrays(place) | {
+        "peak_pressure": of_halves(place.cycles, pressures, carried_by(place)),
+        "rigid_transmission_error": _rigid(place),
+    }
+
+
+def _rigid(place: Place) -> Array:
+    """Transmission error of both halves without load (n,) [rad]: where they touch, or one does between held gears."""
+    scene, pair = place.scene, gears_of(place.cycles[0])
+    length = -pair.driving * pair.base_radii[1]
+    ways = [
+        length * half.rigid_transmission_error - scene.axial_rate * half.scene.mounting.axial_offset_mm + parted
+        for half, parted in zip(place.cycles, scene.parted, strict=True)
+    ]
+    floats = scene.geometry.floating != "none"
+    whole: Array = np.mean(ways, axis=0) if floats else np.max(ways, axis=0)
+    return np.asarray(whole / length)

@@ -1,0 +1,165 @@
+"""Ratings of double helical pairs: halves under their shares, the whole gear, load spectra, files, what is refused."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from loaded_tca import InputError
+from loaded_tca.cli import main
+from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
+from loaded_tca.double_helical import analyse as analyses
+from loaded_tca.reports.rating_page import halves_rating_content
+from tests.samples import double_helical as samples
+from tests.samples.rating import RATED
+
+pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # few cells
+APEX = 0.005
+ROUNDING = 1e-9  # exponents of S-N curves, up to 33, multiply rounding of stresses
+HELD = {"pair.floating": "none", "pair.apex_offset_mm": APEX}
+BINS = [
+    {"pinion_torque_Nm": torque, "hours": hours, "reversed": torque == 1000.0}
+    for torque, hours in ((1600.0, 10.0), (1200.0, 40.0), (0.0, 3.0), (1000.0, 30.0))
+]
+SLOPES = {"operation.application_factor": 1.6, "rating.required_flank_safety": 1.5, "rating.required_root_safety": 3.5}
+"""With these stresses lie on slopes of their curves."""
+
+
+def result_of(**changes):
+    """Result of halves that are alike, each of which the one mesh cycle is."""
+    grid = {"analysis.positions": 5, "analysis.cells": [8, 8]}
+    scene = samples.equal_halves().with_changes({**grid, **RATED, **SLOPES, **changes})
+    cycle = samples.half_over_a_pitch()
+    scenes = scene.half_scenes(0.0, 2 * [cycle.scene.analysis.torques_Nm])
+    halves = [analyses._Half(replace(cycle, scene=half, states=None), []) for half in scenes]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(analyses, "_analysed", lambda *_: halves)
+        return analyse_double_helical(scene)
+
+
+@pytest.fixture(scope="module")
+def held():
+    return result_of(**HELD)
+
+
+@pytest.fixture(scope="module")
+def held_rating(held):
+    return held.rating()
+
+
+@pytest.fixture(scope="module")
+def under_bins():
+    return result_of(**HELD, load={"case": BINS}).rating()
+
+
+def test_equal_halves_that_float_are_one_half_under_half_the_torque():
+    result = result_of()
+    rating = result.rating()
+    half = samples.half_over_a_pitch()
+    scene = half.scene.with_changes({**RATED, **SLOPES, "analysis.torques_Nm": [800.0]})
+    alone = replace(half, scene=scene, dataset=half.dataset.isel(torque=[1]), maps=half.maps[1:2], states=None).rating()
+    for name in ("flank_safety", "root_safety", "local_flank_safety", "damage", "life_hours"):
+        assert_allclose(getattr(rating, name), getattr(alone, name), rtol=ROUNDING)
+    assert_allclose(rating.whole_root_safety, alone.root_safety, rtol=ROUNDING)
+    assert rating.K_gamma.tolist() == [1.0]
+
+
+def test_whole_gear_has_the_torque_on_both_widths(held_rating):
+    """F_t of the whole torque over d_1 b and b m_n with b = 2 b_B (ISO 6336-2, -3), K_gamma of the larger share."""
+    rating, mesh = held_rating.whole, held_rating.scene.mesh()
+    force = 1.6e6 / mesh.pinion.reference_radius
+    width = 2.0 * 40.0
+    ratio = mesh.wheel.teeth / mesh.pinion.teeth
+    nominal = np.sqrt(force / (2.0 * mesh.pinion.reference_radius * width) * (ratio + 1.0) / ratio)
+    assert_allclose(rating.sigma_H0, rating.Z_H * rating.Z_E * rating.Z_eps * rating.Z_beta * nominal, rtol=1e-9)
+    factors = (rating.Y_F * rating.Y_S * rating.Y_beta * rating.Y_B * rating.Y_DT)[0]
+    assert_allclose(rating.sigma_F0[0], force / (width * 4.0) * factors, rtol=1e-9)
+    assert_array_equal(rating.K_Hbeta, np.maximum(held_rating.half_a.K_Hbeta, held_rating.half_b.K_Hbeta))
+    both = np.minimum(held_rating.half_a.flank_safety, held_rating.half_b.flank_safety)
+    assert (held_rating.whole_flank_safety <= both * (1.0 + ROUNDING)).all()  # the worse share and the worse K_Hbeta
+
+
+def test_load_factor_of_held_halves_is_that_of_the_axial_force_that_is_left(held, held_rating):
+    """DNV-CG-0036: K_gamma = 1 + F_ext/(F_t tan(beta)) of an external axial force."""
+    mesh = held.scene.mesh()
+    axial = 1.6e6 / mesh.pinion.reference_radius * np.tan(mesh.pinion.helix_angle)
+    left = np.abs(held.axial_force_left).max()
+    assert left > 0.1 * axial
+    assert_allclose(held_rating.K_gamma, 1.0 + left / axial, rtol=ROUNDING)
+    assert_allclose(held_rating.half_a.torque, 0.5 * held_rating.K_gamma * 1.6e6, rtol=ROUNDING)
+    assert held_rating.half_b.torque < 0.8e6 < held_rating.half_a.torque
+
+
+def test_worse_half_counts(held_rating):
+    half_a, half_b = held_rating.halves
+    assert (half_a.root_safety < half_b.root_safety).all()
+    assert_array_equal(held_rating.root_safety, half_a.root_safety)
+    assert_array_equal(held_rating.damage, np.maximum(half_a.damage, half_b.damage))
+    assert_array_equal(held_rating.life_hours, np.minimum(half_a.life_hours, half_b.life_hours))
+    figures = held_rating.key_figures()[0]
+    assert figures["pinion_root_safety"] == figures["half_a_pinion_root_safety"] < figures["half_b_pinion_root_safety"]
+    assert any(note.startswith("half b: after ISO 6336 what decides") for note in held_rating.notes())
+    assert "half a, under its share" in held_rating.summary()
+
+
+def test_bins_are_shared_as_their_torques_are(under_bins):
+    alone = result_of(**HELD, **{"analysis.torques_Nm": [1200.0, 1600.0]}).rating()
+    for half, other in zip(under_bins.halves, alone.halves, strict=True):
+        # K_gamma takes what a share exceeds the torques by that were solved
+        torques = half.torque[[1, 0]] * half.K_gamma[[1, 0]]
+        assert_allclose(torques, other.torque * other.K_gamma, rtol=ROUNDING)
+    assert under_bins.half_a.torque[2] == 0.0
+    assert_array_equal(under_bins.miner_sum, np.maximum(under_bins.half_a.miner_sum, under_bins.half_b.miner_sum))
+    # each bin alone lasts so long, of the 83 h that are asked for; reversed bins load no flank that is analysed
+    flank = under_bins.modes.index("flank")
+    for half, other in zip(under_bins.halves, alone.halves, strict=True):
+        damage = 40.0 / other.life_hours[0, :, flank] + 10.0 / other.life_hours[1, :, flank]
+        assert (damage > 0.0).all()
+        assert_allclose(half.miner_sum[:, flank], 20000.0 / 83.0 * damage, rtol=1e-8)
+
+
+def test_summary_of_a_spectrum_has_both_halves_and_what_is_assumed(under_bins):
+    text = under_bins.summary()
+    assert text.count("half b, under its share") >= 2  # all bins together, and bin by bin
+    assert "reversed bins are shared as the same torques are the other way" in text
+
+
+def test_command_and_report_rate_both_halves(tmp_path, monkeypatch, capsys, held, under_bins):
+    held.save(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert main(["rating", ".", "--set", "rating.life_hours=5000"]) == 0
+    assert "half a, under its share" in capsys.readouterr().out
+    (row,) = json.loads((tmp_path / "rating.json").read_text())["torques"]
+    assert row["half_b_pinion_torque_Nm"] < row["half_a_pinion_torque_Nm"]
+    again = DoubleHelicalResult.load(tmp_path)
+    again = replace(again, scene=again.scene.with_changes({"rating.life_hours": 5000.0})).rating()
+    assert row["wheel_whole_root_safety"] == pytest.approx(again.whole_root_safety[0, 1], rel=1e-6)
+    assert main(["rating", ".", "--set", "pinion.teeth=21"]) == 2
+    assert "--set pinion.teeth: an analysis depends on it" in capsys.readouterr().err
+    under_bins.result.save(tmp_path)
+    assert main(["rating", str(tmp_path)]) == 0
+    spectrum = json.loads((tmp_path / "rating.json").read_text())["spectrum"]
+    assert spectrum["half_a"]["pinion_root"]["miner_sum"] >= spectrum["half_b"]["pinion_root"]["miner_sum"]
+    captions = [table.caption for table in halves_rating_content(held)["tables"]]
+    assert captions[:2] == ["Half a: safeties and lives", "Half a: Loads and load factors"]
+    assert halves_rating_content(result_of(**{"pinion.strength": None})) is None
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"lubricant": None}, "lubricant: missing; the strength of flanks"),
+        ({**HELD, "pair.apex_offset_mm": 1.0}, "half b: carries nothing under any torque"),
+    ],
+)
+def test_refused(changes, words):
+    with pytest.raises(InputError, match=words):
+        result_of(**changes).rating()
+
+
+def test_bins_above_the_torques_that_were_solved_are_refused(held):
+    scene = held.scene.with_changes({"load": {"case": [{"pinion_torque_Nm": 1700.0, "hours": 1.0}]}})
+    with pytest.raises(InputError, match=r"load\.case: a bin has 1700 N m; allowed up to 1600, the largest that was"):
+        replace(held, scene=scene).rating()

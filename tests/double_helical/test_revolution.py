@@ -1,0 +1,133 @@
+"""Whole revolutions of double helical pairs: shuttling by closed forms, no axial force, files, the command."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import InputError
+from loaded_tca.cli import main
+from loaded_tca.double_helical import DoubleHelicalRevolution, analyse_double_helical_revolution
+from loaded_tca.results import load_result
+from loaded_tca.warning_kinds import SHUTTLES, kind_of
+from tests.samples.double_helical import equal_halves
+
+pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # few cells
+TEETH = 12
+FEW_TEETH = {
+    **{
+        f"{gear}.{key}": value
+        for gear in ("pinion", "wheel")
+        for key, value in (("teeth", TEETH), ("profile_shift", 0.3))
+    },
+    "pinion.modifications": None,
+    "analysis.cells": [8, 8],
+    "revolution": {"pitches": 2, "positions_per_pitch": 1},
+}
+OPPOSED = {"wheel.pitch.runout_um": 8.0, "wheel.half_b.pitch": {"runout_um": 8.0, "runout_phase_deg": 180.0}}
+
+
+def scene_with(**changes):
+    return equal_halves().with_changes({**FEW_TEETH, **changes})
+
+
+@pytest.fixture(scope="module")
+def wobbling():
+    """A wheel whose halves are eccentric to opposite sides."""
+    return analyse_double_helical_revolution(scene_with(**OPPOSED))
+
+
+@pytest.mark.parametrize(("floating", "sign"), [("pinion", 1.0), ("wheel", -1.0)])
+def test_floating_gear_follows_an_apex_that_runs_out(floating, sign):
+    runout, one = 10.0, {"revolution.pitches": 1}
+    scene = scene_with(**{**one, "wheel.apex_runout_um": runout, "pair.floating": floating})
+    revolution = analyse_double_helical_revolution(scene)
+    half = revolution.half_a
+    # tooth 0 meshes, whose apex lies nearest to half a; the others in contact hold the gear where theirs are
+    offsets = 0.5e-3 * runout * np.cos(2.0 * np.pi / TEETH * half.wheel_tooth[0])
+    mean = float(half.load_share[0, 0] @ offsets)
+    # they hold it by their stiffnesses, which differ from their loads by less than half: of 0.15 beside tooth 0, whose
+    # apexes lie by 1 - cos(30 deg) less far, that is 0.01
+    assert_allclose(revolution.axial_motion, sign * mean, rtol=0.01)
+    assert_allclose(revolution.axial_force_left, 0.0, atol=1e-9 * np.abs(revolution.axial_force).max())
+    assert_allclose(revolution.torque_share, 0.5, rtol=1e-12)
+
+
+def test_eccentric_halves_of_opposite_phases_shuttle_by_their_closed_form(wobbling):
+    """Flanks of the halves part by +-e cos along the line of action, which a motion of e cos/tan(beta_b) takes back."""
+    amplitude = 0.5e-3 * 8.0 / np.tan(wobbling.scene.mesh().pinion.base_helix_angle)
+    first, second = wobbling.axial_motion[0]
+    step = 2.0 * np.pi / TEETH  # two values of A cos(x) a step apart
+    square = (first**2 + second**2 - 2.0 * first * second * np.cos(step)) / np.sin(step) ** 2
+    assert_allclose(np.sqrt(square), amplitude, rtol=1e-6)  # states are solved to the tolerance of the balance
+    assert_allclose(wobbling.axial_force_left, 0.0, atol=1e-9 * np.abs(wobbling.axial_force).max())
+    # neither transmission error nor shares know of it
+    assert np.ptp(wobbling.error_um(0)) < 1e-3 * 1e3 * amplitude
+    assert wobbling.share_factor.tolist() == [1.0]
+
+
+def test_alike_halves_do_not_shuttle_and_are_one_half():
+    scene = scene_with(**{"revolution.pitches": 1, "pinion.pitch.index_um": [3.0, *(TEETH - 1) * [0.0]]})
+    revolution = analyse_double_helical_revolution(scene)
+    assert_allclose(revolution.axial_motion, 0.0, atol=1e-12)
+    assert_allclose(revolution.transmission_error, revolution.half_a.transmission_error, rtol=1e-12)
+    assert_allclose(revolution.rigid_transmission_error, revolution.half_b.rigid_transmission_error, rtol=1e-12)
+
+
+def test_command_writes_both_halves_with_orders_of_the_shuttling(wobbling, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("loaded_tca.double_helical.analyse_double_helical_revolution", lambda *_, **__: wobbling)
+    monkeypatch.setattr("loaded_tca.plots.png_of", lambda _: b"")
+    (tmp_path / "scene.toml").write_text(wobbling.scene.to_toml())
+    assert main(["revolution", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out")]) == 0
+    assert "axial motion towards half a, mean" in capsys.readouterr().out
+    again = DoubleHelicalRevolution.load(tmp_path / "out")
+    assert again.dataset.identical(wobbling.dataset)
+    assert again.half_b.dataset.identical(wobbling.half_b.dataset)
+    (row,) = json.loads((tmp_path / "out" / "double_helical_revolution.json").read_text())["torques"]
+    assert row["axial_motion_span_um"] == pytest.approx(1e3 * np.ptp(wobbling.axial_motion))
+    with (tmp_path / "out" / "double_helical_orders.csv").open(newline="") as file:
+        assert "axial_motion_at_1600_Nm_um" in next(csv.reader(file))
+    with pytest.raises(InputError, match="a whole revolution of a double helical pair, not the result of a mesh cycle"):
+        load_result(tmp_path / "out" / "double_helical_revolution.nc")
+    assert main(["report", str(tmp_path / "out")]) == 2
+    assert "holds a whole revolution" in capsys.readouterr().err
+
+
+def test_orders_of_the_shuttling_are_those_of_its_curve(wobbling):
+    """Of a curve over a turn of 12 pitches that is a cosine of the wheel's rotation."""
+    turn = wobbling.dataset.isel(position=[0] * TEETH)
+    curve = 0.01 * np.cos(2.0 * np.pi * np.arange(TEETH) / TEETH)
+    scene = wobbling.scene.with_changes({"revolution.pitches": "wheel"})
+    whole = DoubleHelicalRevolution(
+        scene=scene,
+        dataset=turn.assign(axial_motion=(("torque", "position"), curve[None])),
+        half_a=wobbling.half_a,
+        half_b=wobbling.half_b,
+    )
+    spectrum = whole.axial_spectrum(0)
+    assert_allclose(spectrum.amplitude[spectrum.order == 1.0], 10.0)
+    figures = whole.key_figures()[0]
+    assert figures["axial_motion_pinion_1_um"] + figures["axial_motion_wheel_1_um"] == pytest.approx(10.0)
+
+
+def test_shuttling_beyond_a_thousandth_of_the_width_is_warned_of():
+    scene = scene_with(**{**OPPOSED, "wheel.pitch.runout_um": 80.0, "wheel.half_b.pitch.runout_um": 80.0})
+    revolution = analyse_double_helical_revolution(scene)
+    (sentence,) = [line for line in revolution.warnings if kind_of(line) is SHUTTLES]
+    assert f"by up to {1e3 * 0.5 * np.ptp(revolution.axial_motion):.3g} um from its mean place" in sentence
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"pinion.apex_runout_phase_deg": 30.0}, "pinion.apex_runout_phase_deg: found 30 without apex_runout_um"),
+        ({"pinion.apex_runout_um": -1.0}, "pinion.apex_runout_um: found -1"),
+        ({"wheel.half_b.pitch": {"index_um": [0.0, 1.0, -1.0]}}, "half b: wheel.pitch: index_um: found 3 values"),
+        ({"pinion.tooth": [{"number": 0}]}, "pinion.tooth: found a section; not allowed of halves"),
+    ],
+)
+def test_refused(changes, words):
+    with pytest.raises(InputError, match=words):
+        equal_halves().with_changes(changes)
