@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from loaded_tca.arrays import Array
+from loaded_tca.double_helical.rating import DoubleHelicalRating
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.safety import SAFETY_PICTURES, RatingPicture
@@ -195,13 +196,16 @@ def rating_figures(rating: OfCases) -> dict[str, Figure]:
 
     Parameters
     ----------
-    rating : Rating or StageRating
+    rating : Rating, StageRating or DoubleHelicalRating
 
     Returns
     -------
     dict of str to matplotlib.figure.Figure
-        By the names of ``RATING_PICTURES``; those of places where a case of a pair has these.
+        By the names of ``RATING_PICTURES``; those of places where a case of a pair has these. Of a double helical pair
+        none: its halves are ratings, which have them.
     """
+    if isinstance(rating, DoubleHelicalRating):
+        return {}
     shown = isinstance(rating, Rating) and bool(is_shown(rating).any())
     return {
         name: picture.draw(rating)
