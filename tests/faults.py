@@ -2382,8 +2382,8 @@ FAULTS = (
     Fault(
         "stages: the smaller damage of both meshes counts for planets",
         "stages/gears.py",
-        "at_ring.lives() < at_sun.lives()",
-        "at_ring.lives() > at_sun.lives()",
+        "by_ring.lives() < at_sun.lives()",
+        "by_ring.lives() > at_sun.lives()",
         "stages/test_stage_rating.py::test_smaller_safety_of_both_meshes_counts_for_planets",
     ),
     Fault(
@@ -2946,8 +2946,8 @@ FAULTS = (
     Fault(
         "stages: reversed bins draw fillets of planets by the mesh on their own side",
         "stages/gears.py",
-        "cases.reversed if mode in ROOTS else np.zeros(len(cases.torque), dtype=bool)",
-        "np.zeros(len(cases.torque), dtype=bool)",
+        "drawn = cases.reversed if mode in ROOTS else np.zeros(len(cases.torque), dtype=bool)",
+        "drawn = np.zeros(len(cases.torque), dtype=bool)",
         "stages/test_stage_spectrum.py::test_fillets_of_planets_are_drawn_by_both_meshes_where_bins_are_reversed",
     ),
     Fault(
@@ -2972,11 +2972,11 @@ FAULTS = (
         "stages/test_bad_stages.py::test_changes_of_a_section_and_its_keys_leave_the_given_section_alone",
     ),
     Fault(
-        "stages: planets have the flank with the larger safety under all bins",
+        "stages: planets have the safety of the side with the larger safety under all bins",
         "stages/gears.py",
-        "if safeties[1] < safeties[0] else drawn_by_ring",
-        "if safeties[1] > safeties[0] else drawn_by_ring",
-        "stages/test_stage_spectrum.py::test_flank_of_a_planet_that_decides_has_the_smaller_safety_of_both",
+        "float(np.min(safeties))",
+        "float(np.max(safeties))",
+        "stages/test_stage_spectrum.py::test_planets_have_the_larger_damage_and_the_smaller_safety_of_both_sides",
     ),
     Fault(
         "stages: bins of a spectrum turn at the speed against the housing",
