@@ -2156,8 +2156,8 @@ FAULTS = (
     Fault(
         "the sun of a stage meets one planet in a turn",
         "stages/rating.py",
-        "duty=Duty(factor, (planets, 1)",
-        "duty=Duty(factor, (1, 1)",
+        "Duty(factor, (planets, 1), False",
+        "Duty(factor, (1, 1), False",
         "stages/test_stage_rating.py::test_load_cycles_count_turns_against_the_carrier_times_mates",
     ),
     Fault(
@@ -2184,8 +2184,8 @@ FAULTS = (
     Fault(
         "speeds of a stage are those against the housing",
         "stages/rating.py",
-        "return stage.operation.sun_speed_rpm * ring / (sun + ring)",
-        "return stage.operation.sun_speed_rpm",
+        "return ring / (sun + ring)",
+        "return 1.0",
         "stages/test_stage_rating.py::test_load_cycles_count_turns_against_the_carrier_times_mates",
     ),
     Fault(
@@ -2381,9 +2381,9 @@ FAULTS = (
     ),
     Fault(
         "stages: the smaller damage of both meshes counts for planets",
-        "stages/rating.py",
-        'joined("damage", np.maximum)',
-        'joined("damage")',
+        "stages/gears.py",
+        "by_ring.lives() < at_sun.lives()",
+        "by_ring.lives() > at_sun.lives()",
         "stages/test_stage_rating.py::test_smaller_safety_of_both_meshes_counts_for_planets",
     ),
     Fault(
@@ -2473,8 +2473,8 @@ FAULTS = (
     Fault(
         "spectra: the error of the damage counts scatter of the damage instead of the stress",
         "rating/interpolation.py",
-        "endurance.stress * np.exp(part)",
-        "endurance.stress * np.exp(part / 13.0)",
+        "np.exp(part + endurance.power * of_sharing)",
+        "np.exp((part + endurance.power * of_sharing) / 13.0)",
         "rating/test_interpolation.py::test_error_covers_what_scatter_of_solved_torques_does",
     ),
     Fault(
@@ -3034,6 +3034,48 @@ FAULTS = (
         "return ({} if replaced else {key: 1.0}), 0.0",
         "return {key: 1.0}, 0.0",
         "double_helical/test_sensitivities.py::test_halves_change_with_mounting_errors_of_the_whole_wheel",
+    ),
+    Fault(
+        "stages: reversed bins draw fillets of planets by the mesh on their own side",
+        "stages/gears.py",
+        "drawn = cases.reversed if mode in ROOTS else np.zeros(len(cases.torque), dtype=bool)",
+        "drawn = np.zeros(len(cases.torque), dtype=bool)",
+        "stages/test_stage_spectrum.py::test_fillets_of_planets_are_drawn_by_both_meshes_where_bins_are_reversed",
+    ),
+    Fault(
+        "stages: below the smallest torque solved a planet carries more than the whole torque",
+        "rating/inputs.py",
+        "np.minimum(loads.mesh_load_factor, most)",
+        "loads.mesh_load_factor",
+        "stages/test_stage_spectrum.py::test_mesh_load_factor_is_interpolated_and_no_planet_carries_more_than_all",
+    ),
+    Fault(
+        "stages: the error of damages leaves out how K_gamma scatters",
+        "rating/interpolation.py",
+        "np.exp(part + endurance.power * of_sharing)",
+        "np.exp(part)",
+        "rating/test_interpolation.py::test_error_covers_what_scatter_of_solved_torques_does",
+    ),
+    Fault(
+        "stages: a change of a key writes into the section that the caller gives beside it",
+        "scene/section.py",
+        "dict(inner) if isinstance(inner, dict)",
+        "inner if isinstance(inner, dict)",
+        "stages/test_bad_stages.py::test_changes_of_a_section_and_its_keys_leave_the_given_section_alone",
+    ),
+    Fault(
+        "stages: planets have the safety of the side with the larger safety under all bins",
+        "stages/gears.py",
+        "float(np.min(safeties))",
+        "float(np.max(safeties))",
+        "stages/test_stage_spectrum.py::test_planets_have_the_larger_damage_and_the_smaller_safety_of_both_sides",
+    ),
+    Fault(
+        "stages: bins of a spectrum turn at the speed against the housing",
+        "stages/rating.py",
+        "speed=cases.speed * turns)",
+        "speed=cases.speed)",
+        "stages/test_stage_spectrum.py::test_speed_of_a_bin_counts_its_load_cycles_against_the_carrier",
     ),
 )
 

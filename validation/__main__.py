@@ -48,6 +48,7 @@ CASES = (
     "rating.iso_tr_10300_30",
     "rating.bevel_solved",
     "rating.spectra",
+    "rating.stage_spectra",
     "bevel.iso_23509_sample",
     "face_milled.settings",
     "face_milled.swept_cutter",

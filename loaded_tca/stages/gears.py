@@ -7,6 +7,7 @@ load cases by the other mesh, and pressed by that on the other flank, which Y_M 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,20 +32,28 @@ class StageGears:
         Of sun, planet and ring, by the kind of failure; of planets that of the flank or fillet that decides.
     at_ring : dict of str to (c,) array of bool
         In which load cases the mesh with the ring gives that of planets.
+    planet_safety : (mode,) array
+        Under all bins of a spectrum, the smaller one of both flanks or fillets of planets; NaN without a spectrum.
     """
 
     endurances: OfGears
     at_ring: dict[str, Mask]
+    planet_safety: Array
 
     @classmethod
     def of(cls, of_sun: Rating, of_ring: Rating, cases: Cases) -> StageGears:
         """Of the ratings of both meshes under the same load cases."""
-        endurances, at_ring = {}, {}
+        endurances, at_ring, safeties = {}, {}, []
         for mode, (sun, at_sun) in of_sun.endurances.items():
             by_ring, ring = of_ring.endurances[mode]
-            at_ring[mode] = _decides_at_ring(mode, at_sun, by_ring, cases)
+            if cases.is_spectrum:
+                drawn = cases.reversed if mode in ROOTS else np.zeros(len(cases.torque), dtype=bool)
+                at_ring[mode], safety = _worse(at_sun, by_ring, drawn)
+            else:
+                at_ring[mode], safety = np.asarray(by_ring.lives() < at_sun.lives()), nan
             endurances[mode] = (sun, _joined(at_sun, by_ring, at_ring[mode]), ring)
-        return cls(endurances, at_ring)
+            safeties.append(safety)
+        return cls(endurances, at_ring, np.array(safeties))
 
     def interpolation_errors(self, of_sun: Rating, of_ring: Rating) -> Array:
         """By which part the damage of all bins (gear, mode) may be wrong, of what both meshes tell.
@@ -68,17 +77,17 @@ def _absolute(rating: Rating, gear: int, mode: int) -> float:
     return 0.0 if np.isinf(damage) else error * (damage or 1.0)
 
 
-def _decides_at_ring(mode: str, at_sun: Endurance, at_ring: Endurance, cases: Cases) -> Mask:
-    """In which load cases (c,) planets have the endurance of their mesh with the ring.
+def _worse(at_sun: Endurance, at_ring: Endurance, drawn_by_ring: Mask) -> tuple[Mask, float]:
+    """Which bins (c,) of a spectrum the mesh with the ring has of the flank or fillet with the larger damage.
 
-    Load cases that stand for themselves have the shorter life each. Of a spectrum one flank, or one fillet, decides:
-    that with the smaller safety under all bins.
+    ``drawn_by_ring`` are those of the one that the sun meets; the other one has the rest. And the smaller safety of
+    both, which need not be that of the larger damage where curves have different slopes.
     """
-    if not cases.is_spectrum:
-        return np.asarray(at_ring.lives() < at_sun.lives())
-    drawn_by_ring = cases.reversed if mode in ROOTS else np.zeros(len(cases.torque), dtype=bool)
-    safeties = [_joined(at_sun, at_ring, by_ring).safety() for by_ring in (drawn_by_ring, ~drawn_by_ring)]
-    return ~drawn_by_ring if safeties[1] < safeties[0] else drawn_by_ring
+    sides = drawn_by_ring, ~drawn_by_ring
+    both = [_joined(at_sun, at_ring, by_ring) for by_ring in sides]
+    damages, safeties = [float(one.damage().sum()) for one in both], [one.safety() for one in both]
+    second = damages[1] > damages[0] or (damages[1] == damages[0] and safeties[1] < safeties[0])
+    return sides[int(second)], float(np.min(safeties))
 
 
 def _joined(first: Endurance, second: Endurance, of_second: Mask) -> Endurance:

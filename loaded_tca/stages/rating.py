@@ -167,8 +167,8 @@ class StageSpectrumRating(OfSpectrum, StageRating):
     """Safeties and lives of a stage under a load spectrum: cases are its bins, as of :class:`SpectrumRating`.
 
     ``miner_sum``, ``life_hours``, ``spectrum_safety``, ``equivalent_torque`` (of the sun) and ``interpolation_error``
-    are over gears and kinds of failure. Of a planet that flank and that fillet count which have the smaller safety
-    under all bins; in reversed bins a fillet is drawn by the other mesh.
+    are over gears and kinds of failure. Of a planet that flank and that fillet count which have the larger damage, and
+    the smaller safety of both; in reversed bins a fillet is drawn by the other mesh.
     """
 
     NUMBERS: ClassVar = STAGE_SPECTRUM_NUMBERS
@@ -229,6 +229,7 @@ def stage_rating_of(result: StageResult, *, warn: bool = True) -> StageRating:
         error = gears.interpolation_errors(*meshes)
         arrays |= {name: meshes[0].values(name) for name in ("hours", "reversed")}
         arrays |= {"sun_speed": cases.speed, "interpolation_error": error}
+        arrays["spectrum_safety"][1] = gears.planet_safety
         sentences += told_error(error, len(torques))
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from typing import ClassVar
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.rating.cases import Cases
@@ -38,10 +39,11 @@ def loads(torque, pressure):
 
 
 def by(curve):
-    """Evaluation of flanks of both gears by the pressure alone."""
+    """Evaluation of flanks of both gears by pressure and K_gamma."""
 
     def evaluate(inputs):
-        endurance = Endurance(curve, inputs.loads.pressure, np.full(len(inputs.cases.torque), 1e4), 1.0, 0.5)
+        stress = inputs.loads.pressure * inputs.loads.mesh_load_factor**0.5
+        endurance = Endurance(curve, stress, np.full(len(inputs.cases.torque), 1e4), 1.0, 0.5)
         return {}, {"local_flank": (endurance, endurance)}, ()
 
     return evaluate
@@ -81,11 +83,14 @@ def test_smooth_law_has_no_error():
     assert error < 1e-9  # rounding of logarithms times the exponent
 
 
-def test_error_covers_what_scatter_of_solved_torques_does():
+@pytest.mark.parametrize(("name", "power"), [("pressure", 1.0), ("mesh_load_factor", 0.5)])
+def test_error_covers_what_scatter_of_solved_torques_does(name, power):
     chance, exact = np.random.default_rng(7), error_and_damage(LONG, loads(NODES, law(NODES)), BINS)[1].sum()
     seen, errors = [], []
     for _ in range(10):
-        error, damage = error_and_damage(LONG, loads(NODES, law(NODES) * np.exp(2e-3 * chance.normal(size=12))), BINS)
+        smooth = loads(NODES, law(NODES))
+        scattered = getattr(smooth, name) * np.exp(2e-3 / power * chance.normal(size=12))
+        error, damage = error_and_damage(LONG, replace(smooth, **{name: scattered}), BINS)
         seen.append(abs(damage.sum() / exact - 1.0))
         errors.append(error)
     assert np.sum(np.array(seen) < errors) >= 9  # of normal deviates 0.95 lie within two standard deviations

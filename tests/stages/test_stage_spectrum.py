@@ -109,12 +109,12 @@ def test_fillets_of_planets_are_drawn_by_both_meshes_where_bins_are_reversed():
     assert_allclose(rating.miner_sum[0, of_mode], rating.sun_mesh.damage[:, 0, of_mode].sum(), rtol=ROUNDING)
 
 
-def test_flank_of_a_planet_that_decides_has_the_smaller_safety_of_both():
-    rating, mode = under(bins((300.0, 1.0), (480.0, 1.0))), 0
-    safeties = rating.sun_mesh.spectrum_safety[1, mode], rating.ring_mesh.spectrum_safety[0, mode]
-    assert_allclose(rating.spectrum_safety[1, mode], min(safeties), rtol=ROUNDING)
-    assert_allclose(rating.miner_sum[1, mode], rating.sun_mesh.miner_sum[1, mode], rtol=ROUNDING)
-    assert safeties[0] < safeties[1]
+def test_planets_have_the_larger_damage_and_the_smaller_safety_of_both_sides():
+    rating = under(bins((300.0, 1.0), (480.0, 1.0)))
+    for name, worse in (("miner_sum", np.maximum), ("spectrum_safety", np.minimum), ("life_hours", np.minimum)):
+        at_sun, at_ring = rating.sun_mesh.values(name)[1], rating.ring_mesh.values(name)[0]
+        assert_allclose(rating.values(name)[1], worse(at_sun, at_ring), rtol=ROUNDING)
+        assert (at_sun != at_ring).all()
 
 
 def test_speed_of_a_bin_counts_its_load_cycles_against_the_carrier():

@@ -37,6 +37,7 @@ short_rows = cache(partial(run_case, short=True))
 
 DEAR = {
     "rating.spectra",
+    "rating.stage_spectra",
     "loaded.error_estimates",
     "unloaded.convergence_from_random_starts",
     "unloaded.involute_pairs",

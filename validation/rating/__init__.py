@@ -6,6 +6,7 @@
 - ``rings``: critical sections, nominal stresses and factors of planets and rings of two printed stages.
 - ``solved``: the whole way from a scene through its solved mesh to safeties that a report prints.
 - ``spectra``: damage under 500 bins of which a dozen torques are solved, against all of them solved.
+- ``stage_spectra``: Miner sums of a planetary stage, by hand of its single meshes, and of all torques solved.
 - ``stages``: two whole planetary stages, from stage files to safeties that reports print.
 - ``strength``: K, Z and Y factors, strengths and safeties that two sources print; a spectrum of ISO 6336-6.
 """
