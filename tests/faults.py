@@ -2978,6 +2978,20 @@ FAULTS = (
         "np.where(_like(there, values), values, values)",
         "rating/test_both_sides.py::test_face_load_factor_of_a_reversed_bin_is_that_of_its_side",
     ),
+    Fault(
+        "ratings: derivatives of root tension are those of the largest, not of the place that decides",
+        "rating/slopes.py",
+        "more[number, gear] = there / stress - at_top",
+        "more[number, gear] = at_top / stress - at_top",
+        "rating/test_slopes.py::test_root_tension_is_differentiated_where_it_decides",
+    ),
+    Fault(
+        "ratings: farther contacts are told whatever it takes to reach them",
+        "rating/slopes.py",
+        "(short < near * apart)",
+        "(short < ALIKE)",
+        "rating/test_slopes.py::test_farther_contacts_are_told_where_a_small_change_reaches_them",
+    ),
 )
 
 

@@ -49,6 +49,8 @@ class SolvedLoads:
         Of all places [MPa]: what decides where stress is reversed everywhere alike.
     root_places : (2, c, 2) array, or None
         Tangent angle [rad] and axial coordinate [mm] of the place that decides, of both gears; that of the nearest.
+    root_nodes : (c, 2, 3) array of int, or None
+        Its side, station and place along the face; likewise.
     excitation : mapping of str to (c,) array
         Mean mesh stiffness [N/(mm um)], span and first order of the transmission error [um].
     """
@@ -63,6 +65,7 @@ class SolvedLoads:
     root_stress_ratio: Array | None = None
     largest_root_tension: Array | None = None
     root_places: Array | None = None
+    root_nodes: Indices | None = None
     excitation: dict[str, Array] = field(default_factory=dict)
 
     @classmethod
@@ -175,6 +178,7 @@ def solved_loads(inputs: CommonInputs) -> SolvedLoads:
             root_places=np.array([[pinion.tangent_angle, wheel.tangent_angle], [pinion.axial, wheel.axial]]).swapaxes(
                 1, 2
             ),
+            root_nodes=np.stack([pinion.node, wheel.node], axis=1),
         )
     return whole._of(order)
 
