@@ -3077,6 +3077,20 @@ FAULTS = (
         "speed=cases.speed)",
         "stages/test_stage_spectrum.py::test_speed_of_a_bin_counts_its_load_cycles_against_the_carrier",
     ),
+    Fault(
+        "ratings: derivatives of root tension are those of the largest, not of the place that decides",
+        "rating/slopes.py",
+        "more[number, gear] = there / stress - at_top",
+        "more[number, gear] = at_top / stress - at_top",
+        "rating/test_slopes.py::test_root_tension_is_differentiated_where_it_decides",
+    ),
+    Fault(
+        "ratings: farther contacts are told whatever it takes to reach them",
+        "rating/slopes.py",
+        "(short < near * apart)",
+        "(short < ALIKE)",
+        "rating/test_slopes.py::test_farther_contacts_are_told_where_a_small_change_reaches_them",
+    ),
 )
 
 

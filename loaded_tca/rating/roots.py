@@ -86,12 +86,15 @@ class Deciding(NamedTuple):
         Of the fillet to the middle of the tooth.
     axial : array [mm]
         On the gear itself.
+    node : (t, 3) array of int
+        Side, station and place along the face.
     """
 
     tension: Array
     ratio: Array
     tangent_angle: Array
     axial: Array
+    node: Indices
 
 
 def deciding_places(inputs: CommonInputs, gear: int) -> Deciding:
@@ -120,4 +123,5 @@ def deciding_places(inputs: CommonInputs, gear: int) -> Deciding:
         ratio[place],
         stress.tangent_angle[place[1:]],
         stress.point[(*place[1:], 2)],
+        np.stack(place[1:], axis=-1),
     )

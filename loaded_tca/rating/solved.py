@@ -55,6 +55,8 @@ class SolvedLoads:
     mate_stress_ratios : (c, 2) array, or None
         Smallest over largest root stress of a turn of both gears, where other mates add to those of the mesh; NaN:
         none do.
+    root_nodes : (c, 2, 3) array of int, or None
+        Its side, station and place along the face; likewise.
     excitation : mapping of str to (c,) array
         Mean mesh stiffness [N/(mm um)], span and first order of the transmission error [um].
     """
@@ -71,6 +73,7 @@ class SolvedLoads:
     largest_root_tension: Array | None = None
     root_places: Array | None = None
     mate_stress_ratios: Array | None = None
+    root_nodes: Indices | None = None
     excitation: dict[str, Array] = field(default_factory=dict)
 
     @classmethod
@@ -189,6 +192,7 @@ def solved_loads(inputs: CommonInputs) -> SolvedLoads:
             root_places=np.array([[pinion.tangent_angle, wheel.tangent_angle], [pinion.axial, wheel.axial]]).swapaxes(
                 1, 2
             ),
+            root_nodes=np.stack([pinion.node, wheel.node], axis=1),
         )
     return whole._of(order)
 

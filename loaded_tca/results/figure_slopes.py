@@ -198,9 +198,11 @@ def root_slopes(
     pair: GearPair,
     gear: int,
     tangents: Tangents,
-    places: Sequence[Sequence[int]],
+    places: Sequence[Sequence[int] | None],
     changes: Sequence[PairChange | None],
     motions: Array,
+    *,
+    at_node: bool = False,
 ) -> tuple[list[Array], Array]:
     """Derivatives of the stress about the extremes of a gear, which lie at a place in each state.
 
@@ -213,12 +215,14 @@ def root_slopes(
         0: pinion, 1: wheel.
     tangents : Tangents
         Of all states.
-    places : sequence of sequences of int
-        Of the extreme in each state.
+    places : sequence of sequences of int, or None
+        Of the extreme in each state; None: no derivative is asked for.
     changes : sequence of PairChange or None
         None of keys that change no gears.
     motions : (keys, grids, 6) array
         Of the grids.
+    at_node : bool
+        Whether the stress at the places themselves is meant.
 
     Returns
     -------
@@ -231,7 +235,10 @@ def root_slopes(
     by_force, moved_lines = [], np.zeros((len(changes), len(places)))
     in_states = np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1)
     for state, (numbers, place) in enumerate(zip(in_states, places, strict=True)):
-        loads, per_force = stress_at_extreme(pair, gear, model, [grids[i] for i in numbers], place)
+        if place is None:
+            by_force += [np.zeros(grids[i].active.shape) for i in numbers]
+            continue
+        loads, per_force = stress_at_extreme(pair, gear, model, [grids[i] for i in numbers], place, at_node=at_node)
         for i, (line, forces) in zip(numbers, loads, strict=True):
             grid, stress = grids[i].separation, per_force(line)
             step = STEP * grid.spacing[0] * len(grid.x)

@@ -178,7 +178,13 @@ def _loads(
 
 
 def stress_at_extreme(
-    pair: GearPair, gear: int, model: RootStress, grids: Sequence[LoadedGrid], place: Sequence[int]
+    pair: GearPair,
+    gear: int,
+    model: RootStress,
+    grids: Sequence[LoadedGrid],
+    place: Sequence[int],
+    *,
+    at_node: bool = False,
 ) -> tuple[list[tuple[FlankLine, Array]], Callable[[FlankLine], Array]]:
     """Loads of a gear at one position, and how the stress about an extreme follows from forces.
 
@@ -196,6 +202,8 @@ def stress_at_extreme(
         Of the tooth pairs under which the extreme lies there.
     place : sequence of int
         As of ``root_tension_place``: tooth, side, station, along the face.
+    at_node : bool
+        Whether the stress at the place itself is meant, without parabolas.
 
     Returns
     -------
@@ -209,6 +217,9 @@ def stress_at_extreme(
     near = _next_to(middle, model.tangent_angle.shape[1:])
     stress = sum(model.per_force(tooth, line, side, *near) @ forces for line, forces in loads)
     weights = _weights_of_top(np.abs(stress))
+    if at_node:
+        weights = np.zeros(weights.shape)
+        weights[tuple(int(np.flatnonzero(beside == at)[0]) for beside, at in zip(near, middle, strict=True))] = 1.0
     return loads, lambda line: np.tensordot(weights, model.per_force(tooth, line, side, *near), 2)
 
 

@@ -447,6 +447,27 @@ class Sensitivities:
                 changes[(*self.places, gear)] = (change + moved_lines).T
         return changes
 
+    def root_stress_at(self, gear: int, torque: int, position: int, place: Sequence[int]) -> tuple[float, Array]:
+        """Stress at a place of the root [MPa] and its derivatives (keys,) [MPa per unit].
+
+        Parameters
+        ----------
+        gear, torque, position : int
+            0: pinion, 1: wheel; by index.
+        place : sequence of int
+            As of ``root_tension_place``: tooth, side, station, along the face.
+        """
+        (state,) = np.flatnonzero((self.places[0] == torque) & (self.places[1] == position)).tolist()
+        places = [place if number == state else None for number in range(self.places.shape[1])]
+        with one_blas_thread():
+            rows, moved_lines = root_slopes(
+                self.result.gear_pair, gear, self.tangents, places, self.changes, self.growth.motions, at_node=True
+            )
+            change = self.tangents.functional_change(self.tangents.gathered(rows), self.growth.gaps, self.torques)
+        parts = zip(rows, self.tangents.grids, strict=True)
+        stress = sum(float((row * grid.pressure).sum()) * math.prod(grid.problem.spacing) for row, grid in parts)
+        return stress, np.asarray((change + moved_lines)[:, state])
+
     @cached_property
     def weight_maps(self) -> tuple[tuple[tuple[Array | None, ...], ...], ...]:
         """Effect of removed material by torque, position and pair, (nx, ny) on the grids of ``result.maps`` or None.
