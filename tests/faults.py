@@ -2958,6 +2958,13 @@ FAULTS = (
         "inside[number] += contacts",
         "unloaded/test_contact_span.py::test_ends_farther_away_than_the_angles_looked_at_first_are_found",
     ),
+    Fault(
+        "run imports what pictures of studies and ratings show",
+        "plots/__init__.py",
+        "from loaded_tca.plots.sharing import (",
+        "from loaded_tca.plots.study_panels import plot_study_ranking\nfrom loaded_tca.plots.sharing import (",
+        "test_public_names.py::test_check_and_the_imports_of_run_load_no_heavy_library",
+    ),
 )
 
 
