@@ -3091,6 +3091,13 @@ FAULTS = (
         "(short < ALIKE)",
         "rating/test_slopes.py::test_farther_contacts_are_told_where_a_small_change_reaches_them",
     ),
+    Fault(
+        "run imports what pictures of studies and ratings show",
+        "plots/__init__.py",
+        "from loaded_tca.plots.sharing import (",
+        "from loaded_tca.plots.study_panels import plot_study_ranking\nfrom loaded_tca.plots.sharing import (",
+        "test_public_names.py::test_check_and_the_imports_of_run_load_no_heavy_library",
+    ),
 )
 
 

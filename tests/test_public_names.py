@@ -91,6 +91,8 @@ sys.modules.update({f"after check: {name}": sys for name in checked})
     others = {f"after hypoid_13x42: loaded_tca.scene.{name}" for name in ("cylindrical", "bevel", "blank_face_milled")}
     others |= {f"after mesh_cycle_helical: loaded_tca.scene.{name}" for name in ("double_helical", "internal", "rack")}
     assert not others & loaded  # scenes of other pairs
+    folders = {f"loaded_tca.{name}" for name in ("double_helical", "flank_maps", "rating", "studies", "tribology")}
+    assert not folders & loaded  # what pictures of other results show
     assert {"after hypoid_13x42: loaded_tca.scene.face_milled", "loaded_tca.scene.cylindrical"} <= loaded
 
 

@@ -72,12 +72,15 @@ def run(options: argparse.Namespace) -> None:
     """Read, analyse, write everything, and show the summary; a comparison with another side or supports where asked."""
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.output.tables import COMPARISON_DATA
-    from loaded_tca.scene.double_helical import DoubleHelicalScene
+    from loaded_tca.scene.variants import has_halves
 
     scene, directory = scene_of(options), options.out
     check_place(directory)
     compared = options.coast or options.rigid
-    if isinstance(scene, DoubleHelicalScene):
+    if has_halves({"pair": scene.geometry}):
+        from loaded_tca.scene.double_helical import DoubleHelicalScene
+
+        assert isinstance(scene, DoubleHelicalScene)
         require(
             (not compared, "--coast, --rigid: not of double helical pairs; give the scene that is meant, and run it")
         )

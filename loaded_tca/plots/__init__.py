@@ -4,30 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from loaded_tca.arguments import checked
+from loaded_tca.lazy import lazy_names
 from loaded_tca.loaded.shaft_lines import shaft_lines
 from loaded_tca.plots.at_a_glance import plot_at_a_glance
-from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
-from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
-from loaded_tca.plots.double_helical import (
-    DOUBLE_HELICAL_CAPTIONS,
-    DOUBLE_HELICAL_PICTURES,
-    double_helical_figures,
-    halves_revolution_figures,
-    plot_halves_axial_motion,
-    plot_halves_error,
-    plot_halves_face_load,
-    plot_halves_shares,
-)
-from loaded_tca.plots.first_order import plot_first_order_scatter
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
-from loaded_tca.plots.mesh import plot_teeth_in_mesh
 from loaded_tca.plots.pressure_map import (
     plot_contact_patterns,
     plot_pressure_envelope,
@@ -35,23 +22,7 @@ from loaded_tca.plots.pressure_map import (
     plot_stress_below,
     plot_subsurface,
 )
-from loaded_tca.plots.rating import RATING_PICTURES, plot_damage, plot_sn_curves, rating_figures
-from loaded_tca.plots.revolution import (
-    REVOLUTION_PICTURES,
-    plot_revolution_error,
-    plot_revolution_shares,
-    plot_revolution_spectrum,
-    plot_revolution_waterfall,
-)
 from loaded_tca.plots.root_stress import plot_root_stress, plot_root_stress_cycle, plot_root_stress_over_torque
-from loaded_tca.plots.safety import plot_flank_safety, plot_root_safety, plot_safeties
-from loaded_tca.plots.sensitivities import (
-    plot_removal_weights,
-    plot_sensitivity_curves,
-    plot_tornado,
-    plot_transmission_error_band,
-)
-from loaded_tca.plots.settings import plot_measured_settings
 from loaded_tca.plots.shafts import plot_shafts
 from loaded_tca.plots.sharing import (
     plot_face_load,
@@ -62,41 +33,75 @@ from loaded_tca.plots.sharing import (
     plot_mesh_stiffness,
     plot_path_pressure,
 )
-from loaded_tca.plots.solution import plot_solution
-from loaded_tca.plots.stage import (
-    STAGE_CAPTIONS,
-    STAGE_PICTURES,
-    plot_stage_error,
-    plot_stage_load_factor,
-    plot_stage_orders,
-    plot_stage_phases,
-    plot_stage_shares,
-    plot_stage_sun_orbit,
-    stage_figures,
-)
-from loaded_tca.plots.study import (
-    plot_study,
-    plot_study_heat_map,
-    plot_study_lines,
-)
-from loaded_tca.plots.study_panels import plot_study_ranking
-from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
 from loaded_tca.plots.style import chosen_torque, png_of, save_figure
 from loaded_tca.plots.supports import plot_bearing_loads, plot_face_load_on_supports, plot_misalignment
-from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
-from loaded_tca.plots.tribology import (
-    TRIBOLOGY_PICTURES,
-    plot_contact_temperature,
-    plot_efficiency,
-    plot_film_ratio,
-    plot_friction_power,
-    plot_over_flank,
-    plot_sliding_velocities,
-    tribology_figures,
-)
-from loaded_tca.plots.vh_check import plot_ease_off, plot_loaded_vh_check, plot_vh_check
 from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
+
+if TYPE_CHECKING:  # those of other results than mesh cycles, with all that they show
+    from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
+    from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
+    from loaded_tca.plots.double_helical import (
+        DOUBLE_HELICAL_CAPTIONS,
+        DOUBLE_HELICAL_PICTURES,
+        double_helical_figures,
+        halves_revolution_figures,
+        plot_halves_axial_motion,
+        plot_halves_error,
+        plot_halves_face_load,
+        plot_halves_shares,
+    )
+    from loaded_tca.plots.first_order import plot_first_order_scatter
+    from loaded_tca.plots.mesh import plot_teeth_in_mesh
+    from loaded_tca.plots.rating import RATING_PICTURES, plot_damage, plot_sn_curves, rating_figures
+    from loaded_tca.plots.revolution import (
+        REVOLUTION_PICTURES,
+        plot_revolution_error,
+        plot_revolution_shares,
+        plot_revolution_spectrum,
+        plot_revolution_waterfall,
+    )
+    from loaded_tca.plots.safety import plot_flank_safety, plot_root_safety, plot_safeties
+    from loaded_tca.plots.sensitivities import (
+        plot_removal_weights,
+        plot_sensitivity_curves,
+        plot_tornado,
+        plot_transmission_error_band,
+    )
+    from loaded_tca.plots.settings import plot_measured_settings
+    from loaded_tca.plots.solution import plot_solution
+    from loaded_tca.plots.stage import (
+        STAGE_CAPTIONS,
+        STAGE_PICTURES,
+        plot_stage_error,
+        plot_stage_load_factor,
+        plot_stage_orders,
+        plot_stage_phases,
+        plot_stage_shares,
+        plot_stage_sun_orbit,
+        stage_figures,
+    )
+    from loaded_tca.plots.study import (
+        plot_study,
+        plot_study_heat_map,
+        plot_study_lines,
+    )
+    from loaded_tca.plots.study_panels import plot_study_ranking
+    from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
+    from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
+    from loaded_tca.plots.tribology import (
+        TRIBOLOGY_PICTURES,
+        plot_contact_temperature,
+        plot_efficiency,
+        plot_film_ratio,
+        plot_friction_power,
+        plot_over_flank,
+        plot_sliding_velocities,
+        tribology_figures,
+    )
+    from loaded_tca.plots.vh_check import plot_ease_off, plot_loaded_vh_check, plot_vh_check
+else:
+    __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
     "DOUBLE_HELICAL_CAPTIONS",

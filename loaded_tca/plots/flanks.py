@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -19,7 +19,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 
 from loaded_tca.arrays import GEARS, Array
-from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flanks.base import Flank, Point
 from loaded_tca.flanks.rounding import RoundedFlank, edge_places
 from loaded_tca.pairs.gear_pair import GearPair
@@ -37,6 +36,9 @@ from loaded_tca.plots.style import (
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
+
+if TYPE_CHECKING:
+    from loaded_tca.flank_maps.conjugate import GearName
 
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"
 BEGIN_OF_ARC: dict[str, Any] = {"color": "black", "linestyle": "--", "linewidth": 0.6}
