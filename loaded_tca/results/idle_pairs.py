@@ -94,7 +94,8 @@ def warn_of_pairs(sensitivities: Sensitivities, tolerances: Mapping[str, float])
     """
     if isinstance(sensitivities, JoinedSensitivities) or not sensitivities.result.scene.analysis.load_sharing:
         return
-    idle, by_key = idle_pairs(sensitivities), {}
+    idle = idle_pairs(sensitivities)
+    by_key: dict[str, tuple[float, float]] = {}
     for number, key in enumerate(sensitivities.keys):
         for step in (-tolerances[key], tolerances[key]):
             for change, share in (*_coming(sensitivities, idle, number, step), *_leaving(sensitivities, number, step)):
