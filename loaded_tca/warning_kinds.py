@@ -151,6 +151,13 @@ ANOTHER_POSITION = Kind(
     "derivatives of all positions: it may grow to either side where the table has it fall",
     "read the change as far as that only; beyond it analyses, or a Monte Carlo study; not the spread to first order",
 )
+PAIR_COMES_OR_GOES = Kind(
+    "derivatives end within a tolerance: beyond a change by {change:+.2g} {unit} a tooth pair comes under load or "
+    "leaves it, by which load shares are off by up to {share:.1%} ({key}; {count} of {keys} keys)",
+    "a pair that nearly touches, or only just does, carries nothing to one side of that change and ever more to the "
+    "other: derivatives are those of the pairs that carry now, and differences over both sides grow with their step",
+    "read the change as far as that only; beyond it analyses, or a Monte Carlo study; not the spread to first order",
+)
 RELIEF_START_BESIDE = Kind(
     "a linear relief starts in the contact beside its point: derivatives depend on the grid by up to 25%",
     "the start runs through cells that have the gap of their middles: derivatives by mounting errors, machine "

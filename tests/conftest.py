@@ -1,10 +1,13 @@
 """What every test shares: NaN stops at once, pictures go to no screen, random numbers are seeded."""
 
 import collections
+import contextlib
 import gc
+import importlib
 import itertools
 import os
 import signal
+from pathlib import Path
 
 import dask  # noqa: F401  # commands hide it where nobody has imported it; xarray may know by then that it is there
 import hypothesis
@@ -59,11 +62,26 @@ def pytest_collection_modifyitems(items, config):
         config.stash[TESTS][item.nodeid.partition("[")[0]] |= not item.get_closest_marker("thorough")
 
 
+def import_last_first(config):
+    """Import the test modules under the folders asked for, the last one first.
+
+    Every second worker begins with this: whatever has not been compiled yet, with its asserts rewritten, is compiled by
+    the workers from both ends, and each module once.
+    """
+    root = Path.cwd()
+    folders = [Path(argument).resolve() for argument in config.args]
+    for path in sorted((path for folder in folders for path in folder.rglob("test_*.py")), reverse=True):
+        with contextlib.suppress(Exception, pytest.skip.Exception):  # the collection says what is wrong
+            importlib.import_module(".".join(path.relative_to(root).with_suffix("").parts))
+
+
 @pytest.hookimpl(wrapper=True)
-def pytest_collection():
+def pytest_collection(session):
     """Look for garbage seldom, and not while tests are collected: what modules and tests hold stays."""
     gc.disable()
     try:
+        if int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")) % 2:
+            import_last_first(session.config)
         return (yield)
     finally:
         gc.enable()

@@ -127,7 +127,8 @@ def test_no_module_imports_from_the_package_itself():
     found = []
     for path in sorted((ROOT / "loaded_tca").rglob("*.py")):
         text = path.read_text(encoding="utf-8")
-        if path == ROOT / "loaded_tca" / "__init__.py" or "from loaded_tca import" not in text:
+        stands_there = re.search(r"^\s*from loaded_tca import", text, re.MULTILINE)  # not behind the >>> of an example
+        if path == ROOT / "loaded_tca" / "__init__.py" or not stands_there:
             continue
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.ImportFrom) and node.module == "loaded_tca":

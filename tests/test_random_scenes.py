@@ -43,6 +43,7 @@ QUICK = {
     538: ("torque in a list",),
     541: ("moments on shafts",),
     565: ("torque balanced",),
+    682: ("torque balanced",),
     2257: ("lengths doubled", "zeros as none"),
 }
 """Seed -> names of what it is examined for."""

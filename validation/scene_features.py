@@ -9,8 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from loaded_tca.arrays import GEARS
+from loaded_tca.arrays import GEARS, Array
+from loaded_tca.flanks.measured_columns import flank_of_lines
 from loaded_tca.scene import Scene
+from loaded_tca.scene.section import contents
 
 Draw = Callable[[np.random.Generator, Scene], Scene]
 Section = dict[str, Any]
@@ -25,6 +27,10 @@ TORQUES = (1e-2, 10.0)
 """Least and largest torque over that of the line load of the scene."""
 POINTS = (7, 9)
 """Of a measured flank, along the profile and lengthwise."""
+IN_INCHES = {"mm": ("in", 25.4), "um": ("uin", 0.0254)}
+"""Unit of a key -> that of drawings in inches, and how much of the first it is."""
+LINE = 20
+"""Half of the spaces between the points of a measured line."""
 
 
 class Feature(NamedTuple):
@@ -108,6 +114,11 @@ def _protuberance(rng: np.random.Generator, scene: Scene) -> Scene:
     }
     more = {key.replace("grinding_stock", "protuberance"): value + 0.01 * module for key, value in stock.items()}
     return scene.with_changes(stock | more)
+
+
+def _cutter(rng: np.random.Generator, scene: Scene) -> Scene:
+    """A pinion-type cutter, which generates the fillets of the ring."""
+    return scene.with_changes({"wheel.cutter": {"teeth": int(rng.integers(18, 26))}})
 
 
 def _tip_chamfer(rng: np.random.Generator, scene: Scene) -> Scene:
@@ -219,6 +230,25 @@ def _measured(rng: np.random.Generator, scene: Scene) -> Scene:
     slopes = rng.uniform(-2.0, 2.0, 3)
     excess = -3.0 * along**2 - 2.0 * profile**2 + slopes[0] * along + slopes[1] * profile + slopes[2] * along * profile
     excess = excess + 0.4 * np.sin(5.0 * along + rng.uniform(0.0, 6.0))
+    return _with_points(scene, gear, radius, axial, excess)
+
+
+def _measured_lines(rng: np.random.Generator, scene: Scene) -> Scene:
+    """A flank measured along a profile and a helix, each with a slope, a crowning and a wave of some micrometres."""
+    gear, pair = str(rng.choice(GEARS)), scene.pair()
+    radii, axials = (pair.pinion if gear == "pinion" else pair.wheel).flank.grid(2 * LINE + 1, 2 * LINE + 1)
+    middle, along = LINE, np.linspace(-1.0, 1.0, 2 * LINE + 1)[1:-1]
+    line = np.repeat([0.0, 1.0], along.size)
+    radius = np.concatenate([radii[1:-1, middle], np.full(along.size, radii[middle, middle])])
+    axial = np.concatenate([np.full(along.size, axials[middle, middle]), axials[middle, 1:-1]])
+    slope, bow, start = rng.uniform([-3.0, 1.0, 0.0], [3.0, 4.0, 6.0], (2, 3)).T[..., None]
+    waves = slope * along - bow * along**2 + 0.3 * np.sin(6.0 * along + start)  # um
+    grid = flank_of_lines(line, radius, axial, 1e-3 * waves.ravel())
+    return _with_points(scene, gear, *grid[:2], 1e3 * grid[2])
+
+
+def _with_points(scene: Scene, gear: str, radius: Array, axial: Array, excess: Array) -> Scene:
+    """With a flank through measured points (n, m): radius and axial coordinate [mm], deviation [um]."""
     columns = {"radius_mm": radius, "axial_mm": axial, "deviation_um": excess}
     measurement = {name: tuple(map(tuple, values.tolist())) for name, values in columns.items()}
     form = {"form": "measured", "coefficients": [6, 6], "degree": 3, "measurement": measurement}
@@ -365,6 +395,21 @@ def _setting(**values: Any) -> Draw:
     return lambda _, scene: scene.with_changes({f"analysis.{name}": value for name, value in values.items()})
 
 
+def _inches(_: np.random.Generator, scene: Scene) -> Scene:
+    """Lengths of gears and mounting errors in inches, amounts of modifications in microinches."""
+    changes = {}
+    for place in (*GEARS, *(f"{gear}.modifications" for gear in GEARS), "mounting"):
+        section: Any = scene
+        for name in place.split("."):
+            section = getattr(section, name)
+        for name, value in contents(section).items():
+            stem, _, unit = name.rpartition("_")
+            if isinstance(value, float) and value and unit in IN_INCHES:
+                ending, size = IN_INCHES[unit]
+                changes[f"{place}.{stem}_{ending}"] = value / size
+    return scene.with_changes(changes)
+
+
 def _form(form: str, draw: Callable[[np.random.Generator, Scene, str], Scene]) -> Draw:
     return lambda rng, scene: draw(rng, scene, form)
 
@@ -378,6 +423,7 @@ FEATURES = (
     Feature("shorter tips", EXTERNAL, 0.15, _shorter_tips),
     Feature("own racks", CYLINDRICAL, 0.1, _own_racks),
     Feature("protuberance", EXTERNAL, 0.1, _protuberance),
+    Feature("cutter", frozenset({"internal"}), 0.3, _cutter),
     Feature("tip chamfer", CYLINDRICAL, 0.1, _tip_chamfer),
     Feature("shaft angle", BEVEL, 0.3, _shaft_angle),
     Feature("blank", BEVEL, 0.2, _blank),
@@ -400,6 +446,7 @@ FEATURES = (
     Feature("polynomial", ALL, 0.1, _polynomial),
     Feature("fitted flank", ALL, 0.08, _fitted),
     Feature("measured flank", ALL, 0.08, _measured),
+    Feature("measured lines", CYLINDRICAL, 0.06, _measured_lines),
     Feature("tip roundings", ALL, 0.2, _rounding("tip")),
     Feature("side roundings", ALL, 0.2, _rounding("side")),
     Feature("misalignment", CYLINDRICAL, 0.3, _mounting("misalignment_um", 20.0)),
@@ -424,5 +471,6 @@ FEATURES = (
     Feature("edges not free", ALL, 0.1, _setting(free_edges=False)),
     Feature("one pair carries", ALL, 0.08, _setting(load_sharing=False)),
     Feature("all edge pressures", ALL, 0.1, _setting(edge_pressures="all")),
+    Feature("inches", ALL, 0.1, _inches),
 )
 """In the order in which they are drawn: gears before flanks, whose reliefs follow from them, before shafts."""

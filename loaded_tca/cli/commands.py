@@ -420,6 +420,7 @@ def sensitivities(options: argparse.Namespace) -> None:
     from loaded_tca.plots import png_of
     from loaded_tca.plots.sensitivities import sensitivity_pictures
     from loaded_tca.results.extremes import warn_of_positions
+    from loaded_tca.results.idle_pairs import warn_of_pairs
     from loaded_tca.results.numbers import index_or_largest
 
     result, directory, torque, _ = result_of(options)
@@ -432,6 +433,7 @@ def sensitivities(options: argparse.Namespace) -> None:
             if show is not None:
                 show(done, len(DERIVATIVES))
     warn_of_positions(slopes, tolerances)
+    warn_of_pairs(slopes, tolerances)
     text = sensitivities_text(slopes, tolerances, torque)
     pictures = sensitivity_pictures(slopes, tolerances, torque)
     written = write_sensitivities(

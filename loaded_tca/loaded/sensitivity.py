@@ -73,6 +73,7 @@ class Tangents:
 
     Attributes
     ----------
+    bending : BendingModel or None
     grids : tuple of LoadedGrid
         Of all states.
     state : (grids,) int array
@@ -103,7 +104,7 @@ class Tangents:
         tolerance: float = TOLERANCE,
         by_rotation: Array | None = None,
     ) -> None:
-        self._tolerance = tolerance
+        self._tolerance, self.bending = tolerance, bending
         self.grids = tuple(grid for state in states for grid in state)
         self.state = np.repeat(np.arange(len(states)), [len(state) for state in states])
         sizes = [np.count_nonzero(grid.active) for grid in self.grids]

@@ -249,6 +249,7 @@ def crowned(amount):
     return cylindrical_pair(spur_mesh(), modifications=modifications).pinion
 
 
+@pytest.mark.quick_cases("neighbours")  # test_flexibility_kept.py has what the key of a model depends on
 @pytest.mark.parametrize(
     "other",
     [

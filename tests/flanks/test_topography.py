@@ -55,6 +55,7 @@ def paths(*pairs):
 # A measured flank does what the flank does that was measured
 
 
+@pytest.mark.quick_cases(*(f"0.3-{kind}" for kind in KINDS))
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("wobble", [0.0, 0.3])
 def test_contact_of_measured_deviations_is_that_of_the_modifications(kind, wobble):

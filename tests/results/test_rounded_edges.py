@@ -162,6 +162,7 @@ def softly(kind, which, positions, cells=(16, 24)):
     return cycle, {one.split(" (at ")[0] for one in told if "at a rounded edge" in one}
 
 
+@pytest.mark.quick_cases("side-3")
 @pytest.mark.parametrize(("kind", "positions"), [("tip", 2), ("side", 3)])
 def test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are_asked_for(kind, positions):
     """Neither where a rounded edge ends at a sharp one nor where a sharp one is reached, too, whose cell has less."""

@@ -30,6 +30,7 @@ def told(name, **changes):
     return result, [str(warning.message) for warning in caught]
 
 
+@pytest.mark.quick_cases("1e-11-False", "1e-300-True")
 @pytest.mark.parametrize("load_sharing", [True, False])
 @pytest.mark.parametrize("torque", [1e-11, 1e-300])
 def test_next_to_no_torque_is_told_and_taken_for_no_load(torque, load_sharing):
