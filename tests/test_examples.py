@@ -123,6 +123,15 @@ def test_example_gives_its_number_and_its_picture(name, tmp_path, monkeypatch):
 
 @pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
+def test_explored_pair_has_pages_that_carry_their_script(tmp_path, monkeypatch):
+    """Plotly's own is 4.8 MB; a page is 8 MB at most."""
+    monkeypatch.chdir(tmp_path)
+    assert 4.8 < shortened("explore_result", monkeypatch).main() < 8.0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["explore_result.html", "explore_study.html"]
+
+
+@pytest.mark.thorough
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
 def test_second_order_of_the_tooth_mesh_has_its_resonance_at_half_the_speed(tmp_path, monkeypatch):
     """Its frequency is twice that of the mesh; a thirtieth aside: the stiffness varies, and the speeds have steps."""
     monkeypatch.chdir(tmp_path)

@@ -134,7 +134,8 @@ STUDY = """files in DIR:
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
 pictures, accuracy warnings with what to do, and the scene file; of a stage its phases, shares and orders; of a study
 what varies, the ranking, best and worst variant; of a design start and optimum. It prints on A4. Needs the package
-jinja2."""
+jinja2. With --interactive a page for a browser instead, whose sliders move all pictures, the teeth in space among them;
+of a study parallel coordinates and a scatter. It fetches nothing. Needs the package plotly, too."""
 REVOLUTION = """files in DIR:
   revolution.nc             everything, to be read by loaded_tca.Revolution.load or xarray
   revolution.json           the key figures: single-flank deviations, orders, worst teeth

@@ -178,7 +178,7 @@ function drawResult(data, array) {
         colorbar: colourBar("contact pressure [MPa]"),
         hovertemplate: `${literal(pairNames[pair])}<br>along %{x:.4~g} mm, across %{y:.4~g} mm<br>%{z:.5~g} MPa<extra></extra>` },
       { x: [0], y: [0], mode: "markers", marker: { symbol: "cross-thin", size: 11, line: { color: colour("accent"), width: 2 } },
-        hovertemplate: "unloaded contact point<extra></extra>" },
+        hoverinfo: "skip" },
     ];
     const [pressure, minor, major] = data.hertz.map((values) => values[torque][position][pair]);
     const type = data.on_line[pair][position] ? "rect" : "circle";
@@ -265,36 +265,59 @@ function drawResult(data, array) {
     Plotly.react("line-load", traces, layoutOf(more, { title: data.flanks[0].axes[0] }, { title: "line load [N/mm]", rangemode: "tozero" }), CONFIG);
   }
 
-  function drawPanels({ position, torque }) {
-    const colours = lineColours();
-    data.panels.forEach((panel, index) => {
-      const lines = panel.lines.map((line, number) => ({ ...line, number })).filter((line) => line.values[torque].some((value) => value !== null));
-      const look = ({ number }) => ({ color: colours[number % colours.length], dash: ["solid", "dash", "dot", "dashdot"][number % 4] });
-      const template = `%{x:.4~g} deg<br>%{fullData.name}: %{y:.5~g} ${panel.unit}<extra></extra>`;
-      const traces = lines.map((line) => ({
-        x: data.angle, y: line.values[torque], name: line.name, mode: "lines+markers", line: look(line), hovertemplate: template,
-        marker: { size: range(data.angle.length).map((n) => (n === position ? 11 : 0)) },
-      }));
-      const at = data.angle[position];
-      const mark = { type: "line", x0: at, x1: at, y0: 0, y1: 1, yref: "paper", line: { color: colour("text"), width: 1.5 } };
-      const titles = [{ title: "pinion angle [deg]" }, { title: `${panel.title.toLowerCase()} [${panel.unit}]` }];
-      Plotly.react(`panel-${index}`, traces, layoutOf({ shapes: [mark], showlegend: true, hovermode: "closest" }, ...titles), CONFIG);
-    });
-  }
-
-  const drawTeeth = data.teeth.lacking ? () => {} : teethIn(data, array, maps);
-  const draws = [drawState, drawMap, drawFlank, drawEnvelope, drawLineLoad, drawPanels, drawTeeth];
-  const drawAll = () => draws.forEach((draw) => draw(state()));
-  const redraw = onceAFrame(drawAll);
-  Object.values(inputs).forEach((input) => input.addEventListener("input", redraw));
-  drawAll();
-  data.panels.forEach((_, index) => {
-    byId(`panel-${index}`).on("plotly_click", (event) => {
+  function drawPanel(panel, id, { position, torque }) {
+    const colours = lineColours(), at = data.angle[position];
+    const lines = panel.lines.map((line, number) => ({ ...line, number })).filter((line) => line.values[torque].some((value) => value !== null));
+    const traces = lines.map(({ name, values, number }) => ({
+      x: data.angle, y: values[torque], name, mode: "lines+markers",
+      line: { color: colours[number % colours.length], dash: ["solid", "dash", "dot", "dashdot"][number % 4] },
+      marker: { size: range(data.angle.length).map((n) => (n === position ? 11 : 0)) },
+      hovertemplate: `%{x:.4~g} deg<br>%{fullData.name}: %{y:.5~g} ${panel.unit}<extra></extra>`,
+    }));
+    const mark = { type: "line", x0: at, x1: at, y0: 0, y1: 1, yref: "paper", line: { color: colour("text"), width: 1.5 } };
+    const titles = [{ title: "pinion angle [deg]" }, { title: `${panel.title.toLowerCase()} [${panel.unit}]` }];
+    Plotly.react(id, traces, layoutOf({ shapes: [mark], showlegend: true, hovermode: "closest" }, ...titles), CONFIG);
+    onEvent(id, "plotly_click", (event) => {
       inputs.position.value = event.points[0].pointIndex;
       redraw();
     });
+  }
+
+  const draws = { map: drawMap, flank: drawFlank, envelope: drawEnvelope, "line-load": drawLineLoad };
+  data.panels.forEach((panel, index) => {
+    draws[`panel-${index}`] = (at) => drawPanel(panel, `panel-${index}`, at);
   });
-  return drawAll;
+  if (!data.teeth.lacking) draws.space = teethIn(data, array, maps);
+  const pictures = picturesOf(draws, state);
+  const redraw = onceAFrame(() => {
+    drawState(state());
+    pictures.redraw();
+  });
+  Object.values(inputs).forEach((input) => input.addEventListener("input", redraw));
+  drawState(state());
+  return redraw;
+}
+
+/** What draws pictures, by their ids, as soon as they are in the window, and again when something changes. */
+function picturesOf(draws, state) {
+  const seen = new Set(), stale = new Set(Object.keys(draws));
+  const drawSeen = () => seen.forEach((id) => stale.delete(id) && draws[id](state()));
+  const observer = new IntersectionObserver((entries) => {
+    entries.forEach(({ target, isIntersecting }) => (isIntersecting ? seen.add(target.id) : seen.delete(target.id)));
+    drawSeen();
+    document.documentElement.dataset.ready = "true";
+  }, { rootMargin: "100px" });
+  stale.forEach((id) => observer.observe(byId(id)));
+  return { redraw: () => {
+    Object.keys(draws).forEach((id) => stale.add(id));
+    drawSeen();
+  } };
+}
+
+/** Let a drawn picture tell of an event, once. */
+function onEvent(id, name, run) {
+  byId(id).removeAllListeners(name);
+  byId(id).on(name, run);
 }
 
 /** A function that runs once a frame, however often it is asked to. */
@@ -396,7 +419,7 @@ function teethIn(data, array, maps) {
 
   /** Camera after the controls: the direction, turned about z and tilted, so far away. */
   function camera() {
-    const [turn, tilt] = ["turn", "tilt"].map((id) => Number(byId(id).value) * Math.PI / 180), distance = 1.6 / Number(byId("zoom").value);
+    const [turn, tilt] = ["turn", "tilt"].map((id) => Number(byId(id).value) * Math.PI / 180), distance = 1.9 / Number(byId("zoom").value);
     const azimuth = Math.atan2(base[1], base[0]) + turn, limit = 0.49 * Math.PI;
     const elevation = Math.max(-limit, Math.min(limit, Math.atan2(base[2], Math.hypot(base[0], base[1])) + tilt));
     const eye = { x: distance * Math.cos(elevation) * Math.cos(azimuth), y: distance * Math.cos(elevation) * Math.sin(azimuth), z: distance * Math.sin(elevation) };
@@ -451,7 +474,7 @@ function drawStudy(data, array) {
   const shown = (column, value) => (value === null ? "–" : column.words === null ? plain(value) : column.words[value]);
   let kept = new Set(analysed);
 
-  function drawNumbers(variant) {
+  function drawNumbers({ variant }) {
     const table = document.createElement("table"), body = table.createTBody();
     const cell = (row, tag, text) => row.appendChild(Object.assign(document.createElement(tag), { textContent: text }));
     const head = table.createTHead().insertRow();
@@ -466,7 +489,7 @@ function drawStudy(data, array) {
     byId("numbers").replaceChildren(...notes, table);
   }
 
-  function drawState(variant, torque) {
+  function drawState({ variant, torque }) {
     const rank = data.ranks[variant] === null ? "no rank" : `rank ${data.ranks[variant]} of ${analysed.length}`;
     byId("variant-shown").textContent = `${variant}: ${data.status[variant]}, ${rank}`;
     byId("torque-shown").textContent = data.torques[torque];
@@ -479,7 +502,7 @@ function drawStudy(data, array) {
   /** Axis of a column: words where its numbers stand for some. */
   const axisOf = (column) => ({ title: column.label, ...(column.words === null ? {} : { tickvals: range(column.words.length), ticktext: column.words.map(literal) }) });
 
-  function drawScatter(variant, torque) {
+  function drawScatter({ variant, torque }) {
     const [across, upwards, coloured] = ["across", "upwards", "colour"].map((name) => columns[inputs[name].value]);
     const [x, y, values] = [across, upwards, coloured].map((column) => column.of(torque));
     const text = analysed.map((n) => `variant ${n}<br>` + [across, upwards, coloured].map((column) => `${literal(column.label)}: ${literal(shown(column, column.of(torque)[n]))}`).join("<br>"));
@@ -492,19 +515,20 @@ function drawStudy(data, array) {
     Plotly.react("scatter", [dots, ring], layoutOf({ hovermode: "closest" }, axisOf(across), axisOf(upwards)), CONFIG);
   }
 
-  function drawParallel(variant, torque) {
+  function drawParallel({ variant, torque }) {
     const values = columns[inputs.colour.value].of(torque), known = analysed.map((n) => values[n]).filter((value) => value !== null);
     const [low, high] = [Math.min(...known), Math.max(...known)], span = high - low || 1;
-    const viridis = ["#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
-    const accent = colour("accent"), scale = [...viridis.map((code, n) => [0.97 * n / 9, code]), [0.98, accent], [1, accent]];
+    const viridis = ["#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"].slice(dark.matches ? 2 : 0);
+    const accent = colour("accent"), narrow = byId("parallel").clientWidth < 600;
+    const scale = [...viridis.map((code, n) => [0.97 * n / (viridis.length - 1), code]), [0.98, accent], [1, accent]];
     const lines = analysed.map((n) => (n === variant ? 1 : 0.97 * ((values[n] ?? low) - low) / span));
     const dimensions = columns.slice(0, keys + data.main).map((column, index) => {
       const { title, ...ticks } = axisOf(column), last = byId("parallel").data?.[0].dimensions[index];
       return { label: literal(title), values: analysed.map((n) => column.of(torque)[n] ?? NaN), ...ticks, ...(last?.constraintrange && { constraintrange: last.constraintrange }) };
     });
-    const trace = { type: "parcoords", dimensions, line: { color: lines, cmin: 0, cmax: 1, colorscale: scale }, labelangle: -14, labelside: "top",
+    const trace = { type: "parcoords", dimensions, line: { color: lines, cmin: 0, cmax: 1, colorscale: scale }, labelangle: narrow ? -40 : -14, labelside: "top",
       unselected: { line: { color: colour("grid"), opacity: 0.4 } }, tickfont: { color: colour("text") }, rangefont: { color: colour("faint") } };
-    Plotly.react("parallel", [trace], layoutOf({ margin: { l: 60, r: 60, t: 110, b: 30 } }), CONFIG);
+    Plotly.react("parallel", [trace], layoutOf({ margin: { l: 60, r: narrow ? 30 : 60, t: narrow ? 150 : 110, b: 30 } }), CONFIG);
   }
 
   /** Analysed variants within the ranges that the axes of the parallel coordinates keep. */
@@ -516,29 +540,36 @@ function drawStudy(data, array) {
     })));
   }
 
-  const drawAll = () => {
-    const [variant, torque] = [Number(inputs.variant.value), Number(inputs.torque.value)];
-    drawState(variant, torque);
-    drawNumbers(variant);
-    if (analysed.length === 0) {
-      ["parallel", "scatter"].forEach((id) => Plotly.react(id, [], layoutOf(saying("no variant was analysed")), CONFIG));
-      return;
-    }
-    drawScatter(variant, torque);
-    drawParallel(variant, torque);
+  const state = () => ({ variant: Number(inputs.variant.value), torque: Number(inputs.torque.value) });
+  const nothing = (id) => () => Plotly.react(id, [], layoutOf(saying("no variant was analysed")), CONFIG);
+  const draws = analysed.length === 0 ? { scatter: nothing("scatter"), parallel: nothing("parallel") } : {
+    scatter: (at) => {
+      drawScatter(at);
+      onEvent("scatter", "plotly_click", (event) => {
+        inputs.variant.value = event.points[0].customdata ?? inputs.variant.value;
+        redraw();
+      });
+    },
+    parallel: (at) => {
+      drawParallel(at);
+      onEvent("parallel", "plotly_restyle", () => {
+        kept = keptBy(byId("parallel").data[0].dimensions);
+        redraw();
+      });
+    },
   };
-  const redraw = onceAFrame(drawAll);
+  const pictures = picturesOf(draws, state);
+  const drawText = () => {
+    drawState(state());
+    drawNumbers(state());
+  };
+  const redraw = onceAFrame(() => {
+    drawText();
+    pictures.redraw();
+  });
   Object.values(inputs).forEach((input) => input.addEventListener("input", redraw));
-  drawAll();
-  byId("scatter").on("plotly_click", (event) => {
-    inputs.variant.value = event.points[0].customdata;
-    redraw();
-  });
-  byId("parallel").on("plotly_restyle", () => {
-    kept = keptBy(byId("parallel").data[0].dimensions);
-    redraw();
-  });
-  return drawAll;
+  drawText();
+  return redraw;
 }
 
 // ---------------------------------------------------------------------------------------------- the page
@@ -550,7 +581,6 @@ const KINDS = { result: drawResult, study: drawStudy };
     const data = JSON.parse(byId("data").textContent);
     const redraw = KINDS[data.kind](data, await arraysOf(byId("block").textContent));
     dark.addEventListener("change", redraw);
-    document.documentElement.dataset.ready = "true";
   } catch (error) {
     byId("problem").textContent = `The pictures cannot be drawn: ${error.message}. They need a browser of 2023 or later.`;
     byId("problem").hidden = false;
