@@ -7,9 +7,9 @@
   halves. The ends of the faces and the crowning move with it, and stiffness grows with the load: 3e-3.
 - The axial forces of unlike halves of a gear that floats balance, 1e-9 of one of them.
 - A gear that floats on a support of K takes what is left of them to K times its motion, 1e-9.
-- A gear that floats follows an apex that runs out by R: by R/2 where the tooth meshes whose apex lies farthest out, less
-  what the teeth in contact up to two pitches of 87 beside it leave, 1 - cos(360 deg 2/87) of them at the most: 0.01. No
-  axial force is left, 1e-9.
+- A gear that floats follows an apex that runs out by R: by R/2 where the tooth meshes whose apex lies farthest out,
+  less what the teeth in contact up to two pitches of 87 beside it leave, 1 - cos(360 deg 2/87) of them at the most:
+  0.01. No axial force is left, 1e-9.
 """
 
 import math
