@@ -56,12 +56,16 @@ def test_commands_for_one_pair_name_the_files_of_the_halves(written, capsys):
     assert main(["dynamics", str(written / "half_b.nc"), "--out", str(written / "b.csv")]) == 0
 
 
+CHANGED = "--set", "pair.axial_stiffness_N_per_um=20", "--set", "wheel.apex_runout_um=12"
+
+
 def test_check_describes_both_halves(capsys):
     changes = [part for key, value in FEW.items() for part in ("--set", f"{key}={str(value).lower()}")]
-    assert main(["check", str(SCENE), *changes, "--set", "pair.axial_stiffness_N_per_um=20"]) == 0
+    assert main(["check", str(SCENE), *changes, *CHANGED]) == 0
     lines = capsys.readouterr().out.splitlines()
     by_label = {line[:44].strip(): line[44:].split() for line in lines}
     assert by_label["face width of a half [mm]"] == ["40.0000", "40.0000"]
+    assert by_label["apex runout, peak to peak [um]"] == ["0", "12"]
     assert by_label["floating along its axis"] == ["pinion,", "on", "20", "N/um"]
     # T/2 tan(beta)/r at the reference circle, 2 r = 29 * 4 mm/cos(beta)
     axial = 800e3 * math.sin(math.radians(15.0)) / 58.0

@@ -27,6 +27,7 @@ from loaded_tca.errors import (
 )
 from loaded_tca.plain import plain
 from loaded_tca.results import MeshCycle
+from loaded_tca.results.load_factors import face_forces
 from loaded_tca.results.revolution import Revolution
 from loaded_tca.results.warnings import is_under_torque
 from loaded_tca.scene.cylindrical import CylindricalScene
@@ -356,6 +357,7 @@ def _arrays(place: Place) -> dict[str, Array]:
     """Arrays of the result at one place."""
     scene, cycles = place.scene, place.cycles
     arrays, carried = balance_arrays(place), carried_by(place)
+    arrays["face_border"], arrays["face_load"] = _over_the_face(place, carried.mean(axis=1))
     of_positions = {
         name: [largest_of_pairs(cycle, name) for cycle in cycles] for name in ("peak_pressure", "line_load")
     }
@@ -372,6 +374,25 @@ def _arrays(place: Place) -> dict[str, Array]:
         ]
         arrays["root_tension"] = np.stack(tensions, axis=-1)
     return arrays
+
+
+def _over_the_face(place: Place, carried: Array) -> tuple[Array, Array]:
+    """Borders [mm] and loads [N/mm] of strips of the face (t, half, ...), under mean torques (t, half) of the halves.
+
+    Those of the torque of each half that is nearest, scaled.
+    """
+    scene, borders, loads = place.scene, [], []
+    middle = 0.25 * (scene.pinion.face_width_mm + scene.geometry.gap_mm)
+    for half, cycle in enumerate(place.cycles):
+        count = max(1, len(cycle.path) - 1)
+        for torque in carried[:, half].tolist():
+            row = int(np.abs(cycle.torque - torque).argmin())
+            places, forces = face_forces(cycle.gear_pair, cycle.path, cycle.maps[row])
+            borders.append(middle + places)
+            loads.append(torque / cycle.torque[row] * forces / count / np.diff(places))
+    by_half = (np.array(rows).reshape(len(HALVES), len(carried), -1).swapaxes(0, 1) for rows in (borders, loads))
+    of_borders, of_loads = by_half
+    return of_borders, of_loads
 
 
 def largest_of_pairs(cycle: MeshCycle | Revolution, name: str) -> Array:

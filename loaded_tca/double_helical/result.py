@@ -64,6 +64,15 @@ NUMBERS = numbers(
             OVER_HALVES, "N/mm", "largest line load in the half", columns=("half_{}_line_load_N_per_mm",)
         ),
         "face_load_factor": (HALF, "1", "face load factor K_Hbeta of the half, under its mean torque; NaN: no load"),
+        "face_border": Number(
+            (*HALF, "border"),
+            "mm",
+            "borders of strips of the face, from the middle of the pinion's groove outwards",
+            columns=(),
+        ),
+        "face_load": Number(
+            (*HALF, "strip"), "N/mm", "normal force per face width in each strip, mean over the pitch", columns=()
+        ),
         "share_factor": Number(
             TORQUE, "1", "largest share of a half over an even one", label="largest share of a half over an even one"
         ),

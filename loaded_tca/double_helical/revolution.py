@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 HALVES_REVOLUTION_FILE = "double_helical_revolution.nc"
 """Name of the file of both halves together."""
-_LEFT_OUT = "line_load", "face_load_factor"
+_LEFT_OUT = "line_load", "face_load_factor", "face_load", "face_border"
 HALVES_REVOLUTION_NUMBERS: dict[str, Number] = {
     **{name: number for name, number in NUMBERS.items() if name not in _LEFT_OUT},
     "pinion_angle": NUMBERS["pinion_angle"].changed(text="angle of the pinion phi1, from 0 at the first position"),

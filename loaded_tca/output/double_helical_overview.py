@@ -58,6 +58,7 @@ def pair_rows(scene: DoubleHelicalScene) -> list[Row]:
     mesh = scene.mesh()
     axial = [0.5 * torque / mesh.pinion.base_radius * abs(scene.axial_rate) for torque in shown]
     held = geometry.axial_stiffness_N_per_um
+    runouts = [gear.apex_runout_um for gear in gears]
     floats = f"{geometry.floating}, on {plain(held)} N/um" if held else geometry.floating
     return [
         ("", "pinion", "wheel"),
@@ -67,6 +68,7 @@ def pair_rows(scene: DoubleHelicalScene) -> list[Row]:
         ("groove [mm]", f"{geometry.gap_mm:z.4f}"),
         ("floating along its axis", floats),
         ("apex of the wheel towards half a [mm]", f"{geometry.apex_offset_mm:z.4f}"),
+        *([("apex runout, peak to peak [um]", *(f"{runout:g}" for runout in runouts))] if any(runouts) else []),
         ("pinion torque of both halves [N m]", *(f"{1e-3 * torque:g}" for torque in shown)),
         ("axial force of a half, even shares [N]", *(f"{force:z.1f}" for force in axial)),
     ]

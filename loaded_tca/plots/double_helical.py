@@ -11,7 +11,6 @@ from loaded_tca.double_helical import DoubleHelicalResult, DoubleHelicalRevoluti
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.revolution import plot_revolution_error, plot_revolution_spectrum
-from loaded_tca.results.load_factors import face_forces
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.double_helical import HALVES, SIGNS
 
@@ -30,7 +29,7 @@ def plot_halves_face_load(result: DoubleHelicalResult, torque: int | None = None
     """Load over the face of both halves, beside each other as they lie on the pinion: half b, the groove, half a.
 
     Normal force of all tooth pairs per width, the mean over a pitch, under the analysed torque of each half that is
-    nearest to its mean share, scaled to that.
+    nearest to its mean share, scaled to that, where the floating gear stands under the torque.
 
     Parameters
     ----------
@@ -44,17 +43,12 @@ def plot_halves_face_load(result: DoubleHelicalResult, torque: int | None = None
     """
     torque = style.torque_or_largest(result.torque, torque)
     figure, axes = style.one_panel()
-    scene = result.scene
-    middle = 0.25 * (scene.pinion.face_width_mm + scene.geometry.gap_mm)
-    for half, (name, cycle, sign) in enumerate(zip(HALVES, result.halves, SIGNS, strict=True)):
-        carried = float(result.torque_share[torque, :, half].mean() * result.torque[torque])
-        row = int(np.abs(cycle.torque - carried).argmin())
-        borders, forces = face_forces(cycle.gear_pair, cycle.path, cycle.maps[row])
-        count = max(1, len(cycle.path) - 1)
-        load = carried / cycle.torque[row] * forces / count / np.diff(borders)
-        places, values = (sign * (middle + borders), load) if sign > 0 else (-(middle + borders)[::-1], load[::-1])
+    scene, shares = result.scene, result.torque_share[torque].mean(axis=0)
+    for half, (name, sign) in enumerate(zip(HALVES, SIGNS, strict=True)):
+        load, borders = result.face_load[torque, half], result.face_border[torque, half]
+        places, values = (borders, load) if sign > 0 else (-borders[::-1], load[::-1])
         factor = plain(result.face_load_factor[torque, half], 3)
-        label = f"half {name}, share {plain(100.0 * carried / result.torque[torque], 3)} %, K_Hβ = {factor}"
+        label = f"half {name}, share {plain(100.0 * shares[half], 3)} %, K_Hβ = {factor}"
         axes.stairs(values, places, color=style.DISTINCT_COLOURS[half], label=label, fill=True, alpha=0.5)
     groove = 0.5 * scene.geometry.gap_mm
     axes.axvspan(-groove, groove, color="0.85", label="groove")

@@ -42,10 +42,14 @@ ONE_BY_ONE = (
     "scene.half_scenes(0.0)"
 )
 SHARED = "found a torque of 0; allowed above 0: the halves share a torque"
+RIGID_AXES = (
+    "the gears stand on rigid axes, but for pair.floating and pair.axial_stiffness_N_per_um: a support takes the loads "
+    "of one mesh, and two load the gear; give misalignments as [mounting] and [mounting.half_b]"
+)
 NOT_OF_HALVES = {
     "tooth": "teeth have the flanks of their half; give the half by itself, as a helical pair",
-    "shaft": "the gears stand on rigid axes, but for pair.floating and pair.axial_stiffness_N_per_um",
-    "support": "the gears stand on rigid axes, but for pair.floating and pair.axial_stiffness_N_per_um",
+    "shaft": RIGID_AXES,
+    "support": RIGID_AXES,
 }
 """Sections of a gear that a double helical pair does not have, and why."""
 

@@ -149,7 +149,11 @@ def test_a_torque_in_a_list_has_the_numbers_that_it_has_alone(equal_halves, one_
             offset, numbers = scene.mounting.axial_offset_mm, one_half.dataset
             moved = {name: numbers[name] + rate * offset / length for name in ERRORS}
             moved["peak_pressure"] = numbers["peak_pressure"] * (1.0 + abs(offset))
-            cycle = replace(one_half, scene=scene, dataset=numbers.assign(moved), states=None)
+            maps = [
+                [[one and replace(one, pressure=one.pressure * (1.0 + abs(offset))) for one in row] for row in rows]
+                for rows in one_half.maps
+            ]
+            cycle = replace(one_half, scene=scene, dataset=numbers.assign(moved), maps=maps, states=None)
             halves.append(analyses._Half(cycle, []))
         return halves
 
@@ -163,7 +167,7 @@ def test_a_torque_in_a_list_has_the_numbers_that_it_has_alone(equal_halves, one_
     mesh = equal_halves.mesh()
     force = both.torque / mesh.pinion.base_radius * np.tan(mesh.pinion.base_helix_angle)
     assert_allclose(1e3 * both.axial_motion, np.broadcast_to(force[:, None], (2, 2)), rtol=1e-9)
-    for name in ("peak_pressure", "mesh_stiffness", "transmission_error", "axial_motion"):
+    for name in ("peak_pressure", "mesh_stiffness", "transmission_error", "axial_motion", "face_load"):
         numbers = np.concatenate([getattr(result, name) for result in alone])
         assert_allclose(getattr(both, name), numbers, rtol=1e-9)  # places differ by rounding
     assert both.half_a.scene.mounting == alone[1].half_a.scene.mounting

@@ -7,6 +7,9 @@
   halves. The ends of the faces and the crowning move with it, and stiffness grows with the load: 3e-3.
 - The axial forces of unlike halves of a gear that floats balance, 1e-9 of one of them.
 - A gear that floats on a support of K takes what is left of them to K times its motion, 1e-9.
+- A gear that floats follows an apex that runs out by R: by R/2 where the tooth meshes whose apex lies farthest out,
+  less what the teeth in contact up to two pitches of 87 beside it leave, 1 - cos(360 deg 2/87) of them at the most:
+  0.01. No axial force is left, 1e-9.
 """
 
 import math
@@ -16,7 +19,11 @@ from pathlib import Path
 import numpy as np
 
 from loaded_tca import AccuracyWarning, analyse, read_scene, trace_contact
-from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
+from loaded_tca.double_helical import (
+    DoubleHelicalResult,
+    analyse_double_helical,
+    analyse_double_helical_revolution,
+)
 from loaded_tca.scene import DoubleHelicalScene
 from validation.table import Row
 
@@ -24,12 +31,13 @@ CASE, FORM = "double helical pairs", "closed form"
 SCENE = Path(__file__).parents[2] / "examples" / "scenes" / "double_helical.toml"
 EQUAL = {"pinion.half_b": None, "pair.apex_offset_mm": 0.0, "pair.floating": "none"}
 OFFSET, SUPPORT = 0.005, 20.0  # mm, N/um
-SAME, TRACED, LINEAR, BALANCED = 1e-10, 1e-9, 3e-3, 1e-9
+RUNOUT = 20.0  # um
+SAME, TRACED, LINEAR, BALANCED, FOLLOWED = 1e-10, 1e-9, 3e-3, 1e-9, 0.01
 
 
 def rows() -> list[Row]:
     """Rows of all."""
-    return [*unloaded_rows(), *equal_rows(), *floating_rows()]
+    return [*unloaded_rows(), *equal_rows(), *floating_rows(), *revolution_rows()]
 
 
 def short_rows() -> list[Row]:
@@ -112,4 +120,22 @@ def floating_rows() -> list[Row]:
             float(held.axial_force_left[0, 0]),
             BALANCED,
         ),
+    ]
+
+
+def revolution_rows() -> list[Row]:
+    """Equal halves of a pinion that floats, over a pitch of a wheel whose apex runs out."""
+    scene = scene_with().with_changes(
+        {**EQUAL, "pair.floating": "pinion", "wheel.apex_runout_um": RUNOUT, "revolution.pitches": 1}
+    )
+    assert isinstance(scene, DoubleHelicalScene)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        revolution = analyse_double_helical_revolution(scene.with_changes({"revolution.positions_per_pitch": 2}))
+    left = float(np.abs(revolution.axial_force_left).max() / np.abs(revolution.axial_force).max())
+    what = f"motion of a floating pinion, apex of the wheel runs out by {RUNOUT:g} um [um]"
+    moved = 1e3 * float(revolution.axial_motion[0, 0])
+    return [
+        Row(CASE, FORM, what, 0.5 * RUNOUT, moved, FOLLOWED),
+        Row(CASE, "balance", "axial force left as it shuttles, over that of a half", 0.0, left, BALANCED),
     ]
