@@ -23,8 +23,9 @@ from loaded_tca.results.files import Buffer, FilePath, Part, netcdf_of, replace_
 from loaded_tca.results.quantities import MAP_PARTS, QUANTITIES
 from loaded_tca.results.summary import shown
 from loaded_tca.results.tolerances import key_figure_slopes
-from loaded_tca.studies.ranking import main_figures, ranking, varied_keys
+from loaded_tca.studies.ranking import main_figures, ranking
 from loaded_tca.studies.rating import safeties_of, shortfall
+from loaded_tca.studies.tables import to_pandas
 from loaded_tca.units import unit_of
 
 if TYPE_CHECKING:
@@ -374,13 +375,7 @@ def study_csv(study: xarray.Dataset) -> str:
 
     Variants and torques are numbered from 0. Columns of whole numbers, as counts are, have no decimals.
     """
-    order = [name for name in ("sample", "torque") if name in study.sizes]  # no torque where no variant is ok
-    frame = study.drop_vars("torque", errors="ignore").to_dataframe(order).reset_index()
-    for name in study.data_vars:
-        known = frame[name].dropna()
-        if known.dtype.kind == "f" and (known.abs() < 2**53).all() and (known % 1 == 0).all():
-            frame[name] = frame[name].astype("Int64")
-    table: str = frame[list(dict.fromkeys([*order, *varied_keys(study), *frame]))].to_csv(index=False)
+    table: str = to_pandas(study).reset_index().to_csv(index=False)
     return table
 
 
