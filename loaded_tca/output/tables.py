@@ -29,7 +29,7 @@ from loaded_tca.studies.tables import to_pandas
 from loaded_tca.units import unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     import xarray
 
@@ -44,7 +44,9 @@ COMPARISON, COMPARISON_DATA = "comparison.csv", "comparison.json"
 
 
 @checked
-def write_comparison(comparison: Comparison, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
+def write_comparison(
+    comparison: Comparison, directory: FilePath, more: Mapping[str, Buffer] = {}, outdated: Iterable[str] = ()
+) -> tuple[Path, ...]:
     """Write ``comparison.csv`` and ``comparison.json``, all files or none.
 
     Parameters
@@ -54,6 +56,8 @@ def write_comparison(comparison: Comparison, directory: FilePath, more: Mapping[
         Made if it does not exist.
     more : mapping of str to bytes
         Contents of files to write with these, by their names: pictures of the same results.
+    outdated : iterable of str
+        Names of files of an older comparison to remove where this one has none of that name.
 
     Returns
     -------
@@ -66,21 +70,18 @@ def write_comparison(comparison: Comparison, directory: FilePath, more: Mapping[
         If they cannot be written.
     """
     texts = {COMPARISON: _comparison_table(comparison), COMPARISON_DATA: _comparison_json(comparison)}
-    return replace_together(directory, {**{name: text.encode() for name, text in texts.items()}, **more})
+    contents = {**{name: text.encode() for name, text in texts.items()}, **more}
+    return replace_together(directory, contents, {*outdated} - {*contents})
 
 
 def _comparison_table(comparison: Comparison) -> str:
-    """One row per torque and key figure, columns for each result."""
-    figures = comparison.figures
-    rows = [(torque, name) for torque in figures.torque.values for name in figures.figure.values]
-    columns: dict[str, list[str]] = {
-        "pinion_torque_Nm": [cell(1e-3 * torque, "torque") for torque, _ in rows],
-        "figure": [name for _, name in rows],
+    """One row per torque and key figure, columns for each result; what is rounding is zero."""
+    table = comparison.table().values
+    figures = table["figure"]
+    columns = {
+        head: values if head in ("pinion_torque_Nm", "figure") else [*map(cell, values, figures)]
+        for head, values in table.items()
     }
-    for k, result in enumerate(comparison.results):
-        for part in figures.data_vars if k else ("value",):
-            values = figures[part].values[..., k].ravel()
-            columns[f"{result}: {part}"] = [cell(value, name) for value, (_, name) in zip(values, rows, strict=True)]
     return csv_table(columns)
 
 

@@ -13,6 +13,13 @@ from loaded_tca.arguments import checked
 from loaded_tca.loaded.shaft_lines import shaft_lines
 from loaded_tca.plots.at_a_glance import plot_at_a_glance
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
+from loaded_tca.plots.comparison_subjects import (
+    COMPARISON_PICTURES,
+    comparison_figures,
+    plot_compared_face_load,
+    plot_compared_patterns,
+    plot_compared_root_stress,
+)
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
 from loaded_tca.plots.double_helical import (
@@ -98,6 +105,7 @@ from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 __all__ = [
+    "COMPARISON_PICTURES",
     "DOUBLE_HELICAL_CAPTIONS",
     "DOUBLE_HELICAL_PICTURES",
     "MORE_PICTURES",
@@ -107,13 +115,17 @@ __all__ = [
     "STAGE_CAPTIONS",
     "STAGE_PICTURES",
     "TRIBOLOGY_PICTURES",
+    "comparison_figures",
     "double_helical_figures",
     "draw_teeth",
     "plot_all",
     "plot_at_a_glance",
     "plot_bearing_loads",
     "plot_before_and_after",
+    "plot_compared_face_load",
     "plot_compared_maps",
+    "plot_compared_patterns",
+    "plot_compared_root_stress",
     "plot_comparison",
     "plot_contact_path",
     "plot_contact_patterns",
