@@ -1,5 +1,6 @@
-"""Reports of a result, a study or a design as one HTML file."""
+"""Reports of a result, a study or a design as one HTML file, and their cards in notebooks."""
 
+from loaded_tca.reports.notebook import Card, card_of
 from loaded_tca.reports.report import write_html_report
 
-__all__ = ["write_html_report"]
+__all__ = ["Card", "card_of", "write_html_report"]

@@ -51,8 +51,8 @@ def comparison_content(comparison: Comparison, torque: float | None = None) -> d
         "first": next(iter(results)),
         "torques": ", ".join(map(shown_torque, comparison.torque.tolist())),
         "left_out": [f"{name}: {', '.join(some)} N m" for name, some in comparison.left_out.items()],
-        "differing": _differing(comparison),
-        "key_figures": [table for k in torques for table in _key_figures(comparison, k)],
+        "differing": differing_table(comparison),
+        "key_figures": [table for k in torques for table in key_figure_tables(comparison, k)],
         "all_torques": len(torques) == len(comparison.torque),
         "beyond": BEYOND,
         "within": WITHIN,
@@ -86,7 +86,7 @@ def _torques(comparison: Comparison, at: int) -> list[int]:
     return [at, *(k for k in reversed(some) if k != at)]
 
 
-def _differing(comparison: Comparison) -> Table | None:
+def differing_table(comparison: Comparison) -> Table | None:
     """Keys of the scenes that differ, in words and as files have them, with the values of each result."""
     rows = [(label_of(key), key, *map(written_value, values)) for key, values in comparison.differing_keys.items()]
     return Table(tuple(rows), ("what differs", "key", *comparison.results), of_words=True) if rows else None
@@ -99,7 +99,7 @@ def _names(comparison: Comparison) -> list[str]:
     return [name for name in declared(lambda figure: figure.is_compared) if name in names]
 
 
-def _key_figures(comparison: Comparison, k: int) -> Iterator[Table]:
+def key_figure_tables(comparison: Comparison, k: int) -> Iterator[Table]:
     """Key figures under a torque: of the first result, then of each other one with its difference."""
     first, *others = comparison.results
     under = comparison.figures.isel(torque=k).assign(beyond=comparison.beyond_errors.isel(torque=k))

@@ -52,7 +52,7 @@ def rating_content(result: MeshCycle) -> dict[str, Any] | None:
     return {
         "refused": (),
         "about": rating.scope.removesuffix("; pinion | wheel"),
-        "safeties": _safeties(rating),
+        "safeties": safeties_table(rating),
         "findings": decisive,
         "tables": [*chain.from_iterable(_tables(rating, cases[part]) for part in parts_of(cases, MOST_CASES))],
         "notes": [note for note in rating.notes() if note not in said],
@@ -61,7 +61,7 @@ def rating_content(result: MeshCycle) -> dict[str, Any] | None:
     }
 
 
-def _safeties(rating: Rating) -> Table:
+def safeties_table(rating: Rating) -> Table:
     """The least safeties of all cases of both gears beside those required, and the shortest lives."""
     rows = []
     safeties, lives = (values.min(axis=0) for values in rating.safeties_and_lives())

@@ -200,7 +200,7 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
         **_geometry_of(subject),
         "varied": _varied(study),
         "seed": f"{study.attrs.get('seed', '-')}" if sampled else "",
-        "scatter": [*_scatter(study, by)],
+        "scatter": [*scatter_tables(study, by)],
         "sampled": sampled,
         "grouped": grouped,
         "quantile": _quantiles(study, by),
@@ -271,7 +271,7 @@ def _varied(study: xarray.Dataset) -> Table:
     return Table(tuple(rows), ("what varies", "key", "how", "values", "from, to"), of_words=True)
 
 
-def _scatter(study: xarray.Dataset, by: str | None) -> Iterator[Table]:
+def scatter_tables(study: xarray.Dataset, by: str | None) -> Iterator[Table]:
     """Percentiles of the main figures over the variants, a table for each torque."""
     if not main_figures(study):
         return
@@ -361,15 +361,8 @@ def design_content(design: DesignResult) -> dict[str, Any]:
         **scene_content(scene),
         "objective": f"{data.attrs['objective']} of the {minimised.text}"
         + (f" [{minimised.unit}]" if minimised.unit != "1" else ""),
-        "objectives": Table(
-            (
-                ("by the full analysis", *(plain(one) for one in design.objective)),
-                ("on held contacts", *(plain(one) for one in design.held_objective)),
-                (DIFFERENCE, *("-" if math.isnan(one) else plain(one, 2) for one in design.held_difference)),
-            ),
-            ("", "start", "optimum"),
-        ),
-        "values": _values(design),
+        "objectives": objectives_table(design),
+        "values": values_table(design),
         "limits": [*map(_told_limit, data.attrs["limits"].splitlines())],
         "scattered": _scattered(design),
         "seeds": data.attrs.get("seeds", ""),
@@ -392,7 +385,19 @@ def _told_limit(limit: str) -> str:
     return f"{limit} ({FIGURES[name].text}{FIGURES[name].note})"
 
 
-def _values(design: DesignResult) -> Table:
+def objectives_table(design: DesignResult) -> Table:
+    """Objective of start and optimum by the analysis and on held contacts, and how far these differ."""
+    return Table(
+        (
+            ("by the full analysis", *(plain(one) for one in design.objective)),
+            ("on held contacts", *(plain(one) for one in design.held_objective)),
+            (DIFFERENCE, *("-" if math.isnan(one) else plain(one, 2) for one in design.held_difference)),
+        ),
+        ("", "start", "optimum"),
+    )
+
+
+def values_table(design: DesignResult) -> Table:
     """What was designed, within which range."""
     data = design.dataset
     bounds = data["range"].values.tolist() if "range" in data else [(math.nan, math.nan)] * len(design.start)

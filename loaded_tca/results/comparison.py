@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.errors import InputError, require
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -38,7 +39,7 @@ MOST_KEYS = 12
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class Comparison(InNotebooks):
     """Two or more results under the torques that all of them have, each beside the first.
 
     Attributes

@@ -11,6 +11,7 @@ import numpy as np
 
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.results.declared import ABOUT, CYCLE, Number, Numbers, Row
 from loaded_tca.results.figure import Figure, Figures, labelled
 from loaded_tca.results.files import (
@@ -51,7 +52,7 @@ def _number(name: str, factor: float, under: Row) -> float:
     return factor * float(getattr(under, name))
 
 
-class Result(Numbers, ABC):
+class Result(InNotebooks, Numbers, ABC):
     """Numbers of a result with their key figures under each torque, summary, table and file.
 
     A kind of result declares its ``NUMBERS`` and its ``FIGURES``; all of this follows.
