@@ -168,7 +168,8 @@ def require_result(directory: Path, path: Path, command: str) -> None:
     if (directory / COMPARISON_DATA).is_file():
         raise InputError(
             f"{directory}: holds a comparison of results, of which '{command}' takes none: its numbers are in "
-            f"{COMPARISON} and {COMPARISON_DATA}; give the directory of one of the results"
+            f"{COMPARISON} and {COMPARISON_DATA}; give the directory of one of the results, or of several to "
+            "'loaded-tca report'"
         )
     if any((directory / name).is_file() for name in TRIBOLOGY_FILES):
         raise InputError(
