@@ -73,6 +73,7 @@ SUBJECTS = {
     "result": (cycle, ["peak pressure [MPa]", "load factor", "130 N m"]),
     "one position without load sharing": (lambda: result(positions=1), ["peak pressure [MPa]"]),
     "double helical pair": (lambda: double_helical.analysed()[0], ["largest line load of half a [N/mm]"]),
+    "stage result": (lambda: stages.analysed()[0], ["phases of the sun's meshes", "mesh load factor"]),
     "rating": (lambda: rating.solved().rating(), ["least of all cases", "required"]),
     "tribology": (lambda: tribology.known(cycle()), ["loss factor H_VL"]),
     "scene": (scene, ["pinion torque [N m]", "Geometry (ISO 21771)"]),
