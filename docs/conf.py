@@ -43,7 +43,7 @@ sphinx_gallery_conf = {
     "reset_modules": ("gallery.define_file",),
     "reset_argv": "gallery.arguments",
     "within_subsection_order": "FileNameSortKey",
-    "notebook_extensions": set(),  # the examples find their scenes by __file__, which notebooks do not have
+    "notebook_extensions": set(),  # but of gallery.NOTEBOOKS
     "download_all_examples": False,
     "show_signature": False,
     "abort_on_example_error": False,

@@ -32,8 +32,7 @@ def main() -> None:
     result, other = (analyse(HELICAL.with_changes({"analysis.root_stress": True, LEAD: um})) for um in (5.0, 10.0))
     drawn = plots.result_figures(result, more=True) | {"teeth_in_mesh": plots.plot_teeth_in_mesh(HELICAL)}
     drawn |= {"teeth": plots.plot_teeth(result), "stress_below": plots.plot_stress_below(stress_below(result))}
-    both = {"crowning 5 µm": result, "crowning 10 µm": other}
-    drawn |= {"comparison": plots.plot_comparison(both), "compared_maps": plots.plot_compared_maps(both)}
+    drawn |= plots.comparison_figures({"crowning 5 µm": result, "crowning 10 µm": other})
     check = vh_check(lambda v, h: BEVEL.with_changes({V: v, H: h}).pair(), STEPS, STEPS)
     drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
     drawn["measured_settings"] = plots.plot_measured_settings(fit_settings(CUT, [CONVEX], ["wheel.machine.radial_mm"]))

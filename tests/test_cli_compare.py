@@ -6,7 +6,8 @@ import pytest
 from loaded_tca import plots
 from tests.samples.results import changed_scene, result
 
-FILES = {"comparison.csv", "comparison.json", "comparison.png", "compared_maps.png"}
+PICTURES = "comparison", "compared_maps", "compared_patterns", "compared_face_load"
+FILES = {"comparison.csv", "comparison.json", *(f"{name}.png" for name in PICTURES)}
 
 
 @pytest.fixture(autouse=True)
@@ -29,6 +30,8 @@ def compared(out="out"):
 def test_compare_writes_table_and_pictures_and_tells_the_differences(run):
     saved("plain")
     saved("crowned", **{"pinion.modifications.lead_crowning_um": 7.5})
+    Path("out").mkdir()
+    Path("out", "compared_root_stress.png").write_bytes(b"of an earlier comparison")
     code, out, errors = run("compare", "plain", "crowned/result.nc", "--out", "out")
     assert (code, errors) == (0, [])
     assert {path.name for path in Path("out").iterdir()} == FILES

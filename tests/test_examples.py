@@ -1,5 +1,6 @@
 """Every example runs, writes its picture, and one number of it is what physics asks for."""
 
+import ast
 import importlib.util
 import re
 from functools import partial
@@ -198,9 +199,33 @@ def test_designed_pair_is_quieter(name, quieter, tmp_path, monkeypatch):
     assert_allclose(found["transmission_error"].sel(design="optimum").values[-1], error, rtol=1e-6)
 
 
+CELL = "\n# %%\n"
+"""Begin of a cell of a notebook."""
+
+
+@pytest.mark.thorough
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
+def test_notebook_shows_cards_and_a_frame_below_its_cells(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names, shown = {}, []
+    for cell in (EXAMPLES / "plot_notebook.py").read_text(encoding="utf-8").split(CELL):
+        *body, last = ast.parse(cell).body
+        exec(compile(ast.Module(body, []), "cell", "exec"), names)
+        if not isinstance(last, ast.Expr):
+            exec(compile(ast.Module([last], []), "cell", "exec"), names)
+        elif (value := eval(compile(ast.Expression(last.value), "cell", "eval"), names)) is not None:
+            shown.append(value._repr_html_())
+    assert ["ltca" in html for html in shown] == [True, True, False, True]
+    assert all("<table" in html for html in shown)
+    assert {"notebook.png"} <= {path.name for path in tmp_path.iterdir()} <= {"notebook.png", "notebook.xlsx"}
+
+
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
 def test_example_is_short_and_has_its_scenes(path):
-    assert len(path.read_text(encoding="utf-8").splitlines()) < 60
+    text = path.read_text(encoding="utf-8")
+    assert len(text.splitlines()) < 60
+    if CELL in text:
+        return  # a notebook, which has no main, and runs when it is loaded
     assert callable(loaded(path).main)  # every name that it imports is there, every scene that it reads is sound
 
 

@@ -35,8 +35,13 @@ def prepare() -> None:
             archive.write(path, path.relative_to(EXAMPLES.parent))
 
 
-def define_file(_: object, script: str) -> None:
+NOTEBOOKS = {"plot_notebook"}
+"""Scripts that are notebooks, too; the others find their scenes by ``__file__``, which notebooks do not have."""
+
+
+def define_file(configuration: dict[str, object], script: str) -> None:
     """Let ``__file__`` be the original of a script that is about to be run; its warnings show no path."""
+    configuration["notebook_extensions"] = {".py"} if Path(script).stem in NOTEBOOKS else set()
     builtins.__file__ = str(EXAMPLES / Path(script).name)
     warnings.formatwarning = lambda message, category, *_: f"{category.__name__}: {message}\n"
 

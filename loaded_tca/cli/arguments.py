@@ -32,9 +32,9 @@ All lengths are in mm."""
 COMPARE = """files in DIR:
   comparison.csv            one row per shared torque and key figure: values, differences to the first result
   comparison.json           the same, and the keys in which the scenes differ
-  comparison.png            transmission error, its harmonics, stiffness, pressure and load share, over each other
-  compared_maps.png         pressure maps side by side on one scale
-Pictures are those of one torque; docs/guide/comparing.md says more."""
+{comparison_pictures}
+Pictures are those of one torque; 'loaded-tca report DIR DIR --out FILE' writes a page with them;
+docs/guide/comparing.md says more."""
 EASE_OFF = """The values at the corners and the angles, crownings and twist of the second order are printed.
 
 files in DIR:
@@ -133,9 +133,10 @@ STUDY = """files in DIR:
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
 pictures, accuracy warnings with what to do, and the scene file; of a stage its phases, shares and orders; of a study
-what varies, the ranking, best and worst variant; of a design start and optimum. It prints on A4. Needs the package
-jinja2. With --interactive a page for a browser instead, whose sliders move all pictures, the teeth in space among them;
-of a study parallel coordinates and a scatter. It fetches nothing. Needs the package plotly, too."""
+what varies, the ranking, best and worst variant; of a design start and optimum; of two results or more what differs in
+their scenes, key figures side by side, and pictures on one scale. It prints on A4. Needs the package jinja2. With
+--interactive a page for a browser instead, whose sliders move all pictures, the teeth in space among them; of a study
+parallel coordinates and a scatter. It fetches nothing. Needs the package plotly, too."""
 REVOLUTION = """files in DIR:
   revolution.nc             everything, to be read by loaded_tca.Revolution.load or xarray
   revolution.json           the key figures: single-flank deviations, orders, worst teeth
@@ -413,13 +414,21 @@ def _add_studies(command: Command) -> None:
         default=(),
         help="variants, from 0, whose results are kept whole",
     )
-    text = "write a report of a result, a planetary stage, a study or a design as HTML"
+    text = "write a report of a result, several results, a planetary stage, a study or a design as HTML"
     report = command("report", run_by.report, text, REPORT)
     text = "result.nc, stage.nc, double_helical.nc, study.nc, the file of a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
-    report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
+    text = "results to compare with the first one, as 'loaded-tca compare' takes them"
+    report.add_argument("others", metavar="DIR|FILE", nargs="*", type=_path, help=text)
+    report.add_argument(
+        "--out", metavar="FILE", type=_path, help="default: report.html beside the result, of one alone"
+    )
     text = "of a result or a study, a page with sliders for a browser; default of --out: interactive.html"
     report.add_argument("--interactive", action="store_true", help=text)
+    text = "of several results; default: from their directories"
+    report.add_argument("--names", metavar="NAME", nargs="+", help=text)
+    text = "of several results, pinion torque of the pictures; default: largest"
+    report.add_argument("--torque", metavar="NM", type=_float, help=text)
     report.add_argument(
         "--rank-by", metavar="FIGURE", help="of a study, figure that ranks, best first; default: TE span"
     )
@@ -441,6 +450,8 @@ class _Parser(argparse.ArgumentParser):
     def format_help(self) -> str:
         if self.epilog == FILES:
             self.epilog = FILES.format(pictures=_list_of_pictures())
+        if self.epilog == COMPARE:
+            self.epilog = COMPARE.format(comparison_pictures=_list_of_comparison())
         if self.epilog == TRIBOLOGY:
             self.epilog = TRIBOLOGY.format(tribology_pictures=_list_of_tribology())
         if self.epilog == RATING:
@@ -470,6 +481,12 @@ def _list_of_pictures() -> str:
         lines += [] if head is None else [head]
         lines += [f"  {name + '.png':<24}  {one.line}" for name, one in pictures.items()]
     return "\n".join(lines)
+
+
+def _list_of_comparison() -> str:
+    from loaded_tca.plots import COMPARISON_PICTURES
+
+    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in COMPARISON_PICTURES.items())
 
 
 def _list_of_tribology() -> str:

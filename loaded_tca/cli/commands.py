@@ -15,11 +15,12 @@ from loaded_tca.cli.inputs import (
     changes_of,
     check_files,
     check_place,
-    ends_that_differ,
+    comparison_of,
     executor_of,
     file_of_report,
     index_of_position,
     index_of_torque,
+    names_of_results,
     require_result,
     result_file,
     result_of,
@@ -382,10 +383,7 @@ def subsurface(options: argparse.Namespace) -> None:
 def compare(options: argparse.Namespace) -> None:
     """Show what results differ in."""
     check_place(options.out)
-    names = options.names or ends_that_differ([result_file(path) for path in options.results])
-    if len(names) != len(options.results) or len(set(names)) != len(names):
-        wanted = f"{len(options.results)} results need {len(options.results)} different names"
-        raise InputError(f"--names {' '.join(names)}: {wanted}")
+    names = names_of_results(options.results, options.names)
     _compare(names, options.results, options.out, options.torque, options.position)
 
 
@@ -398,20 +396,16 @@ def _compare(
 ) -> None:
     """Write the comparison of results under names, with pictures at a torque and position, and show it."""
     from loaded_tca.output.tables import write_comparison
-    from loaded_tca.plots import plot_compared_maps, plot_comparison, png_of
-    from loaded_tca.results import MeshCycle, compare_results
+    from loaded_tca.plots import COMPARISON_PICTURES, comparison_figures, png_of
 
-    loaded = [MeshCycle.load(result_file(path)) for path in results]
-    comparison = compare_results(dict(zip(names, loaded, strict=True)))
+    comparison = comparison_of(names, results)
     torque = None if torque_Nm is None else 1e3 * torque_Nm
-    position = index_of_position(number, loaded[0])
+    position = index_of_position(number, next(iter(comparison.results.values())))
     summary = comparison.summary(torque)
-    pictures = {
-        "comparison.png": png_of(plot_comparison(comparison, torque)),
-        "compared_maps.png": png_of(plot_compared_maps(comparison, torque, position)),
-    }
-    written = write_comparison(comparison, directory, pictures)
-    print_summary(summary, written)
+    figures = comparison_figures(comparison, torque, position)
+    pictures = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
+    outdated = [f"{name}.png" for name in COMPARISON_PICTURES]
+    print_summary(summary, write_comparison(comparison, directory, pictures, outdated))
 
 
 def sensitivities(options: argparse.Namespace) -> None:
@@ -596,9 +590,14 @@ def study(options: argparse.Namespace) -> None:
 
 
 def report(options: argparse.Namespace) -> None:
-    """Write the report of a result, a stage, a study or a design."""
+    """Write the report of a result, a stage, a study or a design, or of several results beside each other."""
     from loaded_tca.reports import write_html_report
 
+    if options.others:
+        _report_comparison(options)
+        return
+    of_several = options.names is None and options.torque is None
+    require((of_several, "--names, --torque: of a comparison; give two results or more"))
     path, out = file_of_report(options.result), options.out
     out = path.parent / (INTERACTIVE_REPORT if options.interactive else REPORT) if out is None else out
     check_files([out], path)
@@ -607,6 +606,22 @@ def report(options: argparse.Namespace) -> None:
     date = getattr(subject, "date", "") or date
     ways = {"date": date, "rank_by": options.rank_by, "interactive": options.interactive}
     print_files([write_html_report(subject, out, **ways)])
+
+
+def _report_comparison(options: argparse.Namespace) -> None:
+    """Write the report of several results beside each other."""
+    from loaded_tca.reports import write_html_report
+
+    require(
+        (options.out is not None, "--out: missing; several results have no directory in common, give a file"),
+        (options.rank_by is None, "--rank-by: of a study; a comparison has no ranking"),
+    )
+    paths = [options.result, *options.others]
+    for path in paths:
+        check_files([options.out], result_file(path))
+    comparison = comparison_of(names_of_results(paths, options.names), paths)
+    torque = None if options.torque is None else 1e3 * options.torque
+    print_files([write_html_report(comparison, options.out, torque=torque)])
 
 
 def check(options: argparse.Namespace) -> None:

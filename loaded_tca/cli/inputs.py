@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import xarray
 
     from loaded_tca.double_helical import DoubleHelicalResult
+    from loaded_tca.results.comparison import Comparison
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
     from loaded_tca.scene.written import Writing
@@ -168,7 +169,8 @@ def require_result(directory: Path, path: Path, command: str) -> None:
     if (directory / COMPARISON_DATA).is_file():
         raise InputError(
             f"{directory}: holds a comparison of results, of which '{command}' takes none: its numbers are in "
-            f"{COMPARISON} and {COMPARISON_DATA}; give the directory of one of the results"
+            f"{COMPARISON} and {COMPARISON_DATA}; give the directory of one of the results, or of several to "
+            "'loaded-tca report'"
         )
     if any((directory / name).is_file() for name in TRIBOLOGY_FILES):
         raise InputError(
@@ -240,6 +242,22 @@ def index_of_position(position: int | None, result: MeshCycle) -> int | None:
     if not result.path.in_contact[position - 1]:
         raise InputError(f"--position {position}: no tooth pair is in contact there")
     return position - 1
+
+
+def names_of_results(paths: Sequence[Path], names: Sequence[str] | None) -> list[str]:
+    """Names of results that are compared: those of --names, or the ends of their paths that differ."""
+    names = [*names] if names else ends_that_differ([result_file(path) for path in paths])
+    if len(names) != len(paths) or len(set(names)) != len(names):
+        raise InputError(f"--names {' '.join(names)}: {len(paths)} results need {len(paths)} different names")
+    return names
+
+
+def comparison_of(names: Iterable[str], paths: Sequence[Path]) -> Comparison:
+    """The comparison of results in files or directories, under names."""
+    from loaded_tca.results import MeshCycle, compare_results
+
+    loaded = [MeshCycle.load(result_file(path)) for path in paths]
+    return compare_results(dict(zip(names, loaded, strict=True)))
 
 
 def ends_that_differ(paths: Sequence[Path]) -> list[str]:

@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import GEARS
 from loaded_tca.output.result_files import csv_table, json_text, known
 from loaded_tca.plain import lasting
 from loaded_tca.rating.quantities import OF_SPECTRUM
 from loaded_tca.rating.spectrum import OfSpectrum
 from loaded_tca.results.files import Buffer, FilePath, replace_together
+from loaded_tca.results.revolution import orders_table, teeth_table
 from loaded_tca.supports import RollingBearing
-from loaded_tca.tribology.quantities import COLUMNS
-from loaded_tca.units import MICROMETRES, as_ending
+from loaded_tca.tribology.tribology import slices_table
+from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -27,7 +25,7 @@ if TYPE_CHECKING:
     from loaded_tca.loaded.shaft_lines import ShaftLine
     from loaded_tca.rating import Rating
     from loaded_tca.results.result import Result
-    from loaded_tca.results.revolution import OverTurns, Revolution
+    from loaded_tca.results.revolution import Revolution
     from loaded_tca.stages import StageRating, StageResult
     from loaded_tca.tribology import Tribology
 
@@ -75,34 +73,12 @@ def figures_json(result: Result, **more: Any) -> str:
 
 def teeth_csv(revolution: Revolution) -> str:
     """Return a row for each torque, gear and tooth: the largest share, force and pressure of the tooth."""
-    columns: dict[str, list[object]] = {
-        name: [] for name in ("pinion_torque_Nm", "gear", "tooth", "load_share", "normal_force_N", "peak_pressure_MPa")
-    }
-    for t, torque in enumerate(revolution.torque):
-        for gear in GEARS:
-            teeth = revolution.by_tooth(gear)
-            count = teeth.sizes["tooth"]
-            parts = [[1e-3 * torque] * count, [gear] * count, range(count)]
-            parts += [teeth[name].values[t] for name in ("load_share", "normal_force", "peak_pressure")]
-            for column, values in zip(columns.values(), parts, strict=True):
-                column.extend(values)
-    return csv_table(columns)
+    return csv_table(teeth_table(revolution).values)
 
 
 def orders_csv(revolution: Revolution) -> str:
     """Return a row for each order of the transmission error: rigid, and under each torque."""
-    return csv_table(order_columns(revolution))
-
-
-def order_columns(revolution: OverTurns) -> dict[str, Any]:
-    """Columns of the orders of the transmission error: their kinds, rigid amplitudes, and those under each torque."""
-    rigid = revolution.spectrum(rigid=True)
-    gear = GEARS[revolution.counted_by]
-    columns: dict[str, Any] = {f"order_of_{gear}": rigid.order, "kind": np.array(rigid.kind, dtype=object)}
-    columns["rigid_amplitude_um"] = rigid.amplitude
-    for t, torque in enumerate(revolution.torque):
-        columns[f"amplitude_at_{1e-3 * torque:.6g}_Nm_um"] = revolution.spectrum(t).amplitude
-    return columns
+    return csv_table(orders_table(revolution).values)
 
 
 DATA, TABLE, SLICES = TRIBOLOGY_FILES = "tribology.nc", "tribology.csv", "tribology_slices.csv"
@@ -137,15 +113,7 @@ def write_tribology(tribology: Tribology, directory: FilePath, more: Mapping[str
 
 def slices_csv(tribology: Tribology) -> str:
     """Return a row for each slice of each contact under each torque, at the first speed."""
-    columns: dict[str, list[float]] = {}
-    for torque, moment in enumerate(tribology.result.torque):
-        table = tribology.slices(torque)
-        columns.setdefault("pinion_torque_Nm", []).extend([1e-3 * float(moment)] * len(table))
-        for name in map(str, table):
-            ending = as_ending(COLUMNS[name][0])
-            head = f"{name}_{ending}" if ending else name
-            columns.setdefault(head, []).extend(table[name].astype(float).tolist())
-    return csv_table(columns)
+    return csv_table(slices_table(tribology).values)
 
 
 RATING_FILES = "rating.json", "rating.csv"
@@ -327,7 +295,7 @@ def write_halves_revolution(
     InputError
         If they cannot be written.
     """
-    orders = order_columns(result)
+    orders = orders_table(result).values
     for t, torque in enumerate(result.torque):
         orders[f"axial_motion_at_{1e-3 * torque:.6g}_Nm_um"] = result.axial_spectrum(t).amplitude
     files = {

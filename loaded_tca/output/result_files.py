@@ -8,17 +8,13 @@ import json
 import math
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import GEARS
-from loaded_tca.results.declared import PAIRS
 from loaded_tca.results.files import Buffer, FilePath, replace_together
 from loaded_tca.results.summary import without_rounding
-from loaded_tca.results.warnings import EDGES, reached_edges
+from loaded_tca.results.tables import contacts_table, positions_table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from loaded_tca.results.mesh_cycle import MeshCycle
@@ -91,19 +87,7 @@ def known(value: float, name: str) -> float | None:
 
 def positions_csv(result: MeshCycle) -> str:
     """Return one row per torque and position, units in the header; an empty cell: not known."""
-    table, shape = result.to_table(), result.transmission_error.shape
-    of_path = {"position": np.arange(1, len(result.path) + 1)}
-    of_path |= {name: factor * getattr(result.path, part) for name, part, factor in _places()}
-    position, *points = ((name, np.broadcast_to(values, shape).ravel()) for name, values in of_path.items())
-    torque, angle, *others = table.items()
-    return csv_table(dict([torque, position, angle, *points, *others]))
-
-
-def _places() -> Iterator[tuple[str, str, float]]:
-    """Columns of contact points: name, part of a path, how many times that."""
-    for gear in GEARS:
-        for name, part, factor in (("diameter_mm", "radius", 2.0), ("axial_mm", "axial", 1.0)):
-            yield f"contact_point_{gear}_{name}", f"{gear}_{part}", factor
+    return csv_table(positions_table(result).values)
 
 
 def contacts_csv(result: MeshCycle) -> str:
@@ -112,23 +96,7 @@ def contacts_csv(result: MeshCycle) -> str:
     The pairs of a position stand in the order of the mesh. The last column names the edges that the contact reaches,
     the tip of a gear or a face end.
     """
-    columns = {
-        "pinion_torque_Nm": 1e-3 * result.torque[:, None, None],
-        "position": np.arange(1, len(result.path) + 1)[:, None],
-        "pinion_angle_deg": np.degrees(result.pinion_angle)[:, None],
-        "tooth_pair": result.pair,
-    }
-    for name, part, factor in _places():
-        columns[name] = np.stack([factor * getattr(path, part) for path in result.paths], axis=-1)
-    for name, number in result.NUMBERS.items():
-        if number.dims == PAIRS and result.has(name):
-            head = number.head(name)
-            columns[head] = result.values(name) * number.factor(head)
-    rows = result.normal_force > 0.0
-    reached = reached_edges(result)[rows]
-    words = [" + ".join(name for name, one in zip(EDGES, row, strict=True) if one) for row in reached]
-    under_load = {name: np.broadcast_to(values, rows.shape)[rows] for name, values in columns.items()}
-    return csv_table({**under_load, "edges": np.array(words, dtype=object)})
+    return csv_table(contacts_table(result).values)
 
 
 def json_text(content: Mapping[str, Any]) -> str:

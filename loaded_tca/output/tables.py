@@ -23,12 +23,13 @@ from loaded_tca.results.files import Buffer, FilePath, Part, netcdf_of, replace_
 from loaded_tca.results.quantities import MAP_PARTS, QUANTITIES
 from loaded_tca.results.summary import shown
 from loaded_tca.results.tolerances import key_figure_slopes
-from loaded_tca.studies.ranking import main_figures, ranking, varied_keys
+from loaded_tca.studies.ranking import main_figures, ranking
 from loaded_tca.studies.rating import safeties_of, shortfall
+from loaded_tca.studies.tables import to_pandas
 from loaded_tca.units import unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     import xarray
 
@@ -43,7 +44,9 @@ COMPARISON, COMPARISON_DATA = "comparison.csv", "comparison.json"
 
 
 @checked
-def write_comparison(comparison: Comparison, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
+def write_comparison(
+    comparison: Comparison, directory: FilePath, more: Mapping[str, Buffer] = {}, outdated: Iterable[str] = ()
+) -> tuple[Path, ...]:
     """Write ``comparison.csv`` and ``comparison.json``, all files or none.
 
     Parameters
@@ -53,6 +56,8 @@ def write_comparison(comparison: Comparison, directory: FilePath, more: Mapping[
         Made if it does not exist.
     more : mapping of str to bytes
         Contents of files to write with these, by their names: pictures of the same results.
+    outdated : iterable of str
+        Names of files of an older comparison to remove where this one has none of that name.
 
     Returns
     -------
@@ -65,21 +70,18 @@ def write_comparison(comparison: Comparison, directory: FilePath, more: Mapping[
         If they cannot be written.
     """
     texts = {COMPARISON: _comparison_table(comparison), COMPARISON_DATA: _comparison_json(comparison)}
-    return replace_together(directory, {**{name: text.encode() for name, text in texts.items()}, **more})
+    contents = {**{name: text.encode() for name, text in texts.items()}, **more}
+    return replace_together(directory, contents, {*outdated} - {*contents})
 
 
 def _comparison_table(comparison: Comparison) -> str:
-    """One row per torque and key figure, columns for each result."""
-    figures = comparison.figures
-    rows = [(torque, name) for torque in figures.torque.values for name in figures.figure.values]
-    columns: dict[str, list[str]] = {
-        "pinion_torque_Nm": [cell(1e-3 * torque, "torque") for torque, _ in rows],
-        "figure": [name for _, name in rows],
+    """One row per torque and key figure, columns for each result; what is rounding is zero."""
+    table = comparison.table().values
+    figures = table["figure"]
+    columns = {
+        head: values if head in ("pinion_torque_Nm", "figure") else [*map(cell, values, figures)]
+        for head, values in table.items()
     }
-    for k, result in enumerate(comparison.results):
-        for part in figures.data_vars if k else ("value",):
-            values = figures[part].values[..., k].ravel()
-            columns[f"{result}: {part}"] = [cell(value, name) for value, (_, name) in zip(values, rows, strict=True)]
     return csv_table(columns)
 
 
@@ -374,13 +376,7 @@ def study_csv(study: xarray.Dataset) -> str:
 
     Variants and torques are numbered from 0. Columns of whole numbers, as counts are, have no decimals.
     """
-    order = [name for name in ("sample", "torque") if name in study.sizes]  # no torque where no variant is ok
-    frame = study.drop_vars("torque", errors="ignore").to_dataframe(order).reset_index()
-    for name in study.data_vars:
-        known = frame[name].dropna()
-        if known.dtype.kind == "f" and (known.abs() < 2**53).all() and (known % 1 == 0).all():
-            frame[name] = frame[name].astype("Int64")
-    table: str = frame[list(dict.fromkeys([*order, *varied_keys(study), *frame]))].to_csv(index=False)
+    table: str = to_pandas(study).reset_index().to_csv(index=False)
     return table
 
 

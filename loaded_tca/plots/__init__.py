@@ -40,6 +40,13 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 
 if TYPE_CHECKING:  # those of other results than mesh cycles, with all that they show
     from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
+    from loaded_tca.plots.comparison_subjects import (
+        COMPARISON_PICTURES,
+        comparison_figures,
+        plot_compared_face_load,
+        plot_compared_patterns,
+        plot_compared_root_stress,
+    )
     from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
     from loaded_tca.plots.double_helical import (
         DOUBLE_HELICAL_CAPTIONS,
@@ -104,6 +111,7 @@ else:
     __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
+    "COMPARISON_PICTURES",
     "DOUBLE_HELICAL_CAPTIONS",
     "DOUBLE_HELICAL_PICTURES",
     "MORE_PICTURES",
@@ -113,6 +121,7 @@ __all__ = [
     "STAGE_CAPTIONS",
     "STAGE_PICTURES",
     "TRIBOLOGY_PICTURES",
+    "comparison_figures",
     "double_helical_figures",
     "draw_teeth",
     "halves_revolution_figures",
@@ -120,7 +129,10 @@ __all__ = [
     "plot_at_a_glance",
     "plot_bearing_loads",
     "plot_before_and_after",
+    "plot_compared_face_load",
     "plot_compared_maps",
+    "plot_compared_patterns",
+    "plot_compared_root_stress",
     "plot_comparison",
     "plot_contact_path",
     "plot_contact_patterns",

@@ -29,7 +29,8 @@ SMALLEST_SPAN_UM = 1e-3
 """Height of a transmission error axis below which a curve would be rounding."""
 UNIT = np.array([-1.0, 1.0])
 """Borders [mm] of a map of nothing."""
-MOST_IN_A_ROW = 3
+MOST_IN_A_ROW = 2
+"""Panels, whose letters can be read on a page of A4."""
 BEYOND: dict[str, Any] = {
     "facecolor": "white",
     "edgecolor": NO_MATERIAL,
@@ -69,21 +70,18 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
     comparison = results if isinstance(results, Comparison) else compare_results(results)
     shared = comparison.index_of(torque)
     named = comparison.results
-    alike = len({result.scene.pinion.teeth for result in named.values()}) == 1
-    unit = "[deg]" if alike else "[pitches]"
-    figure = Figure(figsize=(11.0, 10.0), layout="constrained")
+    unit, scales = abscissa_of(named)
+    figure = Figure(figsize=(11.0, 12.5), layout="constrained")
     (absolute, about_mean), (harmonics, stiffness), (pressure, share) = figure.subplots(3, 2)
     bars = []
-    for (name, result), k, (colour, marker, width) in zip(
-        named.items(), comparison.indices[shared], _styles(len(named)), strict=True
+    for (name, result), k, (colour, marker, width), scale in zip(
+        named.items(), comparison.indices[shared], styles_of(len(named)), scales, strict=True
     ):
         drawn = {"color": colour, "marker": marker, "linewidth": width, "markersize": 4.0}
-        scale = math.degrees(1.0) if alike else 1.0 / result.gear_pair.pitch
         angle = scale * result.pinion_angle
         length = 1e3 * result.wheel_base_radius
         error = length * result.transmission_error[k]
-        label = name.replace("$", r"\$")  # no TeX, and shown where it begins with an underscore
-        absolute.plot(angle, error, label=f" {label}", **drawn)
+        absolute.plot(angle, error, label=label_of_result(name), **drawn)
         about_mean.plot(angle, error - mean_over_a_pitch(error), **drawn)
         stiffness.plot(angle, result.mesh_stiffness[k], **drawn)
         bars.append((name, colour, length * result.harmonics(MOST_ORDERS)[k]))
@@ -108,7 +106,7 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
     share.set_ylim(-4.0, 106.0)
     figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     style.write_title(
-        figure, _title(named), f"comparison, {_under(comparison, shared)}", "lengths at the wheel's base circle"
+        figure, title_of(named), f"comparison, {under_torque(comparison, shared)}", "lengths at the wheel's base circle"
     )
     return figure
 
@@ -146,7 +144,7 @@ def plot_compared_maps(results: Results, torque: float | None = None, position: 
     borders = [np.concatenate([one.borders[axis] for one in maps if one is not None] or [UNIT]) for axis in (1, 0)]
     limits = [(float(ends.min()), float(ends.max())) for ends in borders]
     scale, height = scale_factor(*(high - low for low, high in limits))
-    columns = len(named) if len(named) <= MOST_IN_A_ROW else math.ceil(math.sqrt(len(named)))
+    columns = min(len(named), max(MOST_IN_A_ROW, math.ceil(math.sqrt(len(named)))))
     rows = math.ceil(len(named) / columns)
     size = PANEL_INCHES * columns, 1.0 + rows * (1.2 + 0.6 * height)  # labels and the bar take the rest of 7 inches
     figure = Figure(figsize=size, layout="constrained")
@@ -165,7 +163,8 @@ def plot_compared_maps(results: Results, torque: float | None = None, position: 
             axes.add_patch(Rectangle((0.0, 0.0), 1.0, 1.0, transform=axes.transAxes, **BEYOND))
         axes.set_title(f"{name}\n{style.position_label(result, n, column)}", fontsize="small", parse_math=False)
     for axes in panels[len(named) :]:
-        axes.set_axis_off()
+        axes.remove()
+    panels = panels[: len(named)]
     if any(loaded):
         beyond = any(one is not None and one.pressure.max() > highest for one in maps)
         colours = ScalarMappable(Normalize(0.0, highest), COLOURS)
@@ -173,7 +172,7 @@ def plot_compared_maps(results: Results, torque: float | None = None, position: 
     drawn = (zip(*axes.get_legend_handles_labels(), strict=True) for axes in panels)
     keys = {label.partition(",")[0]: key for pairs in drawn for key, label in pairs}  # Hertz without its pressure
     figure.legend(keys.values(), keys.keys(), loc="outside lower center", ncols=3, fontsize="small")
-    style.write_title(figure, _title(named), f"contact pressure, {_under(comparison, shared)}")
+    style.write_title(figure, title_of(named), f"contact pressure, {under_torque(comparison, shared)}")
     return figure
 
 
@@ -189,17 +188,31 @@ def _places(comparison: Comparison, shared: int, position: int | None) -> list[t
     return [(k, n, int(result.peak_column[k, n])) for (result, k), n in zip(named, nearest, strict=True)]
 
 
-def _styles(count: int) -> Iterator[tuple[str, str, float]]:
+def abscissa_of(named: Mapping[str, MeshCycle]) -> tuple[str, list[float]]:
+    """Unit of an axis of pinion angles, and factors to it: degrees, of pinions with different teeth pitches."""
+    alike = len({result.scene.pinion.teeth for result in named.values()}) == 1
+    if alike:
+        return "[deg]", [math.degrees(1.0)] * len(named)
+    return "[pitches]", [1.0 / result.gear_pair.pitch for result in named.values()]
+
+
+def label_of_result(name: str) -> str:
+    """Name of a result for a legend: no TeX, and shown where it begins with an underscore."""
+    return " " + name.replace("$", r"\$")
+
+
+def styles_of(count: int) -> Iterator[tuple[str, str, float]]:
     """Colour, marker and line width of each result: curves on each other are seen, each beside the next."""
     return zip(cycle(DISTINCT_COLOURS), cycle(MARKERS), np.linspace(5.0, 1.5, count).tolist(), strict=False)
 
 
-def _title(named: Mapping[str, MeshCycle]) -> str:
+def title_of(named: Mapping[str, MeshCycle]) -> str:
     """The title of all scenes, or else the names."""
     titles = {result.scene.title for result in named.values()}
     return titles.pop() if len(titles) == 1 else " | ".join(named)
 
 
-def _under(comparison: Comparison, shared: int) -> str:
+def under_torque(comparison: Comparison, shared: int) -> str:
+    """What a title says of a shared torque, by its index."""
     first = next(iter(comparison.results.values()))
     return style.torque_label(first, int(comparison.indices[shared, 0]))

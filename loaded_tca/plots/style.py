@@ -79,20 +79,24 @@ def save_figure(figure: Figure, path: FilePath) -> None:
     replace_file(path, png_of(figure))
 
 
-def png_of(figure: Figure) -> bytes:
-    """Return a figure as the content of a PNG file."""
+def png_of(figure: Figure, dots_per_inch: float = DOTS_PER_INCH, largest: int = LARGEST_PICTURE) -> bytes:
+    """Return a figure as the content of a PNG file, with a palette if it has more bytes than ``largest``."""
     shown = figure.get_dpi()
     canvas: Any = FigureCanvasAgg(figure)
-    figure.set_dpi(DOTS_PER_INCH)
+    figure.set_dpi(dots_per_inch)
     with estimated_at_first(figure), rc_context(FAST_TEXT):
         canvas.draw()  # once: savefig would draw the figure to lay it out, and then again
     figure.set_dpi(shown)
     pixels = np.asarray(canvas.buffer_rgba())[..., :3]  # figures let nothing shine through
-    content = _png_content(pixels)
-    return content if len(content) <= LARGEST_PICTURE else _png_content(*_with_palette(pixels))
+    content = _png_content(pixels, dots_per_inch=dots_per_inch)
+    if len(content) <= largest:
+        return content
+    return _png_content(*_with_palette(pixels), dots_per_inch=dots_per_inch)
 
 
-def _png_content(pixels: NDArray[np.uint8], palette: NDArray[np.uint8] | None = None) -> bytes:
+def _png_content(
+    pixels: NDArray[np.uint8], palette: NDArray[np.uint8] | None = None, *, dots_per_inch: float = DOTS_PER_INCH
+) -> bytes:
     """PNG of pixels (m, n, 3), or of their places (m, n) in a palette (256, 3).
 
     Rows are not filtered: Pillow tries four filters on each, takes three times as long, and letters and curves take as
@@ -103,7 +107,7 @@ def _png_content(pixels: NDArray[np.uint8], palette: NDArray[np.uint8] | None = 
     for colour in range(count):
         rows[:, 1 + colour :: count] = values[..., colour]
     kind = COLOUR_OF_PIXELS if palette is None else COLOUR_OF_PALETTE
-    dots = round(DOTS_PER_INCH / METRES_PER_INCH)
+    dots = round(dots_per_inch / METRES_PER_INCH)
     parts = [
         (b"IHDR", struct.pack(">2I5B", pixels.shape[1], pixels.shape[0], 8, kind, 0, 0, 0)),
         (b"pHYs", struct.pack(">2IB", dots, dots, 1)),

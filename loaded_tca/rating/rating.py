@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
@@ -21,6 +21,7 @@ from loaded_tca.results.files import RATING
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.result import Result, figures_of
 from loaded_tca.results.summary import shown
+from loaded_tca.results.tables import Columns
 from loaded_tca.scene.spiral import SpiralScene
 
 if TYPE_CHECKING:
@@ -173,6 +174,10 @@ class OfCases(Result):
     def to_table(self) -> dict[str, Array]:
         """Return all numbers as columns, a row for each load case, by names that end in their unit."""
         return self.figure_arrays()
+
+    def tables(self) -> dict[str, Callable[[], Columns]]:
+        """The one table that there is, a row for each load case."""
+        return {"figures": super().tables()["figures"]}
 
     def stored(self) -> xarray.Dataset:
         """The dataset as files have it: gears by their place in ``MEMBERS``, from 0; kinds of failure likewise."""

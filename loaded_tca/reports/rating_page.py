@@ -107,7 +107,7 @@ def _told(rating: OfCases, decisive: tuple[str, ...], tables: Sequence[Table]) -
     return {
         "refused": (),
         "about": rating.scope.rpartition("; ")[0],
-        "safeties": _safeties(rating),
+        "safeties": safeties_table(rating),
         "findings": decisive,
         "tables": tables,
         "notes": [note for note in rating.notes() if note not in decisive],
@@ -123,7 +123,7 @@ def _of_halves(rating: DoubleHelicalRating) -> dict[str, Any]:
     rows = rows_of(rating, GEARS, rating.modes, figures)[1:]
     tables = []
     for name, half in zip(HALVES, rating.halves, strict=True):
-        of_half = [replace(_safeties(half), caption="safeties and lives"), *_all_tables(half, cases)]
+        of_half = [replace(safeties_table(half), caption="safeties and lives"), *_all_tables(half, cases)]
         tables += [replace(table, caption=f"Half {name}: {table.caption}") for table in of_half]
     return {
         "refused": (),
@@ -152,7 +152,7 @@ def _of_meshes(rating: StageRating, cases: Sequence[int]) -> Iterator[Table]:
             yield replace(table, rows=rows, head=head, caption=caption)
 
 
-def _safeties(rating: OfCases) -> Table:
+def safeties_table(rating: OfCases) -> Table:
     """The least safeties of all cases of all gears beside those required, and the shortest lives."""
     rows = []
     safeties, lives = (values.min(axis=0) for values in rating.safeties_and_lives())

@@ -21,9 +21,11 @@ from loaded_tca.plain import plain
 from loaded_tca.plots import plot_before_and_after, plot_peak_to_peak_over_torque, plot_study
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports import page
+from loaded_tca.reports.comparison_page import comparison_content
 from loaded_tca.reports.double_helical_page import double_helical_content, halves_geometry
 from loaded_tca.reports.page import Table, pictures_of
 from loaded_tca.reports.result_page import explained, result_content, scene_content, stage_content, stage_geometry
+from loaded_tca.results.comparison import Comparison
 from loaded_tca.results.files import STUDY, FilePath, make_directory, replace_file
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import shown, shown_torque
@@ -63,9 +65,10 @@ def write_html_report(
     *,
     date: str | None = None,
     rank_by: str | None = None,
+    torque: float | None = None,
     interactive: bool = False,
 ) -> Path:
-    """Write the report of a result, a stage, a study or a design: one HTML file with pictures, which needs no other.
+    """Write the report of a result, a comparison, a stage, a study or a design: one HTML file that needs no other.
 
     It tells what was asked, the geometry, the load cases, the key figures with their units and how accurate they are,
     every accuracy warning with its meaning, and the scene file. It prints on A4. The same subject and date give the
@@ -73,9 +76,9 @@ def write_html_report(
 
     Parameters
     ----------
-    subject : MeshCycle, StageResult, DoubleHelicalResult, xarray.Dataset or DesignResult
-        A result; a planetary stage; a double helical pair; a study as :func:`loaded_tca.studies.run_study` returns it;
-        a design.
+    subject : MeshCycle, Comparison, StageResult, DoubleHelicalResult, xarray.Dataset or DesignResult
+        A result; several as :func:`loaded_tca.results.compare_results` returns them; a planetary stage; a double
+        helical pair; a study as :func:`loaded_tca.studies.run_study` returns it; a design.
     path : str or path
         Of the file; its directory is made if it does not exist.
     date : str, optional
@@ -84,6 +87,8 @@ def write_html_report(
         Figure that ranks the variants of a study; default: the peak-to-peak transmission error. The least is best, of
         safeties, lives and films the largest. Where the study has distributions, combinations of its other values are
         ranked, by the 95 % quantile over their samples, or the 5 % quantile where the largest is best.
+    torque : float [N mm], optional
+        Of the pictures of a comparison; default: the largest that all results have.
     interactive : bool
         True: the page of :func:`explore`, of a result or a study, which needs the extra ``interactive``.
 
@@ -95,7 +100,8 @@ def write_html_report(
     Raises
     ------
     InputError
-        If the subject is none of these, or no study with the figure that is to rank it; if jinja2 is not installed, or
+        If the subject is none of these, no study with the figure that is to rank it, or no comparison under the torque;
+        if jinja2 is not installed, or
         the file cannot be written, which leaves what was there before.
 
     Examples
@@ -116,10 +122,14 @@ def write_html_report(
     page.require_jinja2()
     is_study = getattr(subject, "attrs", {}).get("kind") == STUDY
     require((rank_by is None or is_study, f"rank_by: {rank_by!r:.60}; a {type(subject).__name__} has no ranking"))
+    is_compared = isinstance(subject, Comparison)
+    require((torque is None or is_compared, f"torque: {torque!r:.60}; a {type(subject).__name__} has all torques"))
     with one_thread():  # sums of several threads differ in their last digits each time
         if isinstance(subject, MeshCycle):
             template, content = "result.html.j2", result_content(subject)
             date = date or subject.date
+        elif isinstance(subject, Comparison):
+            template, content = "comparison.html.j2", comparison_content(subject, torque)
         elif isinstance(subject, DesignResult):
             template, content = "design.html.j2", design_content(subject)
         elif isinstance(subject, DoubleHelicalResult):
@@ -132,8 +142,8 @@ def write_html_report(
             template, content = "study.html.j2", study_content(subject, rank_by)
         else:
             raise InputError(
-                f"report: found a {type(subject).__name__}; allowed a result, a stage, a double helical pair, a study "
-                "or a design"
+                f"report: found a {type(subject).__name__}; allowed a result, a comparison, a stage, a double "
+                "helical pair, a study or a design"
             )
     content = {"version": version("loaded_tca"), **content}
     content["date"] = page.shown_date(date)
@@ -198,7 +208,7 @@ def study_tables(study: xarray.Dataset, rank_by: str | None = None) -> dict[str,
         **_geometry_of(subject),
         "varied": _varied(study),
         "seed": f"{study.attrs.get('seed', '-')}" if sampled else "",
-        "scatter": [*_scatter(study, by)],
+        "scatter": [*scatter_tables(study, by)],
         "sampled": sampled,
         "grouped": grouped,
         "quantile": _quantiles(study, by),
@@ -268,7 +278,7 @@ def _varied(study: xarray.Dataset) -> Table:
     return Table(tuple(rows), ("what varies", "key", "how", "values", "from, to"), of_words=True)
 
 
-def _scatter(study: xarray.Dataset, by: str | None) -> Iterator[Table]:
+def scatter_tables(study: xarray.Dataset, by: str | None) -> Iterator[Table]:
     """Percentiles of the main figures over the variants, a table for each torque."""
     if not main_figures(study):
         return
@@ -358,15 +368,8 @@ def design_content(design: DesignResult) -> dict[str, Any]:
         **scene_content(scene),
         "objective": f"{data.attrs['objective']} of the {minimised.text}"
         + (f" [{minimised.unit}]" if minimised.unit != "1" else ""),
-        "objectives": Table(
-            (
-                ("by the full analysis", *(plain(one) for one in design.objective)),
-                ("on held contacts", *(plain(one) for one in design.held_objective)),
-                (DIFFERENCE, *("-" if math.isnan(one) else plain(one, 2) for one in design.held_difference)),
-            ),
-            ("", "start", "optimum"),
-        ),
-        "values": _values(design),
+        "objectives": objectives_table(design),
+        "values": values_table(design),
         "limits": [*map(_told_limit, data.attrs["limits"].splitlines())],
         "scattered": _scattered(design),
         "seeds": data.attrs.get("seeds", ""),
@@ -389,7 +392,19 @@ def _told_limit(limit: str) -> str:
     return f"{limit} ({FIGURES[name].text}{FIGURES[name].note})"
 
 
-def _values(design: DesignResult) -> Table:
+def objectives_table(design: DesignResult) -> Table:
+    """Objective of start and optimum by the analysis and on held contacts, and how far these differ."""
+    return Table(
+        (
+            ("by the full analysis", *(plain(one) for one in design.objective)),
+            ("on held contacts", *(plain(one) for one in design.held_objective)),
+            (DIFFERENCE, *("-" if math.isnan(one) else plain(one, 2) for one in design.held_difference)),
+        ),
+        ("", "start", "optimum"),
+    )
+
+
+def values_table(design: DesignResult) -> Table:
     """What was designed, within which range."""
     data = design.dataset
     bounds = data["range"].values.tolist() if "range" in data else [(math.nan, math.nan)] * len(design.start)

@@ -70,7 +70,7 @@ def result_tables(result: MeshCycle) -> dict[str, Any]:
         "scope": result.scope,
         **scene_content(result.scene),
         "load_cases": _load_cases(result, figures),
-        "key_figures": [_key_figures(result, part, figures[part]) for part in parts_of(figures, MOST_TORQUES)],
+        "key_figures": [key_figures_table(result, part, figures[part]) for part in parts_of(figures, MOST_TORQUES)],
         "limits": [*limits_of(figures), *result.findings()],
         "accuracy": [_accuracy(result, part, figures) for part in parts_of(figures, MOST_TORQUES)],
         "warnings": None if result.warnings is None else explained(result.warnings),
@@ -146,11 +146,16 @@ def _head(name: str) -> str:
     return words + bracket + unit.replace("um", "µm") if bracket else unit
 
 
-def _key_figures(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> Table:
-    """Every figure of the summary under some torques, its unit, and what is to be known of its accuracy."""
+def key_figures_table(result: MeshCycle, part: slice, figures: Sequence[Figures], *, main: bool = False) -> Table:
+    """Every figure of the summary under some torques, its unit, and what is to be known of its accuracy.
+
+    With ``main`` those alone by which results are compared.
+    """
     rows = []
     for label, names in known_rows(figures):
         for name in names if names != (TORQUE,) else ():
+            if main and not FIGURES[name].is_compared:
+                continue
             accuracy = FIGURES[name].accuracy
             indent = "  " if label.startswith(" ") else ""
             values = (_value(one, name) for one in figures)

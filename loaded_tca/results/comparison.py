@@ -11,14 +11,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.errors import InputError, require
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import kind_of_edge, shown, without_rounding
+from loaded_tca.results.tables import Columns, frame_of
 from loaded_tca.scene.keys import shown as shown_value
 from loaded_tca.scene.section import as_table
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
     from loaded_tca.arrays import Array
@@ -29,12 +32,14 @@ NOT_COMPARED = "title", "load.pinion_torque_Nm", "analysis.torques_Nm"
 """Keys of the scenes that a comparison does not name."""
 DIGITS = ".6g"
 """Of torques [N m] that are the same."""
+MARK = "*"
+"""Beside a difference that exceeds the errors of both results."""
 MOST_KEYS = 12
 """Keys of the scenes that the summary names."""
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class Comparison(InNotebooks):
     """Two or more results under the torques that all of them have, each beside the first.
 
     Attributes
@@ -53,11 +58,12 @@ class Comparison:
         """Key figures as ``value``, ``difference`` and ``relative_difference`` to the first (torque, figure, result).
 
         NaN: not known. A relative difference is that over the magnitude of the first, and NaN where that is zero and
-        for angles and axial positions, whose zero has no meaning.
+        for angles and axial positions, whose zero has no meaning. ``difference_error`` is the sum of the errors that
+        both results state of the figure, by the grid, by the positions or against finite elements.
         """
         import xarray
 
-        owned = [result.key_figures() for result in self.results.values()]
+        owned = self._owned
         names = [name for name in dict.fromkeys(name for own in owned for name in own[0]) if name != "pinion_torque_Nm"]
         value = np.array(
             [
@@ -75,11 +81,67 @@ class Comparison:
         base = np.where((first == 0.0) | is_place[:, None], math.nan, np.abs(first))
         with np.errstate(invalid="ignore"):
             parts = {"value": value, "difference": difference, "relative_difference": difference / base}
+            error = np.abs(value) * self._stated_errors(names)
+            parts["difference_error"] = error + error[..., :1]
         dimensions = ("torque", "figure", "result")
         return xarray.Dataset(
             {name: (dimensions, values) for name, values in parts.items()},
             {"torque": self.torque, "figure": names, "result": list(self.results)},
         )
+
+    @cached_property
+    def _owned(self) -> list[tuple[dict[str, float], ...]]:
+        """Key figures of each result under all torques that it has."""
+        return [result.key_figures() for result in self.results.values()]
+
+    @cached_property
+    def relative_errors(self) -> xarray.DataArray:
+        """Relative errors (torque, figure, result) that the results state of their key figures; NaN: none."""
+        value = self.figures["value"]
+        return value.copy(data=self._stated_errors(value["figure"].values.tolist()))
+
+    def _stated_errors(self, names: Sequence[str]) -> Array:
+        """Relative errors (torque, figure, result) of key figures by their names."""
+        cases = zip(self.results.values(), self._owned, self.indices.T.tolist(), strict=True)
+        errors = [
+            [
+                [FIGURES[name].relative_error(name, result, k, own[k]) if name in FIGURES else math.nan for k in row]
+                for name in names
+            ]
+            for result, own, row in cases
+        ]
+        return np.transpose(errors, (2, 1, 0))
+
+    @property
+    def beyond_errors(self) -> xarray.DataArray:
+        """Whether differences (torque, figure, result) exceed the errors that both results state.
+
+        1: they do; 0: they do not; NaN: the difference or an error is not known, or there is none, as of the first.
+        Errors that both results share cancel in a difference: one within them may be there all the same.
+        """
+        difference, error = self.figures["difference"], self.figures["difference_error"]
+        known = difference.notnull() & error.notnull() & (self.figures["result"] != next(iter(self.results)))
+        return ((difference > error) | (-difference > error)).where(known)
+
+    def table(self) -> Columns:
+        """A row for each torque and figure, columns for each result: its value, and what it differs by."""
+        figures = self.figures
+        count = figures.sizes["figure"]
+        columns: dict[str, Any] = {
+            "pinion_torque_Nm": np.repeat(1e-3 * self.torque, count),
+            "figure": np.tile(figures["figure"].values.astype(object), len(self.torque)),
+        }
+        for k, result in enumerate(self.results):
+            for part in figures.data_vars if k else ("value",):
+                columns[f"{result}: {part}"] = figures[part].values[..., k].ravel()
+        return Columns(columns, ("pinion_torque_Nm", "figure"))
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return the key figures as a frame, with the columns of ``comparison.csv``; NaN: not known.
+
+        Its index: torques [N m], and figures, whose names end in the units of their rows.
+        """
+        return frame_of(self.table())
 
     @cached_property
     def indices(self) -> np.ndarray[tuple[int, int], np.dtype[np.int_]]:
@@ -97,6 +159,13 @@ class Comparison:
         keys = dict.fromkeys(key for scene in scenes for key in scene if key not in NOT_COMPARED)
         values = {key: tuple(scene.get(key) for scene in scenes) for key in keys}
         return {key: row for key, row in values.items() if any(value != row[0] for value in row)}
+
+    @property
+    def left_out(self) -> dict[str, list[str]]:
+        """Torques [N m] of the results that not all have, by the names of those that have such ones."""
+        shared = [_told(torque) for torque in self.torque]
+        others = {name: [one for one in _torques(result) if one not in shared] for name, result in self.results.items()}
+        return {name: torques for name, torques in others.items() if torques}
 
     def index_of(self, torque: float | None = None) -> int:
         """Return the index of a torque [N mm] among the shared ones; default: that of the largest.
@@ -116,28 +185,32 @@ class Comparison:
         """Return what differs in the scenes and in the main figures under one torque [N mm]; default: the largest."""
         at = self.index_of(torque)
         names = list(self.results)
-        table: list[tuple[str, ...]] = [("", names[0], *(cell for name in names[1:] for cell in (name, "", "")))]
+        table: list[tuple[str, ...]] = [("", names[0], *(cell for name in names[1:] for cell in (name, "", "", "")))]
         keys = list(self.differing_keys.items())
         for key, (first, *others) in keys[:MOST_KEYS]:
-            table.append((key, _written(first), *(cell for other in others for cell in (_written(other), "", ""))))
-        under = self.figures.isel(torque=at)
+            table.append(
+                (key, written_value(first), *(cell for other in others for cell in (written_value(other), "", "", "")))
+            )
+        under = self.figures.isel(torque=at).assign(beyond=self.beyond_errors.isel(torque=at))
         pressure, rounded = (under.value.sel(figure=name).values for name in ("edge_pressure_MPa", "edge_is_rounded"))
         edge = kind_of_edge([{"edge_is_rounded": one} for one in rounded[np.isfinite(pressure)]])
         for name in declared(lambda figure: figure.is_compared):
             if name not in under.figure:
                 continue
             label = labelled(name, FIGURES[name].below or FIGURES[name].label)
-            one = under.sel(figure=name)
-            if not one.value.isnull().all():
-                table.append((label.format(edge=edge), *_cells(name, *(one[part].values for part in one))))
+            row = under.sel(figure=name)
+            if not row.value.isnull().all():
+                parts = (row[part].values for part in ("value", "difference", "relative_difference", "beyond"))
+                table.append((label.format(edge=edge), *_cells(name, *parts)))
         widths = [max(map(len, column)) for column in zip(*table, strict=True)]
         lines = [f"{row[0]:<{widths[0]}}" + _right(row[1:], widths[1:]) for row in table]
         more = len(keys) - MOST_KEYS
         notes = [f"{more} more keys of the scenes differ"] if more > 0 else []
-        shared = [_told(one) for one in self.torque]
-        own = {name: [one for one in _torques(result) if one not in shared] for name, result in self.results.items()}
-        if left := [f"{name} {', '.join(torques)}" for name, torques in own.items() if torques]:
-            notes.append(f"all have the torques {', '.join(shared)} N m; left out: {'; '.join(left)} N m")
+        if any(MARK in row for row in table):
+            notes.append(f"{MARK} differs by more than the errors that both results state")
+        if left := [f"{name} {', '.join(torques)}" for name, torques in self.left_out.items()]:
+            shared = ", ".join(map(_told, self.torque))
+            notes.append(f"all have the torques {shared} N m; left out: {'; '.join(left)} N m")
         head = f"Compared with {names[0]}, pinion torque {_told(self.torque[at])} N m"
         return "\n".join([head, *(line.rstrip() for line in lines), *(f"note: {note}" for note in notes)])
 
@@ -207,18 +280,25 @@ def _flat(table: Mapping[str, Any], place: str = "") -> Iterator[tuple[str, Any]
             yield place + name, value
 
 
-def _written(value: Any) -> str:
+def written_value(value: Any) -> str:
+    """A value of a scene as files have it; a dash where it is not given."""
     return "-" if value is None else shown_value(value)
 
 
-def _cells(name: str, value: Array, difference: Array, relative: Array) -> Iterator[str]:
-    """The first value, then of every other result its value, difference and relative difference."""
+def _cells(name: str, value: Array, difference: Array, relative: Array, beyond: Array) -> Iterator[str]:
+    """The first value, then of every other result its value, difference, relative difference and mark."""
     yield shown(value[0], name)
-    for one, change, part in zip(value[1:], difference[1:], relative[1:], strict=True):
+    for one, change, part, marked in zip(value[1:], difference[1:], relative[1:], beyond[1:], strict=True):
         yield shown(one, name)
-        text = shown(change, name)
-        yield f"+{text}" if change > 0.0 else text
+        yield signed_change(change, name)
         yield f"({100.0 * part:+.1f} %)" if math.isfinite(part) else ""
+        yield MARK if marked == 1.0 else ""
+
+
+def signed_change(change: float, name: str) -> str:
+    """A difference of a figure as summaries show it, with its sign."""
+    text = shown(change, name)
+    return f"+{text}" if change > 0.0 else text
 
 
 def _right(cells: Sequence[str], widths: Sequence[int]) -> str:

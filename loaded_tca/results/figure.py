@@ -112,10 +112,8 @@ def compared(name: str, result: CycleNumbers, *_: object) -> str:
     """By how much a key figure of gears of this kind differs from finite elements; nothing of most figures."""
     if not any(words in name for percents in COMPARED.values() for words in percents):
         return ""
-    for kind in _kinds(result):
-        for words, percent in COMPARED[kind].items():
-            if words in name:
-                return f"{kind}: those compared are within {percent:g} % of finite elements"
+    for kind, percent in _percents(name, result):
+        return f"{kind}: those compared are within {percent:g} % of finite elements"
     within = {kind: percent for kind, of in COMPARED.items() for words, percent in of.items() if words in name}
     others = ", ".join(f"{kind} within {percent:g} %" for kind, percent in within.items())
     kinds = "helical teeth" if math.isfinite(result.scene.transverse_angles[1]) else "teeth of bevel gears"
@@ -145,6 +143,12 @@ def _errors_at_peak(result: CycleNumbers, part: slice) -> str:
     return ", ".join(map(in_percent, errors))
 
 
+def _percents(name: str, result: CycleNumbers) -> Iterator[tuple[str, float]]:
+    """Kinds of gears that a result is of, and by how many percent a key figure of them differs from finite elements."""
+    for kind in _kinds(result):
+        yield from ((kind, percent) for words, percent in COMPARED[kind].items() if words in name)
+
+
 def _kinds(result: CycleNumbers) -> Iterator[str]:
     """Kinds of gears of ``COMPARED`` that a result is of."""
     spur_wide, spur_narrow, spur, helical = COMPARED
@@ -154,6 +158,37 @@ def _kinds(result: CycleNumbers) -> Iterator[str]:
         yield spur
     elif math.isfinite(helix):
         yield helical
+
+
+def _part_at_peak(_: str, result: CycleNumbers, torque: int, __: Figures) -> float:
+    """Estimated error of the peak pressure itself."""
+    place = result.peak_contact(torque)
+    return math.nan if place is None else float(result.discretisation_error[torque][place])
+
+
+def _part_of_face_load(_: str, __: CycleNumbers, ___: int, figures: Figures) -> float:
+    """What strips and positions do to K_Hbeta, the larger one."""
+    return float(np.fmax(figures["face_load_factor_error"], figures["face_load_factor_by_positions"]))
+
+
+def _part_compared(name: str, result: CycleNumbers, *_: object) -> float:
+    """Difference from finite elements of a figure of such gears."""
+    return next((0.01 * percent for _, percent in _percents(name, result)), math.nan)
+
+
+def _part_of_bending(name: str, result: CycleNumbers, *_: object) -> float:
+    """The same of a figure to which the bending of teeth belongs."""
+    return _part_compared(name, result) if result.scene.analysis.teeth_bend else math.nan
+
+
+ERRORS: dict[Note, Callable[[str, CycleNumbers, int, Figures], float]] = {
+    of_peak: _part_at_peak,
+    of_edge: lambda _, __, ___, figures: figures["edge_pressure_error"],
+    of_face_load: _part_of_face_load,
+    of_bending: _part_of_bending,
+    compared: _part_compared,
+}
+"""Sentence on the accuracy of a figure -> the relative error that it states, of name, result, torque and figures."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -199,6 +234,21 @@ class Figure:
     is_part: bool = False
     needs: str = ""
     accuracy: Note | None = None
+
+    def relative_error(self, name: str, result: CycleNumbers, torque: int, figures: Figures) -> float:
+        """The relative error that its accuracy states of a result under a torque; NaN: none is known.
+
+        Parameters
+        ----------
+        name : str
+        result : CycleNumbers
+        torque : int
+            Index.
+        figures : mapping of str to float
+            Under this torque.
+        """
+        error = None if self.accuracy is None else ERRORS.get(self.accuracy)
+        return math.nan if error is None else error(name, result, torque, figures)
 
     @property
     def is_of_roots(self) -> bool:

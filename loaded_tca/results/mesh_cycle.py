@@ -26,12 +26,13 @@ from loaded_tca.results.pressure_map import arrays_of_maps, maps_from
 from loaded_tca.results.quantities import IN_FILES, MOTIONS, PATH_PARTS, SIZES
 from loaded_tca.results.result import AnalysisResult
 from loaded_tca.results.root_stress import RootStressMap, root_stress_maps
-from loaded_tca.results.summary import summary_text
+from loaded_tca.results.summary import limits_of, summary_text
+from loaded_tca.results.tables import Columns, contacts_table, positions_table
 from loaded_tca.results.warnings import findings_of
 from loaded_tca.unloaded import ContactPath
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     import xarray
     from numpy.typing import ArrayLike
@@ -326,6 +327,22 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         figures = self.key_figures()
         more = [row for row, name in zip(self.rows(figures), self.figures, strict=True) if name not in self.FIGURES]
         return summary_text(self.title or self.TITLE, self.scope, figures, self.warnings or (), self.findings(), more)
+
+    def sentences(self) -> dict[str, tuple[str, ...]]:
+        """What limits the figures, what edges do to them, and accuracy warnings."""
+        return {"note": self.notes(), "finding": self.findings(), "warning": self.warnings or ()}
+
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on what limits the figures; none for an ordinary point contact."""
+        return tuple(limits_of(self.key_figures()))
+
+    def tables(self) -> dict[str, Callable[[], Columns]]:
+        """Tables of the result by their names; that of contacts where tooth pairs share the load."""
+        tables = super().tables()
+        tables["positions"] = lambda: positions_table(self)
+        if self.scene.analysis.load_sharing:
+            tables["contacts"] = lambda: contacts_table(self)
+        return tables
 
     def findings(self) -> tuple[str, ...]:
         """Return sentences on the largest pressures, if edges make them.

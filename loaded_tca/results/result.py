@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.results.declared import ABOUT, CYCLE, Number, Numbers, Row
 from loaded_tca.results.figure import Figure, Figures, labelled
 from loaded_tca.results.files import (
@@ -24,12 +25,14 @@ from loaded_tca.results.files import (
     replace_together,
 )
 from loaded_tca.results.summary import shown, summary_of
+from loaded_tca.results.tables import Columns, frame_of, require_openpyxl, sentences_table, workbook_of
 from loaded_tca.scene import parse_scene
 from loaded_tca.units import without_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    import pandas
     import xarray
 
     from loaded_tca.arrays import Array
@@ -49,7 +52,7 @@ def _number(name: str, factor: float, under: Row) -> float:
     return factor * float(getattr(under, name))
 
 
-class Result(Numbers, ABC):
+class Result(InNotebooks, Numbers, ABC):
     """Numbers of a result with their key figures under each torque, summary, table and file.
 
     A kind of result declares its ``NUMBERS`` and its ``FIGURES``; all of this follows.
@@ -120,13 +123,80 @@ class Result(Numbers, ABC):
 
     def summary(self) -> str:
         """Return the figures in the engineer's units, a column for each torque, notes, and accuracy warnings."""
-        sentences = {"note": self.notes(), "warning": self.warnings or ()}
-        return summary_of(self.title or self.TITLE, self.scope, self.rows(self.key_figures()), sentences)
+        return summary_of(self.title or self.TITLE, self.scope, self.rows(self.key_figures()), self.sentences())
+
+    def sentences(self) -> dict[str, tuple[str, ...]]:
+        """Sentences below the figures by the word that each begins with: what limits them, accuracy warnings."""
+        return {"note": self.notes(), "warning": self.warnings or ()}
 
     def to_table(self) -> dict[str, Array]:
         """Return the numbers of every torque and position as columns, by names that end in their unit."""
         shape = tuple(self.dataset.sizes[axis] for axis in CYCLE)
         return {head: np.broadcast_to(values, shape).ravel() for head, values in self._columns()}
+
+    def tables(self) -> dict[str, Callable[[], Columns]]:
+        """Tables of the result by the names that ``to_pandas`` takes and sheets of ``to_excel`` have."""
+        torque = self.NUMBERS["torque"].head("torque")
+        of_cycle = [name for name in self.COORDINATES if self.NUMBERS[name].dims in (CYCLE[:1], CYCLE[1:])]
+        index = tuple(self.NUMBERS[name].head(name) for name in of_cycle)
+        return {
+            "figures": lambda: Columns(self.figure_arrays(), (torque,)),
+            "positions": lambda: Columns(self.to_table(), index),
+        }
+
+    def to_pandas(self, table: str | None = None) -> pandas.DataFrame:
+        """Return a table of the result as a frame, whose columns have the heads of the CSV files, which tell the units.
+
+        Parameters
+        ----------
+        table : str, optional
+            ``"figures"``: key figures, a row for each torque; ``"positions"``: a row for each torque and position,
+            the default where the result has them. Mesh cycles with load sharing have ``"contacts"``, a row for each
+            tooth pair under load, too; revolutions ``"teeth"`` and ``"orders"``, tribology ``"slices"``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Torques [N m], positions (from 1; elsewhere angles [deg]), tooth pairs are its index. NaN: not known.
+
+        Raises
+        ------
+        InputError
+            If the result has no such table.
+        """
+        tables = self.tables()
+        name = ("positions" if "positions" in tables else "figures") if table is None else table
+        require((name in tables, f"table: {name!r:.60}; the result has {', '.join(tables)}"))
+        return frame_of(tables[name]())
+
+    @checked
+    def to_excel(self, path: FilePath) -> Path:
+        """Write all tables into a workbook of Excel, whole or not at all, with the units in the heads.
+
+        A sheet for each table of ``to_pandas``, and ``warnings`` with notes and accuracy warnings, what they mean and
+        what to do about them. Numbers have all their digits; empty cells: not known.
+
+        Parameters
+        ----------
+        path : str or path
+            Of the workbook; ends in .xlsx.
+
+        Returns
+        -------
+        pathlib.Path
+
+        Raises
+        ------
+        InputError
+            If the package openpyxl is not installed (extra ``excel``), the path has another ending, a table has more
+            rows than a sheet takes, or the file cannot be written.
+        """
+        require_openpyxl(path)
+        sheets = {name: frame_of(table()) for name, table in self.tables().items()}
+        sheets["warnings"] = frame_of(sentences_table(self.sentences()))
+        about = f"{self.WHAT}; {self.scope}; loaded_tca {self.version}, {self.date}".removesuffix(", ")
+        replace_file(path, workbook_of(sheets, self.title or self.TITLE, about))
+        return Path(path)
 
     def _columns(self) -> Iterator[tuple[str, Array]]:
         for name, number in self.NUMBERS.items():

@@ -24,11 +24,12 @@ from loaded_tca.results.files import REVOLUTION
 from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.quantities import COORDINATES, CYCLE_NUMBERS, OF_SUPPORTS
 from loaded_tca.results.result import AnalysisResult, figures_of
+from loaded_tca.results.tables import Columns
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 from loaded_tca.units import without_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     import xarray
 
@@ -355,6 +356,10 @@ class Revolution(OverTurns):
         parts["pinion_angle"] = (("torque", "tooth"), where, self.dataset["pinion_angle"].attrs)
         return xarray.Dataset(parts, {"torque": self.torque, "tooth": np.arange(count)})
 
+    def tables(self) -> dict[str, Callable[[], Columns]]:
+        """Tables of the revolution by their names; those of teeth and orders, too."""
+        return {**super().tables(), "teeth": lambda: teeth_table(self), "orders": lambda: orders_table(self)}
+
     def at_position(self, name: str) -> Array:
         """Numbers of tooth pair 0, or of the one next to it, at each position."""
         return self.values(name)[..., int(np.abs(self.pair).argmin())]
@@ -396,3 +401,30 @@ def open_turns(scene: Scene, pitches: int) -> list[str]:
     """Gears with deviations of which so many pitches are no whole turn."""
     gears = zip(GEARS, (scene.pinion, scene.wheel), strict=True)
     return [name for name, gear in gears if gear.teeth_differ and pitches % gear.teeth]
+
+
+def teeth_table(revolution: Revolution) -> Columns:
+    """A row for each torque, gear and tooth of a revolution: the largest share, force and pressure of the tooth."""
+    columns: dict[str, list[object]] = {
+        name: [] for name in ("pinion_torque_Nm", "gear", "tooth", "load_share", "normal_force_N", "peak_pressure_MPa")
+    }
+    for t, torque in enumerate(revolution.torque):
+        for gear in GEARS:
+            teeth = revolution.by_tooth(gear)
+            count = teeth.sizes["tooth"]
+            parts = [[1e-3 * torque] * count, [gear] * count, range(count)]
+            parts += [teeth[name].values[t] for name in ("load_share", "normal_force", "peak_pressure")]
+            for column, values in zip(columns.values(), parts, strict=True):
+                column.extend(values)
+    return Columns(columns, ("pinion_torque_Nm", "gear", "tooth"))
+
+
+def orders_table(revolution: OverTurns) -> Columns:
+    """A row for each order of the transmission error of a revolution: rigid, and under each torque."""
+    rigid = revolution.spectrum(rigid=True)
+    order = f"order_of_{GEARS[revolution.counted_by]}"
+    columns: dict[str, Any] = {order: rigid.order, "kind": np.array(rigid.kind, dtype=object)}
+    columns["rigid_amplitude_um"] = rigid.amplitude
+    for t, torque in enumerate(revolution.torque):
+        columns[f"amplitude_at_{1e-3 * torque:.6g}_Nm_um"] = revolution.spectrum(t).amplitude
+    return Columns(columns, (order,))

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Literal
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
 from loaded_tca.pairs.tooth_deviations import ToothDeviations, ToothFlanks
@@ -59,7 +60,7 @@ _OF_FAMILIES = frozenset({"pair", "pair.type", "pair.blank", "pair.double_helica
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene(WithStandards, ABC):
+class Scene(InNotebooks, WithStandards, ABC):
     """Input of an analysis in the engineer's units, as read from a scene file.
 
     Values are checked however a scene is made, ``dataclasses.replace`` included; docs/reference/scene_keys.md lists the

@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Literal
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears import CylindricalMesh, InternalMesh
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.pairs.gear_pair import Driving
 from loaded_tca.plain import plain
 from loaded_tca.scene import cylindrical
@@ -261,7 +262,7 @@ class StageRatingSection(RatingSection):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stage(Section):
+class Stage(InNotebooks, Section):
     """A planetary stage in the engineer's units, as read from a stage file.
 
     Attributes

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from loaded_tca.studies.run import process_pool, run_study
     from loaded_tca.studies.stage import stage_figures
     from loaded_tca.studies.study import Study
+    from loaded_tca.studies.tables import to_excel, to_pandas
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
@@ -43,6 +44,8 @@ __all__ = [
     "shortfall",
     "stage_figures",
     "study_summary",
+    "to_excel",
+    "to_pandas",
     "tolerance_class_study",
     "tribology_figures",
     "vh_study",

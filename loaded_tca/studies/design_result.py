@@ -14,6 +14,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.input_files import number_in
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.plain import plain
 from loaded_tca.results.files import DESIGN, FilePath, Part, read_dataset, write_dataset
 from loaded_tca.studies.design_figures import FIGURES, Limit
@@ -71,7 +72,7 @@ EARLIER = {
 
 
 @dataclass(frozen=True, eq=False)
-class DesignResult:
+class DesignResult(InNotebooks):
     """Result of a design: start and optimum, with the figures of both by the whole analysis.
 
     Attributes

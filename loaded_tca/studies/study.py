@@ -17,6 +17,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.plain import plain
 from loaded_tca.scene import Scene
 from loaded_tca.scene.keys import Key, Number, Whole, shown
@@ -39,7 +40,7 @@ class Distribution(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class Study(InNotebooks):
     """Variants of a scene or of a stage, numbered from 0: rows of the table outermost, then factors, samples innermost.
 
     Parameters

@@ -19,6 +19,7 @@ from loaded_tca.results.files import TRIBOLOGY
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.result import Result
 from loaded_tca.results.summary import summary_of
+from loaded_tca.results.tables import Columns
 from loaded_tca.scene import Scene
 from loaded_tca.tribology.conditions import Conditions
 from loaded_tca.tribology.evaluate import MILLI, Evaluation, pitch_weights
@@ -39,6 +40,7 @@ from loaded_tca.tribology.quantities import (
 from loaded_tca.tribology.slices import Slices, cells_of_flank, cylindrical_mesh, slices_of
 from loaded_tca.tribology.summary import places_in_words, unknown_in_words
 from loaded_tca.tribology.warnings import accuracy_sentences
+from loaded_tca.units import as_ending
 
 if TYPE_CHECKING:
     import pandas
@@ -463,9 +465,17 @@ class Tribology(Result):
             If there is no such speed.
         """
         self.check(0, speed)
-        sentences = {"not known": tuple(unknown_in_words(self)), "warning": self.warnings}
         rows = self.rows(self.key_figures(speed), speed)
-        return summary_of(self.title or self.TITLE, self.conditions.in_words(speed), rows, sentences)
+        return summary_of(self.title or self.TITLE, self.conditions.in_words(speed), rows, self.sentences())
+
+    def sentences(self) -> dict[str, tuple[str, ...]]:
+        """What is not known and why, and accuracy warnings."""
+        return {"not known": tuple(unknown_in_words(self)), "warning": self.warnings}
+
+    def tables(self) -> dict[str, Callable[[], Columns]]:
+        """Tables of the mesh, a row for each speed and torque, and of all slices at the first speed."""
+        index = "pinion_speed_rpm", self.NUMBERS["torque"].head("torque")
+        return {"figures": lambda: Columns(self.to_table(), index), "slices": lambda: slices_table(self)}
 
     def key_figures(self, speed: int = 0) -> tuple[dict[str, float], ...]:
         """Return the numbers of the mesh that are known under each torque, by names that end in their unit.
@@ -491,3 +501,16 @@ class Tribology(Result):
     def stored(self) -> xarray.Dataset:
         """The dataset as files have it: gears are 0, the pinion, and 1, the wheel."""
         return self.dataset.drop_vars("gear")
+
+
+def slices_table(tribology: Tribology) -> Columns:
+    """A row for each slice of each contact under each torque, at the first speed."""
+    columns: dict[str, list[float]] = {}
+    for torque, moment in enumerate(tribology.result.torque):
+        table = tribology.slices(torque)
+        columns.setdefault("pinion_torque_Nm", []).extend([1e-3 * float(moment)] * len(table))
+        for name in map(str, table):
+            ending = as_ending(COLUMNS[name][0])
+            head = f"{name}_{ending}" if ending else name
+            columns.setdefault(head, []).extend(table[name].astype(float).tolist())
+    return Columns(columns, ("pinion_torque_Nm",))

@@ -39,6 +39,9 @@ def test_table_has_a_row_for_each_torque_and_figure(comparison, tmp_path):
     assert 0.0 < float(residual["first: value"]) < 1e-5  # what is rounding elsewhere is none here
     (order, _) = [row for row in rows if row["figure"] == "transmission_error_order_1_um"]
     assert order["first: value"] == order["higher: difference"] == ""  # not known
+    frame = comparison.to_pandas()
+    assert frame.index.names + list(frame) == list(rows[0])
+    assert frame.loc[(80.0, "peak_pressure_MPa"), "higher: relative_difference"] == pytest.approx(0.5)
 
 
 def test_json_has_keys_figures_and_no_nan(comparison, tmp_path):

@@ -659,7 +659,8 @@ def design_dataset():
 @pytest.mark.parametrize("subject", [None, {"kind": "study"}, xarray.Dataset()])
 def test_other_subjects_are_refused(subject, tmp_path):
     with pytest.raises(
-        InputError, match=r"report: found a \w+; allowed a result, a stage, a double helical pair, a study"
+        InputError,
+        match=r"report: found a \w+; allowed a result, a comparison, a stage, a double helical pair, a study",
     ):
         write_html_report(subject, tmp_path / "report.html")
     assert not [*tmp_path.iterdir()]

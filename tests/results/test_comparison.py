@@ -5,6 +5,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.results import compare_results
+from loaded_tca.results.figure import compared, of_bending
+from loaded_tca.results.figures import FIGURES
 from loaded_tca.scene.section import as_table
 from tests.refusals import refusals, refused_calls
 from tests.samples.results import changed, changed_scene, result, with_a_gap
@@ -121,6 +123,51 @@ def test_summary_has_values_and_both_differences():
     assert names.split() == ["a", "b"]
     peak = np.nanmax(first.peak_pressure[0])
     assert row.split()[-5:] == [f"{peak:.4g}", f"{2.0 * peak:.4g}", f"+{peak:.4g}", "(+100.0", "%)"]
+
+
+def with_error(cycle, part, times=1.0):
+    """The result with a discretisation error everywhere, and other peaks."""
+    return changed(
+        cycle,
+        discretisation_error=np.full_like(cycle.discretisation_error, part),
+        peak_pressure=times * cycle.peak_pressure,
+    )
+
+
+@pytest.mark.parametrize(("times", "expected"), [(1.015, 0.0), (1.03, 1.0)])
+def test_differences_are_beyond_the_errors_of_both_results_added(times, expected):
+    """Of 1 % each: 1.5 % of the first are within them, 3 % are not."""
+    comparison = compare_results({"a": with_error(two_torques(), 0.01), "b": with_error(two_torques(), 0.01, times)})
+    beyond = comparison.beyond_errors.sel(figure="peak_pressure_MPa")
+    assert_array_equal(beyond.sel(result="b"), expected)
+    assert np.isnan(beyond.sel(result="a")).all()
+    peaks = np.nanmax(two_torques().peak_pressure, axis=(1, 2))
+    error = comparison.figures.difference_error.sel(figure="peak_pressure_MPa", result="b")
+    assert_allclose(error, 0.01 * (1.0 + times) * peaks, rtol=1e-12)  # a sum of two products
+    row = next(line for line in comparison.summary().splitlines() if line.startswith("peak pressure"))
+    assert row.endswith(" *") == bool(expected)
+
+
+def test_differences_of_which_no_error_is_stated_are_not_marked():
+    """A pressure without an estimate, an estimate without a limit, and flanks whose teeth do not bend."""
+    for part in (np.nan, np.inf):
+        comparison = compare_results([with_error(two_torques(), part), with_error(two_torques(), 0.01, 9.0)])
+        assert not (comparison.beyond_errors == 1.0).any()
+    assert comparison.relative_errors.sel(figure="transmission_error_span_um").isnull().all()
+
+
+def test_errors_are_those_that_the_sentences_on_the_accuracy_state():
+    alone = result("mesh_cycle_spur", positions=5, torques=(40.0, 130.0))
+    bending = changed_scene(alone, {"analysis.compliance": None})
+    figures, errors = bending.key_figures()[0], []
+    for name, figure in FIGURES.items():
+        if figure.accuracy in (compared, of_bending) and not figure.needs:
+            error = figure.relative_error(name, bending, 0, figures)
+            sentence = figure.accuracy(name, bending, slice(0, 1), [figures])
+            assert np.isnan(error) == (sentence == "")
+            assert np.isnan(error) or f"within {100.0 * error:g} % of finite elements" in sentence
+            errors.append(error)
+    assert np.isfinite(errors).sum() > 4
 
 
 def test_positions_without_contact_do_not_hinder():
