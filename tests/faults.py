@@ -2943,6 +2943,20 @@ FAULTS = (
         'rule(("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda _, several',
         "scene/test_double_helical_scene.py::test_refused",
     ),
+    Fault(
+        "rules of scenes: their numbers have exponents",
+        "scene/section.py",
+        "Sentence().format(problem, *values)",
+        "problem.format(*values)",
+        "test_plain.py::test_rules_of_scenes_have_plain_numbers",
+    ),
+    Fault(
+        "numbers in sentences: exponents as Python writes them",
+        "plain.py",
+        'return f"{mantissa}e{int(power)}" if exponent',
+        'return f"{mantissa}e{power}" if exponent',
+        "test_plain.py::test_number_is_that_of_the_general_format_without_an_exponent",
+    ),
 )
 
 

@@ -30,6 +30,7 @@ from loaded_tca.cli.inputs import (
 )
 from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_summary, progress_bar, say_cost
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 
 if TYPE_CHECKING:
     from loaded_tca.rating import Rating
@@ -420,7 +421,7 @@ def ease_off(options: argparse.Namespace) -> None:
     picture = png_of(plot_ease_off(ease_off, scene.title))
     paths = replace_together(options.out, {"ease_off.csv": ease_off_csv(ease_off).encode(), "ease_off.png": picture})
     for name, value in ease_off.named.items():
-        print(f"{name:<34}{round(value, 3) + 0.0:>9.3g}")
+        print(f"{name:<34}{plain(round(value, 3) + 0.0, 3):>9}")
     print_files(paths)
 
 

@@ -21,6 +21,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.pattern import COMPOUND, ContactPattern, contact_pattern
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.unloaded.teeth import trace_teeth
 
 POSITIONS = 31
@@ -138,7 +139,7 @@ def vh_check(
             mesh = trace_teeth(pair, np.linspace(-0.5, 0.5, positions) * pair.pitch)
             patterns.append(contact_pattern(pair, mesh, gear=gear, compound=compound, grid=grid))
         except GeometryError as error:
-            raise GeometryError(f"v = {first:.6g}, h = {second:.6g}: {error}") from error
+            raise GeometryError(f"v = {plain(first, 6)}, h = {plain(second, 6)}: {error}") from error
         edge_share.append(mesh.leading_contact.on_edge.mean())
     frame = (pair.pinion if gear == "pinion" else pair.wheel).flank.frame
     centre = np.array([pattern_centre(pattern, frame) for pattern in patterns]).reshape(*shape, 2)

@@ -67,7 +67,7 @@ def pair_rows(scene: DoubleHelicalScene) -> list[Row]:
         ("groove [mm]", f"{geometry.gap_mm:z.4f}"),
         ("floating along its axis", floats),
         ("apex of the wheel towards half a [mm]", f"{geometry.apex_offset_mm:z.4f}"),
-        ("pinion torque of both halves [N m]", *(f"{1e-3 * torque:g}" for torque in shown)),
+        ("pinion torque of both halves [N m]", *(f"{plain(1e-3 * torque, 6)}" for torque in shown)),
         ("axial force of a half, even shares [N]", *(f"{force:z.1f}" for force in axial)),
     ]
 

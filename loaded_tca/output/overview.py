@@ -91,10 +91,10 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """The load, what the analysis is asked to do, and the bores or journals that it holds where teeth bend."""
     torques, wanted, count = torques_with_columns(scene.torques), scene.analysis, len(scene.torques)
     label = "pinion torque [N m]" if len(torques) == count else f"{count} pinion torques from, to [N m]"
-    yield label, *(f"{1e-3 * torque:g}" for torque in torques)
+    yield label, *(f"{plain(1e-3 * torque, 6)}" for torque in torques)
     yield from scene.force_rows(torques)
     if pair.max_pressure is not None:
-        yield "cap on the pressure [MPa]", f"{pair.max_pressure:g}"
+        yield "cap on the pressure [MPa]", f"{plain(pair.max_pressure, 6)}"
     switches = ("on" if switch else "off" for switch in (wanted.load_sharing, wanted.free_edges))
     yield "load sharing, free edges, compliance", *switches, wanted.compliance
     if any(gear.tip_rounding_mm or gear.side_rounding_mm for gear in (scene.pinion, scene.wheel)):
@@ -121,7 +121,7 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
     for gear, lines in by_gear.items():
         for n, bearing in enumerate(lines[0].shaft.bearings if lines else ()):
             forces = (float(np.linalg.norm(line.bearing_forces[n, :3])) for line in lines)
-            yield f"{gear}, bearing {n} at {bearing.at:g} mm: force [N]", *(f"{force:z.1f}" for force in forces)
+            yield f"{gear}, bearing {n} at {plain(bearing.at, 6)} mm: force [N]", *(f"{force:z.1f}" for force in forces)
             inside = [rolling_figures(line, n) for line in lines]
             if any(inside):
                 yield "  largest element force [N]", *(f"{one['element_force_N']:z.1f}" for one in inside)
@@ -172,7 +172,7 @@ def _departures(scene: Scene) -> Iterator[Row]:
     yield from _changed(scene.mounting, "mounting.") or [("mounting errors", "none")]
     for name, gear in (("pinion", scene.pinion), ("wheel", scene.wheel)):
         for edge, radius in (("tip", gear.tip_rounding_mm), ("side", gear.side_rounding_mm)):
-            yield f"{name}.{edge}_rounding_mm", f"{radius:g}" if radius else "sharp"
+            yield f"{name}.{edge}_rounding_mm", f"{plain(radius, 6)}" if radius else "sharp"
         yield from _changed(gear.modifications, f"{name}.modifications.") or [(f"{name}.modifications", "none")]
 
 
@@ -196,7 +196,7 @@ def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
         for where, error in errors.items():
             if error is not None:
                 label = f"{name}: fit {where}, largest, rms [um]"
-                yield label, f"{1e3 * error.largest:.1e}", f"{1e3 * error.rms:.1e}"
+                yield label, plain(1e3 * error.largest, 2), plain(1e3 * error.rms, 2)
 
 
 def _measured_rows(scene: Scene, name: str) -> Iterator[Row]:

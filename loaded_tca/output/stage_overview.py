@@ -85,7 +85,7 @@ def _stage_rows(stage: Stage) -> list[Row]:
         room = neighbours_apart(asked.angles, stage.centre_distance) - 2.0 * planet.tip_radius
         rows.append(("neighbouring planets apart [mm]", f"{room:z.4f}"))
     rows.append(("support of the sun", _support(stage)))
-    rows += [(f"pins displaced {how} [um]", *(f"{pin:g}" for pin in given)) for how, given in pins if given]
+    rows += [(f"pins displaced {how} [um]", *(f"{plain(pin, 6)}" for pin in given)) for how, given in pins if given]
     return rows
 
 
@@ -94,7 +94,7 @@ def _support(stage: Stage) -> str:
     stiffness = stage.stage.support_stiffness
     if math.isinf(stiffness):
         return "rigid"
-    return "floating" if stiffness == 0.0 else f"{1e-3 * stiffness:g} N/um"
+    return "floating" if stiffness == 0.0 else f"{plain(1e-3 * stiffness, 6)} N/um"
 
 
 def _torque_rows(stage: Stage) -> list[Row]:
@@ -105,9 +105,9 @@ def _torque_rows(stage: Stage) -> list[Row]:
     shown, (z_s, _, z_r) = torques_with_columns(stage.sun_torques), stage.teeth
     base = stage.meshes[0].pinion.base_radius
     return [
-        ("sun torque [N m]", *(f"{1e-3 * torque:g}" for torque in shown)),
-        ("carrier torque [N m]", *(f"{1e-3 * torque * (1.0 + z_r / z_s):g}" for torque in shown)),
-        ("ring torque [N m]", *(f"{1e-3 * torque * z_r / z_s:g}" for torque in shown)),
+        ("sun torque [N m]", *(f"{plain(1e-3 * torque, 6)}" for torque in shown)),
+        ("carrier torque [N m]", *(f"{plain(1e-3 * torque * (1.0 + z_r / z_s), 6)}" for torque in shown)),
+        ("ring torque [N m]", *(f"{plain(1e-3 * torque * z_r / z_s, 6)}" for torque in shown)),
         (
             "force of an even share at the base circles [N]",
             *(f"{_even(stage, torque) / base:z.1f}" for torque in shown),

@@ -11,6 +11,7 @@ import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array
+from loaded_tca.plain import plain
 from loaded_tca.rating.interpolation import Evaluate, interpolation_error
 from loaded_tca.rating.lives import Endurances
 from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS, UNDER_LOAD
@@ -72,18 +73,18 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array) -> Iter
     if below.any():
         parts = arrays["damage"][below].sum(axis=0)[sums > 0.0] / sums[sums > 0.0]
         largest = float(parts[np.isfinite(parts)].max(initial=0.0))
-        part = f"their damage is {largest:.1g} of all"
-        yield f"{below.sum()} bins lie below {1e-3 * solved.torque[0]:.4g} N m, the smallest torque solved; {part}"
+        part = f"their damage is {plain(largest, 1)} of all"
+        yield f"{below.sum()} bins lie below {plain(1e-3 * solved.torque[0])} N m, the smallest torque solved; {part}"
     if cases.reversed.any():
         bins = f"reversed bins ({cases.reversed.sum()} of {len(between)})"
         yield f"{bins} load the other flanks, which are not analysed: no damage of these is counted"
         yield (
-            f"{bins} stress roots as the same torques do the other way, with Y_M of R = {REVERSED:g}; the others have "
-            "Y_M by root_stress_ratio"
+            f"{bins} stress roots as the same torques do the other way, with Y_M of R = {plain(REVERSED, 6)}; the "
+            "others have Y_M by root_stress_ratio"
         )
     if abs(cases.repeated - 1.0) > ROUNDING:
-        together = f"{cases.life_hours / cases.repeated:g} h"
-        yield f"the hours of the bins, {together}, follow each other {cases.repeated:.4g} times"
+        together = f"{plain(cases.life_hours / cases.repeated, 6)} h"
+        yield f"the hours of the bins, {together}, follow each other {plain(cases.repeated)} times"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,7 +108,7 @@ class SpectrumRating(Rating):
     @property
     def _speed(self) -> str:
         least, most = self.pinion_speed.min(), self.pinion_speed.max()
-        return f"{least:g} rpm" if least == most else f"{least:g} to {most:g} rpm"
+        return f"{plain(least, 6)} rpm" if least == most else f"{plain(least, 6)} to {plain(most, 6)} rpm"
 
     def safeties_and_lives(self) -> tuple[Array, Array]:
         """Safety in the required life, and life at the required safety [h], of all bins together (1, gear, mode)."""
@@ -149,12 +150,12 @@ class SpectrumRating(Rating):
                 least = self.required.required_safety(mode)
                 if life == 0.0:
                     sentences.append(
-                        f"{gear}: {WORDS[mode]}: life 0 at the required safety {least:g}: a bin lies above the static "
-                        f"strength; has a safety of {safety:.3g} in {self.life_required:g} h"
+                        f"{gear}: {WORDS[mode]}: life 0 at the required safety {plain(least, 6)}: a bin lies above the "
+                        f"static strength; has a safety of {plain(safety, 3)} in {plain(self.life_required, 6)} h"
                     )
                 elif life < self.life_required:
                     sentences.append(
-                        f"{gear}: {WORDS[mode]}: life {life:.4g} h of {self.life_required:g} h at the required safety "
-                        f"{least:g}; has a safety of {safety:.3g} in these"
+                        f"{gear}: {WORDS[mode]}: life {plain(life)} h of {plain(self.life_required, 6)} h at the "
+                        f"required safety {plain(least, 6)}; has a safety of {plain(safety, 3)} in these"
                     )
         return sentences

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
+from loaded_tca.plain import plain
 from loaded_tca.scene.keys import Choice, Key, literal, shown, shown_key
 from loaded_tca.scene.section import Section, Subsection, as_given, check, contents, entries, made
 from loaded_tca.scene.written import MODULE, PITCH, INCH_mm
@@ -395,4 +396,4 @@ def inch_lines() -> Iterator[str]:
     for ending, (unit, metric) in INCHES.items():
         of = [f"{conversion(unit, UNITS[each].text):.10g} {UNITS[each].text}" for each in metric]
         yield f"| `_{ending}` | {', '.join(f'`_{each}`' for each in metric)} | {' or '.join(of)} |"
-    yield f"| `_{PITCH}` | `_{MODULE}` | {float(INCH_mm):g} mm over it |"
+    yield f"| `_{PITCH}` | `_{MODULE}` | {plain(float(INCH_mm), 6)} mm over it |"

@@ -10,6 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, give_accuracy_warning
+from loaded_tca.plain import plain
 from loaded_tca.rating import Rating, rating_of
 from loaded_tca.rating.inputs import Duty, missing_sections
 from loaded_tca.rating.quantities import CASE, NUMBERS
@@ -73,7 +74,7 @@ class StageRating(OfCases):
 
     def __repr__(self) -> str:
         flank, root = self.flank_safety.min(), self.root_safety.min()
-        return f"StageRating({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
+        return f"StageRating({len(self.torque)} torques, least S_H {plain(flank, 3)}, least S_F {plain(root, 3)})"
 
     @property
     def stage(self) -> Stage:
@@ -90,11 +91,13 @@ class StageRating(OfCases):
         """Speeds, hours and what is required, in words."""
         wanted, operation = self.stage.rating, self.stage.operation
         assert wanted is not None  # refused before
+        assert wanted.life_hours is not None
         assert operation is not None
         return (
-            f"ISO 6336-2:2019 and -3:2006, sun at {operation.sun_speed_rpm:g} rpm, "
-            f"{relative_speed(self.stage):.4g} against the carrier, for {wanted.life_hours:g} h; required S_H "
-            f"{wanted.required_flank_safety:g}, S_F {wanted.required_root_safety:g}; sun | planet | ring"
+            f"ISO 6336-2:2019 and -3:2006, sun at {plain(operation.sun_speed_rpm, 6)} rpm, "
+            f"{plain(relative_speed(self.stage))} against the carrier, for {plain(wanted.life_hours, 6)} h; required "
+            f"S_H {plain(wanted.required_flank_safety, 6)}, S_F {plain(wanted.required_root_safety, 6)}; "
+            "sun | planet | ring"
         )
 
     def figure_arrays(self) -> dict[str, Array]:
