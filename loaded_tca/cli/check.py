@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from loaded_tca.cli.inputs import check_place, read_otherwise, scene_of, stage_of
-from loaded_tca.cli.terminal import print_files
+from loaded_tca.cli.terminal import print_files, show
 from loaded_tca.errors import InputError
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import DoubleHelicalScene
@@ -34,10 +34,10 @@ def check(options: argparse.Namespace) -> None:
         text, scenes = _described(scene), {PICTURE: scene}
     text = "\n".join([text, *read_otherwise(options.scene)])
     if options.out is None:
-        print(text)
+        show(text)
         return
     pictures = _drawn(options, scenes)
-    print(text, end="\n\n")
+    show(text + "\n")
     from loaded_tca.results.files import replace_together
 
     print_files(replace_together(options.out, pictures))

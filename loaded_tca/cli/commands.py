@@ -28,7 +28,7 @@ from loaded_tca.cli.inputs import (
     subject_of_report,
     tolerances_of,
 )
-from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_summary, progress_bar, say_cost
+from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_summary, progress_bar, say_cost, show
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 
@@ -64,8 +64,8 @@ def demo(options: argparse.Namespace) -> None:
         raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
     replace_together(directory, {scene.name: content})
     _run_scene(read_scene(scene), directory)
-    print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
-    print(f"  loaded-tca run {scene} --out my-pair")
+    show(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
+    show(f"  loaded-tca run {scene} --out my-pair")
 
 
 def run(options: argparse.Namespace) -> None:
@@ -421,7 +421,7 @@ def ease_off(options: argparse.Namespace) -> None:
     picture = png_of(plot_ease_off(ease_off, scene.title))
     paths = replace_together(options.out, {"ease_off.csv": ease_off_csv(ease_off).encode(), "ease_off.png": picture})
     for name, value in ease_off.named.items():
-        print(f"{name:<34}{plain(round(value, 3) + 0.0, 3):>9}")
+        show(f"{name:<34}{plain(round(value, 3) + 0.0, 3):>9}")
     print_files(paths)
 
 
@@ -474,7 +474,7 @@ def shaft(options: argparse.Namespace) -> None:
     if options.out is not None:
         check_place(options.out)
     lines = shaft_lines(scene)
-    print(bearings_text(lines), end="\n\n")
+    show(bearings_text(lines) + "\n")
     if options.out is not None:
         picture = plot_shafts(lines, scene.title)
         contents = {"shaft.csv": shaft_csv(lines).encode(), "bearings.csv": bearings_csv(lines).encode()}
@@ -569,6 +569,13 @@ def check(options: argparse.Namespace) -> None:
     overview.check(options)
 
 
+def keys(options: argparse.Namespace) -> None:
+    """Show the keys of scene and stage files."""
+    from loaded_tca.cli.keys import keys
+
+    keys(options)
+
+
 def import_model(options: argparse.Namespace) -> None:
     """Write a stage of a REXS model as a scene, or show the stages that it has."""
     from loaded_tca.exchange import describe_stages, import_stage, read_rexs
@@ -577,7 +584,7 @@ def import_model(options: argparse.Namespace) -> None:
     model = read_rexs(options.model)
     if options.stage is None:
         require((options.out is None, f"--out {options.out}: needs --stage"))
-        print(describe_stages(model))
+        show(describe_stages(model))
         return
     imported = import_stage(model, options.stage, load_case=options.load_case, torque_Nm=options.torque)
     if options.out is None:
