@@ -60,9 +60,10 @@ docs/guide/measured_settings.md says more."""
 MEASURED = """Slopes, crownings and twist by least squares over the measured points, with their standard deviations, and
 the form deviations that they leave. Points, profile and helix lines are read as docs/guide/measured_flank.md says.
 FILE of --out is the scene with these modifications on a flank by its equations."""
-CHECK = """files in DIR, of cylindrical pairs:
-  teeth_in_mesh.png         teeth of both gears at the pitch point, path of contact, tip clearances and backlash
-and of stages teeth_in_mesh_sun.png and teeth_in_mesh_ring.png."""
+CHECK = """files in DIR:
+  first_look.png            teeth in mesh at the pitch point with the path of contact, or both blanks of bevel pairs;
+                            modifications along profile and face; the path of contact without load on both flanks
+and of stages first_look_sun.png and first_look_ring.png."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
 touch. Axes are those of each gear's own frame, which does not turn with it: z the axis of the gear, x to the pitch
 point, turns right-handed.
@@ -221,6 +222,7 @@ def command_line() -> argparse.ArgumentParser:
     check = command("check", run_by.check, text, CHECK)
     check.add_argument("scene", metavar="FILE.toml", help="scene file, or stage file")
     check.add_argument("--out", metavar="DIR", type=_path, help="directory for the picture; default: none is drawn")
+    check.add_argument("--json", action="store_true", help="show the table as JSON: names end in units")
     _add_changes(check)
     text = "show the keys of scene and stage files with units, defaults and meanings, of a word those that have it"
     command("keys", run_by.keys, text, KEYS).add_argument("word", metavar="WORD", nargs="?", help="default: all keys")

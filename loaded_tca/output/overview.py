@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from loaded_tca.arrays import GEARS
 from loaded_tca.effort import expected_run_effort
 from loaded_tca.errors import InputError, give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
+from loaded_tca.output.overview_text import Overview
 from loaded_tca.plain import lasting, plain
 from loaded_tca.results.gear_warnings import questions, warn_of_gears
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
 MOST_TORQUES = 4
 """Torques that have a column each; of more, the least and the largest are shown."""
-LABEL = 44
 
 
 def describe_scene(scene: Scene) -> str:
@@ -41,19 +40,29 @@ def describe_scene(scene: Scene) -> str:
     InputError, GeometryError
         If the gears of the scene cannot exist, mesh or turn, or their teeth cannot be built though they bend.
     """
+    return overview_of_scene(scene).text
+
+
+def overview_of_scene(scene: Scene) -> Overview:
+    """Return what ``describe_scene`` says, before it is text."""
     with noted_accuracy_warnings(given=False) as sentences:
         warn_of_gears(scene, scene.pair())
         sections = scene_sections(scene)
         for sentence in questions(scene):
             give_accuracy_warning(sentence)
     effort = expected_run_effort(scene)
-    spent = ("analysis on idle cores, about: [s], [GiB]", plain(effort.seconds, 2), plain(effort.gibibytes, 2))
-    rows = [*chain.from_iterable(sections.values()), spent]
-    lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
-    beside = [f"ISO 6336: {reason}" for reason in reasons_beside(iso_figures(scene, max(scene.torques)))]
-    warned = [f"warning: {sentence}" for sentence in dict.fromkeys(sentences)]
-    notes = [] if effort.fits else [f"note: {effort}"]
-    return "\n".join([scene.title or "Scene", *lines, *beside, *warned, *notes])
+    spent = plain(effort.seconds, 2), plain(effort.gibibytes, 2)
+    reasons = reasons_beside(iso_figures(scene, max(scene.torques)))
+    return Overview(
+        scene.title or "Scene",
+        sections,
+        {},
+        dict(zip(("seconds", "memory_GiB"), spent, strict=True)),
+        ("analysis on idle cores, about: [s], [GiB]", *spent),
+        [f"ISO 6336: {reason}" for reason in reasons],
+        [*dict.fromkeys(sentences)],
+        [] if effort.fits else [str(effort)],
+    )
 
 
 def scene_sections(scene: Scene) -> dict[str, list[Row]]:

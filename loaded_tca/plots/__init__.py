@@ -24,6 +24,7 @@ from loaded_tca.plots.double_helical import (
     plot_halves_face_load,
     plot_halves_shares,
 )
+from loaded_tca.plots.first_look import plot_first_look
 from loaded_tca.plots.first_order import plot_first_order_scatter
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
 from loaded_tca.plots.mesh import plot_teeth_in_mesh
@@ -124,6 +125,7 @@ __all__ = [
     "plot_face_load",
     "plot_face_load_on_supports",
     "plot_film_ratio",
+    "plot_first_look",
     "plot_first_order_scatter",
     "plot_flank_safety",
     "plot_friction_power",
