@@ -73,11 +73,12 @@ files in DIR:
   bearings.csv              forces and moments on the bearings; of rolling bearings element force, pressure and life
   shaft.png                 outlines of the shafts, their deflection in two planes"""
 VH = """V and H are mounting errors: of bevel and face-milled gears the offset and the axial displacement of the pinion
-[mm], of cylindrical ones the errors of the axes in their plane and out of it [deg].
+[mm], of cylindrical ones the errors of the axes in their plane and out of it [deg]. Centre and size of each
+pattern, under load also the highest pressure, are shown, too.
 
 files in DIR:
   vh_check.png              contact patterns by a marking compound, V upwards, H to the right
-  vh_check.csv              centre of each pattern, its shift, part of the pitch with edge contact
+  vh_check.csv              centre of each pattern, its shift and size, part of the pitch with edge contact
 and with --loaded instead
   vh_under_load.png         highest pressure at each place of the flank
   vh_study.csv              key figures, one row per pair of errors and torque; the summary has the warnings
@@ -370,7 +371,9 @@ def _add_tables_and_maps(command: Command) -> None:
     _add_scene(vh)
     vh.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
     for name, what in (("v", "V, upwards"), ("h", "H, to the right")):
-        text = f"values of {what}; default: three that move the contact by parts of a module"
+        text = (
+            f"values of {what}; default: none, and a hundredth of the module to either side, as an angle over the face"
+        )
         vh.add_argument(f"--{name}", metavar=name.upper(), nargs="+", type=_float, help=text)
     for reader in (ease_off, vh):
         reader.add_argument(

@@ -483,38 +483,9 @@ def shaft(options: argparse.Namespace) -> None:
 
 def vh(options: argparse.Namespace) -> None:
     """Draw the contact pattern over two mounting errors, without load or under the scene's torque."""
-    from loaded_tca.flank_maps import vh_check
-    from loaded_tca.output.tables import study_csv, vh_table
-    from loaded_tca.plots import plot_loaded_vh_check, plot_vh_check, png_of
-    from loaded_tca.plots.style import label_of
-    from loaded_tca.results.files import replace_together
-    from loaded_tca.studies import run_study, study_summary, vh_study
+    from loaded_tca.cli.vh import vh
 
-    scene, directory = scene_of(options), options.out
-    check_place(directory)
-    v, h = (given or steps for given, steps in zip((options.v, options.h), scene.vh_steps(), strict=True))
-    if options.loaded:
-        study = vh_study(scene, v, h)
-        say_cost(study, options.workers or 1)
-        with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
-            rows = run_study(study, executor, directory / "vh_study.nc", show, keep_maps=range(len(study)))
-        figure = plot_loaded_vh_check(rows, directory / "vh_study_maps", gear=options.gear)
-        loaded = {"vh_study.csv": study_csv(rows).encode(), "vh_under_load.png": png_of(figure)}
-        print_summary(study_summary(rows), [directory / "vh_study.nc", *replace_together(directory, loaded)])
-        return
-    keys = scene.vh_keys
-    patterns = vh_check(
-        lambda at_v, at_h: scene.with_changes(dict(zip(keys, (at_v, at_h), strict=True))).pair(),
-        v,
-        h,
-        gear=options.gear,
-    )
-    names = f"V: {label_of(keys[0])}", f"H: {label_of(keys[1])}"
-    contents = {
-        "vh_check.csv": vh_table(patterns, keys).encode(),
-        "vh_check.png": png_of(plot_vh_check(patterns, names, scene.title)),
-    }
-    print_files(replace_together(directory, contents))
+    vh(options)
 
 
 def study(options: argparse.Namespace) -> None:

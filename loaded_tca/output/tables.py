@@ -138,12 +138,12 @@ def vh_table(check: VHCheck, keys: tuple[str, str]) -> str:
     >>> from loaded_tca.flank_maps import vh_check
     >>> pair = parse_scene(DEMO_SCENE.read_text()).pair()
     >>> check = vh_check(lambda v, h: pair, [0.0], [0.0], positions=3, grid=(9, 9))
-    >>> vh_table(check, ("v_deg", "h_deg")).splitlines()[0]
-    'v_deg,h_deg,centre_lengthwise_mm,centre_profile_mm,shift_lengthwise_mm,shift_profile_mm,edge_share'
+    >>> vh_table(check, ("v_deg", "h_deg")).splitlines()[0].replace("size_profile_mm,edge_share", "...")
+    'v_deg,h_deg,centre_lengthwise_mm,centre_profile_mm,shift_lengthwise_mm,shift_profile_mm,size_lengthwise_mm,...'
     """
     v, h = np.meshgrid(check.v, check.h, indexing="ij")
     columns = {keys[0]: v, keys[1]: h}
-    for name, values in (("centre", check.centre), ("shift", check.shift)):
+    for name, values in (("centre", check.centre), ("shift", check.shift), ("size", check.size)):
         columns |= {f"{name}_lengthwise_mm": values[..., 0], f"{name}_profile_mm": values[..., 1]}
     columns["edge_share"] = check.edge_share
     return csv_table({name: values.ravel().tolist() for name, values in columns.items()})

@@ -199,7 +199,7 @@ def _removed(gear: Gear, rho: Array, z: Array) -> Array:
 def _flanks(scene: Scene, pair: GearPair) -> list[Callable[[Axes], None]]:
     """Panels of both flanks with the path of contact without load, from the first to the last point of a tooth."""
     ends = [end.pinion_angle for end in contact_span(pair) if end is not None]
-    angles = np.linspace(*ends, POSITIONS) if len(ends) == 2 else None
+    angles = np.linspace(ends[0], ends[1], POSITIONS) if len(ends) == 2 else None
     path = trace_contact(pair, angles, warn=False)
     points = path.point[path.in_contact]
 
@@ -208,7 +208,7 @@ def _flanks(scene: Scene, pair: GearPair) -> list[Callable[[Axes], None]]:
             gear = GEARS[member]
             flank = getattr(pair, gear).flank
             draw_flank(axes, scene.flank_names[member], flank, scene.active_starts()[member])
-            place = ToPicture(pair, gear)(points)  # type: ignore[arg-type]
+            place = ToPicture(pair, gear)(points)
             axes.plot(*place.T, ".-", color=ACCENT, markersize=4.0, label="contact points without load")
             axes.legend(fontsize="x-small", loc="lower center")
 
