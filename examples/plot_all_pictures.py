@@ -31,6 +31,7 @@ def main() -> None:
     """Draw those of results, a bevel pair, a revolution, a stage and an oil."""
     result, other = (analyse(HELICAL.with_changes({"analysis.root_stress": True, LEAD: um})) for um in (5.0, 10.0))
     drawn = plots.result_figures(result, more=True) | {"teeth_in_mesh": plots.plot_teeth_in_mesh(HELICAL)}
+    drawn["first_look"] = plots.plot_first_look(HELICAL)
     drawn |= {"teeth": plots.plot_teeth(result), "stress_below": plots.plot_stress_below(stress_below(result))}
     drawn |= plots.comparison_figures({"crowning 5 µm": result, "crowning 10 µm": other})
     check = vh_check(lambda v, h: BEVEL.with_changes({V: v, H: h}).pair(), STEPS, STEPS)

@@ -21,6 +21,7 @@ import numpy as np
 
 from loaded_tca.arrays import FLOAT, OtherKindError, has_masked_cells, has_unit, numbers, shown
 from loaded_tca.errors import InputError, LoadedTCAError
+from loaded_tca.plain import plain
 
 Checked = TypeVar("Checked", bound=Callable[..., Any])
 Unit = Callable[[], str | None]
@@ -211,7 +212,7 @@ def _number(name: str, value: Any, unit: Unit) -> Any:
     """A number as it is; one with a unit, or in an array, as a float."""
     if isinstance(value, Real) and not isinstance(value, bool):
         if isinstance(value, int) and abs(value) > sys.float_info.max:
-            raise InputError(f"{name}: a whole number beyond {sys.float_info.max:.3g}")
+            raise InputError(f"{name}: a whole number beyond {plain(sys.float_info.max, 3)}")
         return value
     if has_unit(value) or has_masked_cells(value):
         value = numbers(name, value, unit())
@@ -222,15 +223,15 @@ def _number(name: str, value: Any, unit: Unit) -> Any:
 
 def _row(name: str, value: Any, unit: Unit, length: int | None = None) -> Any:
     """A row of numbers as it is, or those of an array as a tuple of floats."""
-    plain = isinstance(value, list | tuple) and all(type(part) in (float, int) for part in value)
+    floats = isinstance(value, list | tuple) and all(type(part) in (float, int) for part in value)
     try:
-        row = np.asarray(value, dtype=float) if plain else numbers(name, value, unit())
+        row = np.asarray(value, dtype=float) if floats else numbers(name, value, unit())
     except InputError as error:
         raise OtherKindError(error.problems) from None
     if row.ndim != 1 or length not in (None, len(row)):
         wanted = "a row of" if length is None else f"a row of {length}"
         raise OtherKindError(f"{name}: {wanted} numbers{_in(unit)} is asked for, not {shown(value)}")
-    return value if plain else tuple(row.tolist())
+    return value if floats else tuple(row.tolist())
 
 
 def _pair(name: str, value: Any, unit: Unit) -> Any:

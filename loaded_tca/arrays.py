@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loaded_tca.errors import InputError
+from loaded_tca.plain import plain
 from loaded_tca.units import conversion
 
 Array = NDArray[Any]
@@ -178,7 +179,7 @@ def interval_check(name: str, values: Any, interval: str, unit: str = "") -> tup
     inside &= array < high if interval[-1] == ")" else array <= high
     if bool(inside.all()):
         return True, ""
-    return False, f"{name}: {array[~inside][0]:g}{' ' * bool(unit)}{unit} is not in {interval}"
+    return False, f"{name}: {plain(array[~inside][0], 6)}{' ' * bool(unit)}{unit} is not in {interval}"
 
 
 def finite_row(name: str, values: ArrayLike) -> Array:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from loaded_tca.arrays import real
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 
 SOFTEST = 1e-3
 """Smallest Young's modulus [MPa], that of gels: contacts of softer bodies outgrow every flank."""
@@ -46,7 +47,7 @@ class Material:
         thermal = {"conductivity": "W/(m K)", "density": "kg/m3", "heat_capacity": "J/(kg K)"}
         finite = SOFTEST <= real(modulus) < float("inf")
         require(
-            (finite, f"youngs_modulus: {modulus} MPa is not finite and at least {SOFTEST:g} MPa"),
+            (finite, f"youngs_modulus: {modulus} MPa is not finite and at least {plain(SOFTEST, 6)} MPa"),
             (0.0 <= real(ratio) <= 0.5, f"poisson_ratio: {ratio} is not between 0 and 0.5"),
             (cap is None or real(cap) > 0.0, f"max_pressure: {cap} MPa is not positive"),
             *(

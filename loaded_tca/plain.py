@@ -23,15 +23,16 @@ def plain(value: float, digits: int = 4, sign: str = "") -> str:
 
     Examples
     --------
-    >>> plain(128.0, 2), plain(0.00002, 2), plain(-0.0), plain(118204.0, 2), plain(3.0, 2, "+")
-    ('130', '0.00002', '0', '120000', '+3')
+    >>> plain(128.0, 2), plain(0.00002, 2), plain(-0.0), plain(118204.0, 2), plain(3.0, 2, "+"), plain(2e-9)
+    ('130', '0.00002', '0', '120000', '+3', '2e-9')
     """
     rounded = float(f"{value:.{digits}g}") + 0.0  # no minus before a zero
     if rounded and math.isfinite(rounded) and LEAST <= abs(rounded) < MOST:
         places = max(digits - 1 - math.floor(math.log10(abs(rounded))), 0)
         text = f"{rounded:{sign}.{places}f}"
         return text.rstrip("0").rstrip(".") if places else text
-    return f"{rounded:{sign}.{digits}g}"
+    mantissa, exponent, power = f"{rounded:{sign}.{digits}g}".partition("e")
+    return f"{mantissa}e{int(power)}" if exponent else mantissa
 
 
 LONGEST_LIFE = 1e6

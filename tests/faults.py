@@ -1638,9 +1638,9 @@ FAULTS = (
     ),
     Fault(
         "vh --loaded: warnings of the analyses are not shown",
-        "cli/commands.py",
-        'print_summary(study_summary(rows), [directory / "vh_study.nc"',
-        'print_summary("", [directory / "vh_study.nc"',
+        "cli/vh.py",
+        'print_summary(f"{study_summary(rows)}\\n\\n{table}", written)',
+        "print_summary(table, written)",
         "test_cli_vh.py::test_vh_under_load_keeps_the_study",
     ),
     Fault(
@@ -2795,8 +2795,8 @@ FAULTS = (
     Fault(
         "the picture of teeth in mesh shows the nominal centre distance, without its error",
         "plots/mesh.py",
-        "mesh = scene.mounted_mesh()",
-        "mesh = scene.mesh()",
+        "mesh = scene.mounted_mesh()\n    error =",
+        "mesh = scene.mesh()\n    error =",
         "plots/test_teeth_in_mesh.py::test_picture_has_its_numbers_with_units",
     ),
     Fault(
@@ -3139,6 +3139,62 @@ FAULTS = (
         "return indent + escape(UNIT.sub(",
         "return indent + str(UNIT.sub(",
         "reports/test_notebook.py::test_text_of_cards_is_text",
+    ),
+    Fault(
+        "rules of scenes: their numbers have exponents",
+        "scene/section.py",
+        "Sentence().format(problem, *values)",
+        "problem.format(*values)",
+        "test_plain.py::test_rules_of_scenes_have_plain_numbers",
+    ),
+    Fault(
+        "numbers in sentences: exponents as Python writes them",
+        "plain.py",
+        'return f"{mantissa}e{int(power)}" if exponent',
+        'return f"{mantissa}e{power}" if exponent',
+        "test_plain.py::test_number_is_that_of_the_general_format_without_an_exponent",
+    ),
+    Fault(
+        "keys: the word is not looked for in meanings",
+        "cli/keys.py",
+        "texts = (*self.paths(row), row.about)",
+        "texts = tuple(self.paths(row))",
+        "test_cli_keys.py::test_word_is_looked_for_in_names_and_meanings_and_spellings",
+    ),
+    Fault(
+        "tables on a terminal: a line goes on after the room of the first one",
+        "cli/terminal.py",
+        "room = width - len(indent)",
+        "room = width",
+        "test_cli_terminal.py::test_table_fits_the_terminal_and_no_number_is_cut",
+    ),
+    Fault(
+        "quiet command: its warnings are lost",
+        "cli/terminal.py",
+        'if line.startswith("warning: "):',
+        'if line.startswith("warnings: "):',
+        "test_cli_terminal.py::test_quiet_command_shows_warnings_alone",
+    ),
+    Fault(
+        "overview as JSON: a line below another one loses its name",
+        "output/overview_text.py",
+        'name = as_name(f"{above} {label}" if above else label)',
+        "name = as_name(label)",
+        "output/test_overview_text.py::test_indented_lines_have_the_name_of_the_line_above",
+    ),
+    Fault(
+        "first look: material is added where it is removed",
+        "plots/first_look.py",
+        "np.broadcast_to(-1e3 * nominal.side",
+        "np.broadcast_to(1e3 * nominal.side",
+        "plots/test_first_look.py::test_modifications_are_removed_where_the_scene_says",
+    ),
+    Fault(
+        "loaded pattern: its centre leaves the size of the cells out",
+        "results/loaded_pattern.py",
+        "[one.pressure[under] * np.prod(one.spacing) for",
+        "[one.pressure[under] for",
+        "results/test_loaded_pattern.py::test_pattern_has_the_centre_of_all_forces_and_their_reach",
     ),
 )
 

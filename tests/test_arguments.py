@@ -163,7 +163,7 @@ CLOSED_FORMS = {
     one.__qualname__
     for name in loaded_tca.reference.__all__
     for one in vars(getattr(loaded_tca.reference, name)).values()
-    if inspect.isfunction(one) and not one.__name__.startswith("_")
+    if inspect.isfunction(one) and not one.__name__.startswith("_") and one.__module__ != "loaded_tca.plain"
 }
 
 
@@ -307,7 +307,7 @@ def test_function_says_more_of_a_value_of_another_kind():
     """Its own words come first: it knows what is allowed, and what else is wrong."""
     with pytest.raises(InputError) as told:
         solve_contact(GAP, SPACING, "stiff", load=-1.0)
-    assert "from 1e-30 to 1e+30 MPa" in told.value.problems[0]
+    assert "from 1e-30 to 1e30 MPa" in told.value.problems[0]
 
 
 def test_every_array_that_cannot_be_used_is_named_at_once():

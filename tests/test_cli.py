@@ -148,7 +148,7 @@ def test_every_change_that_cannot_be_made_is_told(run):
     assert err == [
         'loaded-tca: pinion.teth: unknown key; did you mean "pinion.teeth"?',
         "loaded-tca: wheel: found 3; allowed a section [wheel]",
-        'loaded-tca: load.pinion_torque_Nm: found "much"; allowed a number from 0 to 1e+09',
+        'loaded-tca: load.pinion_torque_Nm: found "much"; allowed a number from 0 to 1e9',
     ]
 
 

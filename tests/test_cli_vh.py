@@ -24,7 +24,9 @@ def test_vh_writes_a_row_for_each_pair_of_errors(run):
     changes = ("--set", "pinion.modifications.lead_crowning_um=20.0")
     code, out, errors = run("vh", SCENES / "spur.toml", "--out", "out", "--v", 0, "--h", -0.02, 0, 0.02, *changes)
     assert (code, errors) == (0, [])
-    assert out == "Written to out: vh_check.csv, vh_check.png\n"
+    *table, _, written = out.splitlines()
+    assert written == "Written to out: vh_check.csv, vh_check.png"
+    assert table[1] == "V mounting.in_plane_deg, H mounting.out_of_plane_deg"
     rows = list(csv.DictReader(Path("out", "vh_check.csv").read_text(encoding="utf-8").splitlines()))
     assert [float(row["mounting.out_of_plane_deg"]) for row in rows] == [-0.02, 0.0, 0.02]
     scene = read_scene(SCENES / "spur.toml")
@@ -33,6 +35,11 @@ def test_vh_writes_a_row_for_each_pair_of_errors(run):
     shifts = [float(row["shift_lengthwise_mm"]) for row in rows]
     assert_allclose(np.abs(shifts), [moved, 0.0, moved], rtol=0.05, atol=1e-9)  # centres of areas on a grid
     assert shifts[0] * shifts[2] < 0.0
+    shown = [list(map(float, line.split())) for line in table[-3:]]
+    columns = "centre_lengthwise_mm", "centre_profile_mm", "shift_lengthwise_mm", "shift_profile_mm"
+    columns += "size_lengthwise_mm", "size_profile_mm"
+    assert_allclose([line[2:8] for line in shown], [[float(row[name]) for name in columns] for row in rows], atol=5e-4)
+    assert [line[1] for line in shown] == [-0.02, 0.0, 0.02]
 
 
 @pytest.mark.thorough
@@ -53,9 +60,13 @@ def test_vh_under_load_keeps_the_study(run):
     assert out.startswith("2 variants: 2 ok\n")
     assert out.endswith("\nWritten to out: vh_study.nc, vh_study.csv, vh_under_load.png\n")
     assert "warning: fewer than 8 cells lie across the contact (2 variants)" in out
+    table = out.split("loaded contact pattern on the pinion")[1].split("\n\n")[0].splitlines()
+    shown = [list(map(float, line.split())) for line in table[-2:]]
     rows = list(csv.DictReader(Path("out", "vh_study.csv").read_text(encoding="utf-8").splitlines()))
     assert [float(row["mounting.pinion_axial_mm"]) for row in rows] == [0.0, 0.01]
     assert all(float(row["peak_pressure_MPa"]) > 0.0 for row in rows)
+    assert [line[1] for line in shown] == [0.0, 0.01]
+    assert_allclose([line[-1] for line in shown], [float(row["peak_pressure_MPa"]) for row in rows], atol=5e-4)
     assert {path.name for path in Path("out", "vh_study_maps").iterdir()} == {"0.nc", "1.nc"}
 
 

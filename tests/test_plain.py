@@ -1,11 +1,17 @@
 """Numbers in sentences: those that a person reads without an exponent have none."""
 
+import ast
 import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
+import loaded_tca
 from loaded_tca.plain import Sentence, plain
 from loaded_tca.results.summary import shown
+from loaded_tca.scene.section import rule
 from loaded_tca.warning_kinds import ANOTHER_POSITION, ODD_INPUT
 
 
@@ -18,8 +24,8 @@ from loaded_tca.warning_kinds import ANOTHER_POSITION, ODD_INPUT
         (0.05, 4, "0.05"),
         (-0.0, 4, "0"),
         (-3.25e-5, 3, "-0.0000325"),
-        (4.4e-8, 2, "4.4e-08"),
-        (206e9, 4, "2.06e+11"),
+        (4.4e-8, 2, "4.4e-8"),
+        (206e9, 4, "2.06e11"),
         (math.inf, 4, "inf"),
     ],
 )
@@ -45,3 +51,46 @@ def test_warnings_have_plain_numbers():
     assert odd.startswith("k: 206000000 MPa is more")
     kink = ANOTHER_POSITION.sentence(figure="peak to peak", change=130.0, unit="um", size=0.5, key="k", count=1, keys=2)
     assert "by +130 um another position" in kink
+
+
+FOR_PROGRAMS = 9
+"""Digits from which a general format is that of a table, which programs read."""
+
+
+def general_formats(source: str) -> Iterator[tuple[int, str]]:
+    """Line and text of each field of a format string whose numbers would have exponents where people write none."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FormattedValue) and node.format_spec is not None:
+            parts = node.format_spec.values
+            spec = "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in parts)
+            if (digits := re.fullmatch(r"[^.]*\.?(\d*)g", spec)) and int(digits[1] or 6) < FOR_PROGRAMS:
+                yield node.lineno, spec
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "format":
+            template = node.func.value
+            if isinstance(template, ast.Constant) and re.search(r"\{[^{}]*:[^{}]*g\}", str(template.value)):
+                yield node.lineno, template.value
+
+
+def test_scan_sees_general_formats():
+    """Those of tables, of sentences and of whole numbers are none."""
+    source = 'f"{a:.2g} {b:>8.4g} {c:g} {d:.9g} {e:+.1f} {f:d}" + "{:g}".format(g) + Sentence().format("{:g}", h)'
+    assert {spec for _, spec in general_formats(source)} == {".2g", ">8.4g", "g", "{:g}"}
+
+
+def test_messages_have_plain_numbers():
+    """A general format writes 1.3e+02 for 130 with two digits; ``plain`` and ``Sentence`` do not."""
+    package = Path(loaded_tca.__file__).parent
+    formats = [
+        f"{path.relative_to(package)}:{line}: {spec}"
+        for path in sorted(package.rglob("*.py"))
+        if path.name != "plain.py"
+        for line, spec in general_formats(path.read_text(encoding="utf-8"))
+    ]
+    assert formats == []
+
+
+def test_rules_of_scenes_have_plain_numbers():
+    """Their templates have general formats, which ``Sentence`` fills in."""
+    too_long = rule(("length_mm",), lambda length: length < 1.0, "found {0:g}; allowed below 1")
+    assert too_long.complain(2.06e6) == "found 2060000; allowed below 1"

@@ -14,7 +14,7 @@ from sphinx.application import Sphinx
 from sphinx.config import Config
 
 import loaded_tca
-from loaded_tca.cli import command_line
+from loaded_tca.cli import EXIT_CODES, command_line
 from loaded_tca.output import describe_results
 from loaded_tca.scene import describe_keys
 from loaded_tca.stages import describe_stage_keys
@@ -56,10 +56,10 @@ def write_pages(reference: Path) -> None:
 
 
 def describe_commands() -> str:
-    """Return the help of every command in Markdown; links to the pages that it names stand below it."""
+    """Return exit codes and the help of every command in Markdown; links to pages that it names stand below it."""
     parser = command_line()
     (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
-    lines = []
+    lines = ["| exit code | |", "|---|---|", *(f"| {code} | {meaning} |" for code, meaning in EXIT_CODES.items()), ""]
     for name, command in commands.choices.items():
         command.formatter_class = lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=100)
         text = command.format_help().rstrip()

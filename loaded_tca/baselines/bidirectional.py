@@ -47,6 +47,7 @@ from loaded_tca.errors import ConvergenceError, GeometryError, InputError
 from loaded_tca.flanks.cradle import ALPHA, RHO, CradleGeneration, Z
 from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 
 MOST_STEPS = 30
 RESOLVED = 1e-12
@@ -138,7 +139,7 @@ class GeneratingLine:
             height = height + np.clip(step, -reach, reach)
         raise ConvergenceError(
             f"equation of meshing at the centre of roll: after {MOST_STEPS} steps the height still moves by "
-            f"{np.abs(step).max():.3g} mm, with {np.abs(lack).max():.3g} mm/rad left",
+            f"{plain(np.abs(step).max(), 3)} mm, with {plain(np.abs(lack).max(), 3)} mm/rad left",
             last=height,
         )
 
@@ -329,7 +330,7 @@ class BidirectionalStart:
             return np.hypot(place.rho, place.z) - self._gears[member].blank.mean_cone_distance
 
         if azimuth is None:
-            azimuth = self._root(member, longer, "cone distance {:.4g} mm off the mean one")
+            azimuth = self._root(member, longer, "cone distance {} mm off the mean one")
         place = line.at(azimuth)
         turn = self._meshing_turn(member, place.normal[0], place.moment[0])
         normal = -(_turned(place.normal[0], turn) @ self._axes[member]) @ self._axes[1 - member].T
@@ -337,7 +338,7 @@ class BidirectionalStart:
         def steeper(angle: Array) -> Array:
             return mating_line.at(angle).normal[:, 2] - normal[2]
 
-        mating = self._root(1 - member, steeper, "axial part of the normal {:.4g} off that of its mating gear")
+        mating = self._root(1 - member, steeper, "axial part of the normal {} off that of its mating gear")
         own = mating_line.at(mating).normal[0]
         mating_turn = _half_turn(math.atan2(normal[1], normal[0]) - math.atan2(own[1], own[0]))
         if member == 1:
@@ -362,7 +363,7 @@ class BidirectionalStart:
         if abs(middle) > size:
             raise GeometryError(
                 f"{GEAR_NAMES[member]}: its normal at the centre of roll never comes into mesh: n . v12 stays"
-                f" {abs(middle) - size:.4g} mm per radian away from zero"
+                f" {plain(abs(middle) - size)} mm per radian away from zero"
             )
         phase, spread = math.atan2(sine, cosine), math.acos(-middle / size)
         return min((_half_turn(phase + spread), _half_turn(phase - spread)), key=abs)
@@ -378,7 +379,7 @@ class BidirectionalStart:
         values = excess(azimuths)
         changes = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
         if not changes.size:
-            least = float(np.abs(values).min())
+            least = plain(float(np.abs(values).min()))
             raise GeometryError(
                 f"{GEAR_NAMES[member]}: no start on its generating line at the centre of roll: {missed.format(least)}"
             )

@@ -35,6 +35,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Mask, finite_row
 from loaded_tca.errors import ConvergenceError, GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 SECTIONS = 44
@@ -221,8 +222,8 @@ def _close(search: _Search, rows: Array) -> tuple[Array, Array]:
     if wrong.any():
         angle = float(phi1[np.argmax(wrong)])
         raise GeometryError(
-            f"the flanks do not come to touch within half a pitch of the wheel at pinion angle {angle:.6g} rad: "
-            f"the smallest gap goes from {gaps[0][wrong][0]:.3g} to {gaps[1][wrong][0]:.3g} mm"
+            f"the flanks do not come to touch within half a pitch of the wheel at pinion angle {plain(angle, 6)} rad: "
+            f"the smallest gap goes from {plain(gaps[0][wrong][0], 3)} to {plain(gaps[1][wrong][0], 3)} mm"
         )
     angle, gap = ends[0].copy(), gaps[0].copy()
     open_rows, closed = np.arange(len(rows)), CLOSED * pair.base_radii[1]
@@ -238,5 +239,5 @@ def _close(search: _Search, rows: Array) -> tuple[Array, Array]:
         open_rows = open_rows[np.abs(now) > closed]
         if not open_rows.size:
             return angle, gap
-    message = f"golden section: a gap of {np.abs(gap).max():.3g} mm is left after {MOST_TURNS} turns of the wheel"
+    message = f"golden section: a gap of {plain(np.abs(gap).max(), 3)} mm is left after {MOST_TURNS} turns of the wheel"
     raise ConvergenceError(message, (angle, gap))

@@ -1,6 +1,6 @@
 """The command ``loaded-tca``: reads a scene file, writes results and pictures, or one line that says what is wrong.
 
-Exit codes: 0; 1 a fault of the program; 2 bad input; 3 no convergence; 130 interrupted.
+Its exit codes are ``EXIT_CODES`` of ``cli/arguments.py``.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ import traceback
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 
-from loaded_tca.cli.arguments import command_line
+from loaded_tca.cli.arguments import EXIT_CODES, command_line
 from loaded_tca.cli.commands import DEMO_SCENE
 from loaded_tca.cli.inputs import as_files_write
-from loaded_tca.cli.terminal import collecting_garbage, flush, let_go, say, warnings_in_one_line_each
+from loaded_tca.cli.terminal import collecting_garbage, flush, let_go, quiet, say, warnings_in_one_line_each
 from loaded_tca.errors import ConvergenceError, ExecutorError, InputError, LoadedTCAError, reason_of
 from loaded_tca.lazy import hidden
 
-__all__ = ["DEMO_SCENE", "command_line", "main"]
+__all__ = ["DEMO_SCENE", "EXIT_CODES", "command_line", "main"]
 
-OK, FAULT, BAD_INPUT, NO_CONVERGENCE, INTERRUPTED = 0, 1, 2, 3, 130
+OK, FAULT, BAD_INPUT, NO_CONVERGENCE, INTERRUPTED = EXIT_CODES
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -45,7 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             options = command_line().parse_args(arguments)
             # xarray that is there already has looked for dask, and imports it where it saw it.
             needed = getattr(options, "scheduler", None) or "xarray" in sys.modules
-            with nullcontext() if needed else hidden("dask"), _jobs_of(options), as_files_write(options):
+            silent = quiet(getattr(options, "quiet", False))
+            with nullcontext() if needed else hidden("dask"), _jobs_of(options), as_files_write(options), silent:
                 options.command(options)
             flush()
     except (Exception, KeyboardInterrupt) as error:  # whatever happens ends in one line

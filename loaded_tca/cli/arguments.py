@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NoReturn
 
@@ -60,9 +60,10 @@ docs/guide/measured_settings.md says more."""
 MEASURED = """Slopes, crownings and twist by least squares over the measured points, with their standard deviations, and
 the form deviations that they leave. Points, profile and helix lines are read as docs/guide/measured_flank.md says.
 FILE of --out is the scene with these modifications on a flank by its equations."""
-CHECK = """files in DIR, of cylindrical pairs:
-  teeth_in_mesh.png         teeth of both gears at the pitch point, path of contact, tip clearances and backlash
-and of stages teeth_in_mesh_sun.png and teeth_in_mesh_ring.png."""
+CHECK = """files in DIR:
+  first_look.png            teeth in mesh at the pitch point with the path of contact, or both blanks of bevel pairs;
+                            modifications along profile and face; the path of contact without load on both flanks
+and of stages first_look_sun.png and first_look_ring.png."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
 touch. Axes are those of each gear's own frame, which does not turn with it: z the axis of the gear, x to the pitch
 point, turns right-handed.
@@ -72,11 +73,12 @@ files in DIR:
   bearings.csv              forces and moments on the bearings; of rolling bearings element force, pressure and life
   shaft.png                 outlines of the shafts, their deflection in two planes"""
 VH = """V and H are mounting errors: of bevel and face-milled gears the offset and the axial displacement of the pinion
-[mm], of cylindrical ones the errors of the axes in their plane and out of it [deg].
+[mm], of cylindrical ones the errors of the axes in their plane and out of it [deg]. Centre and size of each
+pattern, under load also the highest pressure, are shown, too.
 
 files in DIR:
   vh_check.png              contact patterns by a marking compound, V upwards, H to the right
-  vh_check.csv              centre of each pattern, its shift, part of the pitch with edge contact
+  vh_check.csv              centre of each pattern, its shift and size, part of the pitch with edge contact
 and with --loaded instead
   vh_under_load.png         highest pressure at each place of the flank
   vh_study.csv              key figures, one row per pair of errors and torque; the summary has the warnings
@@ -171,6 +173,17 @@ components; docs/guide/gearbox_models.md says more."""
 EXPORT = """FILE is the model with the load distribution over the face, K_Hbeta, the mesh stiffness (version 1.5 on),
 deflection and torsion of the shafts and forces on their bearings; everything else and its format stay."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
+EXIT_CODES = {
+    0: "done",
+    1: "a fault of the program, or of who was to compute for it",
+    2: "the input, or the place for the output, cannot be used",
+    3: "no convergence",
+    130: "interrupted",
+}
+"""Exit code of every command -> what it says."""
+KEYS = """Of sections with the same keys one is shown, with the names of the others. WORD is looked for in names and
+meanings, capitals or not, and may be what standards and other programs call a key, as beta or da;
+docs/reference/scene_keys.md says more."""
 
 
 BESIDE = "beside the result; with options that choose a part of it, in a directory there that these name"
@@ -183,14 +196,19 @@ def command_line() -> argparse.ArgumentParser:
     """Return the parser of the command line; its namespace has the ``command`` to call with it."""
     common = _Parser(add_help=False)
     common.add_argument("--traceback", action="store_true", default=argparse.SUPPRESS, help="show where an error arose")
-    parser = _Parser("loaded-tca", description=DESCRIPTION, epilog=EXAMPLE, parents=[common])
+    text = "show no overview and no progress; errors and warnings still go to standard error"
+    common.add_argument("--quiet", action="store_true", default=argparse.SUPPRESS, help=text)
+    layout = argparse.RawDescriptionHelpFormatter
+    epilog = f"{EXAMPLE}\n\nexit codes:\n{described_exit_codes()}"
+    parser = _Parser("loaded-tca", description=DESCRIPTION, epilog=epilog, formatter_class=layout, parents=[common])
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
+    text = "show a script that completes commands and options in a shell, and exit; needs the package shtab"
+    parser.add_argument("--print-completion", action=_Completion, choices=SHELLS, help=text)
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
 
     def command(
         name: str, run: Callable[[argparse.Namespace], None], text: str, epilog: str | None = FILES
     ) -> argparse.ArgumentParser:
-        layout = argparse.RawDescriptionHelpFormatter
         added = commands.add_parser(
             name, help=text, description=text, epilog=epilog, formatter_class=layout, parents=[common]
         )
@@ -209,8 +227,16 @@ def command_line() -> argparse.ArgumentParser:
     check = command("check", run_by.check, text, CHECK)
     check.add_argument("scene", metavar="FILE.toml", help="scene file, or stage file")
     check.add_argument("--out", metavar="DIR", type=_path, help="directory for the picture; default: none is drawn")
+    check.add_argument("--json", action="store_true", help="show the table as JSON: names end in units")
     _add_changes(check)
+    text = "show the keys of scene and stage files with units, defaults and meanings, of a word those that have it"
+    command("keys", run_by.keys, text, KEYS).add_argument("word", metavar="WORD", nargs="?", help="default: all keys")
     return parser
+
+
+def described_exit_codes() -> str:
+    """Return a line for each exit code."""
+    return "\n".join(f"  {code:<4} {meaning}" for code, meaning in EXIT_CODES.items())
 
 
 def _add_analyses(command: Command) -> None:
@@ -351,7 +377,9 @@ def _add_tables_and_maps(command: Command) -> None:
     _add_scene(vh)
     vh.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
     for name, what in (("v", "V, upwards"), ("h", "H, to the right")):
-        text = f"values of {what}; default: three that move the contact by parts of a module"
+        text = (
+            f"values of {what}; default: none, and a hundredth of the module to either side, as an angle over the face"
+        )
         vh.add_argument(f"--{name}", metavar=name.upper(), nargs="+", type=_float, help=text)
     for reader in (ease_off, vh):
         reader.add_argument(
@@ -509,6 +537,34 @@ class _Version(argparse.Action):
 
         print(f"loaded-tca {version('loaded_tca')}")
         parser.exit()
+
+
+SHELLS = "bash", "zsh"
+"""Whose completion is written."""
+
+
+class _Completion(argparse.Action):
+    """Shows the script by which a shell completes the command; values that name files are completed as such."""
+
+    def __call__(self, parser: argparse.ArgumentParser, _: object, shell: object, *__: object) -> None:
+        try:
+            import shtab
+        except ModuleNotFoundError:
+            raise InputError("--print-completion: needs the package shtab; 'pip install shtab' gets it") from None
+
+        for each in (parser, *_commands_of(parser)):
+            for action in each._actions:
+                if action.type is _path or action.dest in ("scene", "study"):
+                    action.complete = shtab.FILE  # type: ignore[attr-defined]
+        print(shtab.complete(parser, shell=str(shell)))
+        parser.exit()
+
+
+def _commands_of(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """The parsers of all commands."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            yield from action.choices.values()
 
 
 def _path(text: str) -> Path:

@@ -1,71 +1,60 @@
-"""The command check: what a scene or a stage amounts to before any contact, as text and as a picture."""
+"""The command check: what a scene or a stage amounts to before any contact, as a table, as JSON and as a picture."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from loaded_tca.cli.inputs import check_place, read_otherwise, scene_of, stage_of
-from loaded_tca.cli.terminal import print_files
-from loaded_tca.errors import InputError
+from loaded_tca.cli.terminal import print_files, show
 from loaded_tca.scene.variants import has_halves
 from loaded_tca.stages.files import is_stage_file
 
 if TYPE_CHECKING:
+    from loaded_tca.output.overview_text import Overview
     from loaded_tca.scene import Scene
 
-PICTURE = "teeth_in_mesh"
+PICTURE = "first_look"
 
 
 def check(options: argparse.Namespace) -> None:
-    """Show the geometry of a scene or of a stage, and draw the teeth in mesh where a directory is given."""
+    """Show the geometry of a scene or of a stage, and draw it where a directory is given."""
     if options.out is not None:
         check_place(options.out)
     if is_stage_file(options.scene):
-        from loaded_tca.output.stage_overview import describe_stage
+        from loaded_tca.output.stage_overview import overview_of_stage
 
         stage = stage_of(options)
-        text = describe_stage(stage)
+        overview = overview_of_stage(stage)
         scenes: dict[str, Scene] = {f"{PICTURE}_sun": stage.sun_scene, f"{PICTURE}_ring": stage.ring_scene}
     else:
         scene = scene_of(options)
-        text, scenes = _described(scene), {PICTURE: scene}
-    text = "\n".join([text, *read_otherwise(options.scene)])
-    if options.out is None:
-        print(text)
+        overview, scenes = _overview_of(scene), {PICTURE: scene}
+    written = [*read_otherwise(options.scene)]
+    paths = []
+    if options.out is not None:
+        from loaded_tca.plots import plot_first_look, png_of
+        from loaded_tca.results.files import replace_together
+
+        pictures = {f"{name}.png": png_of(plot_first_look(each)) for name, each in scenes.items()}
+        paths = [*replace_together(options.out, pictures)]
+    if options.json:
+        files = [str(path) for path in paths]
+        print(overview.to_json(written_otherwise=[line.strip() for line in written[1:]], files=files))
         return
-    pictures = _drawn(options, scenes)
-    print(text, end="\n\n")
-    from loaded_tca.results.files import replace_together
-
-    print_files(replace_together(options.out, pictures))
+    show("\n".join([overview.text, *written]) + "\n" * bool(paths))
+    if paths:
+        print_files(paths)
 
 
-def _described(scene: Scene) -> str:
-    """The text of a scene."""
+def _overview_of(scene: Scene) -> Overview:
+    """The overview of a scene."""
     if has_halves({"pair": scene.geometry}):
-        from loaded_tca.output.double_helical_overview import describe_double_helical
+        from loaded_tca.output.double_helical_overview import overview_of_double_helical
         from loaded_tca.scene.double_helical import DoubleHelicalScene
 
         assert isinstance(scene, DoubleHelicalScene)
-        return describe_double_helical(scene)
-    from loaded_tca.output.overview import describe_scene
+        return overview_of_double_helical(scene)
+    from loaded_tca.output.overview import overview_of_scene
 
-    return describe_scene(scene)
-
-
-def _drawn(options: argparse.Namespace, scenes: Mapping[str, Scene]) -> dict[str, bytes]:
-    """Pictures of scenes by the names of their files."""
-    from loaded_tca.plots import plot_teeth_in_mesh, png_of
-    from loaded_tca.scene.cylindrical import CylindricalScene
-
-    pictures = {}
-    for name, scene in scenes.items():
-        if not isinstance(scene, CylindricalScene):
-            raise InputError(
-                f"--out {options.out}: check draws the teeth of gears on parallel axes, of type cylindrical; "
-                f"'loaded-tca teeth' has those of a result of type {scene.geometry.type}"
-            )
-        pictures[f"{name}.png"] = png_of(plot_teeth_in_mesh(scene))
-    return pictures
+    return overview_of_scene(scene)

@@ -29,8 +29,9 @@ from loaded_tca.cli.inputs import (
     subject_of_report,
     tolerances_of,
 )
-from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_summary, progress_bar, say_cost
+from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, print_summary, progress_bar, say_cost, show
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 
 if TYPE_CHECKING:
     from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult
@@ -65,8 +66,8 @@ def demo(options: argparse.Namespace) -> None:
         raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
     replace_together(directory, {scene.name: content})
     _run_scene(read_scene(scene), directory)
-    print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
-    print(f"  loaded-tca run {scene} --out my-pair")
+    show(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
+    show(f"  loaded-tca run {scene} --out my-pair")
 
 
 def run(options: argparse.Namespace) -> None:
@@ -461,7 +462,7 @@ def ease_off(options: argparse.Namespace) -> None:
     picture = png_of(plot_ease_off(ease_off, scene.title))
     paths = replace_together(options.out, {"ease_off.csv": ease_off_csv(ease_off).encode(), "ease_off.png": picture})
     for name, value in ease_off.named.items():
-        print(f"{name:<34}{round(value, 3) + 0.0:>9.3g}")
+        show(f"{name:<34}{plain(round(value, 3) + 0.0, 3):>9}")
     print_files(paths)
 
 
@@ -514,7 +515,7 @@ def shaft(options: argparse.Namespace) -> None:
     if options.out is not None:
         check_place(options.out)
     lines = shaft_lines(scene)
-    print(bearings_text(lines), end="\n\n")
+    show(bearings_text(lines) + "\n")
     if options.out is not None:
         picture = plot_shafts(lines, scene.title)
         contents = {"shaft.csv": shaft_csv(lines).encode(), "bearings.csv": bearings_csv(lines).encode()}
@@ -523,38 +524,9 @@ def shaft(options: argparse.Namespace) -> None:
 
 def vh(options: argparse.Namespace) -> None:
     """Draw the contact pattern over two mounting errors, without load or under the scene's torque."""
-    from loaded_tca.flank_maps import vh_check
-    from loaded_tca.output.tables import study_csv, vh_table
-    from loaded_tca.plots import plot_loaded_vh_check, plot_vh_check, png_of
-    from loaded_tca.plots.style import label_of
-    from loaded_tca.results.files import replace_together
-    from loaded_tca.studies import run_study, study_summary, vh_study
+    from loaded_tca.cli.vh import vh
 
-    scene, directory = scene_of(options), options.out
-    check_place(directory)
-    v, h = (given or steps for given, steps in zip((options.v, options.h), scene.vh_steps(), strict=True))
-    if options.loaded:
-        study = vh_study(scene, v, h)
-        say_cost(study, options.workers or 1)
-        with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
-            rows = run_study(study, executor, directory / "vh_study.nc", show, keep_maps=range(len(study)))
-        figure = plot_loaded_vh_check(rows, directory / "vh_study_maps", gear=options.gear)
-        loaded = {"vh_study.csv": study_csv(rows).encode(), "vh_under_load.png": png_of(figure)}
-        print_summary(study_summary(rows), [directory / "vh_study.nc", *replace_together(directory, loaded)])
-        return
-    keys = scene.vh_keys
-    patterns = vh_check(
-        lambda at_v, at_h: scene.with_changes(dict(zip(keys, (at_v, at_h), strict=True))).pair(),
-        v,
-        h,
-        gear=options.gear,
-    )
-    names = f"V: {label_of(keys[0])}", f"H: {label_of(keys[1])}"
-    contents = {
-        "vh_check.csv": vh_table(patterns, keys).encode(),
-        "vh_check.png": png_of(plot_vh_check(patterns, names, scene.title)),
-    }
-    print_files(replace_together(directory, contents))
+    vh(options)
 
 
 def study(options: argparse.Namespace) -> None:
@@ -631,6 +603,13 @@ def check(options: argparse.Namespace) -> None:
     overview.check(options)
 
 
+def keys(options: argparse.Namespace) -> None:
+    """Show the keys of scene and stage files."""
+    from loaded_tca.cli.keys import keys
+
+    keys(options)
+
+
 def import_model(options: argparse.Namespace) -> None:
     """Write a stage of a REXS model as a scene, or show the stages that it has."""
     from loaded_tca.exchange import describe_stages, import_stage, read_rexs
@@ -639,7 +618,7 @@ def import_model(options: argparse.Namespace) -> None:
     model = read_rexs(options.model)
     if options.stage is None:
         require((options.out is None, f"--out {options.out}: needs --stage"))
-        print(describe_stages(model))
+        show(describe_stages(model))
         return
     imported = import_stage(model, options.stage, load_case=options.load_case, torque_Nm=options.torque)
     if options.out is None:

@@ -228,9 +228,9 @@ def index_of_torque(given: float | None, result: MeshCycle) -> int | None:
     """Index of a torque [N m] of a result, as the command line gives it; None: not given."""
     if given is None:
         return None
-    known = [f"{1e-3 * float(one):.6g}" for one in result.torque]
-    require((f"{given:.6g}" in known, f"--torque {given:g}: the result has {', '.join(known)} N m"))
-    return known.index(f"{given:.6g}")
+    known = [f"{plain(1e-3 * float(one), 6)}" for one in result.torque]
+    require((f"{plain(given, 6)}" in known, f"--torque {plain(given, 6)}: the result has {', '.join(known)} N m"))
+    return known.index(f"{plain(given, 6)}")
 
 
 def index_of_position(position: int | None, result: MeshCycle) -> int | None:

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from loaded_tca.cli.inputs import check_files, scene_of
-from loaded_tca.cli.terminal import print_files
+from loaded_tca.cli.terminal import print_files, show
 from loaded_tca.errors import require
 
 
@@ -31,7 +31,7 @@ def measured(options: argparse.Namespace) -> None:
     if topography is not None:
         topography = in_own_frame(topography, getattr(pair, gear).flank.frame.upwards)
     made = measured_modifications(scene, gear, topography, measured_from=options.measured_from)
-    print(made.summary())
+    show(made.summary())
     if options.out is not None:
         replace_file(options.out, made.written.to_toml().encode())
         print_files([options.out])

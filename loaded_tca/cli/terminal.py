@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import gc
 import os
+import re
+import shutil
 import sys
+import textwrap
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -26,6 +29,10 @@ TICK = 1.0
 """Seconds after which a bar is drawn again, also where one contact takes longer."""
 WORTH_TELLING = 10.0
 """Seconds from which an estimate is told where there is no terminal, too."""
+WIDTH, LEAST_WIDTH = 120, 40
+"""Characters of a line where there is no terminal, and at least."""
+INDENT = "    "
+"""Before the parts of a line that goes on."""
 
 
 def flush() -> None:
@@ -50,16 +57,84 @@ def say(line: str) -> None:
             let_go(sys.stderr)
 
 
+_QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
+"""Whether nothing but errors, warnings and what was asked for by name is shown."""
+
+
+@contextmanager
+def quiet(wanted: bool) -> Iterator[None]:
+    """Show no overview, no progress and no names of files inside it, if that is wanted."""
+    before = _QUIET.set(wanted)
+    try:
+        yield
+    finally:
+        _QUIET.reset(before)
+
+
+def width_of_lines() -> int:
+    """Characters of a line of the terminal; those of a usual page where the output is none."""
+    if sys.stdout is None or not sys.stdout.isatty():
+        return WIDTH
+    return max(shutil.get_terminal_size((WIDTH, 1)).columns, LEAST_WIDTH)
+
+
+def fitted(text: str, width: int, *, sentences: bool) -> str:
+    r"""Return text whose lines have at most so many characters.
+
+    Lines of tables, whose cells two blanks or more part, go on below themselves, a whole number of cells in each line:
+    cells that stand below each other still do. Of lines without cells, sentences break at blanks, where that is wanted.
+
+    Examples
+    --------
+    >>> print(fitted("torque [N m]     80    100   120\npeak [MPa]     912.3  1004  1100", 28, sentences=True))
+    torque [N m]     80    100
+           120
+    peak [MPa]     912.3  1004
+          1100
+    """
+    return "\n".join(part for line in text.split("\n") for part in _parts(line, width, sentences))
+
+
+def _parts(line: str, width: int, sentences: bool) -> Iterator[str]:
+    """A line in parts that are short enough, those after the first indented."""
+    cells = [match.end() for match in re.finditer(r"\S+(?: \S+)*", line)]
+    if len(line) <= width or (len(cells) == 1 and not sentences):
+        yield line
+        return
+    if len(cells) == 1:
+        yield from textwrap.wrap(line, width, subsequent_indent=INDENT, break_long_words=False, break_on_hyphens=False)
+        return
+    begin, indent = 0, ""
+    while begin < len(line):
+        room = width - len(indent)
+        ends = [end for end in cells if begin < end]
+        end = max((one for one in ends if one - begin <= room), default=ends[0])
+        part = line[begin:end]
+        yield indent + (part if len(part) <= room else part.lstrip())
+        begin, indent = end, INDENT
+
+
+def show(text: str) -> None:
+    """Show an overview: lines no longer than those of the terminal, none if the command is quiet but its warnings."""
+    if _QUIET.get():
+        for line in text.splitlines():
+            if line.startswith("warning: "):
+                say(line)
+        return
+    print(fitted(text, width_of_lines(), sentences=sys.stdout is not None and sys.stdout.isatty()))
+
+
 def print_summary(text: str, paths: Sequence[Path]) -> None:
     """Show a summary, and say which files were written; warnings that are told at the end are left out of it."""
     warned = {f"warning: {message}" for message in _messages()}
-    print("\n".join(line for line in text.splitlines() if line not in warned), end="\n\n")
+    show("\n".join(line for line in text.splitlines() if line not in warned) + "\n")
     print_files(paths)
 
 
 def print_files(paths: Sequence[Path]) -> None:
-    """Say which files were written, all in one directory."""
-    print(f"Written to {paths[0].parent}: {', '.join(path.name for path in paths)}")
+    """Say which files were written, all in one directory, unless the command is quiet."""
+    if not _QUIET.get():
+        print(f"Written to {paths[0].parent}: {', '.join(path.name for path in paths)}")
 
 
 @contextmanager
@@ -77,8 +152,9 @@ def progress_bar(effort: Effort, count: str, whole: int) -> Iterator[Callable[[i
     whole : int
         How many of them there are.
     """
-    terminal = sys.stderr is not None and sys.stderr.isatty()
-    if not effort.is_refused and (terminal or effort.seconds > WORTH_TELLING or not effort.fits):
+    terminal = _draws()
+    worth = terminal or effort.seconds > WORTH_TELLING or not effort.fits
+    if worth and not effort.is_refused and not _QUIET.get():
         say(f"loaded-tca: {effort}")
     with bar_of(count, whole, BAR) as show:
         yield show
@@ -89,6 +165,8 @@ def say_cost(study: Study, workers: int = 1) -> None:
 
     Each as the scene they have in common, roughly: variants with other grids differ, models of teeth are made once.
     """
+    if _QUIET.get():
+        return
     from loaded_tca.effort import expected_effort
     from loaded_tca.plain import plain
     from loaded_tca.scene import Scene
@@ -108,6 +186,11 @@ def say_cost(study: Study, workers: int = 1) -> None:
         say(f"loaded-tca: {len(study)} variants, roughly {plain(each, 2)} s each on idle cores, {minutes} together{by}")
 
 
+def _draws() -> bool:
+    """Whether there is a terminal for progress, and it is wanted."""
+    return sys.stderr is not None and sys.stderr.isatty() and not _QUIET.get()
+
+
 @contextmanager
 def bar_of(what: str, whole: int, layout: str) -> Iterator[Callable[..., None] | None]:
     """On a terminal, a bar with what is done, of how much, and the time left: called with both, and failures."""
@@ -117,7 +200,7 @@ def bar_of(what: str, whole: int, layout: str) -> Iterator[Callable[..., None] |
 
 @contextmanager
 def _bar(what: str, whole: int, layout: str) -> Iterator[Callable[..., None] | None]:
-    if sys.stderr is None or not sys.stderr.isatty():
+    if not _draws():
         yield None
         return
     from tqdm import tqdm

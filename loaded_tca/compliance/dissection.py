@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.checks import machine_memory
 from loaded_tca.errors import GeometryError, require
+from loaded_tca.plain import plain
 from loaded_tca.threads import leave_if_not_wanted, one_blas_thread
 
 Flags = NDArray[np.bool_]
@@ -204,7 +205,7 @@ def factorise(
     unknowns, last = plan.add(np.arange(n))
     plan.arrange()
     needed, limit = plan.bytes + 8.0 * matrices.size, machine_memory()  # of single precision: it may be made again
-    problem = f"{size} unknowns need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
+    problem = f"{size} unknowns need {plain(needed / 2**30, 3)} GiB, the machine has {plain(limit / 2**30, 3)} GiB"
     require((needed <= limit, f"mesh of the gear body: {problem}; take fewer elements"))
     with one_blas_thread():
         factors = plan.factors(matrices)

@@ -14,6 +14,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Indices, count_problems
 from loaded_tca.errors import InputError
+from loaded_tca.plain import plain
 
 LARGEST_GRADING, LARGEST_SKIN = 10.0, 0.1
 
@@ -68,11 +69,11 @@ class MeshDensity:
         elements = {name: count for name, count in vars(self).items() if name not in other}
         problems = count_problems(elements, 1) + count_problems({"neighbours": self.neighbours}, 0)
         if not 1.0 <= self.grading <= LARGEST_GRADING:
-            problems.append(f"grading: {self.grading} is not between 1 and {LARGEST_GRADING:g}")
+            problems.append(f"grading: {self.grading} is not between 1 and {plain(LARGEST_GRADING, 6)}")
         if not problems and self.thin_ends and (self.lengthwise % 2 or self.lengthwise < 6):
             problems.append(f"lengthwise: {self.lengthwise} is not an even number from 6 on, which thin_ends asks for")
         if not 0.0 <= self.skin <= LARGEST_SKIN:
-            problems.append(f"skin: {self.skin} is not between 0 and {LARGEST_SKIN:g}")
+            problems.append(f"skin: {self.skin} is not between 0 and {plain(LARGEST_SKIN, 6)}")
         if not problems and self.through % 2:
             problems.append(f"through: {self.through} is not even: the middle of the tooth must be a line of nodes")
         if problems:

@@ -10,6 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.errors import InputError
+from loaded_tca.plain import plain
 
 LEAST, MOST = 1e-20, 1e20
 """Widths of a cell [mm] between which nothing leaves the range of floating point numbers, whatever the unit."""
@@ -31,7 +32,9 @@ def check_grid(gap: Array, spacing: tuple[float, float], contact_modulus: float)
         return [f"gap: {memory}"]
     problems = check_spacing(spacing)
     if not SOFTEST <= real(contact_modulus) <= STIFFEST:
-        problems.append(f"contact_modulus: {contact_modulus} is not a number from {SOFTEST:g} to {STIFFEST:g} MPa")
+        problems.append(
+            f"contact_modulus: {contact_modulus} is not a number from {plain(SOFTEST, 6)} to {plain(STIFFEST, 6)} MPa"
+        )
     least = gap.min()
     if np.isnan(least):
         problems.append(f"gap: {int(np.isnan(gap).sum())} cells are NaN (use inf for no material)")
@@ -75,12 +78,12 @@ def check_spacing(spacing: tuple[float, float]) -> list[str]:
         return [f"spacing: {widths.tolist()} is not a pair of cell widths (dx, dy)"]
     both = widths.tolist()
     problems = [
-        f"spacing[{axis}]: {width} is not between {LEAST:g} and {MOST:g} mm"
+        f"spacing[{axis}]: {width} is not between {plain(LEAST, 6)} and {plain(MOST, 6)} mm"
         for axis, width in enumerate(both)
         if not LEAST <= width <= MOST
     ]
     if not problems and max(both) > MOST_SLENDER * min(both):
-        problems.append(f"spacing: {both} are widths of a ratio above {MOST_SLENDER:g}")
+        problems.append(f"spacing: {both} are widths of a ratio above {plain(MOST_SLENDER, 6)}")
     return problems
 
 
@@ -99,17 +102,21 @@ def check_demand(
         problems.append("load, approach: give exactly one of the two")
     least, most = (limit * spacing[1] * contact_modulus for limit in (SHORTEST, LONGEST))
     if load is not None and not (least <= real(load) <= most or real(load) == 0.0):
-        problems.append(f"load: {load} N is neither 0 nor, on this grid, a number from {least:.3g} to {most:.3g} N")
+        problems.append(
+            f"load: {load} N is neither 0 nor, on this grid, a number from {plain(least, 3)} to {plain(most, 3)} N"
+        )
     depth = 0.0 if approach is None else real(approach) - float(gap.min())
     if not (-LONGEST <= depth <= 0.0 or SHORTEST <= depth <= LONGEST):
-        allowed = f"within {LONGEST:g} mm of it and, beyond it, at least {SHORTEST:g} mm"
+        allowed = f"within {plain(LONGEST, 6)} mm of it and, beyond it, at least {plain(SHORTEST, 6)} mm"
         problems.append(f"approach: {approach} mm lies {depth} mm beyond first contact; allowed {allowed}")
     if max_pressure is not None and not real(max_pressure) > 0.0:
         problems.append(f"max_pressure: {max_pressure} MPa is not positive")
     elif max_pressure is not None and load is not None:
         carried = max_pressure * area
         if real(load) > carried:
-            problems.append(f"load: {load} N is more than max_pressure on all material can carry, {carried:.6g} N")
+            problems.append(
+                f"load: {load} N is more than max_pressure on all material can carry, {plain(carried, 6)} N"
+            )
     return problems
 
 
@@ -148,7 +155,7 @@ def memory_problem(shape: tuple[int, ...], available: float | None = None) -> st
     limit = machine_memory() if available is None else available
     if needed <= limit:
         return None
-    return f"{shape} cells need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
+    return f"{shape} cells need {plain(needed / 2**30, 3)} GiB, the machine has {plain(limit / 2**30, 3)} GiB"
 
 
 BYTES_PER_PAIR = 48
@@ -162,7 +169,10 @@ def columns_memory_problem(rows: int, columns: int, available: float | None = No
     limit = machine_memory() if available is None else available
     if needed <= limit:
         return None
-    return f"{columns} columns of {rows} cells need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
+    return (
+        f"{columns} columns of {rows} cells need {plain(needed / 2**30, 3)} GiB, the machine has "
+        f"{plain(limit / 2**30, 3)} GiB"
+    )
 
 
 @functools.cache

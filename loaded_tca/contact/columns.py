@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike
 
 from loaded_tca.arrays import Array, Indices, real
 from loaded_tca.errors import require, require_positive
+from loaded_tca.plain import plain
 
 GROWTH = 1.3
 """Width of a column over that of its neighbour nearer to the edge."""
@@ -161,7 +162,12 @@ def column_borders(low: float, high: float, zones: Sequence[FineZone], widest: f
             density = np.maximum(density, np.where(beyond > 0.0, grown, 1.0 / zone.width))
         count = np.concatenate(([0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(y))))
         columns = max(1, int(whole_cells(count[-1])))
-        require((columns <= MOST_COLUMNS, f"zones: {columns} columns from {start:g} to {stop:g} mm are above 2000"))
+        require(
+            (
+                columns <= MOST_COLUMNS,
+                f"zones: {columns} columns from {plain(start, 6)} to {plain(stop, 6)} mm are above 2000",
+            )
+        )
         borders.append(np.interp(np.linspace(0.0, count[-1], columns + 1)[1:-1], count, y))
         borders.append(np.array([stop]))
     return np.concatenate(borders)

@@ -33,6 +33,7 @@ from numpy.typing import ArrayLike, NDArray
 from loaded_tca.arrays import Array, real
 from loaded_tca.contact.convolution import ALL, Convolution, Rows, Window
 from loaded_tca.errors import InputError
+from loaded_tca.plain import plain
 
 # psi = c0 + c1 nu + c2 nu^2, between what Hetenyi's solution gives for Hertz circles of radius a centred 0 to 1.5 a
 # from the edge (1.30 to 1.34 at nu = 0, 1.76 to 1.81 at 0.3) and for strips that end at it (1.21 to 1.25 and 1.70 to
@@ -194,7 +195,7 @@ def wedge_factor(angle: float, poisson_ratio: float, share: float = 1.0) -> floa
     """
     problems = []
     if not SHARPEST <= angle <= math.pi:
-        problems.append(f"angle: {math.degrees(angle):.6g} degrees is not between 30 and 180 degrees")
+        problems.append(f"angle: {plain(math.degrees(angle), 6)} degrees is not between 30 and 180 degrees")
     if not 0.0 <= poisson_ratio <= 0.5:
         problems.append(f"poisson_ratio: {poisson_ratio} is not between 0 and 0.5")
     if not 0.0 <= share <= 1.0:

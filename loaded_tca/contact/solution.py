@@ -185,8 +185,8 @@ class Solution:
     def __repr__(self) -> str:
         cells = "x".join(str(n) for n in self.pressure.shape)
         return (
-            f"{type(self).__name__}({cells} cells, load {self.load:.6g} N, approach {self.approach:.6g} mm, "
-            f"peak {self.pressure.max():.6g} MPa, {self.status.name.lower()}, residual {self.residual:.1e})"
+            f"{type(self).__name__}({cells} cells, load {plain(self.load, 6)} N, approach {plain(self.approach, 6)} "
+            f"mm, peak {plain(self.pressure.max(), 6)} MPa, {self.status.name.lower()}, residual {self.residual:.1e})"
         )
 
     @property

@@ -27,6 +27,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.contact import checks
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.solution import ContactSolution
+from loaded_tca.plain import plain
 
 Kernel = Callable[[Array, Array, float, float], Array]
 
@@ -66,7 +67,10 @@ class SubsurfaceStress:
     def __repr__(self) -> str:
         cells = "x".join(str(n) for n in self.sigma_z.shape)
         depth = self.depths[self.max_shear_at[0]]
-        return f"SubsurfaceStress({cells} points, greatest shear {self.max_shear.max():.6g} MPa at {depth:.4g} mm)"
+        return (
+            f"SubsurfaceStress({cells} points, greatest shear {plain(self.max_shear.max(), 6)} MPa at "
+            f"{plain(depth)} mm)"
+        )
 
     @cached_property
     def von_mises(self) -> Array:

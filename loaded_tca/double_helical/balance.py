@@ -22,6 +22,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.roots import find_roots
 
 CLOSE = 1e-14
@@ -126,7 +127,7 @@ class Halves:
     stiffness: float
 
     def __post_init__(self) -> None:
-        require((self.stiffness >= 0.0, f"stiffness: found {self.stiffness:g} N/mm; allowed from 0 on"))
+        require((self.stiffness >= 0.0, f"stiffness: found {plain(self.stiffness, 6)} N/mm; allowed from 0 on"))
         if self.stiffness == 0.0 and self.axial_rate == 0.0:
             raise InputError("axial_rate: found 0; allowed others where nothing holds the gear that floats")
 

@@ -198,7 +198,7 @@ class DoubleHelicalResult(JoinedResult):
         if geometry.floating == "none":
             held = "both gears held along the axes"
         if geometry.axial_stiffness_N_per_um > 0.0:
-            held += f" on {geometry.axial_stiffness_N_per_um:g} N/um"
+            held += f" on {plain(geometry.axial_stiffness_N_per_um, 6)} N/um"
         widths = " and ".join(plain(self.scene.half_width(gear)) for gear in (self.scene.pinion, self.scene.wheel))
         return (
             f"two halves of {widths} mm, a groove of {plain(geometry.gap_mm)} mm; {held}; "

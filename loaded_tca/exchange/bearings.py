@@ -22,6 +22,7 @@ from loaded_tca.exchange.model import (
     Component,
     Reading,
 )
+from loaded_tca.plain import plain
 
 RIGID_N_per_mm, RIGID_Nmm_per_rad = 1e9, 1e13
 """Stiffnesses of bearings that files call rigid: 1e20 N/m and more would leave no digits for the shaft."""
@@ -66,7 +67,8 @@ def _linear(reading: Reading, bearing: Component, thrust: float) -> dict[str, An
     axial = _axial(reading, bearing, radial, axial, thrust)
     if max(radial, axial) > RIGID_N_per_mm or tilting > RIGID_Nmm_per_rad:
         reading.note(
-            f"{bearing}: rigid directions have {1e-3 * RIGID_N_per_mm:g} N/um, {1e-6 * RIGID_Nmm_per_rad:g} N m/mrad"
+            f"{bearing}: rigid directions have {plain(1e-3 * RIGID_N_per_mm, 6)} N/um, "
+            f"{plain(1e-6 * RIGID_Nmm_per_rad, 6)} N m/mrad"
         )
     keys = {"radial_stiffness_N_per_um": 1e-3 * min(radial, RIGID_N_per_mm)}
     if axial > 0.0:

@@ -25,6 +25,7 @@ from loaded_tca.exchange.model import (
     Component,
     Reading,
 )
+from loaded_tca.plain import plain
 
 STEEL = {"youngs_modulus_MPa": 206000.0, "poisson_ratio": 0.3}
 ALIKE = 1e-6
@@ -223,13 +224,13 @@ def pair_section(gearbox: Gearbox, stage: Stage, flanks: list[Component | None],
     require(
         (
             abs(abs(angles[0]) - abs(angles[1])) < 1e-6,
-            f"{stage.component}: helix_angle_reference_diameter: found {angles[0]:g} and {angles[1]:g} deg of "
-            f"{stage.gears[0]} and {stage.gears[1]}; allowed equal ones with opposite signs",
+            f"{stage.component}: helix_angle_reference_diameter: found {plain(angles[0], 6)} and {plain(angles[1], 6)} "
+            f"deg of {stage.gears[0]} and {stage.gears[1]}; allowed equal ones with opposite signs",
         ),
         (
             opposite,
-            f"{stage.component}: helix_angle_reference_diameter: found {angles[0]:g} deg on both gears; allowed "
-            "opposite signs: the gears of an external stage have opposite hands",
+            f"{stage.component}: helix_angle_reference_diameter: found {plain(angles[0], 6)} deg on both gears; "
+            "allowed opposite signs: the gears of an external stage have opposite hands",
         ),
     )
     section: dict[str, Any] = {
@@ -241,11 +242,15 @@ def pair_section(gearbox: Gearbox, stage: Stage, flanks: list[Component | None],
     distance = reading.number(stage.component, "center_distance", LENGTH)
     if distance is None and stage.placed:
         distance = stage.distance
-        reading.note(f"{stage.component}: no center_distance; it is that of the places of the gears, {distance:.6g} mm")
+        reading.note(
+            f"{stage.component}: no center_distance; it is that of the places of the gears, {plain(distance, 6)} mm"
+        )
     if distance is not None:
         section["centre_distance_mm"] = abs(distance)
     if distance is not None and stage.placed and abs(abs(distance) - stage.distance) > 1e-3 * module:
-        reading.note(f"{stage.component}: center_distance is taken; the gears are placed {stage.distance:.6g} mm apart")
+        reading.note(
+            f"{stage.component}: center_distance is taken; the gears are placed {plain(stage.distance, 6)} mm apart"
+        )
     reading.take(stage.component, "rotating_angle_around_neg_u_axis")
     return section | {"driving": run.driving, "sense": run.sense} | _rack(reading, stage, flanks, module)
 
@@ -254,7 +259,13 @@ def _common(reading: Reading, stage: Stage, name: str, units: Any) -> float:
     """A number that both gears must have alike."""
     first, second = (reading.take(one, name).required(name, units) for one in stage.gears)
     alike = abs(first - second) <= ALIKE * abs(first)
-    require((alike, f"{stage.component}: {name}: found {first:g} and {second:g} of its gears; allowed equal ones"))
+    require(
+        (
+            alike,
+            f"{stage.component}: {name}: found {plain(first, 6)} and {plain(second, 6)} of its gears; allowed "
+            "equal ones",
+        )
+    )
     return first
 
 
@@ -268,7 +279,13 @@ def _pressure_angle(reading: Reading, stage: Stage, flanks: list[Component | Non
         gears = " and ".join(str(one) for one in stage.gears)
         raise InputError(f"{stage.component}: {name}: missing; neither the flanks nor the tools of {gears} have it")
     alike = max(values) - min(values) < 1e-6
-    require((alike, f"{stage.component}: {name}: found {values[0]:g} and {values[-1]:g} deg; allowed equal ones"))
+    require(
+        (
+            alike,
+            f"{stage.component}: {name}: found {plain(values[0], 6)} and {plain(values[-1], 6)} deg; allowed "
+            "equal ones",
+        )
+    )
     return values[0]
 
 
@@ -297,7 +314,7 @@ def _own_rack(reading: Reading, gear: Component, flank: Component | None, pair: 
     for name in (one for one in RACK if one in pair):
         value = _by_tool(reading, gear, flank, pair["normal_module_mm"], name)
         if value is None:
-            by_other = f"{name} {pair[name]:g} is that by the tool of the other gear"
+            by_other = f"{name} {plain(pair[name], 6)} is that by the tool of the other gear"
             reading.note(f"{gear}: no tool with {RACK[name][0]}; {by_other}")
         elif abs(value - pair[name]) > ALIKE:
             rack[name] = value

@@ -14,6 +14,7 @@ from typing import Any
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.input_files import number_in
+from loaded_tca.plain import plain
 
 LENGTH = {"mm": 1.0, "m": 1e3, "cm": 10.0, "mum": 1e-3}
 ANGLE = {"deg": 1.0, "°": 1.0, "rad": math.degrees(1.0)}
@@ -36,12 +37,12 @@ W/(m K), J/(kg K)."""
 _AS_WRITTEN = {"µ": "mu", "μ": "mu", "um": "mum", "²": "^2", "³": "^3", "·": "", "*": "", "degree": "deg"}
 
 
-def plain(unit: str) -> str:
+def unit_without_blanks(unit: str) -> str:
     """Name of a unit without blanks and signs that files write in several ways.
 
     Examples
     --------
-    >>> plain("N mm / rad"), plain("µm"), plain("N/mm²")
+    >>> unit_without_blanks("N mm / rad"), unit_without_blanks("µm"), unit_without_blanks("N/mm²")
     ('Nmm/rad', 'mum', 'N/mm^2')
     """
     name = re.sub(r"\s", "", unit)
@@ -115,7 +116,7 @@ class Component:
     def whole(self, name: str) -> int:
         """Return a whole number that must be there."""
         value = self.required(name)
-        require((value == round(value), f"{self}: {name}: found {value:g}; allowed a whole number"))
+        require((value == round(value), f"{self}: {name}: found {plain(value, 6)}; allowed a whole number"))
         return round(value)
 
     def numbers(self, name: str, units: Mapping[str, float], length: int) -> tuple[float, ...] | None:
@@ -148,7 +149,7 @@ class Component:
 
     def _factor(self, name: str, unit: str, units: Mapping[str, float]) -> float:
         try:
-            return units[plain(unit)]
+            return units[unit_without_blanks(unit)]
         except KeyError:
             allowed = " or ".join(one or "none" for one in units)
             raise InputError(f'{self}: {name}: found the unit "{unit}"; allowed {allowed}') from None
@@ -163,7 +164,7 @@ def _finite(component: Component, name: str, value: Value) -> float:
         elif not isinstance(value, bool | tuple):
             number = float(value)
     sound = abs(number) <= LARGEST_NUMBER  # not of NaN
-    require((sound, f"{component}: {name}: found {value!r:.40}; allowed a number of up to {LARGEST_NUMBER:g}"))
+    require((sound, f"{component}: {name}: found {value!r:.40}; allowed a number of up to {plain(LARGEST_NUMBER, 6)}"))
     return number
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from loaded_tca.exchange.gears import DIGITS
 from loaded_tca.exchange.model import LENGTH, Component, Reading
+from loaded_tca.plain import plain
 from loaded_tca.units import MICROMETRES
 
 CLOSE_um = 1e-3
@@ -108,7 +109,7 @@ def _um(value: float) -> float:
 def _removed(value: float) -> float:
     """An amount that is removed; material added has no key."""
     if value < 0.0:
-        raise _Left(f"found {value:g} um; allowed are amounts that are removed, from 0 on")
+        raise _Left(f"found {plain(value, 6)} um; allowed are amounts that are removed, from 0 on")
     return _um(value)
 
 
@@ -124,7 +125,7 @@ def _helix_crowning(reading: Reading, modification: Component, teeth: Teeth) -> 
     highest = reading.number(modification, "helix_highest_point", LENGTH, 0.0) or 0.0
     shape = reading.take(modification, "shape_of_helix_crowning").text("shape_of_helix_crowning")
     if abs(highest) > 1e-3 * teeth.face_width:
-        raise _Left(f"helix_highest_point: found {highest:g} mm; allowed 0, the middle of the face")
+        raise _Left(f"helix_highest_point: found {plain(highest, 6)} mm; allowed 0, the middle of the face")
     if min(at) < LEAST * half:
         raise _Left("its amounts are given in the middle of the face")
     ends = [_removed(amount * (half / place) ** 2) for amount, place in zip(amounts, at, strict=True)]
@@ -215,7 +216,10 @@ def _profile_crowning(reading: Reading, modification: Component, teeth: Teeth) -
     tip, root = _ends_of_profile(reading, modification, teeth, *where)
     reading.take(modification, "shape_of_profile_crowning")
     if abs(amounts[0] - amounts[1]) > CLOSE_um:
-        raise _Left(f"found {amounts[0]:g} um at the tip and {amounts[1]:g} um at the root; allowed equal amounts")
+        raise _Left(
+            f"found {plain(amounts[0], 6)} um at the tip and {plain(amounts[1], 6)} um at the root; allowed "
+            "equal amounts"
+        )
     half, own = 0.5 * (tip - root), 0.5 * (teeth.tip_roll - teeth.start_roll)
     if half < LEAST * own:
         raise _Left("its amounts are given at one place of the profile")

@@ -17,6 +17,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.exchange.bearings import BEARINGS, bearing_rows
 from loaded_tca.exchange.gearbox import Gearbox, Stage
 from loaded_tca.exchange.model import ANGLE, FORCE, LENGTH, TORQUE, Component, Reading
+from loaded_tca.plain import plain
 
 STEEPEST = math.radians(89.0)
 """Helix angle above which gears are none."""
@@ -145,7 +146,8 @@ class ShaftFrame:
         for (_, before, *_), (after, *_) in pairwise(parts):
             if abs(after - before) > GAP:
                 raise NotTaken(
-                    f"its sections leave a gap or overlap: one ends at u = {before:g} mm, the next begins at {after:g}"
+                    f"its sections leave a gap or overlap: one ends at u = {plain(before, 6)} mm, the next "
+                    f"begins at {plain(after, 6)}"
                 )
         return parts
 

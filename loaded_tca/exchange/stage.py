@@ -25,6 +25,7 @@ from loaded_tca.exchange.modifications import Teeth, modification_keys
 from loaded_tca.exchange.shafts import diameter_at, rest_of, shaft_section
 from loaded_tca.exchange.strength import cases_of_spectrum, has_times, load_spectrum, strength_section
 from loaded_tca.pairs.gear import ON_SHAFT
+from loaded_tca.plain import plain
 from loaded_tca.scene import Scene, scene_from_table
 from loaded_tca.scene.keys import literal
 from loaded_tca.supports import shafts_of
@@ -110,7 +111,7 @@ def _note_loads(reading: Reading, load_case: str | None, bins: int) -> None:
 
 def _teeth(gear: Component) -> str:
     number = gear.number("number_of_teeth")
-    return "?" if number is None else f"{number:g}"
+    return "?" if number is None else f"{plain(number, 6)}"
 
 
 def import_stage(
@@ -227,7 +228,7 @@ def _add_bores(gearbox: Gearbox, stage: Stage, table: dict[str, Any], mesh: Any)
                 table[name]["outer_diameter_mm"] = diameter
         elif diameter <= ON_SHAFT * 2.0 * gear.root_radius:
             table[name]["bore_diameter_mm"] = diameter
-            gearbox.reading.note(f"{stage.gears[n]}: its bore is the shaft below it, {diameter:g} mm")
+            gearbox.reading.note(f"{stage.gears[n]}: its bore is the shaft below it, {plain(diameter, 6)} mm")
 
 
 def _add_modifications(
@@ -262,7 +263,9 @@ def _with_shaft(gearbox: Gearbox, stage: Stage, gear: int, table: dict[str, Any]
         of_gear.youngs_modulus_MPa,
         of_gear.poisson_ratio,
     ):
-        gearbox.reading.leave(shaft, f"its material, E {material['youngs_modulus_MPa']:g} MPa: it has that of the gear")
+        gearbox.reading.leave(
+            shaft, f"its material, E {plain(material['youngs_modulus_MPa'], 6)} MPa: it has that of the gear"
+        )
     trial = {**table, name: {**table[name], "shaft": section}}
     try:
         on_shaft = scene_from_table(trial)

@@ -84,7 +84,7 @@ def strength_section(reading: Reading, gear: Component) -> dict[str, Any] | None
         reading.leave(gear, f"its strength: {'; '.join(problems)}")
         return None
     _take(reading, material, gear)
-    reading.note(f"{gear}: Rz is {RZ_OVER_RA:g} times the average roughness")
+    reading.note(f"{gear}: Rz is {plain(RZ_OVER_RA, 6)} times the average roughness")
     if material.text(_type_of(material)) in ALLOY:
         reading.note(f"{material}: a through-hardened steel, taken as alloyed")
     return table
@@ -249,6 +249,6 @@ def _of_unit(units: list[Component], names: tuple[str, ...], factors: Mapping[st
     for unit in units:
         for name in names:
             if (value := unit.number(name, factors)) is not None:
-                require((value >= 0.0, f"{unit}: {name}: found {value:g}; allowed from 0 on"))
+                require((value >= 0.0, f"{unit}: {name}: found {plain(value, 6)}; allowed from 0 on"))
                 return value
     return None

@@ -41,6 +41,7 @@ from loaded_tca.flank_maps.conjugate import (
 from loaded_tca.flanks.base import Flank, FlankFrame
 from loaded_tca.flanks.spline import flank_coordinates
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.units import MICROMETRES
 
 
@@ -121,7 +122,7 @@ class SecondOrder:
     def __repr__(self) -> str:
         angles = [60.0 * math.degrees(angle) for angle in (self.spiral_angle, self.pressure_angle)]
         lengths = [1e3 * length for length in (self.lengthwise_crowning, self.profile_crowning, self.twist)]
-        spiral, pressure, beta, alpha, twist = (f"{round(value, 4) + 0.0:.3g}" for value in (*angles, *lengths))
+        spiral, pressure, beta, alpha, twist = (f"{plain(round(value, 4) + 0.0, 3)}" for value in (*angles, *lengths))
         return (
             f"SecondOrder(spiral angle {spiral} arcmin, pressure angle {pressure} arcmin, "
             f"crownings {beta} um and {alpha} um, twist {twist} um)"
@@ -246,7 +247,7 @@ class EaseOffMap:
 
     def __repr__(self) -> str:
         shape = " x ".join(str(count) for count in self.ease_off.shape)
-        return f"EaseOffMap({self.gear}, {shape} points, up to {1e3 * float(self.ease_off.max()):.4g} um)"
+        return f"EaseOffMap({self.gear}, {shape} points, up to {plain(1e3 * float(self.ease_off.max()))} um)"
 
 
 @checked

@@ -28,6 +28,7 @@ from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.removal import removal_change
 from loaded_tca.flanks.topography import LINES_NOTE, Topography, excess_problems
 from loaded_tca.pairs.gear import Gear
+from loaded_tca.plain import plain
 from loaded_tca.scene import Scene
 from loaded_tca.scene.build import build_topography
 from loaded_tca.scene.section import Section
@@ -95,7 +96,7 @@ class MeasuredModifications:
         width = max(map(len, self.keys))
         lines = [f"{self.gear + ' [um]':<{width}}  {'design':>10}{'measured':>10}{'+- std':>10}{'difference':>12}"]
         for key, design, measured, deviation in zip(self.keys, self.design, self.measured, self.deviation, strict=True):
-            cells = f"{design:>10.2f}{measured:>10.2f}{deviation:>10.2g}{measured - design:>+12.2f}"
+            cells = f"{design:>10.2f}{measured:>10.2f}{plain(deviation, 2):>10}{measured - design:>+12.2f}"
             lines.append(f"{key:<{width}}  {cells}")
         left = MICROMETRES * self.left
         lines.append(f"form deviations left: rms {np.sqrt((left**2).mean()):.2f}, span {np.ptp(left):.2f} um")

@@ -27,6 +27,7 @@ from loaded_tca.arrays import Array, GearName, Indices, Mask
 from loaded_tca.errors import InputError
 from loaded_tca.flank_maps.conjugate import exchanged, problems_of_map
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.roots import find_roots
 from loaded_tca.unloaded.curvature import relative_curvature
 from loaded_tca.unloaded.ease_off import EaseOff
@@ -100,7 +101,7 @@ class ContactArea:
 
     def __repr__(self) -> str:
         across, along = self.semi_axes
-        return f"ContactArea({self.area:.4g} mm^2, semi-axes {across:.4g} x {along:.4g} mm)"
+        return f"ContactArea({plain(self.area)} mm^2, semi-axes {plain(across)} x {plain(along)} mm)"
 
 
 @dataclass(frozen=True, eq=False)

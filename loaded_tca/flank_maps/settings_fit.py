@@ -44,6 +44,7 @@ from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.setting_slopes import OF_ROLL, SETTINGS, setting_of
 from loaded_tca.flanks.topography import read_topography
 from loaded_tca.gears.face_milled import BLADE_SIGNS, FaceMilledGear, FlankName
+from loaded_tca.plain import plain
 from loaded_tca.scene import Scene
 from loaded_tca.scene.blank_face_milled import BlankFaceMilledScene
 from loaded_tca.scene.build import build_modifications
@@ -216,7 +217,9 @@ class SettingsFit:
         for key, value, change, deviation, at_limit in zip(
             self.keys, self.settings, self.corrections, self.deviation, self.at_limit, strict=True
         ):
-            line = f"{key:<{width}}  {value:>14.6f}  {change:>+12.6f}  {deviation:>10.2g}  {value + change:>14.6f}"
+            line = (
+                f"{key:<{width}}  {value:>14.6f}  {change:>+12.6f}  {plain(deviation, 2):>10}  {value + change:>14.6f}"
+            )
             lines.append(line + ("  at its limit" if at_limit else ""))
         lines += ["", f"{'deviations [um]':<24}{'points':>8}{'rms':>10}{'largest':>10}{'rms after':>12}{'largest':>10}"]
         for one in self.flanks:
@@ -235,7 +238,7 @@ class SettingsFit:
             MICROMETRES * math.sqrt(np.mean([one.rms(getattr(one, name)) ** 2 for one in self.flanks]))
             for name in ("before", "after")
         )
-        return f"SettingsFit({len(self.keys)} settings, {before:.3g} um rms before, {after:.3g} um after)"
+        return f"SettingsFit({len(self.keys)} settings, {plain(before, 3)} um rms before, {plain(after, 3)} um after)"
 
 
 @checked

@@ -225,7 +225,7 @@ class SettingsProblem:
         """Settings of a direction with changes that have effects of at most 10 um each."""
         changes = TYPICAL * way / np.abs(way).max() / sizes * self.factors
         parts = [
-            f"{key} {change:+.3g}"
+            f"{key} {plain(change, 3, '+')}"
             for key, part, change in zip(self.keys, way, changes, strict=True)
             if abs(part) >= NAMED * np.abs(way).max()
         ]

@@ -21,6 +21,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.pattern import COMPOUND, ContactPattern, contact_pattern
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.unloaded.teeth import trace_teeth
 
 POSITIONS = 31
@@ -50,6 +51,8 @@ class VHCheck:
     centre : (m, n, 2) array [mm]
         Centre of area of each pattern, as the frame shows it: lengthwise, and the height or the diameter. NaN if the
         pattern passes between the points of the grid.
+    size : (m, n, 2) array [mm]
+        How far each pattern reaches, lengthwise and along the profile; NaN as the centre.
     edge_share : (m, n) array
         Part of the positions of a pitch at which the leading contact lies on the edge of a flank.
     """
@@ -59,6 +62,7 @@ class VHCheck:
     patterns: tuple[tuple[ContactPattern, ...], ...]
     frame: FlankFrame
     centre: Array
+    size: Array
     edge_share: Array
 
     @property
@@ -138,23 +142,30 @@ def vh_check(
             mesh = trace_teeth(pair, np.linspace(-0.5, 0.5, positions) * pair.pitch)
             patterns.append(contact_pattern(pair, mesh, gear=gear, compound=compound, grid=grid))
         except GeometryError as error:
-            raise GeometryError(f"v = {first:.6g}, h = {second:.6g}: {error}") from error
+            raise GeometryError(f"v = {plain(first, 6)}, h = {plain(second, 6)}: {error}") from error
         edge_share.append(mesh.leading_contact.on_edge.mean())
     frame = (pair.pinion if gear == "pinion" else pair.wheel).flank.frame
-    centre = np.array([pattern_centre(pattern, frame) for pattern in patterns]).reshape(*shape, 2)
+    both = np.array([centre_and_size(pattern, frame) for pattern in patterns]).reshape(*shape, 2, 2)
     lines = tuple(tuple(patterns[k : k + shape[1]]) for k in range(0, len(patterns), shape[1]))
-    return VHCheck(rows, columns, lines, frame, centre, np.reshape(edge_share, shape))
+    return VHCheck(rows, columns, lines, frame, both[..., 0, :], both[..., 1, :], np.reshape(edge_share, shape))
 
 
-def pattern_centre(pattern: ContactPattern, frame: FlankFrame) -> Array:
-    """Centre of area (2,) [mm] of a contact pattern as a frame shows the flank; NaN if no point of its grid touches."""
+def centre_and_size(pattern: ContactPattern, frame: FlankFrame) -> tuple[Array, Array]:
+    """Centre of area (2,) and extent (2,) [mm] of a contact pattern as a frame shows the flank.
+
+    NaN if no point of its grid touches.
+    """
     gap = np.minimum(pattern.gap, BEYOND * pattern.compound)
     x, y, gap = (
         scipy.ndimage.zoom(part, FINER, order=1) for part in (*frame.to_picture(pattern.radius, pattern.axial), gap)
     )
     (x_up, x_along), (y_up, y_along) = np.gradient(x), np.gradient(y)
-    weight = (gap <= pattern.compound) * np.abs(x_along * y_up - x_up * y_along)
+    marked = gap <= pattern.compound
+    weight = marked * np.abs(x_along * y_up - x_up * y_along)
     weight[[0, -1]] *= 0.5
     weight[:, [0, -1]] *= 0.5
     total = weight.sum()
-    return np.array([(weight * x).sum(), (weight * y).sum()]) / total if total > 0.0 else np.full(2, np.nan)
+    if not total > 0.0:
+        return np.full(2, np.nan), np.full(2, np.nan)
+    centre = np.array([(weight * x).sum(), (weight * y).sum()]) / total
+    return centre, np.array([np.ptp(x[marked]), np.ptp(y[marked])])

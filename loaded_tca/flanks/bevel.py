@@ -50,6 +50,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import ConeFrame, Flank, Jet, cone_angle, cone_distance, of_cone_angle
 from loaded_tca.flanks.tensor_spline import polynomial
 from loaded_tca.gears.bevel import CutterCircle
+from loaded_tca.plain import plain
 
 NODES = 11
 """Cone distances at which a curve over R is known; they resolve it to the last digits."""
@@ -249,8 +250,8 @@ class SphericalInvoluteFlank(Flank):
         for root, face in zip(*seen, strict=True):
             if not base - ROUNDING <= root < face <= math.pi - base:
                 raise InputError(
-                    f"cone_angles: base {base:.6g} <= root {root:.6g} < face {face:.6g} <= {math.pi - base:.6g} rad "
-                    "does not hold"
+                    f"cone_angles: base {plain(base, 6)} <= root {plain(root, 6)} < face {plain(face, 6)} <= "
+                    f"{plain(math.pi - base, 6)} rad does not hold"
                 )
         if not 0.0 < cone_distances[0] < cone_distances[1]:
             raise InputError(f"cone_distances: 0 < toe {cone_distances[0]} < heel {cone_distances[1]} mm does not hold")

@@ -330,7 +330,9 @@ def conjugate_flank(
         if abs(step) < RESOLVED:
             break
     else:
-        raise GeometryError(f"{wheel.owner}: it is in contact nowhere at rho = {rho:.6g}, z = {z:.6g} mm of the pinion")
+        raise GeometryError(
+            f"{wheel.owner}: it is in contact nowhere at rho = {plain(rho, 6)}, z = {plain(z, 6)} mm of the pinion"
+        )
     envelope = (bends - np.outer(bends[1], bends[1]) / bends[1, 1]) / ratio
     return slopes[[0, 2]] / ratio, np.array([envelope[0, 0], envelope[0, 2], envelope[2, 2]])
 

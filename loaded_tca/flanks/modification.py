@@ -202,7 +202,10 @@ class FlankModifications:
         shapes: dict[str, Shape] = {"parabolic": parabola, "logarithmic": logarithmic}
         if self.lead_crowning_form == "circular" and crowning != 0.0:
             if abs(crowning) > half:
-                message = f"lead_crowning: {crowning:.6g} mm is more than a circular arc over {width:.6g} mm can fall"
+                message = (
+                    f"lead_crowning: {plain(crowning, 6)} mm is more than a circular arc over "
+                    f"{plain(width, 6)} mm can fall"
+                )
                 raise InputError(message)
             shapes["circular"] = CircularArc(abs(crowning), half)
         shape = shapes.get(self.lead_crowning_form, parabola)
@@ -279,7 +282,7 @@ def _require_between(name: str, value: float, first: float, second: float, unit:
     """Refuse a value that is not between two others, in either order: of a ring the tip has the smaller diameter."""
     low, high = min(first, second), max(first, second)
     if not low < value < high:
-        raise InputError(f"{name}: {value:.6g} {unit} is not between {low:.6g} and {high:.6g} {unit}")
+        raise InputError(f"{name}: {plain(value, 6)} {unit} is not between {plain(low, 6)} and {plain(high, 6)} {unit}")
 
 
 def modified(
@@ -323,7 +326,7 @@ def modified(
     most, limit = float(np.abs(flank.removal(*nominal.grid(*CHECKED)).value).max()), MOST * max(nominal.extent)
     if not most <= limit:
         warning = f"{owner}.modifications: together they remove or add up to {plain(most)} mm"
-        raise InputError(f"{warning}; allowed up to {plain(limit)} mm, {MOST:g} longer sides of the flank")
+        raise InputError(f"{warning}; allowed up to {plain(limit)} mm, {plain(MOST, 6)} longer sides of the flank")
     for name in AMOUNTS:
         amount = getattr(modifications, name) or 0.0  # None: as at both ends
         if abs(amount) > LARGEST_AMOUNT:

@@ -29,6 +29,7 @@ from loaded_tca.errors import require
 from loaded_tca.flanks.base import EDGE_NAMES, DerivedFlank, Flank, Jet, outward_normal, unmodified
 from loaded_tca.flanks.bevel import NODES, DistanceCurve, chebyshev_nodes
 from loaded_tca.flanks.tensor_spline import SplineDerivatives
+from loaded_tca.plain import plain
 
 LEAST_RADIUS = 0.01
 """Smallest radius [mm] of a rounded edge: below it an edge is sharp."""
@@ -69,10 +70,10 @@ class EdgeRounding:
     side: float = 0.0
 
     def __post_init__(self) -> None:
-        allowed = f"allowed 0 (sharp), or from {LEAST_RADIUS:g} mm on"
+        allowed = f"allowed 0 (sharp), or from {plain(LEAST_RADIUS, 6)} mm on"
         require(
             *(
-                (radius == 0.0 or LEAST_RADIUS <= radius < math.inf, f"{name}: found {radius:g} mm; {allowed}")
+                (radius == 0.0 or LEAST_RADIUS <= radius < math.inf, f"{name}: found {plain(radius, 6)} mm; {allowed}")
                 for name, radius in (("tip", self.tip), ("side", self.side))
             )
         )
@@ -289,7 +290,10 @@ class RoundedFlank(DerivedFlank):
         return removals
 
     def __repr__(self) -> str:
-        return f"RoundedFlank({self.nominal!r}, tip {self.rounding.tip:g} mm, sides {self.rounding.side:g} mm)"
+        return (
+            f"RoundedFlank({self.nominal!r}, tip {plain(self.rounding.tip, 6)} mm, sides "
+            f"{plain(self.rounding.side, 6)} mm)"
+        )
 
 
 def _shares(count: int, low: float, high: float) -> Array:

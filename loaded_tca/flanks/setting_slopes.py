@@ -34,6 +34,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.cradle import ALPHA, CradleGeneration, Z
 from loaded_tca.gears.face_milled import BLADE_SIGNS, MINUTES_PER_NUMBER, FaceMilledGear, FlankName
+from loaded_tca.plain import plain
 
 OF_MACHINE = (
     "radial",
@@ -128,7 +129,7 @@ def cut_at(
         missing, worst = int((~points.found).sum()), int(np.argmin(points.found))
         raise GeometryError(
             f"{gear.name}, {flank} flank: the cutter leaves none of it at {missing} of {rho.size} points, first at "
-            f"rho = {rho[worst]:.6g}, z = {z[worst]:.6g} mm"
+            f"rho = {plain(rho[worst], 6)}, z = {plain(z[worst], 6)} mm"
         )
     if not settings:
         return points.theta.value, np.zeros((0, rho.size))

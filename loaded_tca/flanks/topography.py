@@ -266,7 +266,9 @@ def _given_order(count: int, points: str) -> tuple[tuple[int, int], Array]:
 def _order_by_indices(names: Sequence[str], profile: Array, lengthwise: Array) -> tuple[tuple[int, int], Array]:
     """Shape (profile, lengthwise) of a grid with these indices, and the order of the rows in which they fill it."""
     fractions = [(name, at[at != np.round(at)]) for name, at in zip(names, (profile, lengthwise), strict=True)]
-    problems = [f"{name}: {at[0]:g} is not a whole number ({at.size} such rows)" for name, at in fractions if at.size]
+    problems = [
+        f"{name}: {plain(at[0], 6)} is not a whole number ({at.size} such rows)" for name, at in fractions if at.size
+    ]
     if problems:  # each would be a line of the grid of its own
         raise InputError(problems)
     (rows, row), (columns, column) = (np.unique(index, return_inverse=True) for index in (profile, lengthwise))
@@ -278,7 +280,7 @@ def _order_by_indices(names: Sequence[str], profile: Array, lengthwise: Array) -
     cases = ((missing, first_free, "missing"), (len(twice), int(twice[0]) if len(twice) else 0, "given more than once"))
     problems = [
         f"{count} of the {shape[0]} x {shape[1]} points {'is' if count == 1 else 'are'} {what}, the first at "
-        f"{names[0]} {rows[first // shape[1]]:g}, {names[1]} {columns[first % shape[1]]:g}"
+        f"{names[0]} {plain(rows[first // shape[1]], 6)}, {names[1]} {plain(columns[first % shape[1]], 6)}"
         for count, first, what in cases
         if count
     ]
@@ -416,7 +418,7 @@ class MeasuredDeviations(Topography):
         if not problems and len({array.shape for array in arrays.values()}) > 1:
             problems.append(f"shapes {', '.join(f'{name} {array.shape}' for name, array in arrays.items())} differ")
         if "radius" in arrays and not (arrays["radius"] > 0.0).all():
-            problems.append(f"radius: {arrays['radius'].min():.6g} mm is not positive")
+            problems.append(f"radius: {plain(arrays['radius'].min(), 6)} mm is not positive")
         if problems:
             raise InputError(problems)
         for name, array in arrays.items():

@@ -36,6 +36,7 @@ from loaded_tca.gears.checks import (
     spiral_check,
     teeth_checks,
 )
+from loaded_tca.plain import plain
 
 _DEDENDUM = 1.25
 # In outer modules: the straight blade of a generating tool reaches this deep (ISO 23509:2016, clause 8).
@@ -88,7 +89,7 @@ class CutterCircle:
         for distance in distances:
             if not abs(self._constant + distance**2) < _LARGEST_SINE * 2.0 * distance * self.radius:
                 raise GeometryError(
-                    f"{owner}: cutter_radius {self.radius:g} mm: its circle does not cross the cone distance"
+                    f"{owner}: cutter_radius {plain(self.radius, 6)} mm: its circle does not cross the cone distance"
                     f" {distance:.4f} mm; use a larger cutter or a smaller face width"
                 )
 
@@ -228,8 +229,8 @@ class BevelGear:
         """Refuse a tooth without toe, flank or tip."""
         if self.face_width >= self.outer_cone_distance:
             raise GeometryError(
-                f"{self.name}: face_width {self.face_width:.6g} mm reaches the apex: no face width is left at the toe; "
-                f"it must be below the outer cone distance {self.outer_cone_distance:.6g} mm"
+                f"{self.name}: face_width {plain(self.face_width, 6)} mm reaches the apex: no face width is left at "
+                f"the toe; it must be below the outer cone distance {plain(self.outer_cone_distance, 6)} mm"
             )
         if self.cutter_circle is not None:
             self.cutter_circle.check(self.name, (self.inner_cone_distance, self.outer_cone_distance))
@@ -241,15 +242,15 @@ class BevelGear:
         largest = 2.0 * self.inner_cone_distance * sin(self.root_cone_angle_at(self.inner_cone_distance))
         if self.bore_diameter is not None and self.bore_diameter >= largest:
             raise InputError(
-                f"{self.name}: bore_diameter: {self.bore_diameter:.6g} mm is not below the root diameter at the toe, "
-                f"{largest:.6g} mm"
+                f"{self.name}: bore_diameter: {plain(self.bore_diameter, 6)} mm is not below the root diameter at the "
+                f"toe, {plain(largest, 6)} mm"
             )
         ends = (self.inner_cone_distance, self.mean_cone_distance, self.outer_cone_distance)
         require(
             (
                 ends[0] < ends[1] < ends[2],
-                f"calculation_distance: {ends[1]:.6g} mm does not lie on the face, between {ends[0]:.6g} and"
-                f" {ends[2]:.6g} mm",
+                f"calculation_distance: {plain(ends[1], 6)} mm does not lie on the face, between {plain(ends[0], 6)} "
+                f"and {plain(ends[2], 6)} mm",
             ),
             owner=self.name,
         )
@@ -425,8 +426,8 @@ class BevelGear:
     def cone_angle_at_diameter(self, diameter: float) -> float:
         """Cone angle of a diameter as :meth:`diameter_at` counts it [rad]."""
         sine = 0.5 * diameter / self.mean_cone_distance
-        allowed = f"between 0 and {4.0 * self.mean_cone_distance:.6g} mm"
-        require((0.0 <= sine <= 2.0, f"a diameter of {diameter:.6g} mm is not {allowed}"), owner=self.name)
+        allowed = f"between 0 and {plain(4.0 * self.mean_cone_distance, 6)} mm"
+        require((0.0 <= sine <= 2.0, f"a diameter of {plain(diameter, 6)} mm is not {allowed}"), owner=self.name)
         return asin(sine) if sine <= 1.0 else pi - asin(2.0 - sine)
 
 

@@ -27,6 +27,7 @@ from loaded_tca.gears.blank_gear import (
     virtual_curvature,
 )
 from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, half_turn_checks, input_checks, teeth_checks
+from loaded_tca.plain import plain
 
 Taper = Literal["standard", "uniform", "duplex", "modified"]
 
@@ -197,7 +198,7 @@ class BevelBlank(BlankPair):
             *half_turn_checks(shaft_angle=self.shaft_angle),
             (
                 0.0 <= spiral < LARGEST_SPIRAL_ANGLE,
-                f"spiral_angle: {spiral:.6g} rad is not from 0 to below 1.047 rad (60 deg)",
+                f"spiral_angle: {plain(spiral, 6)} rad is not from 0 to below 1.047 rad (60 deg)",
             ),
             (0.0 < self.outer_share < 1.0, f"outer_share: {self.outer_share} is not between 0 and 1"),
             *(check for angle in cone_angles for check in half_turn_checks(cones=angle)),
@@ -224,8 +225,8 @@ class BevelBlank(BlankPair):
         for width, distances in zip(self.face_widths[::-1], self._both_distances[::-1], strict=True):
             if not distances[0] > 0.0:
                 raise GeometryError(
-                    f"face_width {width:.6g} mm reaches the apex: no face is left at the toe; it must be below"
-                    f" the outer cone distance {distances[2]:.6g} mm"
+                    f"face_width {plain(width, 6)} mm reaches the apex: no face is left at the toe; it must be below"
+                    f" the outer cone distance {plain(distances[2], 6)} mm"
                 )
         both = [pair for distances in self._both_distances[::-1] for pair in zip(SECTIONS, distances, strict=True)]
         for place, distance in both:

@@ -175,7 +175,7 @@ def measured_depths(addenda: Both, dedenda: Both, module: float) -> dict[str, fl
     if abs(first - second) > ROUNDED * module:
         raise InputError(
             f"mean_dedendum: the clearances {both} differ by more than {plain(ROUNDED * module, 3)} mm "
-            f"({ROUNDED:g} m_mn); both gears have one"
+            f"({plain(ROUNDED, 6)} m_mn); both gears have one"
         )
     shift = addenda[0] - addenda[1] + dedenda[1] - dedenda[0]
     return {
@@ -221,8 +221,8 @@ def measured_thicknesses(thicknesses: Both, shift: float, module: float, pressur
     left = pi * module - sum(thicknesses)
     if left < -1e-9 * module:
         raise InputError(
-            f"mean_normal_thickness: {thicknesses[0]:g} and {thicknesses[1]:g} mm together are more than the mean"
-            f" normal pitch, {pi * module:.4f} mm: the teeth would overlap"
+            f"mean_normal_thickness: {plain(thicknesses[0], 6)} and {plain(thicknesses[1], 6)} mm together are more "
+            f"than the mean normal pitch, {pi * module:.4f} mm: the teeth would overlap"
         )
     difference = 0.25 * (thicknesses[0] - thicknesses[1]) / module - shift * tan(pressure_angle)
     return difference, max(left, 0.0) * cos(pressure_angle)

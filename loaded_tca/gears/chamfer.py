@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError
+from loaded_tca.plain import plain
 
 if TYPE_CHECKING:
     from loaded_tca.gears.tooth_measures import MeasuredGear
@@ -23,7 +24,10 @@ def chamfer_checks(gear: MeasuredGear) -> Iterator[tuple[bool, str]]:
     """Checks of the numbers that give a chamfer."""
     height, angle = real(gear.tip_chamfer), gear.tip_chamfer_angle
     most = gear.normal_module
-    yield 0.0 <= height < most, f"tip_chamfer: {height:.6g} mm is not from 0 to below a module, {most:.6g} mm"
+    yield (
+        0.0 <= height < most,
+        f"tip_chamfer: {plain(height, 6)} mm is not from 0 to below a module, {plain(most, 6)} mm",
+    )
     fits = angle is None or 0.0 < real(angle) < 0.5 * pi
     yield fits, f"tip_chamfer_angle: {angle} rad is not between 0 and 1.571 rad (90 deg)"
 
@@ -68,14 +72,14 @@ def check_chamfer(gear: MeasuredGear) -> None:
     start, form = gear.tip_form_radius, gear.form_radius
     if (start - form) * gear.teeth <= 0.0:
         raise GeometryError(
-            f"{gear.name}: tip_chamfer: {gear.tip_chamfer:.6g} mm leaves no flank: the tip form circle, diameter "
+            f"{gear.name}: tip_chamfer: {plain(gear.tip_chamfer, 6)} mm leaves no flank: the tip form circle, diameter "
             f"{2.0 * start:.4f} mm, does not lie beyond the root form circle, diameter {2.0 * form:.4f} mm"
         )
     land = chamfered_land(gear)
     if land <= 0.0:
         raise GeometryError(
-            f"{gear.name}: tip_chamfer: {gear.tip_chamfer:.6g} mm leaves nothing of the tip: the chamfers of both "
-            "flanks meet below it; reduce tip_chamfer or tip_chamfer_angle"
+            f"{gear.name}: tip_chamfer: {plain(gear.tip_chamfer, 6)} mm leaves nothing of the tip: the chamfers of "
+            "both flanks meet below it; reduce tip_chamfer or tip_chamfer_angle"
         )
     if land >= gear.tooth_thickness_at(gear.tip_radius):
         raise GeometryError(

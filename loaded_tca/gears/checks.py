@@ -39,14 +39,14 @@ def input_checks(gear: Any, positive: tuple[str, ...], finite: tuple[str, ...]) 
         yield isfinite(real(getattr(gear, key))), f"{key}: {getattr(gear, key)} is not finite"
     angle = real(gear.pressure_angle)
     allowed = SMALLEST_PRESSURE_ANGLE <= angle <= LARGEST_PRESSURE_ANGLE
-    yield allowed, f"pressure_angle: {angle:.6g} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)"
+    yield allowed, f"pressure_angle: {plain(angle, 6)} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)"
 
 
 def face_check(face_width: float, length: float, name: str) -> tuple[bool, str]:
     """Check of a face width against the module, or another length, that is called so."""
     least = LEAST_FACE * length
     short = 0.0 < real(face_width) < least
-    return not short, f"face_width: {face_width} mm is below {LEAST_FACE:g} {name}, {plain(least)} mm"
+    return not short, f"face_width: {face_width} mm is below {plain(LEAST_FACE, 6)} {name}, {plain(least)} mm"
 
 
 def topping_check(gear: Any) -> tuple[bool, str]:
@@ -59,12 +59,14 @@ def half_turn_checks(**angles: float | None) -> Iterator[tuple[bool, str]]:
     """Checks of angles, where they are given: each lies between 0 and 180 deg."""
     for key, angle in angles.items():
         if angle is not None:
-            yield 0.0 < real(angle) < pi, f"{key}: {real(angle):.6g} rad is not between 0 and 3.142 rad (180 deg)"
+            yield 0.0 < real(angle) < pi, f"{key}: {plain(real(angle), 6)} rad is not between 0 and 3.142 rad (180 deg)"
 
 
 def spiral_check(key: str, angle: float) -> tuple[bool, str]:
     """Check of a helix or spiral angle of either hand."""
-    return abs(real(angle)) < LARGEST_SPIRAL_ANGLE, f"{key}: {real(angle):.6g} rad is not within 1.047 rad (60 deg)"
+    return abs(
+        real(angle)
+    ) < LARGEST_SPIRAL_ANGLE, f"{key}: {plain(real(angle), 6)} rad is not within 1.047 rad (60 deg)"
 
 
 def pair_checks(pinion: Any, wheel: Any, lengths: tuple[str, ...], spiral: str) -> Iterator[tuple[bool, str]]:
@@ -74,4 +76,7 @@ def pair_checks(pinion: Any, wheel: Any, lengths: tuple[str, ...], spiral: str) 
         yield isclose(one, other, rel_tol=_EQUAL), f"{key}: {one} and {other} mm must be equal"
     for key, sign, demand in (("pressure_angle", 1.0, "equal"), (spiral, -1.0, "opposite hands of one angle")):
         one, other = degrees(getattr(pinion, key)), degrees(getattr(wheel, key))
-        yield isclose(one, sign * other, rel_tol=_EQUAL), f"{key}: {one:.6g} and {other:.6g} deg must be {demand}"
+        yield (
+            isclose(one, sign * other, rel_tol=_EQUAL),
+            f"{key}: {plain(one, 6)} and {plain(other, 6)} deg must be {demand}",
+        )

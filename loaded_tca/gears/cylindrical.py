@@ -26,6 +26,7 @@ from loaded_tca.gears.protuberance import (
     without_step,
 )
 from loaded_tca.gears.tooth_measures import LARGEST_ALLOWANCE, MeasuredGear
+from loaded_tca.plain import plain
 from loaded_tca.roots import find_root
 
 
@@ -134,10 +135,13 @@ class CylindricalGear(MeasuredGear):
         allowance, alteration = self.thickness_allowance, self.tip_alteration_coefficient
         largest = LARGEST_ALLOWANCE * self.normal_module
         require(
-            (abs(allowance) <= largest, f"thickness_allowance: {allowance:.6g} mm is not within {largest:.6g} mm"),
+            (
+                abs(allowance) <= largest,
+                f"thickness_allowance: {plain(allowance, 6)} mm is not within {plain(largest, 6)} mm",
+            ),
             (
                 alteration == 0.0 or self.tip_diameter is None,
-                f"tip_alteration_coefficient: {alteration:g} beside a tip_diameter of {self.tip_diameter} mm; "
+                f"tip_alteration_coefficient: {plain(alteration, 6)} beside a tip_diameter of {self.tip_diameter} mm; "
                 "give one of them",
             ),
             topping_check(self),
@@ -150,11 +154,14 @@ class CylindricalGear(MeasuredGear):
         require(
             (
                 dedendum < deepest,
-                f"dedendum_coefficient: {dedendum:.6g} is beyond the point of the rack's tooth;"
-                f" at this pressure angle it must be below {deepest:.4f}",
+                f"dedendum_coefficient: {plain(dedendum, 6)} is beyond the point of the rack's tooth; at this pressure "
+                f"angle it must be below {deepest:.4f}",
             ),
-            (root > 0.0, f"profile_shift: {self.profile_shift:.6g} makes the root diameter {root:.6g} mm"),
-            (not 0.0 < root <= bore, f"bore_diameter: {bore:.6g} mm is not below the root diameter {root:.6g} mm"),
+            (root > 0.0, f"profile_shift: {plain(self.profile_shift, 6)} makes the root diameter {plain(root, 6)} mm"),
+            (
+                not 0.0 < root <= bore,
+                f"bore_diameter: {plain(bore, 6)} mm is not below the root diameter {plain(root, 6)} mm",
+            ),
             owner=self.name,
         )
         self._check_tooth()
@@ -461,7 +468,9 @@ def transverse_profile(gear: CylindricalGear, points: int, inner_radius: float |
     default = 0.5 * gear.bore_diameter if gear.bore_diameter else solid
     inner = default if inner_radius is None else inner_radius
     if not 0.0 < inner < gear.root_radius:
-        raise InputError(f"inner_radius: {inner} mm is not between 0 and {gear.root_radius:.6g} mm, the root radius")
+        raise InputError(
+            f"inner_radius: {inner} mm is not between 0 and {plain(gear.root_radius, 6)} mm, the root radius"
+        )
     parts = list(half_tooth(gear, points).values())
     angle = np.linspace(math.pi / gear.teeth, 0.0, points)
     rim = np.stack([inner * np.cos(angle), inner * np.sin(angle)], axis=-1)

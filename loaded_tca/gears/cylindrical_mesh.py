@@ -140,12 +140,12 @@ class CylindricalMesh(InvoluteMesh):
         smallest = self.base_distance
         if self.centre_distance is None and self._involute_without_backlash <= 0.0:
             raise GeometryError(
-                f"profile_shift: for the sum {self._profile_shift_sum:.6g} no centre distance is without"
+                f"profile_shift: for the sum {plain(self._profile_shift_sum, 6)} no centre distance is without"
                 f" backlash; give a centre_distance above {smallest:.4f} mm"
             )
         if self.working_centre_distance <= smallest:
             raise GeometryError(
-                f"centre_distance: {self.working_centre_distance:.6g} mm is not above {smallest:.4f} mm,"
+                f"centre_distance: {plain(self.working_centre_distance, 6)} mm is not above {smallest:.4f} mm,"
                 " the sum of the base radii"
             )
 
@@ -319,8 +319,8 @@ def _what_stops(room: Room, module: float) -> Iterator[str]:
     """Why nothing can turn."""
     if room.backlash < -RIGID * module:
         yield (
-            f"teeth are {plain(-room.backlash)} mm thicker than the spaces of the mating gear, more than {RIGID:g} "
-            "modules, to which no teeth give way"
+            f"teeth are {plain(-room.backlash)} mm thicker than the spaces of the mating gear, more than "
+            f"{plain(RIGID, 6)} modules, to which no teeth give way"
         )
     for (name, mating), length in zip(BOTH_WAYS, room.below_root, strict=True):
         if length < -ROUNDING * module:

@@ -28,6 +28,7 @@ import numpy as np
 from loaded_tca.errors import InputError, require
 from loaded_tca.gears.blank_gear import height_over_pitch_cone
 from loaded_tca.gears.checks import face_check, half_turn_checks, teeth_checks
+from loaded_tca.plain import plain
 
 FlankName = Literal["concave", "convex"]
 
@@ -75,7 +76,7 @@ class Blade:
         straight_or_round = self.blade_radius is None or 0.0 < self.blade_radius < inf
         require(
             (0.0 < self.point_radius < inf, f"point_radius: {self.point_radius} mm is not positive and finite"),
-            (upright, f"blade_angle: {self.blade_angle:.6g} rad is not within 1.047 rad (60 deg)"),
+            (upright, f"blade_angle: {plain(self.blade_angle, 6)} rad is not within 1.047 rad (60 deg)"),
             (straight_or_round, f"blade_radius: {self.blade_radius} mm is not positive and finite"),
             (0.0 <= self.edge_radius < inf, f"edge_radius: {self.edge_radius} mm is negative or not finite"),
         )
@@ -233,7 +234,7 @@ class MachineSettings:
             (known, f"generation: {self.generation!r} is not 'generated' or 'formate'"),
             (self.radial > 0.0, f"radial: {self.radial} mm is not positive"),
             *half_turn_checks(root_angle=self.root_angle),
-            (abs(self.tilt) < 0.5 * pi, f"tilt: {self.tilt:.6g} rad is not within 1.571 rad (90 deg)"),
+            (abs(self.tilt) < 0.5 * pi, f"tilt: {plain(self.tilt, 6)} rad is not within 1.571 rad (90 deg)"),
             (rolls, f"ratio_of_roll: {self.ratio_of_roll} is not positive, and the gear is generated"),
         )
 
@@ -278,7 +279,7 @@ class FaceMilledBlank:
     def __post_init__(self) -> None:
         width, outer = self.face_width, self.outer_cone_distance
         root, pitch, face = self.root_angle, self.pitch_angle, self.face_angle
-        cones = f"0 < root {root:.6g} <= pitch {pitch:.6g} <= face {face:.6g} < 3.142 rad (180 deg)"
+        cones = f"0 < root {plain(root, 6)} <= pitch {plain(pitch, 6)} <= face {plain(face, 6)} < 3.142 rad (180 deg)"
         require(
             *_finite_checks(self),
             (self.hand in ("right", "left"), f"hand: {self.hand!r} is not 'right' or 'left'"),
@@ -287,7 +288,10 @@ class FaceMilledBlank:
             (0.0 < root <= pitch <= face < pi, f"root_angle: {cones} does not hold"),
         )
         mean, (inner, outer) = self.mean_cone_distance, self.cone_distances
-        on_face = f"calculation_cone_distance: {mean} mm is not on the face, between {inner:.6g} and {outer:.6g} mm"
+        on_face = (
+            f"calculation_cone_distance: {mean} mm is not on the face, between {plain(inner, 6)} and "
+            f"{plain(outer, 6)} mm"
+        )
         require((inner < mean < outer, on_face))
 
     @property
@@ -353,7 +357,10 @@ class FaceMilledGear:
     def __post_init__(self) -> None:
         bore, largest = self.bore_diameter, 2.0 * self.blank.cone_distances[0] * sin(self.blank.root_angle)
         fits = bore is None or 0.0 <= bore < largest
-        problem = f"bore_diameter: {bore or 0.0:.6g} mm is not below the root diameter at the toe, {largest:.6g} mm"
+        problem = (
+            f"bore_diameter: {plain(bore or 0.0, 6)} mm is not below the root diameter at the toe, "
+            f"{plain(largest, 6)} mm"
+        )
         require(*teeth_checks(self.teeth), (fits, problem), owner=self.name)
 
     @property

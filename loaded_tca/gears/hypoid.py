@@ -29,6 +29,7 @@ from loaded_tca.arrays import Array, real
 from loaded_tca.errors import InputError, require
 from loaded_tca.gears.checks import half_turn_checks
 from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledMesh
+from loaded_tca.plain import plain
 
 Both = tuple[float, float]
 """Of pinion and wheel."""
@@ -106,7 +107,7 @@ class HypoidCones:
             ),
             (
                 abs(real(self.offset_angle)) < 0.5 * pi,
-                f"offset_angle: {real(self.offset_angle):.6g} rad is not within 1.571 rad (90 deg)",
+                f"offset_angle: {plain(real(self.offset_angle), 6)} rad is not within 1.571 rad (90 deg)",
             ),
         )
 
@@ -154,8 +155,8 @@ class HypoidCones:
         first = first_at(zeta)
         if not (0.0 < first < 0.5 * pi and abs(open_by(zeta)) < MISSED * sum(mean_cone_distances)):
             raise InputError(
-                f"pitch_angles: with a wheel of {second:.6g} rad no pinion closes on an offset of {offset:g} mm and a "
-                f"shaft angle of {shaft_angle:.6g} rad"
+                f"pitch_angles: with a wheel of {plain(second, 6)} rad no pinion closes on an offset of "
+                f"{plain(offset, 6)} mm and a shaft angle of {plain(shaft_angle, 6)} rad"
             )
         return cls((first, second), mean_cone_distances, zeta)
 
@@ -247,12 +248,14 @@ def _offset_angle(pitch_angles: Both, distances: Both, offset: float, shaft_angl
     reach = _reach(pitch_angles, distances)
     if not (first < 0.5 * pi and reach > 0.0):
         raise InputError(
-            f"pitch_angles: no pinion of {first:.6g} rad stands beside a wheel of {pitch_angles[1]:.6g} rad"
+            f"pitch_angles: no pinion of {plain(first, 6)} rad stands beside a wheel of {plain(pitch_angles[1], 6)} rad"
         )
     sine = offset / reach * sin(shaft_angle) / cos(first)
     if not (abs(offset) < reach and abs(sine) < 1.0):
         largest = reach * min(1.0, cos(first) / sin(shaft_angle))
-        raise InputError(f"offset: {offset:g} mm is too large for these pitch cones; allowed below {largest:.6g} mm")
+        raise InputError(
+            f"offset: {plain(offset, 6)} mm is too large for these pitch cones; allowed below {plain(largest, 6)} mm"
+        )
     return asin(sine)
 
 

@@ -28,6 +28,7 @@ from loaded_tca.gears.blank_gear import (
 from loaded_tca.gears.checks import teeth_checks
 from loaded_tca.gears.hypoid import Both, HypoidCones
 from loaded_tca.gears.pitch_cones import PitchConeParameters, limit_pressure_angle
+from loaded_tca.plain import plain
 
 Taper = Literal["duplex", "standard", "uniform"]
 
@@ -128,8 +129,8 @@ class HypoidBlank(BlankPair):
         )
         if self.wheel_cone_distances[0] <= abs(self.cones.offset_in_pitch_plane):
             raise GeometryError(
-                f"face_width: {self.face_width:g} mm reaches below the offset in the pitch plane, "
-                f"{self.cones.offset_in_pitch_plane:.6g} mm; no pinion meets the toe of the wheel"
+                f"face_width: {plain(self.face_width, 6)} mm reaches below the offset in the pitch plane, "
+                f"{plain(self.cones.offset_in_pitch_plane, 6)} mm; no pinion meets the toe of the wheel"
             )
         for gear in (self.pinion, self.wheel):
             gear.check(allow_undercut=True)  # of generated flanks it shows when they are made

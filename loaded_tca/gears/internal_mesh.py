@@ -21,6 +21,7 @@ from loaded_tca.gears.cylindrical_mesh import ROUNDING, ActiveProfile, PathOfCon
 from loaded_tca.gears.involute import InvoluteMesh, involute
 from loaded_tca.gears.ring import RingGear
 from loaded_tca.gears.undercut import fillet_room
+from loaded_tca.plain import plain
 
 _EQUAL = 1e-12
 PROFILE_POINTS = 41
@@ -81,7 +82,7 @@ class InternalMesh(InvoluteMesh):
             *(
                 (
                     isclose(one, other, rel_tol=_EQUAL, abs_tol=_EQUAL),
-                    f"{key}: {one:.6g} and {other:.6g} deg must be equal, the hand included",
+                    f"{key}: {plain(one, 6)} and {plain(other, 6)} deg must be equal, the hand included",
                 )
                 for key, one, other in angles
             ),
@@ -100,14 +101,15 @@ class InternalMesh(InvoluteMesh):
         smallest = self.base_distance
         if self.centre_distance is None and self._involute_without_backlash <= 0.0:
             raise GeometryError(
-                f"profile_shift: {self.pinion.profile_shift:.6g} of the pinion and {self.ring.profile_shift:.6g} of "
-                f"the ring, together {self._profile_shift_sum:.6g}, leave no centre distance without backlash; the sum "
-                f"must be below {self._largest_shift_sum:.6g}, or give a centre_distance above {smallest:.4f} mm"
+                f"profile_shift: {plain(self.pinion.profile_shift, 6)} of the pinion and "
+                f"{plain(self.ring.profile_shift, 6)} of the ring, together {plain(self._profile_shift_sum, 6)}, leave "
+                f"no centre distance without backlash; the sum must be below {plain(self._largest_shift_sum, 6)}, or "
+                f"give a centre_distance above {smallest:.4f} mm"
             )
         if self.working_centre_distance <= smallest:
             raise GeometryError(
-                f"centre_distance: {self.working_centre_distance:.6g} mm is not above {smallest:.4f} mm, the base "
-                "radius of the ring less that of the pinion"
+                f"centre_distance: {plain(self.working_centre_distance, 6)} mm is not above {smallest:.4f} mm, the "
+                "base radius of the ring less that of the pinion"
             )
 
     def _check_flanks(self) -> None:

@@ -11,6 +11,7 @@ from math import asin, atan, cos, hypot, inf, pi, sin, sqrt, tan
 from typing import TYPE_CHECKING
 
 from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.plain import plain
 
 if TYPE_CHECKING:
     from loaded_tca.gears.cylindrical import CylindricalGear
@@ -123,7 +124,8 @@ class InvoluteGear:
         """Roll length of the involute at a radius, sqrt(r^2 - r_b^2) [mm]; zero at the base circle."""
         if radius < self.base_radius * (1.0 - 1e-12):
             raise InputError(
-                f"{self.name}: radius {radius:.6g} mm lies inside the base circle, radius {self.base_radius:.6g} mm"
+                f"{self.name}: radius {plain(radius, 6)} mm lies inside the base circle, radius "
+                f"{plain(self.base_radius, 6)} mm"
             )
         return sqrt(max(0.0, (radius - self.base_radius) * (radius + self.base_radius)))
 
@@ -220,9 +222,9 @@ class InvoluteMesh:
         """Refuse flanks that do not meet on the line of action."""
         if self.path_of_contact.AE <= 0.0:
             raise GeometryError(
-                f"{self.pinion.name} and {self.wheel.name}: no common flank at centre distance"
-                f" {self.working_centre_distance:.6g} mm: on the line of action the usable flanks end"
-                f" {-self.path_of_contact.AE:.4f} mm apart"
+                f"{self.pinion.name} and {self.wheel.name}: no common flank at centre distance "
+                f"{plain(self.working_centre_distance, 6)} mm: on the line of action the usable flanks end "
+                f"{-self.path_of_contact.AE:.4f} mm apart"
             )
 
     @property
@@ -333,6 +335,6 @@ def profile_shift_sum(
     base = 0.5 * abs(sum(teeth)) * normal_module / cos(helix_angle) * cos(angle)
     if not centre_distance > base:
         radii = "both base radii" if teeth[1] > 0 else "the base radius of the ring less that of the pinion"
-        raise GeometryError(f"centre_distance: {centre_distance:.6g} mm is not above {base:.4f} mm, {radii}")
+        raise GeometryError(f"centre_distance: {plain(centre_distance, 6)} mm is not above {base:.4f} mm, {radii}")
     difference = involute(working_pressure_angle(centre_distance, base)) - involute(angle)
     return 0.5 * sum(teeth) * difference / tan(pressure_angle)

@@ -16,6 +16,7 @@ from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears.checks import half_turn_checks, spiral_check, teeth_checks
 from loaded_tca.gears.hypoid import Both, HypoidCones
+from loaded_tca.plain import plain
 from loaded_tca.roots import find_root
 
 ETA_STEPS = 60
@@ -141,8 +142,8 @@ class _MethodOne:
         sine = self.offset * sin(angle) / radius
         if not abs(sine) < 1.0:
             raise InputError(
-                f"offset: {self.offset:g} mm is too large for a wheel of {self.wheel_diameter:g} mm; allowed below "
-                f"{radius / sin(angle):.6g} mm"
+                f"offset: {plain(self.offset, 6)} mm is too large for a wheel of {plain(self.wheel_diameter, 6)} mm; "
+                f"allowed below {plain(radius / sin(angle), 6)} mm"
             )
         factor = tan(self.spiral) * sine + sqrt(1.0 - sine**2)
         pinion = radius * factor / u
@@ -183,8 +184,8 @@ class _MethodOne:
         eta = _nearest_root(self.bend, self.start[3])
         if eta is None:
             raise GeometryError(
-                f"no pitch cones of method 1: no limit radius of curvature is {self.cutter_radius:g} mm with an offset "
-                f"of {self.offset:g} mm; change cutter_radius, pinion_spiral_angle or offset"
+                f"no pitch cones of method 1: no limit radius of curvature is {plain(self.cutter_radius, 6)} mm with "
+                f"an offset of {plain(self.offset, 6)} mm; change cutter_radius, pinion_spiral_angle or offset"
             )
         cones, spirals = self.cones(eta)
         outer = 0.5 * self.wheel_diameter / sin(cones.pitch_angles[1])

@@ -16,6 +16,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import GeometryError
+from loaded_tca.plain import plain
 from loaded_tca.roots import find_root
 
 if TYPE_CHECKING:
@@ -34,13 +35,16 @@ def protuberance_checks(gear: CylindricalGear) -> Iterator[tuple[bool, str]]:
     protuberance, stock, angle = real(gear.protuberance), real(gear.grinding_stock), gear.protuberance_angle
     for name, value in (("protuberance", protuberance), ("grinding_stock", stock)):
         fits = 0.0 <= value < 0.25 * gear.normal_module
-        yield fits, f"{name}: {value:.6g} mm is not from 0 to a quarter of a module"
+        yield fits, f"{name}: {plain(value, 6)} mm is not from 0 to a quarter of a module"
     yield (
         protuberance <= 0.0 or stock > 0.0,
-        f"protuberance: {protuberance:.6g} mm needs a grinding_stock: without one it would cut into the flank",
+        f"protuberance: {plain(protuberance, 6)} mm needs a grinding_stock: without one it would cut into the flank",
     )
     fits = angle is None or 0.0 < real(angle) < gear.pressure_angle
-    yield fits, f"protuberance_angle: {angle} rad is not between 0 and the pressure angle {gear.pressure_angle:.6g} rad"
+    yield (
+        fits,
+        f"protuberance_angle: {angle} rad is not between 0 and the pressure angle {plain(gear.pressure_angle, 6)} rad",
+    )
 
 
 def flank_after_protuberance(gear: CylindricalGear) -> float:
@@ -58,8 +62,8 @@ def flank_after_protuberance(gear: CylindricalGear) -> float:
         if gear.cut_into_flank(float(after)) <= 0.0:
             return find_root(gear.cut_into_flank, float(after), float(before))
     raise GeometryError(
-        f"{gear.name}: protuberance: the undercut of {gear.residual_undercut:.6g} mm that grinding leaves of it does "
-        "not come back to the flank; reduce protuberance or protuberance_angle"
+        f"{gear.name}: protuberance: the undercut of {plain(gear.residual_undercut, 6)} mm that grinding leaves of it "
+        "does not come back to the flank; reduce protuberance or protuberance_angle"
     )
 
 

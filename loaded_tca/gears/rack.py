@@ -16,6 +16,7 @@ from loaded_tca.arrays import real
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import CylindricalMesh
+from loaded_tca.plain import plain
 
 RACK_TEETH = 2_000_000
 """Teeth of the gear that stands for a rack. Its flank has z_1/z_2 of the pinion's curvature, 1e-5 beside 20 teeth,
@@ -94,8 +95,8 @@ class Rack:
         require(
             (
                 self.bed_depth > 0.0,
-                f"height: {self.height:.6g} mm is not above {least:.6g} mm, the depth of the roots below the reference "
-                "line: no body is left below the teeth",
+                f"height: {plain(self.height, 6)} mm is not above {plain(least, 6)} mm, the depth of the roots below "
+                "the reference line: no body is left below the teeth",
             ),
             owner=self.name,
         )
@@ -166,14 +167,15 @@ def rack_mesh(
     try:
         mesh = CylindricalMesh(pinion, rack.gear, rack.radius + standing, axial_offset)
     except GeometryError as error:
-        error.add_note(f"the axis of the pinion is {standing:.6g} mm from the reference line of the rack")
+        error.add_note(f"the axis of the pinion is {plain(standing, 6)} mm from the reference line of the rack")
         raise
     if rack.length is not None:
         least = (1.0 + mesh.total_contact_ratio) * rack.pitch
         require(
             (
                 rack.length >= least,
-                f"length: {rack.length:.6g} mm is below {least:.6g} mm, the way of all tooth pairs of a pitch",
+                f"length: {plain(rack.length, 6)} mm is below {plain(least, 6)} mm, the way of all tooth pairs "
+                "of a pitch",
             ),
             owner=rack.name,
         )

@@ -21,6 +21,7 @@ from loaded_tca.gears.chamfer import chamfer_checks, check_chamfer
 from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks, topping_check
 from loaded_tca.gears.involute import inverse_involute, involute
 from loaded_tca.gears.tooth_measures import LARGEST_ALLOWANCE, MeasuredGear
+from loaded_tca.plain import plain
 from loaded_tca.roots import find_root
 
 OUTSIDE_MODULES = 7.0
@@ -166,10 +167,13 @@ class RingGear(MeasuredGear):
         allowance, largest = self.thickness_allowance, LARGEST_ALLOWANCE * self.normal_module
         alteration = self.tip_alteration_coefficient
         require(
-            (abs(allowance) <= largest, f"thickness_allowance: {allowance:.6g} mm is not within {largest:.6g} mm"),
+            (
+                abs(allowance) <= largest,
+                f"thickness_allowance: {plain(allowance, 6)} mm is not within {plain(largest, 6)} mm",
+            ),
             (
                 alteration == 0.0 or self.tip_diameter is None,
-                f"tip_alteration_coefficient: {alteration:g} beside a tip_diameter of {self.tip_diameter} mm; "
+                f"tip_alteration_coefficient: {plain(alteration, 6)} beside a tip_diameter of {self.tip_diameter} mm; "
                 "give one of them",
             ),
             topping_check(self),
@@ -181,8 +185,11 @@ class RingGear(MeasuredGear):
         tip, root = 2.0 * self.tip_radius, 2.0 * self.root_radius
         base, outside = 2.0 * self.base_radius, 2.0 * self.outer_radius
         require(
-            (tip < root, f"tip_diameter: {tip:.6g} mm is not below the root diameter {root:.6g} mm"),
-            (root < outside, f"outer_diameter: {outside:.6g} mm is not above the root diameter {root:.6g} mm"),
+            (tip < root, f"tip_diameter: {plain(tip, 6)} mm is not below the root diameter {plain(root, 6)} mm"),
+            (
+                root < outside,
+                f"outer_diameter: {plain(outside, 6)} mm is not above the root diameter {plain(root, 6)} mm",
+            ),
             owner=self.name,
         )
         if tip <= base:
@@ -227,8 +234,9 @@ class RingGear(MeasuredGear):
             require(
                 (
                     self._cutting_involute(shift) > 0.0,
-                    f"profile_shift: {shift:.6g} of the ring and {cutter.profile_shift:.6g} of the cutter, together "
-                    f"{shift + cutter.profile_shift:.6g}, leave no working pressure angle of ring and cutter",
+                    f"profile_shift: {plain(shift, 6)} of the ring and {plain(cutter.profile_shift, 6)} of the cutter, "
+                    f"together {plain(shift + cutter.profile_shift, 6)}, leave no working pressure angle of ring and "
+                    "cutter",
                 ),
                 owner=self.name,
             )

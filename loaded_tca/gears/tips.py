@@ -9,6 +9,7 @@ from math import atan, cos, tan
 
 from loaded_tca.errors import require
 from loaded_tca.gears.involute import inverse_involute, involute_without_backlash
+from loaded_tca.plain import plain
 
 
 def computed_tip_alteration(
@@ -65,7 +66,7 @@ def computed_tip_alteration(
         angle = atan(tan(pressure_angle) / cos(helix_angle))
         value = involute_without_backlash(sum(teeth), sum(shifts), pressure_angle, angle)
         require(
-            (value > 0.0, f"profile_shift: for the sum {sum(shifts):.6g} no centre distance is without backlash"),
+            (value > 0.0, f"profile_shift: for the sum {plain(sum(shifts), 6)} no centre distance is without backlash"),
         )
         distance = reference * cos(angle) / cos(inverse_involute(value))
     side = 1 if teeth[1] > 0 else -1

@@ -175,7 +175,7 @@ def allowance_of_span(gear: MeasuredGear, span: float, teeth: int) -> float:
     """
     nominal = _span(gear, teeth, gear.profile_shift)
     allowance = _side(gear) * (span - nominal) / cos(gear.pressure_angle)
-    return _allowance(gear, allowance, f"span_measurement: {span:.6g} mm over {teeth} teeth", nominal)
+    return _allowance(gear, allowance, f"span_measurement: {plain(span, 6)} mm over {teeth} teeth", nominal)
 
 
 def _span(gear: MeasuredGear, teeth: int, shift: float) -> float:
@@ -218,7 +218,7 @@ def ball_measurement(gear: MeasuredGear, diameter: float) -> float:
     centre, side = _ball_centre(gear, diameter), _side(gear)
     tangent = sqrt((centre - gear.base_radius) * (centre + gear.base_radius))
     contact = tangent - 0.5 * side * diameter * cos(gear.base_helix_angle)
-    what = f"ball_diameter: a ball of {diameter:.6g} mm"
+    what = f"ball_diameter: a ball of {plain(diameter, 6)} mm"
     require(_touches(gear, hypot(gear.base_radius, contact) if contact > 0.0 else 0.0, what), owner=gear.name)
     room = side * (centre - gear.root_radius), side * (centre - gear.tip_radius)
     require(
@@ -246,12 +246,12 @@ def allowance_of_balls(gear: MeasuredGear, measurement: float, diameter: float) 
     """
     side, between = _side(gear), "over" if gear.teeth > 0 else "between"
     centre = 0.5 * (measurement - side * diameter) / _opposite(gear)
-    what = f"ball_measurement: {measurement:.6g} mm {between} balls of {diameter:.6g} mm"
+    what = f"ball_measurement: {plain(measurement, 6)} mm {between} balls of {plain(diameter, 6)} mm"
     require(
         (0.0 < diameter < inf, f"ball_diameter: {diameter} mm is not positive and finite"),
         (
             gear.base_radius < centre < inf,
-            f"{what} has them inside the base circle, diameter {2.0 * gear.base_radius:.6g} mm",
+            f"{what} has them inside the base circle, diameter {plain(2.0 * gear.base_radius, 6)} mm",
         ),
         owner=gear.name,
     )
@@ -273,7 +273,7 @@ def _ball_centre(gear: MeasuredGear, diameter: float) -> float:
     value = _side(gear) * angle
     if value <= 0.0:
         fate = "falls between the flanks" if gear.teeth > 0 else "does not go between the flanks"
-        raise InputError(f"{gear.name}: ball_diameter: a ball of {diameter:.6g} mm {fate}")
+        raise InputError(f"{gear.name}: ball_diameter: a ball of {plain(diameter, 6)} mm {fate}")
     return gear.base_radius / cos(inverse_involute(value))
 
 
@@ -290,8 +290,8 @@ def _opposite(gear: MeasuredGear) -> float:
 def _touches(gear: MeasuredGear, radius: float, what: str) -> tuple[bool, str]:
     """Check of a contact point: on the flank, between form and tip circle."""
     low, high = sorted((gear.form_radius, gear.tip_form_radius))
-    place = f"at diameter {2.0 * radius:.6g} mm" if radius > 0.0 else "below the base circle"
-    flank = f"the flanks reach from {2.0 * low:.6g} to {2.0 * high:.6g} mm"
+    place = f"at diameter {plain(2.0 * radius, 6)} mm" if radius > 0.0 else "below the base circle"
+    flank = f"the flanks reach from {plain(2.0 * low, 6)} to {plain(2.0 * high, 6)} mm"
     return low <= radius <= high, f"{what} touches no flank: it would be {place}, and {flank}"
 
 
@@ -301,8 +301,8 @@ def _allowance(gear: MeasuredGear, allowance: float, what: str, nominal: float) 
     require(
         (
             abs(allowance) <= largest,
-            f"{what} makes the teeth {plain(abs(allowance))} mm {sense} than nominal, where it is {nominal:.6g} mm; "
-            f"allowed up to half a module, {largest:.6g} mm",
+            f"{what} makes the teeth {plain(abs(allowance))} mm {sense} than nominal, where it is {plain(nominal, 6)} "
+            f"mm; allowed up to half a module, {plain(largest, 6)} mm",
         ),
         owner=gear.name,
     )

@@ -287,7 +287,7 @@ def _loaded_states(pairs: NDArray[np.int_], contacts: Contacts, bending: Bending
 @contextmanager
 def told_where(torque: float, angle: float) -> Iterator[None]:
     """Say under which torque [N mm] and at which pinion angle [rad] something cannot be solved."""
-    where = f"{1e-3 * torque:g} N m at pinion angle {plain(math.degrees(angle), 6)} deg"
+    where = f"{plain(1e-3 * torque, 6)} N m at pinion angle {plain(math.degrees(angle), 6)} deg"
     try:
         with named(where):
             yield

@@ -46,7 +46,7 @@ from loaded_tca.loaded.together import Bend, Gap, Line, Steps, Trace, run_alone,
 from loaded_tca.loaded.tooth_contact import FIRST_CELLS, Coupling, GridChoice, contact_under_load, expected_pressure
 from loaded_tca.loaded.tooth_pairs import Share, SharedLoad, ToothPair
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
-from loaded_tca.plain import signed
+from loaded_tca.plain import plain, signed
 from loaded_tca.separation import Separation
 
 SMALLEST_SHARED = 1e-12
@@ -212,7 +212,11 @@ class _Balance:
             if shared.residual <= self.agreement and self._settled(forces, shared.rotation):
                 return shared
         assert shared is not None
-        limit = "" if cap is None else f"; with max_pressure {cap:g} MPa contacts near their limit deform without end"
+        limit = (
+            ""
+            if cap is None
+            else f"; with max_pressure {plain(cap, 6)} MPa contacts near their limit deform without end"
+        )
         raise ConvergenceError(
             f"load sharing not converged: the tooth pairs' rotations differ by {shared.residual:.1e} > "
             f"{self.agreement:.1e} of the rotation after {MOST_BALANCES} balances{limit}",

@@ -15,6 +15,7 @@ from loaded_tca.errors import GeometryError
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import Coupling
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.supports import SupportCompliance
 from loaded_tca.unloaded import ContactPoint, trace_contact
 from loaded_tca.unloaded.tooth_cycle import pitches_within_reach
@@ -58,7 +59,7 @@ def at_rest(pair: GearPair, supports: SupportCompliance | None) -> GearPair:
 
 def moved_too_far(error: GeometryError, torque: float) -> GeometryError:
     """The error of a moved pair, with the torque [N mm] that moves it."""
-    return GeometryError(f"{error}; under {1e-3 * torque:g} N m the supports let the gears move too far")
+    return GeometryError(f"{error}; under {plain(1e-3 * torque, 6)} N m the supports let the gears move too far")
 
 
 def pitches_apart(pair: GearPair, supports: SupportCompliance | None, torques: Sequence[float]) -> int:

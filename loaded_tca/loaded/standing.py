@@ -55,6 +55,7 @@ from loaded_tca.loaded.sensitivity import LoadedStates, loaded_states
 from loaded_tca.loaded.together import Result, Steps
 from loaded_tca.loaded.tooth_contact import Coupling, GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.supports import SupportCompliance
 from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
 
@@ -311,8 +312,8 @@ class GearsUnderTorques:
             if not left:
                 return [loads[torque] for torque in torques]
         raise ConvergenceError(
-            f"supports: motions under {1e-3 * left[0]:g} N m not settled in {MOST_STEPS} steps: the supports are too "
-            "soft for these gears",
+            f"supports: motions under {plain(1e-3 * left[0], 6)} N m not settled in {MOST_STEPS} steps: the supports "
+            "are too soft for these gears",
             last=loads[left[0]],
         )
 

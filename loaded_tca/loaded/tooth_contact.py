@@ -150,7 +150,7 @@ def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation:
         if wider.material_area <= separation.material_area:
             most = CAP_USE * separation.material_area * cap
             raise InputError(
-                f"load: {plain(load, 6)} N is more than the flank carries at max_pressure, {cap:g} MPa: about "
+                f"load: {plain(load, 6)} N is more than the flank carries at max_pressure, {plain(cap, 6)} MPa: about "
                 f"{plain(most)} N"
             )
         separation = wider

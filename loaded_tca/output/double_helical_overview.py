@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import chain
 from typing import TYPE_CHECKING
 
 from loaded_tca.double_helical.analyse import expected_double_helical_effort
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.output.overview import LABEL, scene_sections, torques_with_columns
+from loaded_tca.output.overview import scene_sections, torques_with_columns
+from loaded_tca.output.overview_text import Overview
 from loaded_tca.plain import plain
 from loaded_tca.results.gear_warnings import warn_of_gears
 from loaded_tca.scene.double_helical import HALVES
@@ -30,24 +30,33 @@ def describe_double_helical(scene: DoubleHelicalScene) -> str:
     InputError, GeometryError
         If gears of a half cannot exist, mesh or turn.
     """
-    lines = [scene.title or "Double helical pair", *(_line(*row) for row in pair_rows(scene))]
-    warned: list[str] = []
-    for name, rows, sentences in geometry_of_halves(scene):
-        lines += ["", f"{name}, z from the groove outwards", *(_line(*row) for row in rows)]
-        warned += [f"warning: {name}: {sentence}" for sentence in sentences]
+    return overview_of_double_helical(scene).text
+
+
+def overview_of_double_helical(scene: DoubleHelicalScene) -> Overview:
+    """Return what ``describe_double_helical`` says, before it is text."""
+    rows, halves = pair_rows(scene), geometry_of_halves(scene)
     seconds = plain(expected_double_helical_effort(scene).seconds, 2)
-    return "\n".join([*lines, "", _line("analysis of even shares, about [s]", seconds), HELD, *warned])
+    return Overview(
+        scene.title or "Double helical pair",
+        {"pair": rows},
+        {f"{name}, z from the groove outwards": sections for name, sections, _ in halves},
+        {"seconds": seconds},
+        ("analysis of even shares, about [s]", seconds),
+        [HELD],
+        [f"{name}: {sentence}" for name, _, sentences in halves for sentence in sentences],
+    )
 
 
-def geometry_of_halves(scene: DoubleHelicalScene) -> list[tuple[str, list[Row], list[str]]]:
-    """Name of each half, the rows of its overview, of half b what may differ, and its warnings on whole gears."""
+def geometry_of_halves(scene: DoubleHelicalScene) -> list[tuple[str, dict[str, list[Row]], list[str]]]:
+    """Name of each half, its overview by subjects, of half b those that may differ, and its warnings on whole gears."""
     geometry = []
     for half, own in enumerate(scene.half_scenes(scene.mounting.axial_offset_mm)):
         with noted_accuracy_warnings(given=False) as sentences:
             warn_of_gears(own, own.pair())
             sections = scene_sections(own)
-        rows = chain.from_iterable(rows for name, rows in sections.items() if not half or name in OF_EACH)
-        geometry.append((f"half {HALVES[half]}", [*rows], list(dict.fromkeys(sentences))))
+        shown = {name: rows for name, rows in sections.items() if not half or name in OF_EACH}
+        geometry.append((f"half {HALVES[half]}", shown, list(dict.fromkeys(sentences))))
     return geometry
 
 
@@ -68,11 +77,7 @@ def pair_rows(scene: DoubleHelicalScene) -> list[Row]:
         ("groove [mm]", f"{geometry.gap_mm:z.4f}"),
         ("floating along its axis", floats),
         ("apex of the wheel towards half a [mm]", f"{geometry.apex_offset_mm:z.4f}"),
-        *([("apex runout, peak to peak [um]", *(f"{runout:g}" for runout in runouts))] if any(runouts) else []),
-        ("pinion torque of both halves [N m]", *(f"{1e-3 * torque:g}" for torque in shown)),
+        *([("apex runout, peak to peak [um]", *(plain(runout, 6) for runout in runouts))] if any(runouts) else []),
+        ("pinion torque of both halves [N m]", *(f"{plain(1e-3 * torque, 6)}" for torque in shown)),
         ("axial force of a half, even shares [N]", *(f"{force:z.1f}" for force in axial)),
     ]
-
-
-def _line(label: str, *cells: str) -> str:
-    return f"{label:<{LABEL}}" + "".join(f"{cell:>14}" if len(cell) < 14 else f"  {cell}" for cell in cells)

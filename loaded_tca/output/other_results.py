@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from loaded_tca.arguments import checked
 from loaded_tca.output.result_files import csv_table, json_text, known
-from loaded_tca.plain import lasting
+from loaded_tca.plain import lasting, plain
 from loaded_tca.rating.quantities import OF_SPECTRUM
 from loaded_tca.rating.spectrum import OfSpectrum
 from loaded_tca.results.files import Buffer, FilePath, replace_together
@@ -297,7 +297,7 @@ def write_halves_revolution(
     """
     orders = orders_table(result).values
     for t, torque in enumerate(result.torque):
-        orders[f"axial_motion_at_{1e-3 * torque:.6g}_Nm_um"] = result.axial_spectrum(t).amplitude
+        orders[f"axial_motion_at_{plain(1e-3 * torque, 6)}_Nm_um"] = result.axial_spectrum(t).amplitude
     files = {
         "double_helical_revolution.json": figures_json(result, warnings=result.warnings or ()),
         "double_helical_revolution.csv": csv_table(result.to_table()),
@@ -382,10 +382,10 @@ def bearings_text(lines: Sequence[ShaftLine]) -> str:
     """
     text = []
     for line in lines:
-        text.append(f"{line.gear} under {1e-3 * line.torque:g} N m")
+        text.append(f"{line.gear} under {plain(1e-3 * line.torque, 6)} N m")
         for n, force in enumerate(line.bearing_forces):
             parts = " | ".join(f"{one:z.1f}" for one in force[:3])
-            text.append(f"  bearing {n} at {line.shaft.bearings[n].at:g} mm: force x | y | z {parts} N")
+            text.append(f"  bearing {n} at {plain(line.shaft.bearings[n].at, 6)} mm: force x | y | z {parts} N")
             if inside := rolling_figures(line, n):
                 largest, pressure, life = inside.values()
                 words = "no load" if math.isinf(life) else f"life {lasting(life)} million revolutions"

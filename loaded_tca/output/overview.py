@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from loaded_tca.arrays import GEARS
 from loaded_tca.effort import expected_run_effort
 from loaded_tca.errors import InputError, give_accuracy_warning, noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
+from loaded_tca.output.overview_text import Overview
 from loaded_tca.plain import lasting, plain
 from loaded_tca.results.gear_warnings import questions, warn_of_gears
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
 MOST_TORQUES = 4
 """Torques that have a column each; of more, the least and the largest are shown."""
-LABEL = 44
 
 
 def describe_scene(scene: Scene) -> str:
@@ -41,19 +40,29 @@ def describe_scene(scene: Scene) -> str:
     InputError, GeometryError
         If the gears of the scene cannot exist, mesh or turn, or their teeth cannot be built though they bend.
     """
+    return overview_of_scene(scene).text
+
+
+def overview_of_scene(scene: Scene) -> Overview:
+    """Return what ``describe_scene`` says, before it is text."""
     with noted_accuracy_warnings(given=False) as sentences:
         warn_of_gears(scene, scene.pair())
         sections = scene_sections(scene)
         for sentence in questions(scene):
             give_accuracy_warning(sentence)
     effort = expected_run_effort(scene)
-    spent = ("analysis on idle cores, about: [s], [GiB]", plain(effort.seconds, 2), plain(effort.gibibytes, 2))
-    rows = [*chain.from_iterable(sections.values()), spent]
-    lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
-    beside = [f"ISO 6336: {reason}" for reason in reasons_beside(iso_figures(scene, max(scene.torques)))]
-    warned = [f"warning: {sentence}" for sentence in dict.fromkeys(sentences)]
-    notes = [] if effort.fits else [f"note: {effort}"]
-    return "\n".join([scene.title or "Scene", *lines, *beside, *warned, *notes])
+    spent = plain(effort.seconds, 2), plain(effort.gibibytes, 2)
+    reasons = reasons_beside(iso_figures(scene, max(scene.torques)))
+    return Overview(
+        scene.title or "Scene",
+        sections,
+        {},
+        dict(zip(("seconds", "memory_GiB"), spent, strict=True)),
+        ("analysis on idle cores, about: [s], [GiB]", *spent),
+        [f"ISO 6336: {reason}" for reason in reasons],
+        [*dict.fromkeys(sentences)],
+        [] if effort.fits else [str(effort)],
+    )
 
 
 def scene_sections(scene: Scene) -> dict[str, list[Row]]:
@@ -91,10 +100,10 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """The load, what the analysis is asked to do, and the bores or journals that it holds where teeth bend."""
     torques, wanted, count = torques_with_columns(scene.torques), scene.analysis, len(scene.torques)
     label = "pinion torque [N m]" if len(torques) == count else f"{count} pinion torques from, to [N m]"
-    yield label, *(f"{1e-3 * torque:g}" for torque in torques)
+    yield label, *(f"{plain(1e-3 * torque, 6)}" for torque in torques)
     yield from scene.force_rows(torques)
     if pair.max_pressure is not None:
-        yield "cap on the pressure [MPa]", f"{pair.max_pressure:g}"
+        yield "cap on the pressure [MPa]", f"{plain(pair.max_pressure, 6)}"
     switches = ("on" if switch else "off" for switch in (wanted.load_sharing, wanted.free_edges))
     yield "load sharing, free edges, compliance", *switches, wanted.compliance
     if any(gear.tip_rounding_mm or gear.side_rounding_mm for gear in (scene.pinion, scene.wheel)):
@@ -121,7 +130,7 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
     for gear, lines in by_gear.items():
         for n, bearing in enumerate(lines[0].shaft.bearings if lines else ()):
             forces = (float(np.linalg.norm(line.bearing_forces[n, :3])) for line in lines)
-            yield f"{gear}, bearing {n} at {bearing.at:g} mm: force [N]", *(f"{force:z.1f}" for force in forces)
+            yield f"{gear}, bearing {n} at {plain(bearing.at, 6)} mm: force [N]", *(f"{force:z.1f}" for force in forces)
             inside = [rolling_figures(line, n) for line in lines]
             if any(inside):
                 yield "  largest element force [N]", *(f"{one['element_force_N']:z.1f}" for one in inside)
@@ -172,7 +181,7 @@ def _departures(scene: Scene) -> Iterator[Row]:
     yield from _changed(scene.mounting, "mounting.") or [("mounting errors", "none")]
     for name, gear in (("pinion", scene.pinion), ("wheel", scene.wheel)):
         for edge, radius in (("tip", gear.tip_rounding_mm), ("side", gear.side_rounding_mm)):
-            yield f"{name}.{edge}_rounding_mm", f"{radius:g}" if radius else "sharp"
+            yield f"{name}.{edge}_rounding_mm", f"{plain(radius, 6)}" if radius else "sharp"
         yield from _changed(gear.modifications, f"{name}.modifications.") or [(f"{name}.modifications", "none")]
 
 
@@ -196,7 +205,7 @@ def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
         for where, error in errors.items():
             if error is not None:
                 label = f"{name}: fit {where}, largest, rms [um]"
-                yield label, f"{1e3 * error.largest:.1e}", f"{1e3 * error.rms:.1e}"
+                yield label, plain(1e3 * error.largest, 2), plain(1e3 * error.rms, 2)
 
 
 def _measured_rows(scene: Scene, name: str) -> Iterator[Row]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from itertools import chain
 from typing import TYPE_CHECKING
 
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.output.overview import LABEL, scene_sections, torques_with_columns
+from loaded_tca.output.overview import scene_sections, torques_with_columns
+from loaded_tca.output.overview_text import Overview
 from loaded_tca.plain import plain
 from loaded_tca.results.gear_warnings import warn_of_gears
 from loaded_tca.stages.analyse import expected_stage_effort
@@ -31,21 +31,23 @@ def describe_stage(stage: Stage) -> str:
     InputError, GeometryError
         If gears of the stage cannot exist, mesh or turn, or planets cannot be put in.
     """
+    return overview_of_stage(stage).text
+
+
+def overview_of_stage(stage: Stage) -> Overview:
+    """Return what ``describe_stage`` says, before it is text."""
     stage.require_assembly()
-    lines = [stage.title or "Planetary stage"]
-    sections = stage_sections(stage)
-    lines += [_line(*row) for row in chain.from_iterable(sections.values())]
-    warned: list[str] = []
-    for name, rows, sentences in geometry_of_meshes(stage):
-        lines += ["", name, *(_line(*row) for row in rows)]
-        warned += [f"warning: {name}: {sentence}" for sentence in sentences]
-    lines += [
-        "",
-        _line("analysis on idle cores, about [s]", plain(expected_stage_effort(stage).seconds, 2)),
-        HELD,
-        *warned,
-    ]
-    return "\n".join(lines)
+    sections, meshes = stage_sections(stage), geometry_of_meshes(stage)
+    seconds = plain(expected_stage_effort(stage).seconds, 2)
+    return Overview(
+        stage.title or "Planetary stage",
+        sections,
+        {name: {"geometry": rows} for name, rows, _ in meshes},
+        {"seconds": seconds},
+        ("analysis on idle cores, about [s]", seconds),
+        [HELD],
+        [f"{name}: {sentence}" for name, _, sentences in meshes for sentence in sentences],
+    )
 
 
 def stage_sections(stage: Stage) -> dict[str, list[Row]]:
@@ -85,7 +87,7 @@ def _stage_rows(stage: Stage) -> list[Row]:
         room = neighbours_apart(asked.angles, stage.centre_distance) - 2.0 * planet.tip_radius
         rows.append(("neighbouring planets apart [mm]", f"{room:z.4f}"))
     rows.append(("support of the sun", _support(stage)))
-    rows += [(f"pins displaced {how} [um]", *(f"{pin:g}" for pin in given)) for how, given in pins if given]
+    rows += [(f"pins displaced {how} [um]", *(f"{plain(pin, 6)}" for pin in given)) for how, given in pins if given]
     return rows
 
 
@@ -94,7 +96,7 @@ def _support(stage: Stage) -> str:
     stiffness = stage.stage.support_stiffness
     if math.isinf(stiffness):
         return "rigid"
-    return "floating" if stiffness == 0.0 else f"{1e-3 * stiffness:g} N/um"
+    return "floating" if stiffness == 0.0 else f"{plain(1e-3 * stiffness, 6)} N/um"
 
 
 def _torque_rows(stage: Stage) -> list[Row]:
@@ -105,9 +107,9 @@ def _torque_rows(stage: Stage) -> list[Row]:
     shown, (z_s, _, z_r) = torques_with_columns(stage.sun_torques), stage.teeth
     base = stage.meshes[0].pinion.base_radius
     return [
-        ("sun torque [N m]", *(f"{1e-3 * torque:g}" for torque in shown)),
-        ("carrier torque [N m]", *(f"{1e-3 * torque * (1.0 + z_r / z_s):g}" for torque in shown)),
-        ("ring torque [N m]", *(f"{1e-3 * torque * z_r / z_s:g}" for torque in shown)),
+        ("sun torque [N m]", *(f"{plain(1e-3 * torque, 6)}" for torque in shown)),
+        ("carrier torque [N m]", *(f"{plain(1e-3 * torque * (1.0 + z_r / z_s), 6)}" for torque in shown)),
+        ("ring torque [N m]", *(f"{plain(1e-3 * torque * z_r / z_s, 6)}" for torque in shown)),
         (
             "force of an even share at the base circles [N]",
             *(f"{_even(stage, torque) / base:z.1f}" for torque in shown),
@@ -133,7 +135,3 @@ def phase_rows(stage: Stage) -> list[Row]:
         ),
         ("orders of the mesh that equal planets cancel", f"rotation: {orders[0]}", f"forces on the sun: {orders[1]}"),
     ]
-
-
-def _line(label: str, *cells: str) -> str:
-    return f"{label:<{LABEL}}" + "".join(f"{cell:>14}" if len(cell) < 14 else f"  {cell}" for cell in cells)

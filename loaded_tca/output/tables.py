@@ -17,6 +17,7 @@ import numpy as np
 
 from loaded_tca.arguments import checked
 from loaded_tca.output.result_files import cell, csv_table, json_text, known
+from loaded_tca.plain import plain
 from loaded_tca.results.dynamics import OVER_ORDERS, OVER_PITCH, PARTS
 from loaded_tca.results.figures import FIGURES, key_figures
 from loaded_tca.results.files import Buffer, FilePath, Part, netcdf_of, replace_together, variables_of
@@ -139,12 +140,12 @@ def vh_table(check: VHCheck, keys: tuple[str, str]) -> str:
     >>> from loaded_tca.flank_maps import vh_check
     >>> pair = parse_scene(DEMO_SCENE.read_text()).pair()
     >>> check = vh_check(lambda v, h: pair, [0.0], [0.0], positions=3, grid=(9, 9))
-    >>> vh_table(check, ("v_deg", "h_deg")).splitlines()[0]
-    'v_deg,h_deg,centre_lengthwise_mm,centre_profile_mm,shift_lengthwise_mm,shift_profile_mm,edge_share'
+    >>> vh_table(check, ("v_deg", "h_deg")).splitlines()[0].replace("size_profile_mm,edge_share", "...")
+    'v_deg,h_deg,centre_lengthwise_mm,centre_profile_mm,shift_lengthwise_mm,shift_profile_mm,size_lengthwise_mm,...'
     """
     v, h = np.meshgrid(check.v, check.h, indexing="ij")
     columns = {keys[0]: v, keys[1]: h}
-    for name, values in (("centre", check.centre), ("shift", check.shift)):
+    for name, values in (("centre", check.centre), ("shift", check.shift), ("size", check.size)):
         columns |= {f"{name}_lengthwise_mm": values[..., 0], f"{name}_profile_mm": values[..., 1]}
     columns["edge_share"] = check.edge_share
     return csv_table({name: values.ravel().tolist() for name, values in columns.items()})
@@ -303,7 +304,7 @@ def sensitivities_text(sensitivities: Sensitivities, tolerances: Mapping[str, fl
     together = [math.sqrt(float(((values * spread) ** 2).sum())) for values in slopes.values()]
     rows: list[tuple[str, list[str]]] = [
         (
-            f"pinion torque {figures['pinion_torque_Nm']:.6g} N m",
+            f"pinion torque {plain(figures['pinion_torque_Nm'], 6)} N m",
             [slope.head for name in slopes if (slope := FIGURES[name].slope)],
         ),
         ("", [f"[{unit_of(name) or '-'}]" for name in slopes]),
@@ -312,7 +313,7 @@ def sensitivities_text(sensitivities: Sensitivities, tolerances: Mapping[str, fl
         *((f"  {key}", [_digits(values[k]) for values in slopes.values()]) for k, key in enumerate(sensitivities.keys)),
         ("change per tolerance (standard deviation) of", []),
         *(
-            (f"  {key} = {one:g}", [_digits(values[k] * one) for values in slopes.values()])
+            (f"  {key} = {plain(one, 6)}", [_digits(values[k] * one) for values in slopes.values()])
             for k, (key, one) in enumerate(zip(sensitivities.keys, spread.tolist(), strict=True))
         ),
         ("  all of them, independent", [_digits(value, sign="") for value in together]),
@@ -324,7 +325,7 @@ def sensitivities_text(sensitivities: Sensitivities, tolerances: Mapping[str, fl
 
 def _digits(value: float, sign: str = "+") -> str:
     """Three digits, a dash where unknown."""
-    return f"{value:{sign}.3g}" if math.isfinite(value) else "-"
+    return plain(value, 3, sign) if math.isfinite(value) else "-"
 
 
 STUDY, RANKING, SHORTFALL, PICTURES = "study.csv", "ranking.csv", "shortfall.csv", "study_*.png"

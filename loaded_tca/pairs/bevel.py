@@ -269,8 +269,8 @@ def _require_mating_gears(pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_
     sines = [math.sin(gear.blank.pitch_angle) * gear.blank.mean_cone_distance for gear in (pinion, wheel)]
     if rolling and not math.isclose(sines[0] * wheel.teeth, sines[1] * pinion.teeth, rel_tol=_EQUAL):
         problems.append(
-            f"pitch_angle: mean pitch radii {sines[0]:.6g} and {sines[1]:.6g} mm do not roll on each other with "
-            f"{pinion.teeth}/{wheel.teeth} teeth"
+            f"pitch_angle: mean pitch radii {plain(sines[0], 6)} and {plain(sines[1], 6)} mm do not roll on each other "
+            f"with {pinion.teeth}/{wheel.teeth} teeth"
         )
     if problems:
         raise InputError(problems)
@@ -284,8 +284,8 @@ def _closed_cones(pinion: FaceMilledGear, wheel: FaceMilledGear, offset: float, 
     cones = HypoidCones.closing(angles, distances, offset, shaft_angle)
     if not math.isclose(cones.pitch_angles[0], angles[0], rel_tol=_EQUAL):
         raise InputError(
-            f"pitch_angle: the axes close on an offset of {offset:g} mm and a shaft angle of {shaft_angle:.6g} rad "
-            f"with a pinion of {cones.pitch_angles[0]:.9g} rad, not {angles[0]:.9g}"
+            f"pitch_angle: the axes close on an offset of {plain(offset, 6)} mm and a shaft angle of "
+            f"{plain(shaft_angle, 6)} rad with a pinion of {cones.pitch_angles[0]:.9g} rad, not {angles[0]:.9g}"
         )
     return cones
 
@@ -299,8 +299,8 @@ def _require_rolling(cones: HypoidCones, teeth: tuple[int, int], angles: list[Fl
     if abs(pinion - wheel + cones.offset_angle) < abs(pinion - wheel - cones.offset_angle):
         larger, sign = ("larger", "positive") if cones.offset > 0.0 else ("smaller", "negative")
         raise InputError(
-            f"offset: {cones.offset:g} mm; {angles_at_p}; with a {sign} offset that of the pinion is the {larger} one: "
-            "turn the sign of the offset"
+            f"offset: {plain(cones.offset, 6)} mm; {angles_at_p}; with a {sign} offset that of the pinion is the "
+            f"{larger} one: turn the sign of the offset"
         )
     rolls = [
         radius * math.cos(spiral) / number

@@ -64,8 +64,8 @@ class Mounting:
     def __post_init__(self) -> None:
         require_finite(self, ("rad", "rad", "mm", "mm"))
         problems = [
-            f"{name}: {angle:.6g} rad, {math.degrees(angle):.6g} deg, is not between -45 and 45 deg: the axes are "
-            "nearly parallel"
+            f"{name}: {plain(angle, 6)} rad, {plain(math.degrees(angle), 6)} deg, is not between -45 and 45 deg: the "
+            "axes are nearly parallel"
             for name, angle in (("in_plane", self.in_plane), ("out_of_plane", self.out_of_plane))
             if abs(angle) >= LARGEST_ANGLE
         ]
@@ -202,7 +202,7 @@ def require_short_turn(gear: InvoluteGear) -> None:
     if turn >= LARGEST_TURN:
         raise GeometryError(
             f"{gear.name}: its teeth wind {plain(turn / (2.0 * math.pi), 3)} times around the gear over its "
-            f"face width, {gear.face_width:.6g} mm; less than one turn is allowed"
+            f"face width, {plain(gear.face_width, 6)} mm; less than one turn is allowed"
         )
 
 
@@ -218,8 +218,8 @@ def require_common_face(mesh: InvoluteMesh) -> None:
     least = LEAST_FACE * mesh.pinion.normal_module
     if abs(common) < least:
         raise GeometryError(
-            f"axial_offset: {mesh.axial_offset:.6g} mm leaves no common flank: the faces of pinion and wheel have "
-            f"{plain(max(common, 0.0))} mm in common; at least {plain(least)} mm, {LEAST_FACE:g} normal "
+            f"axial_offset: {plain(mesh.axial_offset, 6)} mm leaves no common flank: the faces of pinion and wheel "
+            f"have {plain(max(common, 0.0))} mm in common; at least {plain(least)} mm, {plain(LEAST_FACE, 6)} normal "
             "modules, are needed"
         )
 

@@ -79,7 +79,7 @@ def rounding_problems(geometry: ToothGeometry, flank: Flank, rounding: EdgeRound
     module : float [mm]
         Normal module.
     """
-    of_module = LARGEST * module, f"{LARGEST:g} normal modules"
+    of_module = LARGEST * module, f"{plain(LARGEST, 6)} normal modules"
     limits = {"tip": [of_module], "side": [of_module]}
     if rounding.tip > 0.0:
         root = flank.grid(2, 33)
@@ -100,7 +100,7 @@ def rounding_problems(geometry: ToothGeometry, flank: Flank, rounding: EdgeRound
     for name, radius in (("tip", rounding.tip), ("side", rounding.side)):
         most, why = min(limits[name])
         if radius > most * (1.0 + ROUNDING):
-            problems.append(f"{name}_rounding_mm: found {radius:g}; allowed up to {plain(most)} mm, {why}")
+            problems.append(f"{name}_rounding_mm: found {plain(radius, 6)}; allowed up to {plain(most)} mm, {why}")
     return problems
 
 

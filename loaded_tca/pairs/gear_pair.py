@@ -32,6 +32,7 @@ from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.material import contact_modulus
 from loaded_tca.pairs.gear import Gear
+from loaded_tca.plain import plain
 from loaded_tca.tooth.surface import Resolution, ToothSurface, TriangleMesh, build_tooth, grid_triangles
 
 Driving = GearName
@@ -224,7 +225,10 @@ class GearPair:
         return cylindrical_basis(theta) @ self.wheel_axes
 
     def __repr__(self) -> str:
-        return f"GearPair({self.teeth[0]}/{self.teeth[1]}, module {self.module:g} mm, face {self.face_width:g} mm)"
+        return (
+            f"GearPair({self.teeth[0]}/{self.teeth[1]}, module {plain(self.module, 6)} mm, face "
+            f"{plain(self.face_width, 6)} mm)"
+        )
 
 
 def cylindrical_basis(theta: Array) -> Array:

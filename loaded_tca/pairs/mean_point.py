@@ -68,10 +68,10 @@ class MeanContact:
 
     def __post_init__(self) -> None:
         require(
-            (0.0 <= self.motion_fall < 0.1, f"motion_fall: {self.motion_fall:.6g} rad is not from 0 to 0.1 rad"),
+            (0.0 <= self.motion_fall < 0.1, f"motion_fall: {plain(self.motion_fall, 6)} rad is not from 0 to 0.1 rad"),
             (
                 0.0 < self.path_angle < math.pi,
-                f"path_angle: {self.path_angle:.6g} rad is not between 0 and 3.142 rad (180 deg)",
+                f"path_angle: {plain(self.path_angle, 6)} rad is not between 0 and 3.142 rad (180 deg)",
             ),
             (
                 0.0 < self.contact_length < math.inf,

@@ -58,6 +58,7 @@ if TYPE_CHECKING:  # those of other results than mesh cycles, with all that they
         plot_halves_face_load,
         plot_halves_shares,
     )
+    from loaded_tca.plots.first_look import plot_first_look
     from loaded_tca.plots.first_order import plot_first_order_scatter
     from loaded_tca.plots.mesh import plot_teeth_in_mesh
     from loaded_tca.plots.rating import RATING_PICTURES, plot_damage, plot_sn_curves, rating_figures
@@ -143,6 +144,7 @@ __all__ = [
     "plot_face_load",
     "plot_face_load_on_supports",
     "plot_film_ratio",
+    "plot_first_look",
     "plot_first_order_scatter",
     "plot_flank_safety",
     "plot_friction_power",

@@ -306,12 +306,12 @@ def _draw_on_flank(
     flank: Flank,
     start: float,
 ) -> None:
-    outline = _draw_flank(axes, name, flank, start)
+    outline = draw_flank(axes, name, flank, start)
     for drawn in draw(axes, to_picture):
         drawn.set_clip_path(outline)
 
 
-def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
+def draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
     """The flank from root to tip, with the part from profile coordinate ``start`` on in white; returns its outline."""
     outlines, ends = flank_outlines(flank, start)
     regions = [

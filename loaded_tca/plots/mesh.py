@@ -131,17 +131,40 @@ def plot_teeth_in_mesh(scene: CylindricalScene) -> Figure:
     ----------
     ISO 21771:2007, 5.2 to 5.5 (path of contact, backlash, tip clearance).
     """
+    width, height = extent_of_teeth(scene)
+    figure = Figure(figsize=(10.0, 9.3 * height / width + 1.0), layout="constrained")
+    draw_teeth_in_mesh(figure.add_subplot(), scene)
+    figure.legend(loc="outside lower center", ncols=4, fontsize="small")
+    section = "transverse section of a half" if isinstance(scene, DoubleHelicalScene) else "transverse section"
+    shown = f"teeth in mesh at the pitch point, {section}"
+    write_title(figure, scene.title, shown, *numbers_of_teeth(scene))
+    return figure
+
+
+def extent_of_teeth(scene: CylindricalScene) -> tuple[float, float]:
+    """Width and height [mm] that teeth in mesh take in a picture."""
+    mesh = scene.mounted_mesh()
+    low, high = _ends(mesh)
+    return 2.0 * _half_width(mesh), high - low
+
+
+def _half_width(mesh: CylindricalMesh | InternalMesh) -> float:
+    return PITCHES * 2.0 * math.pi * mesh.pinion_working_radius / mesh.pinion.teeth
+
+
+def _ends(mesh: CylindricalMesh | InternalMesh) -> tuple[float, float]:
+    """Lowest and highest place that is shown, from the pitch point: some way into both bodies."""
+    roots = [one.axis + one.up * one.gear.root_radius for one in _gears_of(mesh, 1.0)]
+    body = BODY * mesh.pinion.normal_module
+    return min(roots) - body, max(roots) + body
+
+
+def draw_teeth_in_mesh(axes: Axes, scene: CylindricalScene) -> None:
+    """Teeth of both gears, circles, line of action, path of contact, clearances and backlash, in one scale."""
     mesh = scene.mounted_mesh()
     mirrored = (scene.geometry.driving == "pinion") != (scene.sense == "positive")
     side = -1.0 if mirrored else 1.0
-    gears = _gears_of(mesh, side)
-    module = mesh.pinion.normal_module
-    pitch = 2.0 * math.pi * mesh.pinion_working_radius / mesh.pinion.teeth
-    width = PITCHES * pitch
-    roots = [one.axis + one.up * one.gear.root_radius for one in gears]
-    low, high = min(roots) - BODY * module, max(roots) + BODY * module
-    figure = Figure(figsize=(10.0, 9.3 * (high - low) / (2.0 * width) + 1.0), layout="constrained")
-    axes = figure.add_subplot()
+    gears, module, width = _gears_of(mesh, side), mesh.pinion.normal_module, _half_width(mesh)
     for name, one, fill, line in zip(GEARS, gears, FILLS, LINES, strict=True):
         teeth = f"{name}, {abs(one.gear.teeth)} teeth" + (" (ring)" if one.gear.teeth < 0 else "")
         teeth = "rack" if name == "wheel" and scene.rack_radius else teeth
@@ -149,22 +172,20 @@ def plot_teeth_in_mesh(scene: CylindricalScene) -> Figure:
         _draw_circles(axes, one, line, width)
     _draw_path(axes, mesh, side)
     _draw_clearances(axes, mesh, gears)
-    axes.set(xlim=(-width, width), ylim=(low, high), aspect="equal")
+    axes.set(xlim=(-width, width), ylim=_ends(mesh), aspect="equal")
     axes.set_xlabel("from the line of centres [mm]")
     axes.set_ylabel("from the pitch point, towards the wheel [mm]")
-    figure.legend(loc="outside lower center", ncols=4, fontsize="small")
+
+
+def numbers_of_teeth(scene: CylindricalScene) -> Iterator[str]:
+    """What is read off teeth in mesh, in words with units."""
+    mesh = scene.mounted_mesh()
     error = mesh.working_centre_distance - scene.mesh().working_centre_distance
     turns = "counter-clockwise" if scene.sense == "positive" else "clockwise"
-    section = "transverse section of a half" if isinstance(scene, DoubleHelicalScene) else "transverse section"
-    write_title(
-        figure,
-        scene.title,
-        f"teeth in mesh at the pitch point, {section}",
-        f"{scene.geometry.driving} drives, pinion turns {turns}",
-        f"mounted with an error of the centre distance of {error:+.4f} mm" if error else "",
-        *(number.replace(" mm", "\N{NO-BREAK SPACE}mm") for number in _numbers(mesh, scene.rack_radius)),
-    )
-    return figure
+    yield f"{scene.geometry.driving} drives, pinion turns {turns}"
+    yield f"mounted with an error of the centre distance of {error:+.4f} mm" if error else ""
+    for number in _numbers(mesh, scene.rack_radius):
+        yield number.replace(" mm", "\N{NO-BREAK SPACE}mm")
 
 
 def _gears_of(mesh: CylindricalMesh | InternalMesh, side: float) -> tuple[_Drawn, _Drawn]:

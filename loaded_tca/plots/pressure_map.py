@@ -169,7 +169,8 @@ def _label_axes(axes: Axes, one: PressureMap, scale: float, frame: FlankFrame) -
     axes.yaxis.set_inverted(bool(above < level))
     axes.set_xlabel(f"along the contact [mm], {frame.heelwards} on the right")
     axes.set_ylabel(
-        "across the contact [mm]\n(pinion's tip on top)" + (f"\n(drawn {scale:g} times larger)" if scale != 1.0 else "")
+        "across the contact [mm]\n(pinion's tip on top)"
+        + (f"\n(drawn {plain(scale, 6)} times larger)" if scale != 1.0 else "")
     )
 
 
@@ -256,7 +257,7 @@ def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear", 
     axes.set_xlabel("across the contact, from the middle of the grid [mm]")
     axes.set_ylabel("depth [mm]")
     figure.legend(loc="outside lower center", fontsize="small")
-    figure.suptitle(f"Below the surface: {NAMES[quantity]}, Poisson's ratio {stress.poisson_ratio:g}")
+    figure.suptitle(f"Below the surface: {NAMES[quantity]}, Poisson's ratio {plain(stress.poisson_ratio, 6)}")
     return figure
 
 

@@ -94,7 +94,8 @@ def plot_damage(rating: OfCases) -> Figure:
                 top = axes.get_xaxis_transform()
                 label = f"{gear}: above the static strength"
                 axes.plot(broken, np.full(broken.size, 0.97), "v", color=colour, transform=top, label=label)
-        axes.set(xlabel=f"{rating.NUMBERS['torque'].label} [N m]", ylabel=f"damage in {rating.life_required:g} h [-]")
+        label = rating.NUMBERS["torque"].label
+        axes.set(xlabel=f"{label} [N m]", ylabel=f"damage in {plain(rating.life_required, 6)} h [-]")
         _scale(axes, damage[np.isfinite(damage)])
         if not (damage > 0.0).any():
             style.tell(axes, "no damage: stresses below the end of the curve")

@@ -403,7 +403,7 @@ def _legend_of_bands(axes: Axes) -> list[Artist]:
     (line,), bands = axes.lines, axes.collections
     line.set_label("this result")
     for band, (times, _) in zip(bands, BANDS, strict=True):
-        band.set_label(f"± {times:g} standard deviation{'s' * (times > 1.0)}")
+        band.set_label(f"± {plain(times, 6)} standard deviation{'s' * (times > 1.0)}")
     return [line, *bands]
 
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
 from loaded_tca.flank_maps.settings_fit import FlankDeviations, SettingsFit
+from loaded_tca.plain import plain
 from loaded_tca.plots.style import write_title
 from loaded_tca.units import MICROMETRES
 
@@ -38,7 +39,10 @@ def plot_measured_settings(fit: SettingsFit) -> Figure:
     for row, one in zip(panels, fit.flanks, strict=True):
         for axes, values, when in zip(row, (one.before, one.after), ("as measured", "after corrections"), strict=True):
             _draw(axes, one, MICROMETRES * values, scale)
-            numbers = f"rms {MICROMETRES * one.rms(values):.3g}, largest {MICROMETRES * np.abs(values).max():.3g} µm"
+            numbers = (
+                f"rms {plain(MICROMETRES * one.rms(values), 3)}, largest "
+                f"{plain(MICROMETRES * np.abs(values).max(), 3)} µm"
+            )
             axes.set_title(f"{one.measured.name}, {when}: {numbers}", fontsize="small")
             axes.set_xlabel(one.nominal.frame.labels[0], fontsize="small")
         row[0].set_ylabel(one.nominal.frame.labels[1].replace(" [", "\n["), fontsize="small")

@@ -64,7 +64,7 @@ def plot_solution(solution: ContactSolution, hertz: PointContact | LineContact |
     alike = max(lengths) <= ALIKE * min(lengths)
     scale = 1.0 if alike else scale_factor(lengths[1], lengths[0])[0]
     area.set_aspect(scale)
-    larger = f" (drawn {scale:g} times larger)" if scale != 1.0 else ""
+    larger = f" (drawn {plain(scale, 6)} times larger)" if scale != 1.0 else ""
     area.set(xlabel="second axis [mm]", ylabel=f"first axis [mm]{larger}")
     if pressure.any():
         loaded = np.where(pressure > 0.0, pressure, np.nan)

@@ -54,7 +54,7 @@ def plot_stage_phases(result: StageResult) -> Figure:
             length = 1.0 - 0.12 * planet
             axes.plot([0.0, 2.0 * np.pi * phase], [0.0, length], color=colour, linewidth=2.0, label=f"planet {planet}")
             axes.plot([2.0 * np.pi * phase], [length], "o", color=colour)
-        axes.set_xticks(np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False), [f"{k / 8:g}" for k in range(8)])
+        axes.set_xticks(np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False), [f"{plain(k / 8, 6)}" for k in range(8)])
         axes.set_yticks([])
         axes.set_ylim(0.0, 1.1)
         axes.set_title(name, fontsize="medium")

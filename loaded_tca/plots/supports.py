@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.plots.sharing import a_pitch_of, draw_face_load
 from loaded_tca.plots.style import (
     ACCENT,
@@ -156,7 +157,7 @@ def plot_bearing_loads(result: MeshCycle, torque: int | None = None) -> Figure:
         lasting = (
             "no load" if math.isinf(life) else f"L10 {shown(life, f'{gear}_bearing_life_Mrev')} million revolutions"
         )
-        where = f"{gear}, bearing {place} at {bearing.at:g} mm: {bearing.elements} elements, force [N]"
+        where = f"{gear}, bearing {place} at {plain(bearing.at, 6)} mm: {bearing.elements} elements, force [N]"
         axes.set_title(f"{where}\n{lasting}", fontsize="small", pad=10.0)
         axes.set_xticks(np.radians([0.0, 90.0, 180.0, 270.0]), ["x", "y", "-x", "-y"])
         axes.set_ylim(0.0, 1.05 * max(float(largest.max()), 1.0))

@@ -15,6 +15,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
+from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks
 from loaded_tca.plots.sharing import OVER_THE_PATH, over_the_path
@@ -357,9 +358,9 @@ def _speed_words(tribology: Tribology, speed: int) -> str:
     """Speed and oil in words; nothing of those that are not given."""
     given = tribology.conditions
     rpm = given.speeds[speed]
-    words = [] if math.isnan(rpm) else [f"pinion at {rpm:g} 1/min"]
+    words = [] if math.isnan(rpm) else [f"pinion at {plain(rpm, 6)} 1/min"]
     if given.lubricant is not None:
-        words.append(f"{given.lubricant.base} oil at {given.lubricant.oil_temperature:g} °C")
+        words.append(f"{given.lubricant.base} oil at {plain(given.lubricant.oil_temperature, 6)} °C")
     return ", ".join(words)
 
 

@@ -36,6 +36,7 @@ from loaded_tca.plots.study_panels import told_of_variants
 from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, chosen_torque, label_of, load, write_title
 from loaded_tca.results import MeshCycle, load_result
 from loaded_tca.results.files import FilePath
+from loaded_tca.results.loaded_pattern import loaded_pattern
 from loaded_tca.studies.ranking import varied_keys
 
 if TYPE_CHECKING:
@@ -172,7 +173,9 @@ def _grid_of_flanks(v: Array, h: Array, names: tuple[str, str]) -> tuple[Figure,
 
 
 def _frame(axes: Axes, on_edge: bool) -> None:
-    axes.set(xticks=[], yticks=[])
+    axes.tick_params(labelsize="xx-small", length=2.0)
+    for side in (axes.xaxis, axes.yaxis):
+        side.set_major_locator(MaxNLocator(3))
     for spine in axes.spines.values():
         spine.set(color=ACCENT if on_edge else "0.6", linewidth=2.0 if on_edge else 0.8)
 
@@ -182,7 +185,7 @@ def _set_legend(figure: Figure, dot: str, on_edge: bool, frame: FlankFrame) -> N
     thick = [Patch(fill=False, edgecolor=ACCENT, linewidth=2.0, label=EDGE)] if on_edge else []
     figure.legend(
         handles=[Line2D([], [], label=dot, **DOT), *thick],
-        title=f"in each cell the tip is on top, {frame.heelwards} on the right",
+        title=f"in each cell the tip is on top, {frame.heelwards} on the right; places in mm",
         loc="lower center",
         fontsize="small",
         title_fontsize="small",
@@ -200,9 +203,7 @@ def _draw_loaded_cell(axes: Axes, result: MeshCycle, torque: int, gear: GearName
         return
     borders, seen = pressure_seen(result, torque, to_picture, *np.transpose([(x.min(), x.max()), (y.min(), y.max())]))
     axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True).set_clip_path(outline)
-    forces = np.concatenate([(one.pressure * np.prod(one.spacing)).ravel() for one in maps])
-    places = np.concatenate([to_picture(one.points).reshape(-1, 2) for one in maps])
-    axes.plot(*(forces @ places / forces.sum()), **DOT)
+    axes.plot(*loaded_pattern(result, torque, gear).centre, **DOT)
 
 
 def _around(x: Array, y: Array) -> list[Array]:

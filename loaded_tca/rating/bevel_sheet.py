@@ -17,6 +17,7 @@ from loaded_tca.gears import BevelMesh
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
 from loaded_tca.gears.hypoid import HypoidMesh
 from loaded_tca.gears.pitch_cones import limit_pressure_angle
+from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_3 import RootSection
 from loaded_tca.reference.iso10300_1 import EFFECTIVE_SHARE, Both, VirtualPair
 from loaded_tca.reference.iso10300_3 import tip_section
@@ -150,7 +151,7 @@ class BevelSheet:
     def edge_notes(self, gear: int) -> tuple[str, ...]:
         """What of the edge radius of a gear's tool does not count."""
         asked, most = self.members[gear].edge_radius, self._room(gear) * self.pair.mean_normal_module
-        return (f"rho_a0: {asked:.4g} mm does not fit the slot; {most:.4g} mm counts",) if asked > most else ()
+        return (f"rho_a0: {plain(asked)} mm does not fit the slot; {plain(most)} mm counts",) if asked > most else ()
 
     def _tooth(self, gear: int) -> tuple[float, float, float]:
         """x_hm, x_sm and h_a0/m_mn of a gear."""
@@ -183,7 +184,7 @@ def bevel_sheet(scene: SpiralScene) -> BevelSheet:
     """
     mesh = scene.mesh()
     steep = [
-        f"pair: the pitch angle of the {name}, {degrees(angle):.4g} deg, is not below 90 deg; ISO 10300 has virtual "
+        f"pair: the pitch angle of the {name}, {plain(degrees(angle))} deg, is not below 90 deg; ISO 10300 has virtual "
         "cylindrical gears of external bevel gears alone"
         for name, angle in zip(GEARS, _pitch_angles(mesh), strict=True)
         if angle >= 0.5 * pi
@@ -233,12 +234,14 @@ def _of_equations(mesh: BevelMesh) -> BevelSheet:
     pressure, width = mesh.wheel.normal_pressure_angle, mesh.wheel.face_width
     pair = _virtual_pair((first, second), mesh.wheel.teeth, width, (pressure, 0.0), (0.0, 0.0))
     circle = mesh.wheel.cutter_circle
-    notes = [f"rho_a0: spherical involutes have no tool; {FILLET_RADIUS_COEFFICIENT:g} m_mn, or what fits the slots"]
+    notes = [
+        f"rho_a0: spherical involutes have no tool; {plain(FILLET_RADIUS_COEFFICIENT, 6)} m_mn, or what fits the slots"
+    ]
     if circle is None and pair.spiral_angle:
         notes.append("K_F0: 1, the lengthwise curve has no cutter")
     shifts = mesh.pinion.profile_shift + mesh.wheel.profile_shift
     if abs(shifts) > _ROUNDING:
-        notes.append(f"scope: profile shifts have a sum of {shifts:.4g}; the standard holds for a sum of 0")
+        notes.append(f"scope: profile shifts have a sum of {plain(shifts)}; the standard holds for a sum of 0")
     radius = inf if circle is None else circle.radius
     teeth = mesh.pinion.teeth, mesh.wheel.teeth
     return BevelSheet((first, second), pair, teeth, width, pressure, 0.0, radius, tuple(notes))
@@ -263,7 +266,8 @@ def _of_settings(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> BevelSheet:
     width, (first, second) = mesh.wheel.blank.face_width, members
     pair = _virtual_pair((first, second), mesh.wheel.teeth, width, (pressure, limit), offsets)
     notes = [
-        f"rho_a0: the blades of the {name} have no edge radius; {FILLET_RADIUS_COEFFICIENT:g} m_mn, or what fits"
+        f"rho_a0: the blades of the {name} have no edge radius; {plain(FILLET_RADIUS_COEFFICIENT, 6)} m_mn, or "
+        "what fits"
         for name, member in zip(GEARS, members, strict=True)
         if not member.edge_radius
     ]

@@ -10,6 +10,7 @@ import numpy as np
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import GEARS, Array, Mask, index_checks
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 from loaded_tca.rating.roots import local_root_factors, stress_ratio
 from loaded_tca.tribology.slices import slices_of
 
@@ -163,5 +164,5 @@ def torque_of(rating: Rating, case: int) -> int:
     """Index of the torque of a case in its result."""
     torque = 1e-3 * float(rating.torque[case])
     words = "is reversed" if rating.inputs.cases.reversed[case] else "was not solved; analysis.torques_Nm has what is"
-    require((bool(is_shown(rating)[case]), f"case: {case}, {torque:g} N m, {words}"))
+    require((bool(is_shown(rating)[case]), f"case: {case}, {plain(torque, 6)} N m, {words}"))
     return int(np.abs(rating.result.torque - rating.torque[case]).argmin())

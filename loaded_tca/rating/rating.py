@@ -12,6 +12,7 @@ import numpy as np
 
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError
+from loaded_tca.plain import plain
 from loaded_tca.rating.findings import findings
 from loaded_tca.rating.inputs import CommonInputs
 from loaded_tca.rating.lives import COAST, FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurances, OfGears
@@ -223,7 +224,10 @@ class Rating(OfCases):
 
     def __repr__(self) -> str:
         flank, root = self.flank_safety.min(), self.root_safety.min()
-        return f"{type(self).__name__}({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
+        return (
+            f"{type(self).__name__}({len(self.torque)} torques, least S_H {plain(flank, 3)}, least S_F "
+            f"{plain(root, 3)})"
+        )
 
     @property
     def scene(self) -> Scene:
@@ -245,7 +249,7 @@ class Rating(OfCases):
     @property
     def scope(self) -> str:
         """Speed, hours and what is required, in words."""
-        return f"{self._standards}, pinion at {self._speed} for {self.life_required:g} h; {self._safeties}"
+        return f"{self._standards}, pinion at {self._speed} for {plain(self.life_required, 6)} h; {self._safeties}"
 
     @property
     def standard(self) -> str:
@@ -264,7 +268,10 @@ class Rating(OfCases):
     @property
     def _safeties(self) -> str:
         wanted = self.required
-        return f"required S_H {wanted.required_flank_safety:g}, S_F {wanted.required_root_safety:g}; pinion | wheel"
+        return (
+            f"required S_H {plain(wanted.required_flank_safety, 6)}, S_F "
+            f"{plain(wanted.required_root_safety, 6)}; pinion | wheel"
+        )
 
     def safety_alone(self, mode: str) -> Array:
         """Safety against a kind of failure of each case alone (c, gear); NaN where it loads the other flanks."""
@@ -289,10 +296,10 @@ class Rating(OfCases):
             name, least = f"{mode}_safety", self.required.required_safety(mode)
             for place, gear in enumerate(GEARS if self.has(name) else ()):
                 short = self.values(name)[:, place] < least
-                torques = ", ".join(f"{1e-3 * torque:g}" for torque in self.torque[short])
+                torques = ", ".join(f"{plain(1e-3 * torque, 6)}" for torque in self.torque[short])
                 if torques:
                     words = self.NUMBERS[name].text.replace(":", "")
-                    sentences.append(f"{gear}: {words} below the required {least:g} under {torques} N m")
+                    sentences.append(f"{gear}: {words} below the required {plain(least, 6)} under {torques} N m")
         return sentences
 
     def sensitivities(self, keys: Sequence[str]) -> xarray.Dataset:

@@ -11,6 +11,7 @@ import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
+from loaded_tca.plain import plain
 from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS, UNDER_LOAD
 from loaded_tca.rating.rating import WORDS, OfCases, Rating, all_figures
 from loaded_tca.rating.roots import REVERSED
@@ -72,8 +73,8 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
     if below.any():
         parts = arrays["damage"][below].sum(axis=0)[sums > 0.0] / sums[sums > 0.0]
         largest = float(parts[np.isfinite(parts)].max(initial=0.0))
-        part = f"their damage is {largest:.1g} of all"
-        yield f"{below.sum()} bins lie below {1e-3 * solved.torque[0]:.4g} N m, the smallest torque solved; {part}"
+        part = f"their damage is {plain(largest, 1)} of all"
+        yield f"{below.sum()} bins lie below {plain(1e-3 * solved.torque[0])} N m, the smallest torque solved; {part}"
     if cases.reversed.any():
         bins = f"reversed bins ({cases.reversed.sum()} of {len(between)})"
         if of_both_sides:
@@ -81,10 +82,10 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
         else:
             yield f"{bins} load the other flanks, which are not analysed: no damage of these is counted"
             yield f"{bins} stress roots as the same torques do the other way"
-        yield f"{bins} have Y_M of R = {REVERSED:g}; the others have Y_M by root_stress_ratio"
+        yield f"{bins} have Y_M of R = {plain(REVERSED, 6)}; the others have Y_M by root_stress_ratio"
     if abs(cases.repeated - 1.0) > ROUNDING:
-        together = f"{cases.life_hours / cases.repeated:g} h"
-        yield f"the hours of the bins, {together}, follow each other {cases.repeated:.4g} times"
+        together = f"{plain(cases.life_hours / cases.repeated, 6)} h"
+        yield f"the hours of the bins, {together}, follow each other {plain(cases.repeated)} times"
 
 
 class OfSpectrum(OfCases):
@@ -131,13 +132,13 @@ class OfSpectrum(OfCases):
                 least = self.required.required_safety(mode)
                 if life == 0.0:
                     sentences.append(
-                        f"{gear}: {WORDS[mode]}: life 0 at the required safety {least:g}: a bin lies above the static "
-                        f"strength; has a safety of {safety:.3g} in {self.life_required:g} h"
+                        f"{gear}: {WORDS[mode]}: life 0 at the required safety {plain(least, 6)}: a bin lies above the "
+                        f"static strength; has a safety of {plain(safety, 3)} in {plain(self.life_required, 6)} h"
                     )
                 elif life < self.life_required:
                     sentences.append(
-                        f"{gear}: {WORDS[mode]}: life {life:.4g} h of {self.life_required:g} h at the required safety "
-                        f"{least:g}; has a safety of {safety:.3g} in these"
+                        f"{gear}: {WORDS[mode]}: life {plain(life)} h of {plain(self.life_required, 6)} h at the "
+                        f"required safety {plain(least, 6)}; has a safety of {plain(safety, 3)} in these"
                     )
         return sentences
 

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import require, require_positive
+from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_1 import dynamic_coefficients
 
 Both = tuple[float, float]
@@ -304,16 +305,19 @@ def scope_notes(pair: VirtualPair, face_width: float) -> tuple[str, ...]:
     spiral, pressure = degrees(pair.spiral_angle), degrees(pair.effective_pressure_angle)
     ratio, wide = pair.contact_ratios[0], face_width / pair.mean_normal_module
     cases = (
-        (ratio >= 2.0, f"a profile contact ratio eps_v_alpha of {ratio:.4g} is not below 2"),
+        (ratio >= 2.0, f"a profile contact ratio eps_v_alpha of {plain(ratio)} is not below 2"),
         (
             spiral > LARGEST_SPIRAL + _ROUNDING,
-            f"a mean spiral angle of {spiral:.3g} deg is above {LARGEST_SPIRAL:g} deg",
+            f"a mean spiral angle of {plain(spiral, 3)} deg is above {plain(LARGEST_SPIRAL, 6)} deg",
         ),
         (
             pressure > LARGEST_PRESSURE + _ROUNDING,
-            f"an effective pressure angle of {pressure:.3g} deg is above {LARGEST_PRESSURE:g} deg",
+            f"an effective pressure angle of {plain(pressure, 3)} deg is above {plain(LARGEST_PRESSURE, 6)} deg",
         ),
-        (wide > LARGEST_WIDTH + _ROUNDING, f"a face width of {wide:.3g} m_mn is above {LARGEST_WIDTH:g} m_mn"),
+        (
+            wide > LARGEST_WIDTH + _ROUNDING,
+            f"a face width of {plain(wide, 3)} m_mn is above {plain(LARGEST_WIDTH, 6)} m_mn",
+        ),
     )
     return tuple(f"scope: {words}" for holds, words in cases if holds)
 
@@ -484,7 +488,7 @@ def dynamic_factor_by_grade(outer_velocity: ArrayLike, grade: int) -> BevelDynam
     exponent = 0.25 * (grade - 4.0) ** 0.667
     constant = 50.0 + 56.0 * (1.0 - exponent)
     fastest = (constant + 13.0 - grade) ** 2 / 200.0
-    notes = (f"K_v: a velocity above {fastest:.3g} m/s, the largest of method C for grade {grade}",)
+    notes = (f"K_v: a velocity above {plain(fastest, 3)} m/s, the largest of method C for grade {grade}",)
     factor = (constant / (constant + np.sqrt(200.0 * speed))) ** -exponent
     return BevelDynamicFactor(factor, notes if bool(np.any(speed > fastest)) else ())
 

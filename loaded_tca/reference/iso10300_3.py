@@ -12,6 +12,7 @@ from math import acos, cos, pi, sin, sqrt, tan
 
 from loaded_tca.arguments import checked
 from loaded_tca.errors import GeometryError, require, require_positive
+from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_3 import RootSection, fillet_section
 from loaded_tca.reference.iso10300_1 import VirtualPair
 
@@ -107,7 +108,7 @@ def tip_section(
         middle - tool_depth * tan(each) - edge_radius * (1.0 - sin(each)) / cos(each) for each in (alpha, coast_angle)
     ]
     if sum(gaps) < -_ROUNDING:
-        raise GeometryError(f"edge_radius: {edge_radius:.4g} m_mn does not fit on the bottom of the slot")
+        raise GeometryError(f"edge_radius: {plain(edge_radius)} m_mn does not fit on the bottom of the slot")
     if not generated:
         above = 0.5 * (tip_diameter - teeth) - profile_shift
         lever = tool_depth - 0.5 * edge_radius + above
@@ -116,7 +117,7 @@ def tip_section(
         return _section(thickness, lever, edge_radius, alpha, pressure_angle)
     base = teeth * cos(alpha)
     if tip_diameter <= base:
-        raise GeometryError(f"tip_diameter: {tip_diameter:.4g} m_mn lies inside the base circle")
+        raise GeometryError(f"tip_diameter: {plain(tip_diameter)} m_mn lies inside the base circle")
     depth = edge_radius - tool_depth + profile_shift
     angle, thickness, radius, below = fillet_section(gaps[0], depth, edge_radius, teeth)
     if coast is not None:
@@ -133,7 +134,7 @@ def tip_section(
 def _section(thickness: float, lever: float, radius: float, load_angle: float, pressure_angle: float) -> RootSection:
     if not (thickness > 0.0 and lever > 0.0 and radius > 0.0):
         raise GeometryError(
-            f"no critical section: thickness {thickness:.4g}, lever {lever:.4g}, radius {radius:.4g} m_mn"
+            f"no critical section: thickness {plain(thickness)}, lever {plain(lever)}, radius {plain(radius)} m_mn"
         )
     return RootSection(thickness, lever, radius, load_angle, pressure_angle)
 

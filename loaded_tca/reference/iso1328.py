@@ -12,6 +12,7 @@ from math import cos, degrees, floor, hypot, inf, pi, sqrt
 
 from loaded_tca.arguments import checked
 from loaded_tca.errors import require, require_positive
+from loaded_tca.plain import plain
 
 TOLERANCE_CLASSES = range(1, 12)
 _REFERENCE_CLASS = 5  # the formulas are those of this class; each step from class to class is a factor sqrt(2)
@@ -146,8 +147,8 @@ def flank_tolerances(
 def _within(name: str, value: float, limits: tuple[float, float], unit: str = "") -> tuple[bool, str]:
     """Check of a range of validity, and its problem."""
     low, high = limits
-    allowed = f"up to {high:g}{unit}" if low == -inf else f"{low:g} to {high:g}{unit}"
-    return low <= value <= high, f"{name}: {value:g}{unit}, where ISO 1328-1 holds for {allowed}"
+    allowed = f"up to {plain(high, 6)}{unit}" if low == -inf else f"{plain(low, 6)} to {plain(high, 6)}{unit}"
+    return low <= value <= high, f"{name}: {plain(value, 6)}{unit}, where ISO 1328-1 holds for {allowed}"
 
 
 def _as_on_drawings(value: float) -> float:

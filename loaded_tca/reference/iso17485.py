@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from loaded_tca.arguments import checked
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 
 ACCURACY_GRADES = range(2, 12)
 _REFERENCE_GRADE = 4
@@ -54,7 +55,10 @@ def single_pitch_tolerance(teeth: int, mean_normal_module: float, tolerance_diam
     require(
         (grade in ACCURACY_GRADES, f"grade: {grade} is not one of {min(ACCURACY_GRADES)} to {max(ACCURACY_GRADES)}"),
         *(
-            (low <= value <= high, f"{name}: {value:g}{unit} is not within {low:g} to {high:g}{unit} of ISO 17485")
+            (
+                low <= value <= high,
+                f"{name}: {plain(value, 6)}{unit} is not within {plain(low, 6)} to {plain(high, 6)}{unit} of ISO 17485",
+            )
             for name, value, (low, high), unit in numbers
         ),
     )

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import require, require_positive
+from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336 import FULL_LOAD, largest_transverse_load_factor
 from loaded_tca.reference.iso6336_5 import material_kind
 
@@ -64,16 +65,19 @@ def scope_notes(
     cases = (
         (
             not low - _ROUNDING <= pressure <= high + _ROUNDING,
-            f"a pressure angle of {pressure:.3g} deg is not within {low:g} to {high:g} deg",
+            f"a pressure angle of {plain(pressure, 3)} deg is not within {plain(low, 6)} to {plain(high, 6)} deg",
         ),
-        (helix > LARGEST_HELIX + _ROUNDING, f"a helix angle of {helix:.3g} deg is above {LARGEST_HELIX:g} deg"),
-        (not 1.0 <= ratio <= 2.5, f"a transverse contact ratio of {ratio:.4g} is not within 1 to 2.5"),
+        (
+            helix > LARGEST_HELIX + _ROUNDING,
+            f"a helix angle of {plain(helix, 3)} deg is above {plain(LARGEST_HELIX, 6)} deg",
+        ),
+        (not 1.0 <= ratio <= 2.5, f"a transverse contact ratio of {plain(ratio)} is not within 1 to 2.5"),
         (
             1.0 <= ratio < 1.2,
-            f"c_gamma_alpha is up to 10 % high at a transverse contact ratio of {ratio:.4g}, below 1.2",
+            f"c_gamma_alpha is up to 10 % high at a transverse contact ratio of {plain(ratio)}, below 1.2",
         ),
-        (first < second, f"c' was not fitted for x_1 = {first:g} below x_2 = {second:g}"),
-        (not -0.5 <= total <= 2.0, f"c' was not fitted for x_1 + x_2 = {total:.3g}, not within -0.5 to 2"),
+        (first < second, f"c' was not fitted for x_1 = {plain(first, 6)} below x_2 = {plain(second, 6)}"),
+        (not -0.5 <= total <= 2.0, f"c' was not fitted for x_1 + x_2 = {plain(total, 3)}, not within -0.5 to 2"),
     )
     return tuple(f"scope: {words}" for holds, words in cases if holds)
 
@@ -477,8 +481,14 @@ def _dynamic_notes(place: Array, speed: Array, load: Array) -> tuple[str, ...]:
     cases = (
         (place == 1, "K_v: N lies in the main resonance, which the standard says to avoid or to analyse by method A"),
         (place == 2, "K_v: N lies between main resonance and supercritical range; a line between both is rough"),
-        (speed < USEFUL_SPEED, f"K_v: (v z_1/100) sqrt(u^2/(1 + u^2)) is below {USEFUL_SPEED:g} m/s: not needed there"),
-        (load < FULL_LOAD, f"K_v: the load is below {FULL_LOAD:g} N/mm, where c' falls with (w/{FULL_LOAD:g})^0.25"),
+        (
+            speed < USEFUL_SPEED,
+            f"K_v: (v z_1/100) sqrt(u^2/(1 + u^2)) is below {plain(USEFUL_SPEED, 6)} m/s: not needed there",
+        ),
+        (
+            load < FULL_LOAD,
+            f"K_v: the load is below {plain(FULL_LOAD, 6)} N/mm, where c' falls with (w/{plain(FULL_LOAD, 6)})^0.25",
+        ),
     )
     return tuple(words for holds, words in cases if bool(np.any(holds)))
 

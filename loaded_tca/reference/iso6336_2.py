@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import InputError, require, require_positive
+from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_5 import material_kind
 from loaded_tca.reference.iso6336_6 import LONG_LIFE, SNCurve, flank_curve
 
@@ -496,7 +497,7 @@ def flank_factors(
         if bool(np.any(static < reference)):
             notes = (
                 *notes,
-                f"Z_NT: the static strength of kind {gear.kind!r}, {static:.4g} MPa, counts as the reference",
+                f"Z_NT: the static strength of kind {gear.kind!r}, {plain(static)} MPa, counts as the reference",
             )
         curves.append(factors.scaled(reference, static))
         lives.append(factors.strength(number[place]))
@@ -528,12 +529,15 @@ def _work_factors(
         static[place] = static_work_factor(gear.hardness)
         low, high = _WORK_HARDENING
         if not low <= gear.hardness <= high:
-            notes.append(f"Z_W: {gear.hardness:g} HBW is not within {low:g} to {high:g} HBW, and counts as the nearer")
+            notes.append(
+                f"Z_W: {plain(gear.hardness, 6)} HBW is not within {plain(low, 6)} to {plain(high, 6)} HBW, "
+                "and counts as the nearer"
+            )
     larger = int(gear_ratio >= 1.0)
     soft, hard = gears[larger], gears[1 - larger]
     if soft.hardens_at_work and hard.hardens_at_work and soft.hardness and hard.hardness:
         ratio, step = hard.hardness / soft.hardness, max(gear_ratio, 1.0 / gear_ratio)
         work[larger] = np.asarray(through_hardened_work_factor(ratio, step))
         if step > _LARGEST_RATIO and ratio >= 1.2:
-            notes.append(f"Z_W: the gear ratio {step:g} counts as {_LARGEST_RATIO:g}")
+            notes.append(f"Z_W: the gear ratio {plain(step, 6)} counts as {plain(_LARGEST_RATIO, 6)}")
     return work, static, tuple(notes)

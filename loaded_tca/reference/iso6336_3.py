@@ -19,6 +19,7 @@ import loaded_tca.roots as roots
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import GeometryError, require, require_positive
+from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336 import virtual_teeth
 from loaded_tca.reference.iso6336_3_strength import RootFactors, RootStrength, root_factors
 
@@ -242,7 +243,7 @@ def root_section(
     lever = 0.5 * ((cos(half) - sin(half) * tan(load_angle)) * diameter - height)
     if not (thickness > 0.0 and lever > 0.0 and radius > 0.0):
         raise GeometryError(
-            f"no critical section: thickness {thickness:.4g}, lever {lever:.4g}, radius {radius:.4g} m_n"
+            f"no critical section: thickness {plain(thickness)}, lever {plain(lever)}, radius {plain(radius)} m_n"
         )
     return RootSection(thickness, lever, radius, load_angle, pressure_angle)
 

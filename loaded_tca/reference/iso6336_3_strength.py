@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, interval_check
 from loaded_tca.errors import InputError, require, require_positive
+from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_5 import TEST_GEAR_CORRECTION, material_kind
 from loaded_tca.reference.iso6336_6 import LONG_LIFE, SNCurve, root_curve
 
@@ -506,10 +507,16 @@ def _root_notes(gear: RootStrength, notch: float, module: float, flat: bool) -> 
     strengths, _ = _SLIP_LAYERS_BY_STRENGTH.get(family, ((0.0, inf), ()))
     low, high, strength = strengths[0], strengths[-1], gear.strength or 0.0
     cases = (
-        (not 1.0 <= notch < 8.0, f"Y_S: q_s = {notch:.3g} is not within 1 to 8"),
-        (not low <= strength <= high, f"Y_delta_relT: {strength:g} MPa is not within {low:g} to {high:g} MPa"),
-        (gear.roughness > _ROUGHEST, f"Y_R_relT: {gear.roughness:g} um counts as {_ROUGHEST:g} um"),
-        (module > _SIZES[family][2], f"Y_X: a module of {module:g} mm counts as {_SIZES[family][2]:g} mm"),
+        (not 1.0 <= notch < 8.0, f"Y_S: q_s = {plain(notch, 3)} is not within 1 to 8"),
+        (
+            not low <= strength <= high,
+            f"Y_delta_relT: {plain(strength, 6)} MPa is not within {plain(low, 6)} to {plain(high, 6)} MPa",
+        ),
+        (gear.roughness > _ROUGHEST, f"Y_R_relT: {plain(gear.roughness, 6)} um counts as {plain(_ROUGHEST, 6)} um"),
+        (
+            module > _SIZES[family][2],
+            f"Y_X: a module of {plain(module, 6)} mm counts as {plain(_SIZES[family][2], 6)} mm",
+        ),
         (flat, f"Y_NT: the static strength of kind {gear.kind!r} is below that of the reference and counts as equal"),
     )
     return tuple(words for holds, words in cases if holds)

@@ -15,6 +15,7 @@ import numpy as np
 
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 
 QUALITIES = ("ML", "MQ", "ME")
 """Quality of material and heat treatment: modest, usual and high demands."""
@@ -275,7 +276,7 @@ def converted_hardness(hardness: float, scale: str, wanted: str) -> float:
     inside = values[0] <= hardness <= values[-1] and target_vickers[0] <= middle <= target_vickers[-1]
     low, high = max(vickers[0], target_vickers[0]), min(vickers[-1], target_vickers[-1])
     ends = (float(np.interp(end, vickers, values)) for end in (low, high))
-    allowed = " to ".join(f"{end:g}" for end in ends)
+    allowed = " to ".join(f"{plain(end, 6)}" for end in ends)
     require((inside, f"hardness: {hardness} {scale}; allowed for conversion to {wanted}: {allowed} {scale}"))
     return float(np.interp(middle, target_vickers, targets))
 
@@ -338,9 +339,9 @@ def allowable_stresses(
     place, level = QUALITIES.index(quality), converted_hardness(hardness, scale or material.scale, material.scale)
     flank, root = material.flank[place], material.root[place]
     low, high = max(flank[0].lowest, root[0].lowest), min(flank[-1].highest, root[-1].highest)
-    where = f"allowed for kind {kind!r}, quality {quality}: {low:g} to {high:g} {material.scale}"
+    where = f"allowed for kind {kind!r}, quality {quality}: {plain(low, 6)} to {plain(high, 6)} {material.scale}"
     ends = float(np.clip(level, low, high))
-    require((abs(level - ends) <= _ROUNDING * level, f"hardness: {level:g} {material.scale}; {where}"))
+    require((abs(level - ends) <= _ROUNDING * level, f"hardness: {plain(level, 6)} {material.scale}; {where}"))
     level = ends
     contact, bending = (next(line.stress(level) for line in lines if level <= line.highest) for lines in (flank, root))
     return AllowableStresses(

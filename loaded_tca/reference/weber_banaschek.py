@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import Material
+from loaded_tca.plain import plain
 
 SHEAR_FACTOR = 1.2
 """Shear energy of a rectangular section over that of even shear."""
@@ -92,9 +93,9 @@ def tooth_deflection(
     end = float(y[-1]) if increases else math.inf
     require(
         (increases, "height: increasing heights from 0 on are needed, as many as there are thicknesses"),
-        (0.0 < load_height <= end, f"load_height: {load_height:g} mm is not between 0 and {end:g} mm"),
+        (0.0 < load_height <= end, f"load_height: {plain(load_height, 6)} mm is not between 0 and {plain(end, 6)} mm"),
         (bool((np.isfinite(s) & (s > 0.0)).all()), "thickness: not all are positive and finite"),
-        (abs(load_angle) < 0.5 * math.pi, f"load_angle: {load_angle:g} rad is not below 90 deg"),
+        (abs(load_angle) < 0.5 * math.pi, f"load_angle: {plain(load_angle, 6)} rad is not below 90 deg"),
     )
     nu, root = material.poisson_ratio, float(s[0])
     scale = math.cos(load_angle) ** 2 / material.plane_strain_modulus
@@ -139,7 +140,7 @@ def flank_flattening(half_width: float, depth: float, material: Material = Mater
     8.96
     """
     if not 0.0 < half_width < depth < math.inf:
-        raise InputError(f"half_width: {half_width:g} mm is not between 0 and the depth, {depth:g} mm")
+        raise InputError(f"half_width: {plain(half_width, 6)} mm is not between 0 and the depth, {plain(depth, 6)} mm")
     nu = material.poisson_ratio
     return (2.0 * math.log(2.0 * depth / half_width) - nu / (1.0 - nu)) / (math.pi * material.plane_strain_modulus)
 
@@ -172,7 +173,9 @@ def ring_torsion(inner_radius: float, outer_radius: float, material: Material = 
     1.691
     """
     if not 0.0 < inner_radius <= outer_radius < math.inf:
-        raise InputError(f"inner_radius: {inner_radius:g} mm is not between 0 and {outer_radius:g} mm, the outer one")
+        raise InputError(
+            f"inner_radius: {plain(inner_radius, 6)} mm is not between 0 and {plain(outer_radius, 6)} mm, the outer one"
+        )
     shear_modulus = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio)
     return (inner_radius**-2 - outer_radius**-2) / (4.0 * math.pi * shear_modulus)
 

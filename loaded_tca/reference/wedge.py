@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from loaded_tca.arguments import checked
 from loaded_tca.errors import require, require_positive
+from loaded_tca.plain import plain
 
 STEP, LAST = 0.1, 40.0
 """Of the argument of the transform: the trapezoidal rule converges exponentially, up to where 2 omega tau is 40."""
@@ -64,7 +65,7 @@ def extra_displacement(place: ArrayLike, load_place: ArrayLike, angle: float) ->
     require_positive(place=float(x.min()), load_place=float(s.min()))
     apart = np.log(x / s)
     farthest = math.exp(float(np.abs(apart).max()))
-    require((farthest <= FARTHEST, f"place: {farthest:.3g} times as far as load_place or the other way round"))
+    require((farthest <= FARTHEST, f"place: {plain(farthest, 3)} times as far as load_place or the other way round"))
     sine, cosine = math.sin(angle), math.cos(angle)
     more = math.pi * (angle + sine * cosine) / (angle * angle - sine * sine) - 1.0
     tau = np.arange(STEP, 0.5 * LAST / angle, STEP)

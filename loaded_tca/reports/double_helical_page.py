@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from loaded_tca.output.double_helical_overview import HELD, geometry_of_halves, pair_rows
@@ -46,8 +47,10 @@ def halves_geometry(scene: DoubleHelicalScene) -> dict[str, Any]:
         "asked": tables_of(pair_rows(scene)),
         "geometry": [
             table
-            for name, rows, _ in geometry_of_halves(scene)
-            for table in tables_of(rows, f"{name.capitalize()}, z from the groove outwards")
+            for name, sections, _ in geometry_of_halves(scene)
+            for table in tables_of(
+                [*chain.from_iterable(sections.values())], f"{name.capitalize()}, z from the groove outwards"
+            )
         ],
         "scene_toml": scene.to_toml(),
     }

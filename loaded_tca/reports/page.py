@@ -13,6 +13,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from loaded_tca.errors import InputError
+from loaded_tca.plain import plain
 from loaded_tca.plots.style import NOTE, TITLE, note_of
 
 DOTS_PER_INCH = 160
@@ -125,7 +126,10 @@ def svg_of(figure: Figure, prefix: str, title: str) -> str:
     size = SIZE.search(drawing)
     assert size
     width, height = float(size[1]), float(size[2])
-    shape = f'viewBox="0 0 {width:g} {height:g}" style="max-width:{width:g}pt"' + ' class="tall"' * (height > width)
+    shape = (
+        f'viewBox="0 0 {plain(width, 6)} {plain(height, 6)}" style="max-width:{plain(width, 6)}pt"'
+        + ' class="tall"' * (height > width)
+    )
     return f"<svg {about} {links} {shape}>{drawing[size.end() :].strip()}"
 
 

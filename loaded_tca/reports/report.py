@@ -257,7 +257,7 @@ def _shortfall(study: xarray.Dataset) -> Table | None:
             plain(row["median"]),
             plain(row["least"]),
             f"{row['below']} of {row['samples']}",
-            f"{100.0 * row['probability']:.3g} ({100.0 * row['low']:.1f} to {100.0 * row['high']:.1f})",
+            f"{plain(100.0 * row['probability'], 3)} ({100.0 * row['low']:.1f} to {100.0 * row['high']:.1f})",
         )
         for _, row in frame.iterrows()
     ]

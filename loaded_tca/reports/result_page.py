@@ -121,7 +121,10 @@ def explained(sentences: Sequence[str]) -> list[tuple[list[str], Kind | None]]:
 
 def _materials(scene: Scene) -> tuple[str, ...]:
     """Modulus and ratio of both gears, once if they are the same."""
-    materials = (f"E = {1e-3 * one.youngs_modulus_MPa:g} GPa, ν = {one.poisson_ratio:g}" for one in scene.materials)
+    materials = (
+        f"E = {plain(1e-3 * one.youngs_modulus_MPa, 6)} GPa, ν = {plain(one.poisson_ratio, 6)}"
+        for one in scene.materials
+    )
     return tuple(dict.fromkeys(materials))
 
 
@@ -196,7 +199,10 @@ def _accuracy(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> Tab
         *(
             (
                 f"cells {where} the contact, fewest and most",
-                *(f"{one[f'fewest_cells_{where}']:g}, {one[f'most_cells_{where}']:g}" for one in figures[part]),
+                *(
+                    f"{plain(one[f'fewest_cells_{where}'], 6)}, {plain(one[f'most_cells_{where}'], 6)}"
+                    for one in figures[part]
+                ),
             )
             for where in ("across", "along")
         ),

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from loaded_tca.plain import plain
 from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.units import unit_of
@@ -29,12 +30,12 @@ Note = Callable[[str, CycleNumbers, slice, Sequence[Figures]], str]
 WIDE = 33.0
 """Face width over the module from which the ends of a face matter little."""
 COMPARED: dict[str, dict[str, float]] = {
-    f"spur teeth on a face of {WIDE:g} modules or more": {
+    f"spur teeth on a face of {plain(WIDE, 6)} modules or more": {
         "transmission_error_mean_": 1.1,
         "transmission_error_span_": 0.5,
         "mesh_stiffness_mean_": 3.1,
     },
-    f"spur teeth on a face below {WIDE:g} modules": {
+    f"spur teeth on a face below {plain(WIDE, 6)} modules": {
         "transmission_error_mean_": 2.9,
         "transmission_error_span_": 2.9,
         "mesh_stiffness_mean_": 5.0,
@@ -113,9 +114,9 @@ def compared(name: str, result: CycleNumbers, *_: object) -> str:
     if not any(words in name for percents in COMPARED.values() for words in percents):
         return ""
     for kind, percent in _percents(name, result):
-        return f"{kind}: those compared are within {percent:g} % of finite elements"
+        return f"{kind}: those compared are within {plain(percent, 6)} % of finite elements"
     within = {kind: percent for kind, of in COMPARED.items() for words, percent in of.items() if words in name}
-    others = ", ".join(f"{kind} within {percent:g} %" for kind, percent in within.items())
+    others = ", ".join(f"{kind} within {plain(percent, 6)} %" for kind, percent in within.items())
     kinds = "helical teeth" if math.isfinite(result.scene.transverse_angles[1]) else "teeth of bevel gears"
     return (
         f"{NO_ESTIMATE}: of {kinds} this figure was not compared with finite elements ({others}); compare it with "

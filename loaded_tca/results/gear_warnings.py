@@ -111,7 +111,7 @@ def questions(scene: Scene) -> list[str]:
     for place, section in (("pinion", scene.pinion), ("wheel", scene.wheel), ("mounting", scene.mounting)):
         for key, value in values_of(section).items():
             if key.endswith("_um") and isinstance(value, float) and 0.0 < abs(value) < SMALLEST_um:
-                what = f"less than {SMALLEST_um:g} um, which nobody makes"
+                what = f"less than {plain(SMALLEST_um, 6)} um, which nobody makes"
                 name = f"{place}.{key}"
                 sentences.append(kinds.ODD_INPUT.sentence(key=name, value=value, unit="um", what=what))
     torque = max(scene.torques)

@@ -17,6 +17,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from loaded_tca.arrays import GEARS, Array, index_checks
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 from loaded_tca.results.declared import CYCLE, OVER_CYCLE, Number, Row
 from loaded_tca.results.dynamics import PARTS, TORQUE, teeth_and_radii
 from loaded_tca.results.figure import ROOT, Figure
@@ -426,5 +427,5 @@ def orders_table(revolution: OverTurns) -> Columns:
     columns: dict[str, Any] = {order: rigid.order, "kind": np.array(rigid.kind, dtype=object)}
     columns["rigid_amplitude_um"] = rigid.amplitude
     for t, torque in enumerate(revolution.torque):
-        columns[f"amplitude_at_{1e-3 * torque:.6g}_Nm_um"] = revolution.spectrum(t).amplitude
+        columns[f"amplitude_at_{plain(1e-3 * torque, 6)}_Nm_um"] = revolution.spectrum(t).amplitude
     return Columns(columns, (order,))

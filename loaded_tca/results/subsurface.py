@@ -217,8 +217,8 @@ class StressBelow:
         return (
             f"pinion torque {shown_torque(result.torque[self.torque])}, position {self.position + 1} of "
             f"{len(result.path)}, tooth pair {self.pair}, pinion angle {plain(angle)} deg",
-            f"flank of the {self.gear}, Poisson's ratio {self.stress.poisson_ratio:g}: "
-            f"highest pressure{across} {plain(peak)} MPa, half width b {plain(self.half_width)} mm",
+            f"flank of the {self.gear}, Poisson's ratio {plain(self.stress.poisson_ratio, 6)}: highest "
+            f"pressure{across} {plain(peak)} MPa, half width b {plain(self.half_width)} mm",
         )
 
     def summary(self) -> str:
@@ -229,13 +229,15 @@ class StressBelow:
         for quantity, name in NAMES.items():
             largest = self.largest(quantity)
             relative = f"{largest.value / peak:z.3f} of the pressure at {largest.depth / self.half_width:z.2f} b"
-            lines.append(f"{name:<34}{largest.value:>8.4g} MPa at {plain(largest.depth)} mm: {relative}")
+            lines.append(f"{name:<34}{plain(largest.value):>8} MPa at {plain(largest.depth)} mm: {relative}")
             lines.append(f"  on the pinion at {frame.place(largest.radius, largest.axial)}")
         if (hertz := self.hertz_shear) is not None:
             relative = f"{hertz.value / hertz.pressure:z.3f} of p0 at {hertz.depth / hertz.half_width:z.2f} b"
             own = f"p0 {plain(hertz.pressure)} MPa, b {plain(hertz.half_width)} mm"
             what = "greatest shear stress after Hertz"
-            lines.append(f"{what:<34}{hertz.value:>8.4g} MPa at {plain(hertz.depth)} mm: {relative} of its own, {own}")
+            lines.append(
+                f"{what:<34}{plain(hertz.value):>8} MPa at {plain(hertz.depth)} mm: {relative} of its own, {own}"
+            )
         if self.result.on_edge[self._at]:
             note = "note: the contact reaches an edge, where pressure and stress are mesh-dependent"
             if self.beside_spike is not None:

@@ -19,9 +19,10 @@ if TYPE_CHECKING:
     from loaded_tca.scene.face_milled import FaceMilledScene, hypoid_table
     from loaded_tca.scene.flank_form import FlankForm, Measurement
     from loaded_tca.scene.internal import InternalScene
+    from loaded_tca.scene.key_reference import describe_keys
     from loaded_tca.scene.load import Load, LoadCase
     from loaded_tca.scene.model import Scene
-    from loaded_tca.scene.parse import describe_keys, parse_scene, read_scene, scene_from_table
+    from loaded_tca.scene.parse import parse_scene, read_scene, scene_from_table
     from loaded_tca.scene.sections import Analysis, ElasticMaterial, Modifications
 else:
     __getattr__, __dir__ = lazy_names(__name__)

@@ -16,6 +16,7 @@ from loaded_tca.gears.checks import LARGEST_PRESSURE_ANGLE
 from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
+from loaded_tca.plain import plain
 from loaded_tca.scene import spiral
 from loaded_tca.scene.bevel_blank import MEASURED, MEASURED_RULES, Blank, Measured, settings_table
 from loaded_tca.scene.bevel_rows import blank_rows, common_blank_rows, cone_rows, depth_rows
@@ -53,11 +54,15 @@ OF_EQUATIONS = (
 
 def too_steep(normal: float | None, spiral: float | None) -> str | None:
     """What is wrong with a normal pressure angle [deg] whose transverse one is more than a gear may have."""
-    largest = degrees(atan(tan(LARGEST_PRESSURE_ANGLE) * cos(radians(spiral or 0.0))))
+    spiral = spiral or 0.0
+    largest = degrees(atan(tan(LARGEST_PRESSURE_ANGLE) * cos(radians(spiral))))
     if normal is None or normal <= largest:
         return None
-    most = f"{degrees(LARGEST_PRESSURE_ANGLE):g} deg of transverse pressure angle"
-    return f"found {normal:g}; with spiral_angle_deg = {spiral:g} allowed up to {largest:z.4f}, which is {most}"
+    most = f"{plain(degrees(LARGEST_PRESSURE_ANGLE), 6)} deg of transverse pressure angle"
+    return (
+        f"found {plain(normal, 6)}; with spiral_angle_deg = {plain(spiral, 6)} allowed up to "
+        f"{largest:z.4f}, which is {most}"
+    )
 
 
 SIZES = "outer_module_mm", "mean_normal_module_mm", "wheel_outer_diameter_mm"
@@ -132,7 +137,7 @@ class Geometry(Pair):
         rule(
             ("spiral_angle_deg", "type"),
             lambda spiral, kind: spiral is not None or kind == "straight_bevel",
-            f'missing; a "spiral_bevel" pair needs it, {SPIRAL_deg.low:g} to {SPIRAL_deg.high:g}',
+            f'missing; a "spiral_bevel" pair needs it, {plain(SPIRAL_deg.low, 6)} to {plain(SPIRAL_deg.high, 6)}',
         ),
         rule(
             ("pinion_flank", "type"),

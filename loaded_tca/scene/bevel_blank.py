@@ -20,6 +20,7 @@ from loaded_tca.gears.blank_factors import (
     usual_factors,
 )
 from loaded_tca.gears.face_milled import FaceMilledGear
+from loaded_tca.plain import plain
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.section import Rule, Section, rule
 
@@ -292,8 +293,8 @@ class Blank(Section):
             return error
         return GeometryError(
             f"{error}; pair.blank.thickness_factor: missing, and near a crown wheel the usual one is "
-            f"{usual_factors(teeth, shaft_angle)['thickness']:.4g}, the bound of its formula: give a smaller one, or "
-            "pair.blank.wheel_slot_width_mm"
+            f"{plain(usual_factors(teeth, shaft_angle)['thickness'])}, the bound of its formula: give a smaller one, "
+            "or pair.blank.wheel_slot_width_mm"
         )
 
     def _factors(self, teeth: tuple[int, int], shaft_angle: float) -> dict[str, float]:
@@ -311,7 +312,7 @@ class Blank(Section):
         if (share := factors["addendum_share"]) > 1.0:  # the usual one; a given one is from 0 to 1
             raise InputError(
                 f"mean_addendum_factor: missing; the usual one, 0.21 + 0.29/u_a², is "
-                f"{share if share < 100.0 else inf:.4g} of a pinion of {teeth[0]} teeth and a wheel of {teeth[1]}: "
+                f"{plain(share if share < 100.0 else inf)} of a pinion of {teeth[0]} teeth and a wheel of {teeth[1]}: "
                 "usual where the pinion is the smaller gear; allowed a factor from 0 to 1, the wheel's share of the "
                 "working depth"
             )

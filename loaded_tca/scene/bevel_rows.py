@@ -16,6 +16,7 @@ from loaded_tca.gears.cylindrical_mesh import Room
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh, FlankName
 from loaded_tca.gears.hypoid import HypoidMesh
 from loaded_tca.gears.pitch_cones import limit_pressure_angle
+from loaded_tca.plain import plain
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.spiral import Point, Side, pitch_point
 
@@ -200,12 +201,12 @@ def _blade_rows(mesh: FaceMilledMesh, sides: Sides) -> list[Row]:
     """Blades that cut the flanks in contact; their angle as the cutter number corrects it."""
     blades = [gear.cutter.blade(side) for gear, side in zip(mesh.gears, sides, strict=True)]
     return [
-        ("cutter number", *(f"{gear.cutter.number:g}" for gear in mesh.gears)),
+        ("cutter number", *(f"{plain(gear.cutter.number, 6)}" for gear in mesh.gears)),
         ("point radius r_p [mm]", *(f"{blade.point_radius:z.6f}" for blade in blades)),
         ("blade angle [deg]", *(_deg(blade.blade_angle) for blade in blades)),
         (
             "radius of a hollow blade [mm]",
-            *("straight" if blade.blade_radius is None else f"{blade.blade_radius:g}" for blade in blades),
+            *("straight" if blade.blade_radius is None else f"{plain(blade.blade_radius, 6)}" for blade in blades),
         ),
         ("edge radius [mm]", *(f"{blade.edge_radius:z.4f}" for blade in blades)),
     ]

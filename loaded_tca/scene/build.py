@@ -19,6 +19,7 @@ from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Top
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.tooth_deviations import ToothDeviations
+from loaded_tca.plain import plain
 from loaded_tca.scene.flank_form import FITTED_DEGREE, FlankForm, Measurement
 from loaded_tca.scene.pitch import LARGEST_INDEX, Pitch
 from loaded_tca.scene.section import Section, as_table
@@ -103,8 +104,8 @@ def build_tooth_deviations(
     require(
         (
             abs(index[worst]) <= limit,
-            f"{owner}.pitch: index deviation of tooth {worst}: found {1e3 * index[worst]:g} um; allowed up to "
-            f"{1e3 * limit:g} um, {LARGEST_INDEX} modules",
+            f"{owner}.pitch: index deviation of tooth {worst}: found {plain(1e3 * index[worst], 6)} um; allowed up to "
+            f"{plain(1e3 * limit, 6)} um, {LARGEST_INDEX} modules",
         )
     )
     return ToothDeviations(

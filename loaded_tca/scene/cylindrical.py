@@ -17,6 +17,7 @@ from loaded_tca.gears.involute import InvoluteMesh, profile_shift_sum
 from loaded_tca.gears.undercut import undercut_sentences
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
+from loaded_tca.plain import plain
 from loaded_tca.reference import iso6336_3
 from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.blank import BlankScene
@@ -232,7 +233,7 @@ class CylindricalScene(BlankScene):
             following = [shift for own, shift in shifts if own.profile_shift is None]
             if distance is not None and len(following) == 1:
                 error.add_note(
-                    f"pair.centre_distance_mm = {distance:g} and the profile shift that is given ask for "
+                    f"pair.centre_distance_mm = {plain(distance, 6)} and the profile shift that is given ask for "
                     f"{following[0]:.4f} on the other gear"
                 )
             raise
@@ -264,9 +265,9 @@ class CylindricalScene(BlankScene):
         require(
             (
                 abs(errors["out_of_plane"]) < LARGEST_ANGLE,
-                f"mounting.misalignment_um: found {self.mounting.misalignment_um:g}; over the common face width of "
-                f"{mesh.common_face_width:g} mm it makes out_of_plane_deg {math.degrees(errors['out_of_plane']):.4g}, "
-                f"allowed up to {math.degrees(LARGEST_ANGLE):g}",
+                f"mounting.misalignment_um: found {plain(self.mounting.misalignment_um, 6)}; over the common face "
+                f"width of {plain(mesh.common_face_width, 6)} mm it makes out_of_plane_deg "
+                f"{plain(math.degrees(errors['out_of_plane']))}, allowed up to {plain(math.degrees(LARGEST_ANGLE), 6)}",
             )
         )
         return Mounting(**errors)

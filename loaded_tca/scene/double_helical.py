@@ -19,6 +19,7 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError, named
 from loaded_tca.gears import CylindricalMesh
 from loaded_tca.pairs.gear_pair import GearPair, Sense, signs_of
+from loaded_tca.plain import plain
 from loaded_tca.scene import cylindrical
 from loaded_tca.scene.cylindrical import CylindricalScene, MountingErrors
 from loaded_tca.scene.flank_form import FlankForm
@@ -168,7 +169,7 @@ class Mounting(MountingErrors):
 
 def _within_face(gap: float, pinion: float, wheel: float) -> str | None:
     narrow = min(pinion, wheel)
-    return None if gap < narrow else f"found {gap:g}; allowed below the overall face width, {narrow:g}"
+    return None if gap < narrow else f"found {plain(gap, 6)}; allowed below the overall face width, {plain(narrow, 6)}"
 
 
 @variant("a double helical pair: `pair.double_helical` is true")

@@ -18,6 +18,7 @@ from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, FaceMi
 from loaded_tca.gears.hypoid import HypoidCones
 from loaded_tca.pairs.bevel import BevelMounting, face_milled_pair
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
+from loaded_tca.plain import plain
 from loaded_tca.scene import bevel_rows, hypoid, sections, spiral
 from loaded_tca.scene.blank import opposite_hands
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
@@ -159,7 +160,10 @@ def _in_range_with_number(flank: Literal["concave", "convex"]) -> Rule:
         steep = angle - face_milled.BLADE_SIGNS[flank] * number * face_milled.MINUTES_PER_NUMBER / 60.0
         if abs(steep) <= STEEPEST_deg:
             return None
-        return f"found {number:g}, which turns {flank}.blade_angle_deg to {steep:g}; allowed up to {STEEPEST_deg:g}"
+        return (
+            f"found {plain(number, 6)}, which turns {flank}.blade_angle_deg to {plain(steep, 6)}; allowed "
+            f"up to {plain(STEEPEST_deg, 6)}"
+        )
 
     return Rule(("number", f"{flank}.blade_angle_deg"), complain)
 
@@ -206,7 +210,10 @@ def _same_spheres(name: str) -> Rule:
             return None
         if one is not None and other is not None and isclose(one, other, rel_tol=SAME_SPHERES):
             return None
-        return f"found {wheel:g}; allowed pinion.blank.{name} = {pinion:g}: both gears end on the same spheres"
+        return (
+            f"found {plain(wheel, 6)}; allowed pinion.blank.{name} = {plain(pinion, 6)}: both gears end on "
+            "the same spheres"
+        )
 
     point = "blank.calculation_cone_distance_mm"
     return Rule((f"wheel.blank.{name}", f"pinion.blank.{name}", f"wheel.{point}", f"pinion.{point}"), complain)
@@ -229,8 +236,9 @@ def _pitch_cone(member: int, name: str) -> Rule:
         if abs(angle - rolls) <= ROUNDED_deg:
             return None
         return (
-            f"found {angle:g}; with {pinion_teeth}/{wheel_teeth} teeth and pair.shaft_angle_deg = {shaft_angle:g} the "
-            f"pitch cones roll on each other at {rolls:z.6f}, allowed within {ROUNDED_deg:g} of it"
+            f"found {plain(angle, 6)}; with {pinion_teeth}/{wheel_teeth} teeth and pair.shaft_angle_deg = "
+            f"{plain(shaft_angle, 6)} the pitch cones roll on each other at {rolls:z.6f}, allowed within "
+            f"{plain(ROUNDED_deg, 6)} of it"
         )
 
     return Rule((f"{name}.blank.pitch_angle_deg", "pinion.teeth", "wheel.teeth", "pair.shaft_angle_deg"), complain)

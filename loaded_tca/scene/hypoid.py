@@ -16,6 +16,7 @@ from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError
 from loaded_tca.gears.face_milled import FaceMilledGear
 from loaded_tca.gears.hypoid import HypoidCones, HypoidMesh
+from loaded_tca.plain import plain
 from loaded_tca.scene.section import Rule
 
 ROUNDED_deg = 0.01
@@ -47,19 +48,20 @@ def _closes(offset: float, shaft_angle: float, *cones: float) -> str | None:
     try:
         closed = HypoidCones.closing(angles, distances, offset, radians(shaft_angle))
     except InputError as refused:
-        reason = str(refused).removeprefix(f"offset: {offset:g} mm is ")
+        reason = str(refused).removeprefix(f"offset: {plain(offset, 6)} mm is ")
         if reason == str(refused):
             reason = (
-                f"with pair.shaft_angle_deg = {shaft_angle:g} no pinion of pitch_angle_deg = {first:g} stands beside "
-                f"wheel.blank.pitch_angle_deg = {second:g}"
+                f"with pair.shaft_angle_deg = {plain(shaft_angle, 6)} no pinion of pitch_angle_deg = {plain(first, 6)} "
+                f"stands beside wheel.blank.pitch_angle_deg = {plain(second, 6)}"
             )
-        return f"found {offset:g}; {reason}"
+        return f"found {plain(offset, 6)}; {reason}"
     needed = degrees(closed.pitch_angles[0])
     if abs(needed - first) <= ROUNDED_deg:
         return None
     return (
-        f"found {offset:g}; with pair.shaft_angle_deg = {shaft_angle:g} and these pitch cones the axes close with "
-        f"pinion.blank.pitch_angle_deg = {needed:z.4f}, found {first:g}, allowed within {ROUNDED_deg:g} of it"
+        f"found {plain(offset, 6)}; with pair.shaft_angle_deg = {plain(shaft_angle, 6)} and these pitch cones the axes "
+        f"close with pinion.blank.pitch_angle_deg = {needed:z.4f}, found {plain(first, 6)}, allowed within "
+        f"{plain(ROUNDED_deg, 6)} of it"
     )
 
 
@@ -67,7 +69,10 @@ def _off_face(outer: float, width: float, given: float | None) -> str | None:
     """What is wrong with a calculation point that lies off the face."""
     if given is None or outer - width < given < outer:
         return None
-    return f"found {given:g}; allowed on the face, between {outer - width:g} and outer_cone_distance_mm = {outer:g}"
+    return (
+        f"found {plain(given, 6)}; allowed on the face, between {plain(outer - width, 6)} and "
+        f"outer_cone_distance_mm = {plain(outer, 6)}"
+    )
 
 
 CONES = ("pitch_angle_deg", "outer_cone_distance_mm", "face_width_mm", "calculation_cone_distance_mm")

@@ -15,6 +15,7 @@ from loaded_tca.gears.internal_mesh import internal_interferences
 from loaded_tca.gears.undercut import undercut_sentences
 from loaded_tca.pairs.cylindrical import internal_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
+from loaded_tca.plain import plain
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
 from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
 from loaded_tca.scene.keys import Choice, Number, Whole, key
@@ -42,7 +43,10 @@ def _above(larger_key: str, smaller_key: str) -> Rule:
 
     def complain(larger: float | None, smaller: float | None) -> str | None:
         if larger and smaller is not None and larger < smaller:
-            return f"found {larger:g}; allowed from {smaller_key} = {smaller:g} on: a ring's tip lies inside"
+            return (
+                f"found {plain(larger, 6)}; allowed from {smaller_key} = {plain(smaller, 6)} on: a ring's "
+                "tip lies inside"
+            )
         return None
 
     return Rule((larger_key, smaller_key), complain)
@@ -51,7 +55,10 @@ def _above(larger_key: str, smaller_key: str) -> Rule:
 def _one_root(dedendum: float | None, diameter: float | None) -> str | None:
     if dedendum is None or diameter is None:
         return None
-    return f"found {dedendum:g} beside root_diameter_mm = {diameter:g}; give one of them: each says where the root is"
+    return (
+        f"found {plain(dedendum, 6)} beside root_diameter_mm = {plain(diameter, 6)}; give one of them: each "
+        "says where the root is"
+    )
 
 
 def _one_fillet(radius: float | str | None, cutter: CutterSection | None) -> str | None:
@@ -246,7 +253,12 @@ class InternalScene(CylindricalScene):
     def mounted_mesh(self) -> InternalMesh:  # type: ignore[override]
         """Return the macro geometry at the centre distance with its error; errors as of external pairs."""
         error, distance = self.mounting.centre_distance_error_mm, self._mounted_distance
-        require((distance > 0.0, f"mounting.centre_distance_error_mm: found {error:g}; it leaves no centre distance"))
+        require(
+            (
+                distance > 0.0,
+                f"mounting.centre_distance_error_mm: found {plain(error, 6)}; it leaves no centre distance",
+            )
+        )
         return super().mounted_mesh()  # type: ignore[return-value]
 
     @property

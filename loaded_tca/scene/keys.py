@@ -16,6 +16,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from loaded_tca.plain import plain
+
 LONGEST_SHOWN = 60
 """Characters of a value that a message repeats."""
 
@@ -113,8 +115,8 @@ class Number:
     def allowed(self) -> str:
         """The range in words."""
         if self.above:
-            return f"a number above {self.low:g}, up to {self.high:g}"
-        return f"a number from {self.low:g} to {self.high:g}"
+            return f"a number above {plain(self.low, 6)}, up to {plain(self.high, 6)}"
+        return f"a number from {plain(self.low, 6)} to {plain(self.high, 6)}"
 
     def read(self, value: Any) -> float:
         """Take whole numbers and floats, no booleans, NaN or infinities."""

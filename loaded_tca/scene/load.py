@@ -12,6 +12,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
+from loaded_tca.plain import plain
 from loaded_tca.scene.keys import Choice, Line, Number, above_zero, did_you_mean, key, nearest, shown
 from loaded_tca.scene.section import Rule, Section, Tables, check, keys_of, made
 from loaded_tca.scene.written import writing_of
@@ -40,7 +41,9 @@ DIGITS = 5
 def _one_duration(hours: float | None, share: float | None) -> str | None:
     if (hours is None) != (share is None):
         return None
-    return "missing; give hours, or share" if hours is None else f"found {hours:g} beside share = {share:g}; give one"
+    if hours is None or share is None:
+        return "missing; give hours, or share"
+    return f"found {plain(hours, 6)} beside share = {plain(share, 6)}; give one"
 
 
 class Bin(Section):
@@ -128,7 +131,7 @@ def _spectrum_problem(cases: Sequence[Bin] | None) -> str | None:
     if of_hours and not sum(hours) > 0.0:
         return "the hours sum to 0; allowed above 0"
     if not of_hours and abs(sum(shares) - 1.0) > SUM_OF_SHARES:
-        return f"the shares sum to {sum(shares):.6g}; allowed 1"
+        return f"the shares sum to {plain(sum(shares), 6)}; allowed 1"
     if not any(case.torque_Nm > 0.0 for case in cases):
         return f"no bin has a {cases[0].torque_key()} above 0"
     if all(case.reversed for case in cases):
@@ -248,7 +251,8 @@ def within_solved(load: AnyLoad | None, torques: Sequence[float] | None) -> str 
         return None
     if load.largest_Nm <= max(torques):
         return None
-    return f"a bin has {load.largest_Nm:g} N m; allowed up to {max(torques):g}, the largest of analysis.torques_Nm"
+    found = plain(load.largest_Nm, 6)
+    return f"a bin has {found} N m; allowed up to {plain(max(torques), 6)}, the largest of analysis.torques_Nm"
 
 
 def read_spectrum(file: str, case: type[Bin] = LoadCase) -> tuple[Bin, ...]:

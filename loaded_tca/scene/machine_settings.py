@@ -12,6 +12,7 @@ from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.face_milled import FlankName
 from loaded_tca.pairs.mean_point import OTHER_FLANK, MeanContact
 from loaded_tca.pairs.synthesis import local_synthesis, mean_contact, mean_tilt, with_tooth_angle
+from loaded_tca.plain import plain
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Hand, Row
 from loaded_tca.scene.section import Rule, Section, rule
@@ -60,20 +61,20 @@ class Settings(Section):
         "local_synthesis: by how much the wheel stays behind a half pitch beside the mean point, were the motion curve "
         "the parabola that it is there",
         None,
-        f"{USUAL_FALL_arcsec:g}",
+        f"{plain(USUAL_FALL_arcsec, 6)}",
     )
     path_angle_deg: float | None = key(
         Number(5.0, 175.0),
         "local_synthesis: direction of the path of contact at the mean point of the pinion's flank, from the tooth "
         "trace at the heel (0) over the tip (90) to the toe (180)",
         None,
-        f"{USUAL_PATH_deg:g} on the concave flank, {180.0 - USUAL_PATH_deg:g} on the convex one",
+        f"{plain(USUAL_PATH_deg, 6)} on the concave flank, {plain(180.0 - USUAL_PATH_deg, 6)} on the convex one",
     )
     contact_length_mm: float | None = key(
         above_zero(10000.0),
         "local_synthesis: length of the contact ellipse there under an approach of 6.35 um, a marking compound",
         None,
-        f"{USUAL_LENGTH:g} of the face width",
+        f"{plain(USUAL_LENGTH, 6)} of the face width",
     )
     both_flanks: bool | None = key(
         Choice((False, True)),
@@ -139,8 +140,8 @@ class Settings(Section):
         require(
             (
                 self.edge_radius_mm <= largest,
-                f"pair.settings.edge_radius_mm: found {self.edge_radius_mm:g}; allowed up to {largest:.4f}: both blades"
-                " of a slot would be rounded over more than its width",
+                f"pair.settings.edge_radius_mm: found {plain(self.edge_radius_mm, 6)}; allowed up to {largest:.4f}: "
+                "both blades of a slot would be rounded over more than its width",
             ),
         )
         if self.method in ways:

@@ -1,7 +1,4 @@
-"""Scene files: read, which only this module does, made into scenes of their family, and written.
-
-The reference of all keys comes last, from the same table that checks them.
-"""
+"""Scene files: read, which only this module does, made into scenes of their family, and written."""
 
 from __future__ import annotations
 
@@ -17,11 +14,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
-from loaded_tca.scene.keys import Choice, Key, literal, shown, shown_key
+from loaded_tca.scene.keys import Choice, literal, shown, shown_key
 from loaded_tca.scene.section import Section, Subsection, as_given, check, contents, entries, made
 from loaded_tca.scene.variants import MODULES
-from loaded_tca.scene.written import MODULE, PITCH, INCH_mm
-from loaded_tca.units import INCHES, UNITS, conversion
 
 if TYPE_CHECKING:
     from loaded_tca.scene.model import Scene
@@ -297,110 +292,3 @@ def toml_lines(section: Section, path: str) -> list[str]:
         else:
             keys.append(f"{name} = {literal(as_given(value))}")
     return keys + sections
-
-
-SAME_AS = {"wheel": "pinion", "pinion.material": "material", "pinion.cutter.convex": "pinion.cutter.concave"}
-"""Sections described once, under another name."""
-
-
-def describe_keys() -> str:
-    """Return the reference of a scene file in Markdown: one table per section, one row per key.
-
-    The sections of each family of gear pairs come first, then those that all families share.
-
-    Examples
-    --------
-    >>> print(describe_keys().splitlines()[4])
-    | `title` | one line of text of up to 200 characters | `""` | stands over reports and plots |
-    """
-    families = list(dict.fromkeys(FAMILIES.values()))
-    tables = [dict(_sections(scene, "")) for scene in families]
-    shared = {  # sections described under another name, and the top, are the same in every family
-        path: keys_of
-        for path, keys_of in tables[0].items()
-        if all(path in table and (table[path] == keys_of or path in SAME_AS or not path) for table in tables)
-    }
-    lines = list(section_lines("", *shared.pop("")))
-    for scene, table in zip(families, tables, strict=True):
-        types = [name for name, known in FAMILIES.items() if known is scene]
-        kinds = ", ".join(f"`{name}`" for name in types)
-        for path, (section, about) in table.items():
-            if path and path not in shared:
-                lines += section_lines(path, section, f"{about} ({kinds})")
-        for own, when in (VARIANTS[module] for module in MODULES[types[0]][1]):
-            of_families = {section for each in tables for section, _ in each.values()}
-            for path, (section, about) in _sections(own, "", {}):
-                if path and section not in of_families:
-                    of_family = table.get(path, (None, ""))[0]
-                    lines += section_lines(path, section, f"{about} ({when})", {}, of_family)
-    for path, keys_of in shared.items():
-        lines += section_lines(path, *keys_of)
-    lines += inch_lines()
-    return "\n".join(lines).strip() + "\n"
-
-
-Found = tuple[type[Section], str]
-"""A section and what it is about."""
-
-
-def _sections(section: type[Section], path: str, same_as: Mapping[str, str] = SAME_AS) -> Iterator[tuple[str, Found]]:
-    """Path of every section -> what it is, the whole scene first."""
-    if not path:
-        yield "", (section, "Above all sections")
-    for name, (_, entry) in entries(section).items():
-        if isinstance(entry, Subsection):
-            inner = f"{path}.{name}" if path else name
-            yield inner, (entry.section, entry.about)
-            if inner not in same_as:
-                yield from _sections(entry.section, inner, same_as)
-
-
-def section_lines(
-    path: str,
-    section: type[Section],
-    about: str,
-    same_as: Mapping[str, str] = SAME_AS,
-    of_family: type[Section] | None = None,
-) -> Iterator[str]:
-    """Lines of the table of a section in Markdown; of one that is the same as another its name.
-
-    Of a variant whose section is that of its ``of_family`` with other keys: these.
-    """
-    yield from ("", f"### `[{path}]`: {about}" if path else f"### {about}", "")
-    if path in same_as:
-        yield f"Keys as in `[{same_as[path]}]`."
-        return
-    known: dict[str, Any] = {}
-    if of_family is not None and issubclass(section, of_family):
-        known = {name: entry for name, (_, entry) in entries(of_family).items()}
-        yield from (f"Keys of `[{path}]` as above, and:", "")
-    others = {name: entry for name, (_, entry) in entries(section).items() if entry != known.get(name)}
-    rows = [
-        f"| `{name}` | {entry.kind.allowed} | {_default(entry)} | {entry.about} |"
-        for name, entry in others.items()
-        if isinstance(entry, Key)
-    ]
-    if of_family is None or section.equivalents != of_family.equivalents:
-        rows += [
-            f"| `{name}` | what makes a `{each.key}` | not given | {each.about}; instead of `{each.key}` |"
-            for name, each in section.equivalents.items()
-        ]
-    if rows:
-        yield from ("| key | allowed | default | meaning |", "|---|---|---|---|", *rows)
-    else:
-        yield from (f"- `[{path}.{name}]`: {entry.about}" for name, entry in others.items())
-
-
-def _default(entry: Key) -> str:
-    if entry.required:
-        return "**required**"
-    return entry.absent if entry.default is None else f"`{literal(entry.default)}`"
-
-
-def inch_lines() -> Iterator[str]:
-    """Lines of the table of endings that keys have on drawings in inches, in Markdown."""
-    yield from ("", "### Keys on drawings in inches", "", "| ending | instead of | is |", "|---|---|---|")
-    for ending, (unit, metric) in INCHES.items():
-        of = [f"{conversion(unit, UNITS[each].text):.10g} {UNITS[each].text}" for each in metric]
-        yield f"| `_{ending}` | {', '.join(f'`_{each}`' for each in metric)} | {' or '.join(of)} |"
-    yield f"| `_{PITCH}` | `_{MODULE}` | {float(INCH_mm):g} mm over it |"

@@ -13,6 +13,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
 from loaded_tca.pairs.tooth_deviations import random_index
+from loaded_tca.plain import plain
 from loaded_tca.scene.keys import Choice, Either, Line, List, Number, Whole, key, shown
 from loaded_tca.scene.section import Rule, Section
 
@@ -43,7 +44,8 @@ def _closed(single: tuple[float, ...] | None) -> str | None:
     if single is None or abs(sum(single)) <= CLOSED_um:
         return None
     return (
-        f"the single pitch deviations add up to {sum(single):.4g} um; allowed 0, since the last tooth meets the first"
+        f"the single pitch deviations add up to {plain(sum(single))} um; allowed 0, since the last tooth "
+        "meets the first"
     )
 
 

@@ -15,6 +15,7 @@ from loaded_tca.gears.cylindrical_mesh import ROUNDING, CylindricalMesh, interfe
 from loaded_tca.gears.rack import Rack, rack_mesh
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.pairs.rack import rack_pair
+from loaded_tca.plain import plain
 from loaded_tca.scene.blank import BlankGearSection, opposite_hands
 from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
 from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
@@ -201,8 +202,8 @@ class RackScene(CylindricalScene):
                 require(
                     (
                         below < most,
-                        f"wheel.modifications.{relief}_mm: found {below:g}; allowed below {most:.4f}, the height of "
-                        "the active profile: it counts from the tip line",
+                        f"wheel.modifications.{relief}_mm: found {plain(below, 6)}; allowed below {most:.4f}, the "
+                        "height of the active profile: it counts from the tip line",
                     )
                 )
                 starts[relief] = 2.0 * (active.end_radius - below)

@@ -8,6 +8,7 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, ClassVar
 
 from loaded_tca.errors import InputError
+from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_3_strength import mean_stress_sensitivities, slip_layer
 from loaded_tca.reference.iso6336_5 import (
     KINDS,
@@ -95,7 +96,7 @@ def _slips(value: float | None, material: str | None, kind: str | None) -> str |
 
 def _reverses(ratio: float, material: str | None, kind: str | None) -> str | None:
     problem = None if ratio == 0.0 else _refused(lambda each, _: mean_stress_sensitivities(each), material, kind, None)
-    return problem and f"found {ratio:g}, {problem.partition(';')[0]}; allowed 0"
+    return problem and f"found {plain(ratio, 6)}, {problem.partition(';')[0]}; allowed 0"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,6 +15,7 @@ from typing import Any, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import is_place
+from loaded_tca.plain import Sentence
 from loaded_tca.scene.keys import Key, List, did_you_mean, nearest, shown, shown_key
 from loaded_tca.scene.spellings import key_meant_by
 from loaded_tca.scene.written import (
@@ -104,7 +105,7 @@ class Rule:
 
 def rule(keys: tuple[str, ...], holds: Callable[..., bool], problem: str) -> Rule:
     """Return the rule that values fulfil where ``holds``; ``problem`` is a format of them, ``{0}`` the first."""
-    return Rule(keys, lambda *values: None if holds(*values) else problem.format(*values))
+    return Rule(keys, lambda *values: None if holds(*values) else Sentence().format(problem, *values))
 
 
 @dataclass(frozen=True, kw_only=True)

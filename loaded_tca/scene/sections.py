@@ -14,6 +14,7 @@ from loaded_tca.arrays import GEARS, Indices
 from loaded_tca.flanks.modification import NO_POLYNOMIAL
 from loaded_tca.flanks.rounding import LEAST_RADIUS
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, SOFTEST
+from loaded_tca.plain import plain
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Either, Line, List, Number, Whole, ZeroOr, above_zero, key
 from loaded_tca.scene.load import TORQUE_Nm
@@ -45,11 +46,11 @@ def one_start(relief: str) -> Rule:
 
     def complain(diameter: float, angle: float, distance: float, amount: float) -> str | None:
         starts = ((mm, diameter), (roll, angle), (length, distance))
-        given = [f"{name} = {start:g}" for name, start in starts if start > 0.0]
+        given = [f"{name} = {plain(start, 6)}" for name, start in starts if start > 0.0]
         if len(given) > 1:
             return f"found {' beside '.join(given)}; give one of them"
         if amount > 0.0 and not given:
-            return f"missing or 0; {relief}_um = {amount:g} needs a value above 0, or {roll} or {length}"
+            return f"missing or 0; {relief}_um = {plain(amount, 6)} needs a value above 0, or {roll} or {length}"
         return None
 
     return Rule((mm, roll, length, f"{relief}_um"), complain)
@@ -60,17 +61,17 @@ def _end_lengths(length: float, amount: float, *own: float | None) -> str | None
     for end, own_amount, own_length in zip(("lower", "upper"), own[::2], own[1::2], strict=True):
         name, removed = ("end_relief_um", amount) if own_amount is None else (f"end_relief_{end}_um", own_amount)
         if removed > 0.0 and length == 0.0 and own_length is None:
-            return f"missing or 0; {name} = {removed:g} needs a value above 0, or end_relief_{end}_length_mm"
+            return f"missing or 0; {name} = {plain(removed, 6)} needs a value above 0, or end_relief_{end}_length_mm"
     return None
 
 
 def below(smaller_key: str, larger_key: str, factor: float = 1.0) -> Rule:
     """Rule: a length stays below (a factor times) another one, where both are given."""
-    limit = larger_key if factor == 1.0 else f"{factor:g} {larger_key}"
+    limit = larger_key if factor == 1.0 else f"{plain(factor, 6)} {larger_key}"
 
     def complain(smaller: float | None, larger: float | None) -> str | None:
         if smaller is not None and larger is not None and smaller > factor * larger:
-            return f"found {smaller:g}; allowed up to {limit} = {factor * larger:g}"
+            return f"found {plain(smaller, 6)}; allowed up to {limit} = {plain(factor * larger, 6)}"
         return None
 
     return Rule((smaller_key, larger_key), complain)
@@ -381,7 +382,7 @@ class LubricantSection(Section):
             lambda hot, cold: (
                 None
                 if hot < cold
-                else f"found {hot:g}; allowed below viscosity_40_mm2_s = {cold:g}: oils thin with heat"
+                else f"found {plain(hot, 6)}; allowed below viscosity_40_mm2_s = {plain(cold, 6)}: oils thin with heat"
             ),
         ),
     )

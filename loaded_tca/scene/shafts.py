@@ -12,6 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.plain import plain
 from loaded_tca.scene.keys import Choice, Grid, List, Number, Whole, above_zero, key
 from loaded_tca.scene.section import Rule, Section, Tables
 
@@ -41,20 +42,24 @@ def fault_of_matrix(rows: tuple[tuple[float, ...], ...], *, definite: bool) -> s
         return f"found {matrix.shape[0]} lists of {matrix.shape[1]} values; allowed 6 lists of 6"
     if (diagonal := matrix.diagonal()).min() < 0.0:
         place = int(diagonal.argmin())
-        return f"found {diagonal[place]:g} for the motion {DIRECTIONS[place]}; allowed are diagonal entries from 0 on"
+        return (
+            f"found {plain(diagonal[place], 6)} for the motion {DIRECTIONS[place]}; allowed are diagonal "
+            "entries from 0 on"
+        )
     relative, roots = scaled(matrix)
     off = np.abs(relative - relative.T)
     if off.max() > SYMMETRIC:
         row, column = sorted(np.unravel_index(int(off.argmax()), off.shape))
         one, other = matrix[row, column], matrix[column, row]
         return (
-            f"not symmetric: found {one:g} in row {row + 1}, column {column + 1}, and {other:g} in the mirrored place"
+            f"not symmetric: found {plain(one, 6)} in row {row + 1}, column {column + 1}, and "
+            f"{plain(other, 6)} in the mirrored place"
         )
     values, vectors = np.linalg.eigh(0.5 * (relative + relative.T))
     if values[0] < -SYMMETRIC:
         return (
-            f"not positive semidefinite: smallest eigenvalue {values[0]:.3g} with ones on the diagonal; a load would "
-            "move the gear against itself"
+            f"not positive semidefinite: smallest eigenvalue {plain(values[0], 3)} with ones on the diagonal; a load "
+            "would move the gear against itself"
         )
     if definite and values[0] < FREE:
         free = DIRECTIONS[int(np.abs(vectors[:, 0] / roots).argmax() if roots.all() else roots.argmin())]
@@ -116,7 +121,7 @@ GROOVE = Number(0.5, 1.0, above=True)
 
 
 def _inner_below_outer(inner: float, outer: float) -> str | None:
-    return f"found {inner:g}; allowed below outer_diameter_mm = {outer:g}" if inner >= outer else None
+    return f"found {plain(inner, 6)}; allowed below outer_diameter_mm = {plain(outer, 6)}" if inner >= outer else None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,12 +195,18 @@ def _fitting(count: int | None, diameter: float | None, pitch: float | None) -> 
     largest = pitch * math.sin(math.pi / count)
     if diameter < largest:
         return None
-    return f"found {diameter:g}; {count} of them on {pitch:g} mm would touch: allowed below {largest:.4g}"
+    return (
+        f"found {plain(diameter, 6)}; {count} of them on {plain(pitch, 6)} mm would touch: allowed below "
+        f"{plain(largest)}"
+    )
 
 
 def _side(side: int | None, angle: float | None, preload: float | None) -> str | None:
     if side is None and angle:
-        return f"missing; a contact angle of {angle:g} takes thrust one way: 1 if that of the shaft along z, -1 if not"
+        return (
+            f"missing; a contact angle of {plain(angle, 6)} takes thrust one way: 1 if that of the shaft "
+            "along z, -1 if not"
+        )
     if side is None and preload:
         return "missing; a preload presses the shaft along z with 1, against it with -1"
     return None
@@ -203,7 +214,9 @@ def _side(side: int | None, angle: float | None, preload: float | None) -> str |
 
 def _preload(preload: float | None, kind: str | None, angle: float | None) -> str | None:
     if preload and kind == "roller" and not angle:
-        return f"found {preload:g}; cylindrical rollers have none along the axis: give radial_clearance_um below 0"
+        return (
+            f"found {plain(preload, 6)}; cylindrical rollers have none along the axis: give radial_clearance_um below 0"
+        )
     return None
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeVar
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
 from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
+from loaded_tca.plain import plain
 from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.keys import Whole, key
 from loaded_tca.scene.section import Rule
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 def one_thickness(allowance: float | None, span: float | None, balls: float | None) -> str | None:
     """What is wrong where more than one key gives the tooth thickness."""
     keys = {"thickness_allowance_um": allowance, "span_measurement_mm": span, "ball_measurement_mm": balls}
-    given = [f"{name} = {value:g}" for name, value in keys.items() if value is not None]
+    given = [f"{name} = {plain(value, 6)}" for name, value in keys.items() if value is not None]
     return f"found {' beside '.join(given)}; give one of them" if len(given) > 1 else None
 
 
@@ -30,9 +31,9 @@ def needs(key: str, other: str, *, back: bool = False) -> Rule:
 
     def complain(value: float | None, partner: float | None) -> str | None:
         if value is not None and partner is None:
-            return f"found {value:g}; it needs {other}"
+            return f"found {plain(value, 6)}; it needs {other}"
         if back and value is None and partner is not None:
-            return f"missing; {other} = {partner:g} needs it"
+            return f"missing; {other} = {plain(partner, 6)} needs it"
         return None
 
     return Rule((key, other), complain)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
 from loaded_tca.gears.chamfer import chamfered_land
 from loaded_tca.gears.tips import computed_tip_alteration
+from loaded_tca.plain import plain
 from loaded_tca.scene.build import parameters_of
 from loaded_tca.scene.keys import Choice, Either, Number, above_zero, key
 from loaded_tca.scene.section import Rule
@@ -39,24 +40,30 @@ def _tip_once(
     }
     given = [f"{name} = {value}" for name, value in others.items() if value is not None]
     if diameter is not None and given:
-        return f"found {diameter:g} beside {' and '.join(given)}; give one of them: each says where the tip is"
+        return f"found {plain(diameter, 6)} beside {' and '.join(given)}; give one of them: each says where the tip is"
     return None
 
 
 def _topped(topping: bool, alteration: float | None) -> str | None:
     if topping and alteration is not None:
-        return f"found true beside tip_alteration_coefficient = {alteration:g}; give one of them: each cuts the tip"
+        return (
+            f"found true beside tip_alteration_coefficient = {plain(alteration, 6)}; give one of them: each "
+            "cuts the tip"
+        )
     return None
 
 
 def _one_edge(chamfer: float, rounding: float) -> str | None:
     if chamfer > 0.0 and rounding > 0.0:
-        return f"found {chamfer:g} beside tip_rounding_mm = {rounding:g}; give one of them: each ends the flank"
+        return (
+            f"found {plain(chamfer, 6)} beside tip_rounding_mm = {plain(rounding, 6)}; give one of them: "
+            "each ends the flank"
+        )
     return None
 
 
 def _needs_chamfer(angle: float | None, chamfer: float) -> str | None:
-    return None if angle is None or chamfer > 0.0 else f"found {angle:g}; it needs tip_chamfer_mm above 0"
+    return None if angle is None or chamfer > 0.0 else f"found {plain(angle, 6)}; it needs tip_chamfer_mm above 0"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,15 +130,15 @@ def needs_stock(protuberance: float | None, stock: float | None) -> str | None:
     """What is wrong with a protuberance that no grinding follows."""
     if protuberance and not stock:
         return (
-            f"found {protuberance:g} without grinding_stock_um; give the stock that it makes room for: without one "
-            "it would cut into the flank"
+            f"found {plain(protuberance, 6)} without grinding_stock_um; give the stock that it makes room for: without "
+            "one it would cut into the flank"
         )
     return None
 
 
 def needs_protuberance(angle: float | None, protuberance: float | None) -> str | None:
     """What is wrong with the angle of a protuberance that is not there."""
-    return None if angle is None or protuberance else f"found {angle:g}; it needs protuberance_um above 0"
+    return None if angle is None or protuberance else f"found {plain(angle, 6)}; it needs protuberance_um above 0"
 
 
 SHORTENED_ONCE = Rule(
@@ -178,7 +185,7 @@ def rack_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
     gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
     racks, rows = [_rack(gear) for gear in gears], []
     if any(rack != PROFILE_A for rack in racks):
-        cells = ("/".join(FULL if value == inf else f"{value:.6g}" for value in rack) for rack in racks)
+        cells = ("/".join(FULL if value == inf else f"{plain(value, 6)}" for value in rack) for rack in racks)
         rows.append(("basic rack: h_aP/h_fP/rho_fP [m_n]", *cells))
     tools = [gear if isinstance(gear, CylindricalGear) and gear.grinding_stock else None for gear in gears]
     if any(tools):
@@ -201,7 +208,7 @@ def chamfer_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
 
 def _protuberance(gear: CylindricalGear) -> str:
     values = gear.protuberance, gear.grinding_stock, gear.residual_undercut
-    return "/".join(f"{1e3 * value:z.6g}" for value in values)
+    return "/".join(f"{plain(1e3 * value, 6)}" for value in values)
 
 
 def _rack(gear: CylindricalGear | RingGear) -> tuple[float, float, float]:

@@ -16,6 +16,7 @@ from functools import cache
 from numbers import Real
 from typing import Any
 
+from loaded_tca.plain import plain
 from loaded_tca.scene.keys import Either, Grid, Key, Kind, List, Number, ZeroOr, shown
 from loaded_tca.units import INCHES, UNITS, ending_of, exact_conversion
 
@@ -272,10 +273,10 @@ def as_written(sentence: str, head: str, writings: Mapping[str, Writing]) -> str
     def named(match: re.Match[str]) -> str:
         writing = writings[match["key"]]
         name = writing.path(match["key"])
-        return name if match["value"] is None else f"{name} = {writing.from_key(float(match['value'])):.6g}"
+        return name if match["value"] is None else f"{name} = {plain(writing.from_key(float(match['value'])), 6)}"
 
     if head in writings:
         back = writings[head].from_key
-        sentence = OF_THE_KEY.sub(lambda match: f"{back(float(match[0])):.6g}", sentence)
+        sentence = OF_THE_KEY.sub(lambda match: f"{plain(back(float(match[0])), 6)}", sentence)
     names = "|".join(re.escape(name) for name in sorted(writings, key=len, reverse=True))
     return re.sub(rf"(?<![\w.])(?P<key>{names})\b(?: = (?P<value>{NUMBER}))?", named, sentence) if names else sentence

@@ -12,6 +12,7 @@ import numpy as np
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import GeometryError
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.reference.hertz import line_contact, point_contact
 from loaded_tca.roots import find_roots
 from loaded_tca.separation.normal_gap import NormalGap
@@ -147,9 +148,9 @@ def estimate_boxes(
         probes.fit(rows)
     probes.fit_polynomials()
     half_lengths, middles, cut = probes.boxes(on_edge, np.array(cells))
-    missing = "no flank around the contact point at pinion angle {:.6g} rad"
+    missing = "no flank around the contact point at pinion angle {} rad"
     return [
-        GeometryError(missing.format(contact.pinion_angle))
+        GeometryError(missing.format(plain(contact.pinion_angle, 6)))
         if math.isnan(across)
         else Estimate(Box((across, along), probes.axes[row], (x, y)), probes.polynomials_of(row), bool(cut[row]))
         for row, (contact, (across, along), (x, y)) in enumerate(

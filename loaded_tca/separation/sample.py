@@ -31,6 +31,7 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.separation.box import MARGIN, Box, Estimate, estimate_boxes
 from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
 from loaded_tca.separation.polynomials import GapPolynomials
@@ -185,7 +186,7 @@ class Separation:
 
     def __repr__(self) -> str:
         nx, ny = self.gap.shape
-        return f"Separation({nx} x {ny} cells of {self.spacing[0]:.3g} x {self.spacing[1]:.3g} mm)"
+        return f"Separation({nx} x {ny} cells of {plain(self.spacing[0], 3)} x {plain(self.spacing[1], 3)} mm)"
 
 
 def cells_for_accuracy(accuracy: float) -> int:

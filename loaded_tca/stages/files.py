@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
-from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, section_lines, toml_table, with_files_from
+from loaded_tca.scene.key_reference import SectionReference, section_reference
+from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, toml_table, with_files_from
 from loaded_tca.scene.section import Section
 
 if TYPE_CHECKING:
@@ -90,14 +91,8 @@ def read_stage(path: str | os.PathLike[str]) -> Stage:
     return parse_stage(read_text(path, LARGEST_FILE), source=os.fspath(path), folder=Path(path).parent)
 
 
-def describe_stage_keys() -> str:
-    """Return the reference of the sections that stage files alone have, in Markdown: a table each, a row for each key.
-
-    Examples
-    --------
-    >>> print(describe_stage_keys().splitlines()[4])
-    | `type` | "planetary" | `"planetary"` | kind of stage: the ring stands still |
-    """
+def stage_reference() -> list[SectionReference]:
+    """Return the sections that stage files alone have."""
     from loaded_tca.stages.sections import PlanetaryStage, StageGeometry, StageLoad, StageOperation, StageRatingSection
 
     sections: tuple[tuple[str, type[Section], str], ...] = (
@@ -107,5 +102,15 @@ def describe_stage_keys() -> str:
         ("operation", StageOperation, "speed and factors, for rating"),
         ("rating", StageRatingSection, "what is required of the gears, and factors, for rating"),
     )
-    lines = (line for name, section, about in sections for line in section_lines(name, section, about, {}))
-    return "\n".join(lines).strip() + "\n"
+    return [section_reference(name, section, about, {}) for name, section, about in sections]
+
+
+def describe_stage_keys() -> str:
+    """Return the reference of the sections that stage files alone have, in Markdown: a table each, a row for each key.
+
+    Examples
+    --------
+    >>> print(describe_stage_keys().splitlines()[4])
+    | `type` | "planetary" | `"planetary"` | kind of stage: the ring stands still |
+    """
+    return "\n".join(line for section in stage_reference() for line in section.in_markdown()).strip() + "\n"

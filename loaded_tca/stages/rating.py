@@ -15,6 +15,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, give_accuracy_warning
+from loaded_tca.plain import plain
 from loaded_tca.rating import Rating, rating_of
 from loaded_tca.rating.cases import Cases, load_cases, problems_of_cases
 from loaded_tca.rating.findings import of_all_bins
@@ -94,7 +95,8 @@ class StageRating(OfCases):
 
     def __repr__(self) -> str:
         flank, root = self.flank_safety.min(), self.root_safety.min()
-        return f"{type(self).__name__}({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
+        name = type(self).__name__
+        return f"{name}({len(self.torque)} torques, least S_H {plain(flank, 3)}, least S_F {plain(root, 3)})"
 
     @property
     def stage(self) -> Stage:
@@ -118,9 +120,9 @@ class StageRating(OfCases):
         """Speeds, hours and what is required, in words."""
         wanted, ratio = self.required, speed_ratio(self.stage)
         return (
-            f"{self._standards}, sun at {shown_speeds(self.cases.speed)}, times {ratio:.4g} against the carrier, for "
-            f"{self.life_required:g} h; required S_H {wanted.required_flank_safety:g}, S_F "
-            f"{wanted.required_root_safety:g}; {' | '.join(self.MEMBERS)}"
+            f"{self._standards}, sun at {shown_speeds(self.cases.speed)}, times {plain(ratio)} against the carrier, "
+            f"for {plain(self.life_required, 6)} h; required S_H {plain(wanted.required_flank_safety, 6)}, S_F "
+            f"{plain(wanted.required_root_safety, 6)}; {' | '.join(self.MEMBERS)}"
         )
 
     @property

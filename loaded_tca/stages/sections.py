@@ -115,7 +115,7 @@ class PlanetaryStage(Section):
         Rule(
             ("sun_support_stiffness_N_per_um", "floating_sun"),
             lambda stiffness, floating: (
-                f"found {stiffness:g} beside floating_sun = true; give one of them"
+                f"found {plain(stiffness, 6)} beside floating_sun = true; give one of them"
                 if floating and stiffness is not None
                 else None
             ),

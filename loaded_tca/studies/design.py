@@ -289,7 +289,7 @@ def _limits(model: DesignModel, limits: Limits) -> list[Limit]:
             near = [True if torque is None else math.isclose(one, real(torque), rel_tol=1e-6) for one in model.torques]
             chosen = tuple(np.flatnonzero(near).tolist())
             if not chosen:
-                torques = ", ".join(f"{one:g}" for one in model.torques)
+                torques = ", ".join(f"{plain(one, 6)}" for one in model.torques)
                 problems.append(f"limits: {figure}: {torque!r:.40} N mm is no torque of the model; allowed {torques}")
             elif not (is_finite(highest) and highest > 0.0):
                 problems.append(f"limits: {figure}: {highest!r:.60}; allowed a finite number above 0")
@@ -309,8 +309,8 @@ def _told_unmet(model: DesignModel, limits: Sequence[Limit], x: Array) -> list[s
         if largest > (1.0 + KEPT) * one.highest:
             part = 100.0 * (largest / one.highest - 1.0)
             sentences.append(
-                f"limits: {one.figure}: no design found meets {one.highest:g}; at the best one it is {plain(largest)}, "
-                f"{plain(part, 2)} % more ({place})"
+                f"limits: {one.figure}: no design found meets {plain(one.highest, 6)}; at the best one it is "
+                f"{plain(largest)}, {plain(part, 2)} % more ({place})"
             )
     return sentences
 

@@ -19,6 +19,7 @@ from loaded_tca.errors import require
 from loaded_tca.loaded.held_contacts import HeldContacts
 from loaded_tca.loaded.loaded_grid import LoadedGrid
 from loaded_tca.pairs.kinematics import surface_motions
+from loaded_tca.plain import plain
 from loaded_tca.rating.inputs import FEWEST as FEWEST_RATED
 from loaded_tca.rating.utilisation import Utilisation
 from loaded_tca.results.face_slopes import face_load_factor_slopes
@@ -284,15 +285,15 @@ FIGURES: dict[str, FigureOfErrors | FigureOfForces | FigureOfStrength] = {
     ),
     "pressure_MPa": FigureOfForces(
         "MPa",
-        f"norm of the pressure, farther than {NEAR_END:g} modules from the ends of the flanks",
+        f"norm of the pressure, farther than {plain(NEAR_END, 6)} modules from the ends of the flanks",
         pressure,
         note="; above the peak pressure where contacts are large, below it where they are small, by up to a third",
     ),
     "edge_pressure_norm_MPa": FigureOfForces(
         "MPa",
-        f"norm of the pressure within {NEAR_END:g} modules of the ends of the flanks",
+        f"norm of the pressure within {plain(NEAR_END, 6)} modules of the ends of the flanks",
         edge_pressure,
-        note=f", averaged over squares {2.0 * NEAR_END:g} modules wide; not the largest pressure there",
+        note=f", averaged over squares {plain(2.0 * NEAR_END, 6)} modules wide; not the largest pressure there",
     ),
     "face_load_factor": FigureOfForces("1", "K_Hbeta", face_load_factor),
     "loss_factor": FigureOfForces("1", "load loss factor H_VL", loss_factor, fewest_positions=FEWEST),
@@ -363,8 +364,8 @@ class Objective:
     def told(self) -> str:
         """In words."""
         if self.kind == "percentile":
-            return f"percentile {self.percentile:g}"
-        return self.kind if self.kind == "mean" else f"mean + {self.k:g} sigma"
+            return f"percentile {plain(self.percentile, 6)}"
+        return self.kind if self.kind == "mean" else f"mean + {plain(self.k, 6)} sigma"
 
     def of(self, figures: Array) -> tuple[float, Array]:
         """Value of figures (sample, torque), and its derivatives to them."""

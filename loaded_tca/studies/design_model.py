@@ -34,6 +34,7 @@ from loaded_tca.loaded.standing import GearsUnderTorques
 from loaded_tca.loaded.together import run_stacked
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.loaded.tooth_pairs import SharedLoad
+from loaded_tca.plain import plain
 from loaded_tca.rating.utilisation import utilisation_of
 from loaded_tca.scene import Scene
 from loaded_tca.scene.rating import is_rated
@@ -256,13 +257,15 @@ class DesignModel:
             # once more those on grids that another state has outgrown meanwhile
             states = [state for state, (_, one) in solved.items() if not self.held[state[0]][state[1]].holds(one)]
         idle = sorted({t for (_, t, _), (_, one) in solved.items() if one.torque == 0.0})
-        require(*((False, f"torques: {self.torques[t]:g} N mm loads no tooth pair; allowed more") for t in idle))
+        require(
+            *((False, f"torques: {plain(self.torques[t], 6)} N mm loads no tooth pair; allowed more") for t in idle)
+        )
         return Evaluation(self, values, [*solved.values()])
 
     @property
     def told_scatter(self) -> list[str]:
         """The scatter in words, a line for each key."""
-        farther = "" if self.multiple == 1.0 else f", {self.multiple:g} times as far from its median"
+        farther = "" if self.multiple == 1.0 else f", {plain(self.multiple, 6)} times as far from its median"
         spreads = (told_distribution(one) if hasattr(one, "ppf") else "given values" for one in self.scatter.values())
         return [f"{key}: {words}{farther}" for key, words in zip(self.scatter, spreads, strict=True)]
 
@@ -350,7 +353,7 @@ class DesignModel:
 
 def _within(bounds: tuple[str, tuple[float, float]], value: float) -> tuple[bool, str]:
     key, (low, high) = bounds
-    return low <= value <= high, f"{key}: {value:g}; allowed {low:g} to {high:g}"
+    return low <= value <= high, f"{key}: {plain(value, 6)}; allowed {plain(low, 6)} to {plain(high, 6)}"
 
 
 def _made(given: tuple[Any, ...], options: dict[str, Any]) -> DesignModel:

@@ -181,12 +181,12 @@ class DesignResult(InNotebooks):
             sample, at = np.unravel_index(int(under.argmax()), under.shape)
             place = int(sample), limit.torques[int(at)]
             if math.isnan(values[place]):
-                yield f"{limit.figure} is not known by the analysis, its limit {limit.highest:g}"
+                yield f"{limit.figure} is not known by the analysis, its limit {plain(limit.highest, 6)}"
                 continue
             torque = _shown_torque(float(self.dataset["torque"].values[place[1]]))
             yield (
                 f"{limit.figure} is {plain(values[place])} by the analysis at {torque} N m{self._told_sample(place[0])}"
-                f", its limit {limit.highest:g} ({plain(held[place])} on held contacts)"
+                f", its limit {plain(limit.highest, 6)} ({plain(held[place])} on held contacts)"
             )
 
     def _at_optimum(self, name: str) -> Array:
@@ -215,13 +215,13 @@ class DesignResult(InNotebooks):
 
 def _shown_torque(torque: float) -> str:
     """A torque [N mm] in N m, as limits are kept."""
-    return f"{1e-3 * torque:g}"
+    return f"{plain(1e-3 * torque, 6)}"
 
 
 def told_limit(limit: Limit, torques: Array) -> str:
     """A limit in words, as results keep it; of the torques [N mm] of the model."""
     under = ", ".join(_shown_torque(float(torques[t])) for t in limit.torques)
-    return f"{limit.figure} <= {limit.highest:g} at {under} N m"
+    return f"{limit.figure} <= {plain(limit.highest, 6)} at {under} N m"
 
 
 @checked

@@ -357,7 +357,13 @@ def _table(study: xarray.Dataset) -> Iterator[str]:
     for torque in range(study.sizes["torque"]):
         of_variants = torques[np.isfinite(torques[:, torque]), torque]
         same = of_variants.size and np.ptp(of_variants) == 0.0 and study.sizes["torque"] > 1
-        head = f"under {of_variants[0]:g} N m" if same else f"torque {torque + 1}" if study.sizes["torque"] > 1 else ""
+        head = (
+            f"under {plain(of_variants[0], 6)} N m"
+            if same
+            else f"torque {torque + 1}"
+            if study.sizes["torque"] > 1
+            else ""
+        )
         width = max(len(label) for label in (*shown.values(), head))
         yield f"{head:<{width}}" + "".join(f"{word:>11}" for word in PERCENTILES)
         for name, label in shown.items():

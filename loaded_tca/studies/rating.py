@@ -235,7 +235,7 @@ def shortfall_text(study: xarray.Dataset) -> Iterator[str]:
         group = "".join(f", {key} {plain(row[key])}" for key in keys)
         yield (
             f"{FIGURES[row['figure']]} below the required {plain(row['required'])} under "
-            f"{plain(row[torque_name(study)])} N m{group}: probability {100.0 * row['probability']:.3g} % "
+            f"{plain(row[torque_name(study)])} N m{group}: probability {plain(100.0 * row['probability'], 3)} % "
             f"({row['below']} of {row['samples']} samples; {100.0 * row['low']:.1f} to {100.0 * row['high']:.1f} % "
-            f"with {100.0 * CONFIDENCE:g} % confidence), median {plain(row['median'])}"
+            f"with {plain(100.0 * CONFIDENCE, 6)} % confidence), median {plain(row['median'])}"
         )

@@ -286,7 +286,7 @@ def _problems_of_distribution(key: str, known: Key | None, distribution: Any) ->
     if not math.isfinite(middle):
         yield f"{key}: the distribution has no median: a parameter is out of its range, as a scale below 0"
     elif known is not None and isinstance(known.kind, Whole) and not middle.is_integer():
-        yield f"{key}: the distribution gives {middle:g}; allowed are whole numbers"
+        yield f"{key}: the distribution gives {plain(middle, 6)}; allowed are whole numbers"
 
 
 def problems_of_key(scene: Scene, key: Any) -> Iterator[str]:
@@ -307,7 +307,10 @@ def problems_of_range(scene: Scene, key: str, bounds: Any) -> Iterator[str]:
     elif not (np.shape(bounds) == (2,) and all(map(is_finite, bounds)) and bounds[0] < bounds[1]):
         yield f"{key}: range {bounds!r:.60}; allowed two numbers, the lower one first"
     elif not bounds[0] <= (value := value_at(scene, key)) <= bounds[1]:
-        yield f"{key}: the scene, where a design starts, has {value:g}; allowed {bounds[0]:g} to {bounds[1]:g}"
+        yield (
+            f"{key}: the scene, where a design starts, has {plain(value, 6)}; allowed {plain(bounds[0], 6)} "
+            f"to {plain(bounds[1], 6)}"
+        )
 
 
 def deviations_of(

@@ -96,12 +96,12 @@ class RollingBearing(ABC):
             (self.elements >= 3, f"elements: found {self.elements}; allowed 3 and more"),
             (
                 0.0 <= self.contact_angle <= STEEPEST,
-                f"contact_angle: found {math.degrees(self.contact_angle):g} deg; allowed from 0 to 45",
+                f"contact_angle: found {plain(math.degrees(self.contact_angle), 6)} deg; allowed from 0 to 45",
             ),
             (
                 self.diameter < self.pitch_diameter * math.sin(math.pi / self.elements),
-                f"diameter: {self.elements} elements of {self.diameter:g} mm touch each other on a pitch diameter of "
-                f"{self.pitch_diameter:g} mm; allowed below "
+                f"diameter: {self.elements} elements of {plain(self.diameter, 6)} mm touch each other on a pitch "
+                f"diameter of {plain(self.pitch_diameter, 6)} mm; allowed below "
                 f"{plain(self.pitch_diameter * math.sin(math.pi / self.elements))} mm",
             ),
         )
@@ -179,7 +179,7 @@ class BallBearing(RollingBearing):
         super().__post_init__()
         require(
             *(
-                (0.5 < ratio <= 1.0, f"{name}: found {ratio:g}; allowed above 0.5, up to 1")
+                (0.5 < ratio <= 1.0, f"{name}: found {plain(ratio, 6)}; allowed above 0.5, up to 1")
                 for name, ratio in (("inner_groove", self.inner_groove), ("outer_groove", self.outer_groove))
             )
         )

@@ -56,11 +56,11 @@ class ShaftSection:
 
     def __post_init__(self) -> None:
         require(
-            (self.length > 0.0, f"length: found {self.length:g} mm; allowed above 0"),
+            (self.length > 0.0, f"length: found {plain(self.length, 6)} mm; allowed above 0"),
             (
                 0.0 <= self.inner_diameter < self.outer_diameter,
-                f"inner_diameter: found {self.inner_diameter:g} mm; allowed from 0 to below the outer diameter of "
-                f"{self.outer_diameter:g} mm",
+                f"inner_diameter: found {plain(self.inner_diameter, 6)} mm; allowed from 0 to below the outer diameter "
+                f"of {plain(self.outer_diameter, 6)} mm",
             ),
         )
 
@@ -180,7 +180,8 @@ class Shaft:
             *(
                 (
                     self.start - slack <= at <= self.end + slack,
-                    f"{name}: at {at:g} mm, beside the shaft, which goes from {self.start:g} to {self.end:g} mm",
+                    f"{name}: at {plain(at, 6)} mm, beside the shaft, which goes from {plain(self.start, 6)} "
+                    f"to {plain(self.end, 6)} mm",
                 )
                 for name, all_at in places.items()
                 for at in all_at

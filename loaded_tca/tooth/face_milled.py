@@ -14,6 +14,7 @@ from loaded_tca.flanks.bevel import chebyshev_nodes, face_cone_angles
 from loaded_tca.flanks.face_milled import MOST_FLANKS, GeneratedFlank, generated_flank, tooth_angle, tooth_angle_at
 from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears.face_milled import BLADE_SIGNS, FaceMilledGear
+from loaded_tca.plain import plain
 from loaded_tca.tooth.families import FILLET_RADIUS_COEFFICIENT, RootCone, ToothForm, ToothGeometry
 from loaded_tca.tooth.fillet import ApexSpheres, ArcFillet
 
@@ -114,7 +115,7 @@ def _require_tip(gear: FaceMilledGear) -> None:
     if not thickness[worst] > 0.0:
         frame = ConeFrame(blank.pitch_angle, blank.middle_cone_distance)
         raise GeometryError(
-            f"{gear.name}: pointed tooth: its flanks lie {-thickness[worst]:.3g} mm beyond each other at the "
+            f"{gear.name}: pointed tooth: its flanks lie {plain(-thickness[worst], 3)} mm beyond each other at the "
             f"tip, {frame.place(float(rho[worst]), float(z[worst]))}; lower face_angle, or bring the point "
             "radii of the cutter nearer to each other"
         )

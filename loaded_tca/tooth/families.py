@@ -23,6 +23,7 @@ from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears import BevelGear, CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import ActiveProfile
 from loaded_tca.gears.involute import InvoluteGear
+from loaded_tca.plain import plain
 from loaded_tca.tooth.fillet import ApexSpheres, ArcFillet, Fillet, RackFillet, Sections, TransversePlanes
 
 DEFAULT_BORE = 0.55
@@ -81,9 +82,9 @@ class Bore(Held):
         if not SMALLEST_BORE * smallest <= diameter < LARGEST_BORE * smallest:
             thin = "it is held rigid, and the body would twist about so thin a bore far more than the teeth bend"
             raise InputError(
-                f"bore_diameter: {diameter:.6g} mm is not between {SMALLEST_BORE:g} and {LARGEST_BORE:g} times the "
-                f"smallest root diameter, {smallest:.6g} mm, nor 0, a solid gear: "
-                + (thin if diameter < smallest * SMALLEST_BORE else "no rim is left below the teeth")
+                f"bore_diameter: {plain(diameter, 6)} mm is not between {plain(SMALLEST_BORE, 6)} and "
+                f"{plain(LARGEST_BORE, 6)} times the smallest root diameter, {plain(smallest, 6)} mm, nor 0, a solid "
+                "gear: " + (thin if diameter < smallest * SMALLEST_BORE else "no rim is left below the teeth")
             )
         return np.full_like(root, 0.5 * diameter)
 

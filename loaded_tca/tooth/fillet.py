@@ -31,6 +31,7 @@ from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank
+from loaded_tca.plain import plain
 from loaded_tca.roots import find_roots
 
 
@@ -332,7 +333,8 @@ class ArcFillet(Fillet):
         square = along**2 - (centre**2).sum(axis=-1) + (root_radius + size) ** 2
         if square.min() < 0.0:
             raise GeometryError(
-                f"fillet_radius: an arc of {self.radius:.6g} mm cannot touch both the end of the flank and the root"
+                f"fillet_radius: an arc of {plain(self.radius, 6)} mm cannot touch both the end of the flank "
+                "and the root"
             )
         line = np.maximum(along - np.sqrt(square), 0.0)
         centre += line[:, None] * tangent

@@ -22,6 +22,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.cylindrical import RingFlank
 from loaded_tca.gears.ring import RingGear
+from loaded_tca.plain import plain
 from loaded_tca.tooth.families import Held, InvoluteTooth, RootCylinder, ToothForm
 from loaded_tca.tooth.fillet import Fillet, FilletCurve, Profile, RackFillet, Sections
 
@@ -139,8 +140,9 @@ class Outside(Held):
         outer, largest = 2.0 * self.default_radius if diameter is None else diameter, 2.0 * float(root.max())
         if not SMALLEST_OUTSIDE * largest <= outer <= LARGEST_OUTSIDE * largest:
             raise InputError(
-                f"outer_diameter: {outer:.6g} mm is not between {SMALLEST_OUTSIDE:g} and {LARGEST_OUTSIDE:g} times the "
-                f"root diameter, {largest:.6g} mm: where it is smaller no rim is left outside the teeth"
+                f"outer_diameter: {plain(outer, 6)} mm is not between {plain(SMALLEST_OUTSIDE, 6)} and "
+                f"{plain(LARGEST_OUTSIDE, 6)} times the root diameter, {plain(largest, 6)} mm: where it is smaller no "
+                "rim is left outside the teeth"
             )
         return np.full_like(root, 0.5 * outer)
 

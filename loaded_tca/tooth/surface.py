@@ -20,6 +20,7 @@ from loaded_tca.arrays import Array, Indices, count_problems, keep_copies
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank, sharp
+from loaded_tca.plain import plain
 from loaded_tca.tooth.families import ToothForm
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, Profile, in_space, profile_of
 
@@ -409,8 +410,8 @@ def _fitting(space: _Space, form: ToothForm) -> Halves:
         raise GeometryError("no fillet fits between neighbouring teeth: no space is left at the root")
     if not form.largest_that_fits:
         raise InputError(
-            f"fillet_radius: {fillet.radius:.6g} mm does not fit into the space between two teeth; the largest that "
-            f"does is {small:.4g} mm"
+            f"fillet_radius: {plain(fillet.radius, 6)} mm does not fit into the space between two teeth; the largest "
+            f"that does is {plain(small)} mm"
         )
     return fitting
 
@@ -420,7 +421,7 @@ def _check_thickness(thickness: Array, coordinate: Array, resolution: Resolution
     place, section = np.unravel_index(int(thickness.argmin()), thickness.shape)
     if thickness[place, section] > 0.0:
         return
-    where = f"in the section at {coordinate[section]:.6g} mm"
+    where = f"in the section at {plain(coordinate[section], 6)} mm"
     if place < resolution.flank:
         raise GeometryError(f"pointed tooth: its two flanks meet below the tip, {where}")
     raise GeometryError(f"the undercut of both sides cuts off the tooth, {where}")

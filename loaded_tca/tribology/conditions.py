@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import InputError, require
+from loaded_tca.plain import Sentence, plain
 from loaded_tca.reference.iso6336_20 import LOAD_STAGES
 from loaded_tca.reference.iso6336_22 import SUPPLY_FACTORS
 from loaded_tca.scene import Scene
@@ -247,15 +248,16 @@ class Conditions:
     def in_words(self, speed: int) -> str:
         """Speed, oil and friction in words."""
         oil, rpm = self.lubricant, self.speeds[speed]
-        friction = self.friction if isinstance(self.friction, str) else f"{self.friction:g}" if self.friction else ""
+        friction = self.friction if isinstance(self.friction, str) else plain(self.friction, 6) if self.friction else ""
         parts = [
-            "no speed" if math.isnan(rpm) else f"pinion at {rpm:g} rpm",
+            "no speed" if math.isnan(rpm) else f"pinion at {plain(rpm, 6)} rpm",
             "no oil"
             if oil is None
-            else f"{oil.base} oil of {oil.viscosity_40:g} mm2/s at 40 C, supplied at {oil.oil_temperature:g} C",
-            "no roughness" if self.roughness is None else "Ra {:g} and {:g} um".format(*self.roughness),
+            else f"{oil.base} oil of {plain(oil.viscosity_40, 6)} mm2/s at 40 C, supplied at "
+            f"{plain(oil.oil_temperature, 6)} C",
+            "no roughness" if self.roughness is None else Sentence().format("Ra {:g} and {:g} um", *self.roughness),
             f"friction: {'mean of ' if friction == MEAN else ''}{friction}" if friction else "no friction",
-            f"K_A {self.application_factor:g}, K_v {self.dynamic_factor:g}",
+            f"K_A {plain(self.application_factor, 6)}, K_v {plain(self.dynamic_factor, 6)}",
         ]
         return ", ".join(parts)
 
@@ -297,7 +299,8 @@ def conditions_of(
     }
     values = {name: of_scene if argument is None else argument for name, (argument, of_scene, _, _) in given.items()}
     problems = [
-        f"{name}: {values[name]!r:.60}{f' {unit}' if unit else ''}; allowed a number from {low:g} to {high:g}"
+        f"{name}: {values[name]!r:.60}{f' {unit}' if unit else ''}; allowed a number from {plain(low, 6)} to "
+        f"{plain(high, 6)}"
         for name, (_, _, (low, high), unit) in given.items()
         if values[name] is not None and not low <= real(values[name]) <= high
     ]
@@ -349,7 +352,7 @@ def _speeds(speed: Any, problems: list[str]) -> tuple[Array, bool]:
     """Speeds (s,), and whether several may have been given."""
     if speed is None:
         return np.array([math.nan]), False
-    wrong = f"pinion_speed_rpm: {speed!r:.60}; allowed a number above 0, up to {FASTEST:g}, or a row of them"
+    wrong = f"pinion_speed_rpm: {speed!r:.60}; allowed a number above 0, up to {plain(FASTEST, 6)}, or a row of them"
     try:
         given = np.asarray(speed)
         speeds = given.astype(float)

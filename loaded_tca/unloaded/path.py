@@ -19,6 +19,7 @@ from loaded_tca.arrays import Array, Indices, Mask, finite_row
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
+from loaded_tca.plain import plain
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 from loaded_tca.unloaded.line import Lines, find_lines
 from loaded_tca.unloaded.reduced import FEASIBLE
@@ -167,8 +168,9 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
     touch = first_touch(pair, phi1)
     if not touch.in_contact.any():
         raise GeometryError(
-            f"no common flank: at none of the {len(phi1)} pinion angles between {phi1.min():.6g} and {phi1.max():.6g} "
-            "rad do the two flanks cover a common region; check the tips of the teeth and how the gears are mounted"
+            f"no common flank: at none of the {len(phi1)} pinion angles between {plain(phi1.min(), 6)} and "
+            f"{plain(phi1.max(), 6)} rad do the two flanks cover a common region; check the tips of the teeth and how "
+            "the gears are mounted"
         )
     path = _path(pair, phi1, touch)
     if warn:

@@ -29,6 +29,7 @@ from loaded_tca.pairs.tooth_deviations import (
     eccentric_separation,
     transverse_normal,
 )
+from loaded_tca.plain import plain
 from loaded_tca.unloaded.path import ContactPath, ContactPoint, trace_contact
 from loaded_tca.unloaded.tooth_cycle import REACH, reach, teeth_between
 
@@ -154,7 +155,7 @@ def trace_revolution(
     if (apart := np.isinf(top)).any():
         raise GeometryError(
             f"no tooth pair touches at {int(apart.sum())} of {len(angle)} positions, first at pinion angle "
-            f"{angle[apart][0]:.6g} rad"
+            f"{plain(angle[apart][0], 6)} rad"
         )
     separation = np.where(heights >= top[:, None] - REACH * pair.module, top[:, None] - heights, np.nan)
     used = np.isfinite(separation).any(axis=0)

@@ -15,6 +15,7 @@ import numpy as np
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import Maxima, climb
 from loaded_tca.unloaded.scan import Scan, Starts, inside_pinion, moved_along_arcs, on_arcs, region_corners, scan_pinion
@@ -185,7 +186,7 @@ def _certified(pair: GearPair, phi1: Array, scan: Scan, climbs: list[_Ascents]) 
     missed = np.concatenate([owner for owner, *_ in _missed(pair, phi1, scan, result, rows)])
     if missed.size:
         angle = phi1[missed.min()]
-        message = f"unloaded contact: no ascent reached the height of the scan at pinion angle {angle:.6g} rad"
+        message = f"unloaded contact: no ascent reached the height of the scan at pinion angle {plain(angle, 6)} rad"
         raise ConvergenceError(message, result)
     return result, climbs
 

@@ -30,6 +30,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, Indices, finite_row
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.plain import plain
 from loaded_tca.unloaded.path import ContactPath, default_angles, trace_contact, warn_of_fillets
 from loaded_tca.unloaded.search import spread
 from loaded_tca.unloaded.tooth_cycle import (
@@ -213,7 +214,9 @@ class MeshPath:
         """
         most = REACH * self.pair.module
         if not isinstance(tolerance, Real) or not 0.0 <= tolerance <= most:
-            raise InputError(f"tolerance: {tolerance!r} mm is not a length from 0 to {most:.6g} mm, {REACH} modules")
+            raise InputError(
+                f"tolerance: {tolerance!r} mm is not a length from 0 to {plain(most, 6)} mm, {REACH} modules"
+            )
         return max(1.0, self._cycle.share_in_contact(tolerance + COINCIDE * self.pair.base_radii[1]))
 
     @cached_property
@@ -258,7 +261,8 @@ class MeshPath:
             if 1 < count <= len(self) and off <= UNIFORM * step:
                 return count
         raise InputError(
-            f"pinion_angles: {len(self)} positions do not divide a pitch of {self.pair.pitch:.6g} rad into equal steps"
+            f"pinion_angles: {len(self)} positions do not divide a pitch of {plain(self.pair.pitch, 6)} rad "
+            "into equal steps"
         )
 
 
@@ -318,7 +322,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     if (apart := np.isinf(top)).any():
         raise GeometryError(
             f"none of the tooth pairs {pairs.tolist()} touches at {int(apart.sum())} of {len(phi1)} positions, first "
-            f"at pinion angle {phi1[apart][0]:.6g} rad"
+            f"at pinion angle {plain(phi1[apart][0], 6)} rad"
         )
     near = np.flatnonzero(heights >= top - REACH * pair.module)
     traced = path[np.searchsorted(rows, near)]

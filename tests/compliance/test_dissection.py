@@ -168,7 +168,7 @@ def test_memory_is_told_before_it_is_taken(monkeypatch):
     monkeypatch.setattr(dissection, "machine_memory", lambda: 1e4)
     monkeypatch.setattr(dissection._Plan, "factors", lambda *_: pytest.fail("memory was taken"))
     with pytest.raises(
-        InputError, match=r"mesh of the gear body: \d+ unknowns need .* GiB, the machine has 9.31e-06 GiB"
+        InputError, match=r"mesh of the gear body: \d+ unknowns need .* GiB, the machine has 0.00000931 GiB"
     ):
         factorise(mesh.stiffness(Material()), mesh.dofs, mesh.lowest // 2, free_unknowns(mesh))
 

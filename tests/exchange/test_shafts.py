@@ -54,7 +54,7 @@ def test_rigid_bearings_have_a_stiffness_that_leaves_digits_for_the_shaft() -> N
     rigid = {f"{one}.radial_stiffness": ("1e23", "N / m") for one in (91, 92)}
     imported = import_stage(changed(attributes=rigid), "10")
     assert imported.scene.pinion.shaft.bearings[0].radial_stiffness_N_per_um == 1e6
-    assert "concept_bearing 91: rigid directions have 1e+06 N/um, 1e+07 N m/mrad" in imported.read_as
+    assert "concept_bearing 91: rigid directions have 1000000 N/um, 10000000 N m/mrad" in imported.read_as
     stiffer, softer = (
         shaft_lines(import_stage(changed(attributes=dict.fromkeys(rigid, (v, "N / m"))), "10").scene)[0]
         for v in ("1e23", "1e14")

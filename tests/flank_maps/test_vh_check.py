@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.pattern import ContactPattern
-from loaded_tca.flank_maps.vh_check import pattern_centre, vh_check
+from loaded_tca.flank_maps.vh_check import FINER, centre_and_size, vh_check
 from loaded_tca.flanks import CylinderFrame, FlankModifications
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
@@ -83,18 +83,24 @@ def marked(gap, compound=1.0):
 
 
 def test_centre_of_a_whole_flank_is_its_middle():
-    centre = pattern_centre(marked(lambda radius, _: 0.0 * radius), CylinderFrame())
+    centre, size = centre_and_size(marked(lambda radius, _: 0.0 * radius), CylinderFrame())
     assert_allclose(centre, (0.0, 104.0), atol=1e-9)
+    assert_allclose(size, (20.0, 8.0), rtol=1e-12)  # of the grid, which has the ends of the flank
 
 
 def test_centre_of_a_band_lies_on_its_axis():
-    """Gap a parabola of z about 2.3 mm, off the lines of the grid."""
-    centre = pattern_centre(marked(lambda _, axial: (axial - 2.3) ** 2 / 9.0), CylinderFrame())
+    """Gap a parabola of z about 2.3 mm, off the lines of the grid; the compound is as thick 3 mm from there.
+
+    The ends lie within a step of the interpolated grid, and chords of steps of 0.5 mm above it by 0.25^2/9, which at
+    the slope of 2/3 there is 0.0105 mm.
+    """
+    centre, size = centre_and_size(marked(lambda _, axial: (axial - 2.3) ** 2 / 9.0), CylinderFrame())
     assert_allclose(centre, (2.3, 104.0), atol=0.02)
+    assert_allclose(size, (6.0, 8.0), atol=2.0 * (0.5 / FINER + 0.0105))
 
 
 def test_pattern_that_misses_the_grid_has_no_centre():
-    assert np.isnan(pattern_centre(marked(lambda radius, _: np.full_like(radius, np.inf)), CylinderFrame())).all()
+    assert np.isnan(centre_and_size(marked(lambda radius, _: np.full_like(radius, np.inf)), CylinderFrame())).all()
 
 
 def test_shown_by_its_size(check):

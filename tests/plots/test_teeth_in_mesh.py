@@ -128,22 +128,3 @@ def test_picture_has_its_numbers_with_units():
     }
     assert [text for text in texts if len(text) <= 2] == ["T1", "A", "B", "C", "D", "E"] or "T2" in texts
     assert "undercut of the pinion: 1.5172 mm of the path are lost, 13.6%" in note_of(drawn(SPUR, UNDERCUT)[1])
-
-
-def test_check_writes_the_picture_of_a_pair(run, tmp_path):
-    code, out, _ = run("check", SPUR, "--out", tmp_path / "out")
-    assert (code, out.splitlines()[-1]) == (0, f"Written to {tmp_path / 'out'}: teeth_in_mesh.png")
-    assert "working centre distance" in out
-    assert (tmp_path / "out" / "teeth_in_mesh.png").read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.thorough
-def test_check_writes_the_pictures_of_both_meshes_of_a_stage(run, tmp_path):
-    code, out, _ = run("check", SCENES.parent / "stages" / "wind_spur.toml", "--out", tmp_path / "out")
-    assert (code, out.split(": ")[-1]) == (0, "teeth_in_mesh_sun.png, teeth_in_mesh_ring.png\n")
-
-
-def test_check_draws_no_teeth_on_meeting_axes(refused, tmp_path):
-    told = refused("check", SCENES / "straight_bevel.toml", "--out", tmp_path / "out")
-    assert "check draws the teeth of gears on parallel axes, of type cylindrical" in told
-    assert not (tmp_path / "out").exists()

@@ -389,7 +389,7 @@ def test_designs_off_the_ranges_are_refused():
         one.evaluate([5.0]).figure("no")
     with pytest.raises(InputError, match="allowed indices 0 to"):
         one.evaluate([5.0]).gradient("span_um", [7])
-    with pytest.raises(InputError, match="1e-09 N mm loads no tooth pair"):
+    with pytest.raises(InputError, match="1e-9 N mm loads no tooth pair"):
         model(variables={CROWNING: (1.0, 12.0)}, scatter=None, torques=[1e-9, 1e5]).evaluate([5.0])
     with pytest.raises(InputError, match="model: has no scatter"):
         robustness(one, {}, [1.0])

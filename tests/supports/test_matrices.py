@@ -39,9 +39,9 @@ def test_zeros_are_rigid() -> None:
         ({"compliance": [[1.0] * 6] * 5}, "compliance: found .*; allowed a list of 6 to 6 lists"),
         (
             {"compliance": changed(SOFT, (0, 1, 1e-7))},
-            "compliance: not symmetric: found 1e-07 in row 1, column 2, and 0",
+            "compliance: not symmetric: found 1e-7 in row 1, column 2, and 0",
         ),
-        ({"compliance": changed(SOFT, (3, 3, -1e-9))}, "compliance: found -1e-09 for the motion about x; allowed"),
+        ({"compliance": changed(SOFT, (3, 3, -1e-9))}, "compliance: found -1e-9 for the motion about x; allowed"),
         (
             {"compliance": changed(SOFT, (0, 1, 2e-6), (1, 0, 2e-6))},
             "compliance: not positive semidefinite: smallest eigenvalue -0.414",
