@@ -45,7 +45,7 @@ def as_coast_side(coast: CycleNumbers, drive: CycleNumbers) -> CycleNumbers:
         if wanted != present:
             section = part.name.replace("geometry", "pair")
             raise InputError(f"coast: [{section}] of its scene is not that of coast_side() of the scene")
-    return replace(coast, scene=replace(expected, analysis=coast.scene.analysis))  # type: ignore[type-var]
+    return replace(coast, scene=replace(expected, analysis=coast.scene.analysis))
 
 
 def of_its_bins(inputs: CommonInputs, elsewhere: Mask) -> CommonInputs:

@@ -48,18 +48,18 @@ def rating_of(
     -------
     Rating
     """
-    sides = [_solved_inputs(result, duty)]
+    inputs, error = _solved_inputs(result, duty), np.zeros(0)
+    at_edge = inputs.loads.at_edge.any()
     if coast is not None:
-        sides.append(_solved_inputs(as_coast_side(coast, result), duty))
-    inputs, error = sides[0], np.zeros(0)
-    if coast is None:
+        beside = _solved_inputs(as_coast_side(coast, result), duty)
+        at_edge |= beside.loads.at_edge.any()
+        (arrays, endurances, notes), error = evaluated_together(inputs, beside, _evaluated)
+    else:
         arrays, endurances, notes = _evaluated(inputs)
         if inputs.cases.is_spectrum:
             error = interpolation_error(inputs, endurances, _evaluated)
-    else:
-        (arrays, endurances, notes), error = evaluated_together(*sides, _evaluated)
     arrays |= lives_of(inputs.cases, endurances, inputs.cycles_per_hour)
-    sentences = [kinds.RATED_AT_EDGE.sentence()] if any(side.loads.at_edge.any() for side in sides) else []
+    sentences = [kinds.RATED_AT_EDGE.sentence()] if at_edge else []
     sentences += _above_static(inputs, endurances)
     kind: type[Rating] = Rating
     if inputs.cases.is_spectrum:

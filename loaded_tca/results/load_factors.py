@@ -291,7 +291,7 @@ def _mesh_point(pair: GearPair, path: ContactPath) -> Array:
     """
     flank = pair.pinion.flank
     rho, z = (float(grid[1, 1]) for grid in flank.grid(3, 3))
-    theta = flank.theta(rho, z)
+    theta = flank.theta(np.array(rho), np.array(z))
     gradient = np.array([-float(theta.rho), 1.0 / rho, -float(theta.z)])
 
     def moment(azimuth: Array) -> tuple[Array, Array]:
