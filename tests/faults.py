@@ -3101,8 +3101,8 @@ FAULTS = (
     Fault(
         "sensitivities: unloaded contact of an idle tooth pair moves the other way with a key",
         "results/idle_pairs.py",
-        "growth -= [",
-        "growth += [",
+        "[torque, position, number] - idle.slopes[number]",
+        "[torque, position, number] + idle.slopes[number]",
         "results/test_idle_pairs.py::test_pair_comes_under_load_where_it_is_told_and_carries_no_more_than_is_told",
     ),
     Fault(

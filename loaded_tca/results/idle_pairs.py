@@ -2,26 +2,22 @@
 
 A pair without load touches where the wheel has gone back to the unloaded transmission error of that pair. Until then
 its flanks stay apart by the lever times the rotation that is left, and by what the forces of the other pairs bend its
-teeth away. Unloaded contact is traced with the key at both ends of its tolerance, since edges may hold it; the loaded
-transmission error and the shares of loaded pairs follow their derivatives.
+teeth away. Unloaded contact is traced on both sides of every key, since edges may hold it; the loaded transmission
+error and the shares of loaded pairs follow their derivatives.
 """
 
 from __future__ import annotations
 
-import math
-import warnings
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
-from loaded_tca.errors import AccuracyWarning, LoadedTCAError, give_accuracy_warning
+from loaded_tca.errors import GeometryError, give_accuracy_warning
 from loaded_tca.loaded.first_guess import expected_lines, first_law
 from loaded_tca.results.derivatives import JoinedSensitivities
-from loaded_tca.results.sensitivities import TORQUE
-from loaded_tca.separation.pair_change import number_at
 from loaded_tca.units import ending_of
-from loaded_tca.unloaded import trace_teeth
+from loaded_tca.unloaded import trace_contact
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -44,18 +40,24 @@ class IdlePairs(NamedTuple):
         Of the wheel.
     opening : (n,) array [mm]
         Between the flanks under the load of the other pairs.
+    way : (n,) array [mm]
+        Of the flanks towards each other by the load, from where the leading pair touches.
     exponent : (n,) array
         With which the contact of a pair gives way under its force.
+    slopes : (keys, n) array [rad per unit of the key]
+        Of the unloaded transmission error of the pair.
     """
 
     places: Indices
     lever: Array
     opening: Array
+    way: Array
     exponent: Array
+    slopes: Array
 
 
 def idle_pairs(sensitivities: Sensitivities) -> IdlePairs:
-    """Tooth pairs that carry nothing where others do, and how far their flanks are apart."""
+    """Tooth pairs that carry nothing where others do, as near to each other as the load turns the gears at most."""
     result, pair = sensitivities.result, sensitivities.result.gear_pair
     in_contact = np.stack([path.in_contact for path in result.paths], axis=-1)
     loaded = np.zeros(result.transmission_error.shape, dtype=bool)
@@ -65,9 +67,16 @@ def idle_pairs(sensitivities: Sensitivities) -> IdlePairs:
     lever = np.array([contact.wheel_lever for contact in contacts])
     apart = np.array([contact.transmission_error for contact in contacts])
     opening = pair.driving * lever * (result.transmission_error[*places[:2]] - apart)
+    way = (
+        pair.driving * lever * (result.unloaded_transmission_error[places[1]] - result.transmission_error[*places[:2]])
+    )
+    near = np.flatnonzero(opening < way)
+    places, lever, opening, way = places[:, near], lever[near], opening[near], way[near]
+    contacts = [contacts[n] for n in near.tolist()]
     loads = [result.torque[t] / one.pinion_lever for t, one in zip(places[0], contacts, strict=True)]
     laws = [first_law(pair, contact, load) for contact, load in zip(contacts, loads, strict=True)]
-    idle = IdlePairs(places, lever, opening, np.array([law.exponent for law, _ in laws]))
+    slopes = _unloaded_slopes(sensitivities, places)
+    idle = IdlePairs(places, lever, opening, way, np.array([law.exponent for law, _ in laws]), slopes)
     bending, tangents = sensitivities.tangents.bending, sensitivities.tangents
     if bending is None or not contacts:
         return idle
@@ -79,6 +88,23 @@ def idle_pairs(sensitivities: Sensitivities) -> IdlePairs:
                 bent = bending.deflection((numbers[n], line), (grid.number, grid.separation), grid.slice_force)
                 opening[n] += np.interp(0.0, line.y, bent)
     return idle
+
+
+def _unloaded_slopes(sensitivities: Sensitivities, places: Indices) -> Array:
+    """Derivatives (keys, n) of the unloaded transmission errors of tooth pairs at places (3, n) to the keys."""
+    result, slopes = sensitivities.result, np.zeros((len(sensitivities.keys), places.shape[1]))
+    for column in np.unique(places[2]).tolist():
+        those = places[2] == column
+        turned = result.pinion_angle[places[1, those]] - result.pair[column] * result.gear_pair.pitch
+        angles, at = np.unique(turned, return_inverse=True)  # as if the pair were the one at the pitch point
+        for number, change in enumerate(sensitivities.changes):
+            if change is not None:
+                try:
+                    low, high = (trace_contact(pair, angles, warn=False) for pair in (change.below, change.above))
+                except GeometryError:
+                    continue  # out of reach on one side: nothing comes there
+                slopes[number, those] = ((high.transmission_error - low.transmission_error) / change.difference)[at]
+    return slopes
 
 
 def warn_of_pairs(sensitivities: Sensitivities, tolerances: Mapping[str, float]) -> None:
@@ -110,32 +136,12 @@ def warn_of_pairs(sensitivities: Sensitivities, tolerances: Mapping[str, float])
 
 def _coming(sensitivities: Sensitivities, idle: IdlePairs, number: int, step: float) -> Iterator[tuple[float, float]]:
     """Changes of a key at which idle pairs touch, and the most that they carry at its end, as stiff as the others."""
-    result, key, (torque, position, column) = sensitivities.result, sensitivities.keys[number], idle.places
-    if not column.size:
-        return
-    driving, growth = result.gear_pair.driving, step * sensitivities.transmission_error[torque, position, number]
-    if key != TORQUE:
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", AccuracyWarning)  # of gears that nobody asks about
-                scene = result.scene.with_changes({key: number_at(result.scene, key) + step})
-                mesh = trace_teeth(scene.pair(), result.pinion_angle)
-        except LoadedTCAError:
-            return  # beyond what the key may be
-        paths = dict(zip(mesh.pairs.tolist(), mesh.paths, strict=True))
-        rows = zip(result.pair[column].tolist(), position.tolist(), column.tolist(), strict=True)
-        growth -= [
-            paths[pair].transmission_error[row] - result.paths[place].transmission_error[row]
-            if pair in paths
-            else math.inf
-            for pair, row, place in rows
-        ]
-    rotation = driving * (result.unloaded_transmission_error[position] - result.transmission_error[torque, position])
-    there = idle.opening + driving * idle.lever * growth
-    whole = idle.lever * rotation
-    for before, after, all_of_it, exponent in zip(idle.opening.clip(0.0), there, whole, idle.exponent, strict=True):
+    driving, (torque, position, _) = sensitivities.result.gear_pair.driving, idle.places
+    growth = sensitivities.transmission_error[torque, position, number] - idle.slopes[number]
+    there = idle.opening + step * driving * idle.lever * growth
+    for before, after, way, exponent in zip(idle.opening.clip(0.0), there, idle.way, idle.exponent, strict=True):
         if after < 0.0:
-            yield step * before / (before - after), (-after / all_of_it) ** (1.0 / exponent)
+            yield step * before / (before - after), (-after / way) ** (1.0 / exponent)
 
 
 def _leaving(sensitivities: Sensitivities, number: int, step: float) -> Iterator[tuple[float, float]]:
