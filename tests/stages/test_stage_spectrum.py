@@ -253,6 +253,7 @@ def test_report_tells_gears_and_both_meshes_in_their_words(monkeypatch):
     assert refused.startswith("lubricant: missing")
 
 
+@pytest.mark.thorough
 def test_pictures_have_a_bar_and_a_curve_of_each_gear():
     rating = under(bins((300.0, 3.0), (480.0, 1.0)))
     (bars,) = plot_safeties(rating).axes
@@ -269,6 +270,7 @@ def test_pictures_have_a_bar_and_a_curve_of_each_gear():
     assert [*rating_figures(rating)] == ["safeties", "rating_sn_curves", "rating_damage"]
 
 
+@pytest.mark.thorough
 def test_command_rates_a_stage_again_under_a_spectrum(run, tmp_path, monkeypatch):
     monkeypatch.setattr("loaded_tca.plots.rating_figures", lambda _: {})
     result, _ = analysed()
