@@ -10,6 +10,7 @@ import pytest
 
 from loaded_tca.cli.commands import _rated
 from loaded_tca.plots import plot_safeties
+from tests.rating.test_both_sides import FLANKS, coast_result, reversed_first
 from tests.samples.rating import solved
 from tests.samples.stages import analysed
 from tests.stages.test_stage_rating import SECTIONS
@@ -64,6 +65,18 @@ def test_command_rates_a_result_again_under_a_spectrum(run, out):
         damage = [float(row["wheel_root_damage"]) for row in csv.DictReader(file)]
     assert damage == pytest.approx(expected.damage[:, 1, 1].tolist(), rel=1e-8)  # nine digits
     assert {*os.listdir(out)} == {"result.nc", "rating.json", "rating.csv", "safeties.png", "pressure_map.png"}
+
+
+def test_command_rates_both_sides(run, out):
+    cases = reversed_first((200.0, 10.0), (100.0, 30.0))
+    whole = solved(**FLANKS, **{"analysis.torques_Nm": (100.0, 200.0), "load.case": cases})
+    whole.save(f"{out}/result.nc")
+    coast_result(**FLANKS).save("coast.nc")
+    code, text, _ = run("rating", out, "--coast", "coast.nc")
+    assert code == 0
+    assert all(line in text for line in whole.rating(coast=coast_result(**FLANKS)).summary().splitlines())
+    with open(f"{out}/rating.json", encoding="utf-8") as file:
+        assert json.load(file)["spectrum"]["pinion_coast_flank"]["spectrum_safety"] > 0.0
 
 
 def test_run_says_why_a_scene_is_not_rated(tmp_path):

@@ -31,10 +31,15 @@ def as_coast_side(coast: CycleNumbers, drive: CycleNumbers) -> CycleNumbers:
     Raises
     ------
     InputError
-        If it is not the coast side of that scene, or no bin is reversed.
+        If it is not the coast side of that scene, no bin is reversed, or one of both alone has root stress.
     """
     if not any(case.reversed for case in drive.scene.load.case or ()):
         raise InputError("coast: the scene has no load spectrum with reversed bins, which load the coast side")
+    asked = drive.scene.analysis.root_stress
+    if coast.scene.analysis.root_stress != asked:
+        raise InputError(
+            f"coast: analysis.root_stress is not {str(asked).lower()}, as of the drive side; give the same"
+        )
     expected = drive.scene.coast_side()
     for part in fields(expected):
         if part.name in BESIDE:
