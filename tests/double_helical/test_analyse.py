@@ -11,7 +11,7 @@ from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helica
 from loaded_tca.double_helical import analyse as analyses
 from loaded_tca.results import load_result
 from loaded_tca.results.warnings import at_places
-from loaded_tca.warning_kinds import MEASURED_HALF, SHARES_OF_HALVES, kind_of
+from loaded_tca.warning_kinds import MEASURED_HALF, SHARES_OF_HALVES, SHUTTLES, kind_of
 from tests.samples import double_helical as samples
 from tests.samples.root_stress import coarsely
 
@@ -261,6 +261,19 @@ def test_a_measured_flank_of_one_half_that_is_held_is_warned_of(equal_halves, on
     assert [line.partition(" has")[0] for line in sentences] == count * ["half b of the pinion"]
     alike = equal_halves.with_changes({**support, "pinion.flank": flank})
     assert alike.measured_halves == ()
+
+
+def test_shuttling_beyond_a_thousandth_of_the_width_is_warned_of(equal_halves, one_half, monkeypatch):
+    way, pair = 0.05, one_half.gear_pair  # of 40 mm
+    turned = 2.0 * way * abs(equal_halves.axial_rate) / pair.base_radii[1] * np.array([1.0, -1.0])
+    moved = one_half.dataset.assign({name: one_half.dataset[name] + turned for name in ERRORS})
+    halves = [analyses._Half(cycle, []) for cycle in (one_half, replace(one_half, dataset=moved, states=None))]
+    monkeypatch.setattr(analyses, "_analysed", lambda *_: halves)
+    result = analyse_double_helical(equal_halves)
+    assert_allclose(np.abs(result.axial_motion), way, rtol=1e-9)
+    (sentence,) = result.warnings
+    assert kind_of(sentence) is SHUTTLES
+    assert "the pinion shuttles along its axis by up to 50 um from its mean place" in sentence
 
 
 def test_a_sentence_without_a_torque_says_nothing_of_torques():

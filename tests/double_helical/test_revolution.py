@@ -11,7 +11,6 @@ from loaded_tca import InputError
 from loaded_tca.cli import main
 from loaded_tca.double_helical import DoubleHelicalRevolution, analyse_double_helical_revolution
 from loaded_tca.results import load_result
-from loaded_tca.warning_kinds import SHUTTLES, kind_of
 from tests.samples.double_helical import equal_halves
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # few cells
@@ -110,13 +109,6 @@ def test_orders_of_the_shuttling_are_those_of_its_curve(wobbling):
     assert_allclose(spectrum.amplitude[spectrum.order == 1.0], 10.0)
     figures = whole.key_figures()[0]
     assert figures["axial_motion_pinion_1_um"] + figures["axial_motion_wheel_1_um"] == pytest.approx(10.0)
-
-
-def test_shuttling_beyond_a_thousandth_of_the_width_is_warned_of():
-    scene = scene_with(**{**OPPOSED, "wheel.pitch.runout_um": 80.0, "wheel.half_b.pitch.runout_um": 80.0})
-    revolution = analyse_double_helical_revolution(scene)
-    (sentence,) = [line for line in revolution.warnings if kind_of(line) is SHUTTLES]
-    assert f"by up to {1e3 * 0.5 * np.ptp(revolution.axial_motion):.3g} um from its mean place" in sentence
 
 
 @pytest.mark.parametrize(
