@@ -3196,6 +3196,27 @@ FAULTS = (
         "[one.pressure[under] for",
         "results/test_loaded_pattern.py::test_pattern_has_the_centre_of_all_forces_and_their_reach",
     ),
+    Fault(
+        "Plotly's button that uploads a picture and its data is on the interactive page",
+        "reports/templates/interactive.js",
+        'showSendToCloud: false, plotlyServerURL: "",',
+        "",
+        "reports/test_interactive_report.py::test_nothing_leads_out_of_the_page",
+    ),
+    Fault(
+        "the data of an interactive page may end its script",
+        "reports/interactive.py",
+        r'data.replace("<", "\\u003c")',
+        "data",
+        "reports/test_interactive_report.py::test_text_of_a_study_stays_text",
+    ),
+    Fault(
+        "the smallest pressures of an interactive page are none",
+        "reports/arrays.py",
+        "np.maximum(np.rint(values / step), 1.0)",
+        "np.rint(values / step)",
+        "reports/test_interactive_report.py::test_scaled_numbers_keep_the_smallest_and_what_is_missing",
+    ),
 )
 
 

@@ -295,7 +295,7 @@ def write_halves_revolution(
     InputError
         If they cannot be written.
     """
-    orders = orders_table(result).values
+    orders: dict[str, Any] = {**orders_table(result).values}
     for t, torque in enumerate(result.torque):
         orders[f"axial_motion_at_{plain(1e-3 * torque, 6)}_Nm_um"] = result.axial_spectrum(t).amplitude
     files = {

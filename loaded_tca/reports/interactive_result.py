@@ -54,8 +54,8 @@ def result_page(result: MeshCycle) -> dict[str, Any]:
     place = result.peak_contact(torque)
     data = {
         "kind": "result",
-        "positions": [position_label(result, n) for n in range(len(result.path))],
-        "torques": [torque_label(result, t) for t in range(len(result.torque))],
+        "positions": [position_label(result, n).removeprefix("position ") for n in range(len(result.path))],
+        "torques": [torque_label(result, t).removeprefix("pinion torque ") for t in range(len(result.torque))],
         "pairs": [signed(number) for number in result.pair.tolist()],
         "begin": {"torque": torque, "position": 0 if place is None else place[0]},
         "angle": finite(np.degrees(result.pinion_angle)),
@@ -86,7 +86,7 @@ def _panels(result: MeshCycle) -> Iterator[dict[str, Any]]:
         "under load": um * result.transmission_error,
         "unloaded": um * np.broadcast_to(result.unloaded_transmission_error, result.transmission_error.shape),
     }
-    yield _panel("Transmission error", "µm", error)
+    yield _panel("Transmission error", "µm", error, ", as a length at the wheel's base circle")
     yield _panel("Share of the torque", "%", _by_pair(result, 100.0 * result.load_share))
     yield _panel("Peak pressure", "MPa", _by_pair(result, result.peak_pressure))
     if np.isfinite(result.edge_pressure).any():
@@ -98,9 +98,9 @@ def _panels(result: MeshCycle) -> Iterator[dict[str, Any]]:
         yield _panel("Root stress", "MPa", lines)
 
 
-def _panel(title: str, unit: str, lines: dict[str, Array]) -> dict[str, Any]:
+def _panel(title: str, unit: str, lines: dict[str, Array], more: str = "") -> dict[str, Any]:
     shown = [{"name": name, "values": finite(values)} for name, values in lines.items()]
-    return {"title": title, "unit": unit, "lines": shown}
+    return {"title": title, "unit": unit, "caption": f"over the pinion angle{more}.", "lines": shown}
 
 
 def _by_pair(result: MeshCycle, values: Array) -> dict[str, Array]:
