@@ -1,8 +1,7 @@
 """All kinds of pictures of results
 ================================
 
-Every kind of picture of a result, a bevel pair, a revolution, a stage and an oil, with what one reads from it;
-``loaded-tca plot DIR --all`` draws some. Those of studies are on a page of their own.
+Every kind, with what one reads from it; ``loaded-tca plot DIR --all`` draws some, those of studies have their own page.
 """
 
 from pathlib import Path

@@ -48,7 +48,7 @@ def test_zeros_are_rigid() -> None:
         ),
         ({"stiffness": changed(STIFF, (2, 2, 0.0))}, "stiffness: holds the gear not along z, its axis: this motion"),
         ({"stiffness": changed(STIFF, (5, 5, 0.0))}, "stiffness: holds the gear not about z, its axis"),
-        ({"stiffness": changed(STIFF, (0, 0, 1e20))}, r"stiffness: found .*up to|stiffness: found .*1e\+15"),
+        ({"stiffness": changed(STIFF, (0, 0, 1e20))}, r"stiffness: found .*up to|stiffness: found .*1e15"),
     ],
 )
 def test_matrices_that_hold_no_gear_are_refused(section: dict[str, object], message: str) -> None:
