@@ -370,7 +370,7 @@ def _labelled(label: str, unit: str) -> str:
     return label if unit == "1" else f"{label} [{unit}]"
 
 
-TRIBOLOGY_PICTURES = {
+TRIBOLOGY_PICTURES: dict[str, TribologyPicture] = {
     "contact_temperature": TribologyPicture(
         "contact temperature over the path of contact, bulk temperature, all torques",
         "The hottest slice at each place of the path of contact; dashed: bulk temperature.",
