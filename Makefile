@@ -9,7 +9,7 @@ KERNEL_TESTS := tests/contact tests/separation tests/loaded/test_balance.py test
 	tests/results/test_figure_slopes.py tests/results/test_mesh_cycle.py tests/flanks/test_tensor_spline.py \
 	tests/unloaded/test_path.py --ignore=tests/contact/test_rounded_edge.py
 
-.PHONY: demo quick test tests test-all test-kernel validate docs reference-fem lint lint-together clean
+.PHONY: demo quick test tests test-all test-kernel validate pages docs reference-fem lint lint-together clean
 
 # Modules are compiled when they are first imported: all of them at once take pip as long as the rest of its work.
 .venv/installed: pyproject.toml
@@ -52,6 +52,10 @@ test-kernel: .venv/installed
 
 validate: .venv/installed
 	$(BIN)/python -m validation
+
+# Every page with numbers or pictures of its own, made anew: hours on one core; NAMES=... takes those with a word in the name.
+pages: .venv/installed
+	$(BIN)/python -m validation.pages $(NAMES)
 
 # Runs every example for the gallery the first time; later only those that have changed.
 docs: .venv/installed

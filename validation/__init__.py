@@ -15,6 +15,6 @@
 | `calculix` | runs of CalculiX, the numbers kept of them, and the loaded mesh cycle beside them |
 
 ``python -m validation`` prints the rows of all comparisons in one table; a script that writes a page of
-``docs/studies`` is called by its own name, ``python -m validation.bevel.pressure``. What these scripts share (tables,
-times, the command line) is in ``page``.
+``docs/studies`` is called by its own name, ``python -m validation.bevel.pressure``, and all of them by ``python -m
+validation.pages``. What these scripts share (tables, times, the command line) is in ``page``.
 """

@@ -19,11 +19,14 @@ import time
 from argparse import ArgumentParser
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import date
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+
+import loaded_tca
 
 if TYPE_CHECKING:  # processes whose memory is measured load no matplotlib
     from matplotlib.figure import Figure
@@ -133,13 +136,14 @@ def formatted(style: str, *values: float) -> list[str]:
 
 
 def machine(numpy: bool = False) -> str:
-    """Processor, cores and Python of this machine, and the version of NumPy if it is asked for."""
+    """Processor, cores and Python of this machine, of NumPy if asked for, the version of the package, and the day."""
     model = platform.processor()
     if Path("/proc/cpuinfo").exists():
         entries = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
         model = next((entry.split(":")[1].strip() for entry in entries if entry.startswith("model name")), model)
     words = f"{model}, {os.cpu_count()} cores, Python {platform.python_version()}"
-    return f"{words}, NumPy {np.__version__}" if numpy else words
+    words += f", NumPy {np.__version__}" if numpy else ""
+    return f"{words}, loaded_tca {loaded_tca.__version__}, {date.today():%-d %B %Y}"
 
 
 def timed(
