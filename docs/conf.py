@@ -38,7 +38,7 @@ sphinx_gallery_conf = {
     "examples_dirs": str(gallery.WORKING_DIRECTORY),
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",  # every example is run
-    "ignore_pattern": "^$",
+    "ignore_pattern": "dynamics_with_",  # but those of programs that the site is built without
     "image_scrapers": ("gallery.collect_pictures",),
     "reset_modules": ("gallery.define_file",),
     "reset_argv": "gallery.arguments",

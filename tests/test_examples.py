@@ -189,9 +189,13 @@ def test_designed_pair_is_quieter(name, quieter, tmp_path, monkeypatch):
     assert_allclose(found["transmission_error"].sel(design="optimum").values[-1], error, rtol=1e-6)
 
 
+OF_CLIENTS = "dynamics_with_"
+"""Models of other programs, whose parts are told one by one; they run in tests/test_clients.py, not in the gallery."""
+
+
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
 def test_example_is_short_and_has_its_scenes(path):
-    assert len(path.read_text(encoding="utf-8").splitlines()) < 60
+    assert len(path.read_text(encoding="utf-8").splitlines()) < (90 if path.stem.startswith(OF_CLIENTS) else 60)
     assert callable(loaded(path).main)  # every name that it imports is there, every scene that it reads is sound
 
 
