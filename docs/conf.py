@@ -37,8 +37,8 @@ numpydoc_show_class_members = False  # they are documented in full
 sphinx_gallery_conf = {
     "examples_dirs": str(gallery.WORKING_DIRECTORY),
     "gallery_dirs": "gallery",
-    "filename_pattern": r"\.py$",  # every example is run
-    "ignore_pattern": "dynamics_with_",  # but those of programs that the site is built without
+    "filename_pattern": r"^(?!.*dynamics_with_).*\.py$",  # every example is run but those of ROSS and Exudyn
+    "ignore_pattern": "^$",
     "image_scrapers": ("gallery.collect_pictures",),
     "reset_modules": ("gallery.define_file",),
     "reset_argv": "gallery.arguments",

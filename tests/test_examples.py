@@ -190,7 +190,7 @@ def test_designed_pair_is_quieter(name, quieter, tmp_path, monkeypatch):
 
 
 OF_CLIENTS = "dynamics_with_"
-"""Models of other programs, whose parts are told one by one; they run in tests/test_clients.py, not in the gallery."""
+"""Models of other programs, made of many parts; they run in tests/test_clients.py, and the gallery only shows them."""
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
