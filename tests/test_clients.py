@@ -40,6 +40,7 @@ def run_example(name, tmp_path, monkeypatch):
     return numbers
 
 
+@pytest.mark.thorough
 def test_rotors_of_ross_have_natural_frequency_and_resonance_of_the_closed_form(tmp_path, monkeypatch):
     """Bearings of 1e13 N/m give way beside a mesh of 1e9: by 1e-4 of the stiffness each, by half of it in frequency."""
     client("ross")
@@ -48,12 +49,13 @@ def test_rotors_of_ross_have_natural_frequency_and_resonance_of_the_closed_form(
     assert_allclose(amplitude, 1.0, atol=2e-4)  # at a peak, flat in the frequency
 
 
+@pytest.mark.thorough
 def test_bodies_of_exudyn_have_the_resonance_of_the_closed_form(tmp_path, monkeypatch):
     """Teeth that separate and a stiffness that varies bound the amplitude, which is larger than the deflection."""
     client("exudyn")
     linear, whole = run_example("dynamics_with_exudyn", tmp_path, monkeypatch)
     assert_allclose(linear, 1.0, atol=1e-2)  # the start dies away by exp(-2 pi 0.08 20) = 4e-5; the mesh phase swings
-    assert 0.2 < whole < 0.95
+    assert 0.0 < whole < linear
 
 
 def test_netcdf4_reads_the_file_of_a_result_as_scipy_does(tmp_path):
