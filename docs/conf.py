@@ -37,7 +37,7 @@ numpydoc_show_class_members = False  # they are documented in full
 sphinx_gallery_conf = {
     "examples_dirs": str(gallery.WORKING_DIRECTORY),
     "gallery_dirs": "gallery",
-    "filename_pattern": r"\.py$",  # every example is run
+    "filename_pattern": r"^(?!.*dynamics_with_).*\.py$",  # every example is run but those of ROSS and Exudyn
     "ignore_pattern": "^$",
     "image_scrapers": ("gallery.collect_pictures",),
     "reset_modules": ("gallery.define_file",),

@@ -201,6 +201,8 @@ def test_designed_pair_is_quieter(name, quieter, tmp_path, monkeypatch):
 
 CELL = "\n# %%\n"
 """Begin of a cell of a notebook."""
+OF_CLIENTS = "dynamics_with_"
+"""Models of other programs, made of many parts; they run in tests/test_clients.py, and the gallery only shows them."""
 
 
 @pytest.mark.thorough
@@ -223,7 +225,7 @@ def test_notebook_shows_cards_and_a_frame_below_its_cells(tmp_path, monkeypatch)
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
 def test_example_is_short_and_has_its_scenes(path):
     text = path.read_text(encoding="utf-8")
-    assert len(text.splitlines()) < 60
+    assert len(text.splitlines()) < (90 if path.stem.startswith(OF_CLIENTS) else 60)
     if CELL in text:
         return  # a notebook, which has no main, and runs when it is loaded
     assert callable(loaded(path).main)  # every name that it imports is there, every scene that it reads is sound

@@ -64,7 +64,8 @@ def describe_commands() -> str:
         command.formatter_class = lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=100)
         text = command.format_help().rstrip()
         pages = [f"[](../{page}.md)" for page in NAMED_PAGE.findall(text)]  # shown by their titles
-        text = re.sub(rf"; {NAMED_PAGE.pattern} says more", "", text)
+        text = re.sub(rf";\s+{NAMED_PAGE.pattern} says more", "", text)
+        text = NAMED_PAGE.sub(lambda named: f"the page {Path(named[1]).name!r}", text)
         lines += [f"## {name}", "", "```text", text, "```", "", *(f"More: {page}." for page in pages), ""]
     return "\n".join(lines)
 

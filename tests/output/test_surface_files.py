@@ -19,6 +19,7 @@ MESH = TriangleMesh(
     point_data={"height_mm": np.array([0.1, 1.0 / 3.0, 0.0, 1e-300])},
     cell_data={"pressure_MPa": np.array([1.5, 2.5, 1e3 / 7.0]), "patch": np.array([-1, 0, 2])},
 )
+STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
 class Reader:
@@ -156,5 +157,9 @@ def test_teeth_of_a_result_are_written(tmp_path, whole):
     points, _, data = Reader(tmp_path / "pinion.vtk").read()
     assert_array_equal(points, shown.pinion.vertices)
     assert set(data["CELL_DATA"]["patch"]) == set(range(7))
-    (count,) = struct.unpack("<I", (tmp_path / "wheel.stl").read_bytes()[80:84])
-    assert count == len(teeth.wheel.triangles(teeth.wheel.teeth if whole else 1, closed=True).triangles)
+    for name, tooth in (("pinion", teeth.pinion), ("wheel", teeth.wheel)):
+        corners = np.frombuffer((tmp_path / f"{name}.stl").read_bytes()[84:], STL_TRIANGLE)["corners"]
+        assert len(corners) == len(tooth.triangles(tooth.teeth if whole else 1, closed=True).triangles)
+        points, triangles = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)  # in single precision
+        edges = np.sort(np.concatenate([triangles.reshape(-1, 3)[:, [k, (k + 1) % 3]] for k in range(3)]), axis=1)
+        assert (np.unique(edges @ [len(points), 1], return_counts=True)[1] == 2).all(), f"{name}: open"

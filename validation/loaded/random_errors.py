@@ -102,9 +102,9 @@ and tooth pairs counts.
 {table}
 
 Each cell: 95 % of the scenes have at most the first number, all of them the second one, and the seed in brackets has
-that: `validation.random_scenes.featured_scene(SEED)`. Large errors of peak pressures and line loads are those of contacts
-at tips and ends of faces, of which the analyses warn; where a rounded tip is reached, it depends on the grid whether some
-of its cells count in `peak_pressure` or in `edge_pressure`. An error is a part:
+that: `validation.random_scenes.featured_scene(SEED)`. Large errors of peak pressures and line loads are those of
+contacts at tips and ends of faces, of which the analyses warn; where a rounded tip is reached, it depends on the grid
+whether some of its cells count in `peak_pressure` or in `edge_pressure`. An error is a part:
 
 {parts}
 
