@@ -3217,6 +3217,20 @@ FAULTS = (
         "np.rint(values / step)",
         "reports/test_interactive_report.py::test_scaled_numbers_keep_the_smallest_and_what_is_missing",
     ),
+    Fault(
+        "refusals of gears in scenes name arguments instead of keys",
+        "scene/build.py",
+        "sentences = [names.sub(lambda name: keys[name[0]], problem) for problem in problems]",
+        "sentences = list(problems)",
+        "scene/test_arguments_by_keys.py::test_refusals_of_gears_in_scenes_name_keys",
+    ),
+    Fault(
+        "refusals of bodies in scenes name arguments instead of keys",
+        "results/gear_warnings.py",
+        "with arguments_by_keys(type(scene)):",
+        "if True:",
+        "scene/test_arguments_by_keys.py::test_refusals_of_gears_in_scenes_name_keys",
+    ),
 )
 
 

@@ -21,7 +21,7 @@ from loaded_tca.plain import plain
 from loaded_tca.reference import iso6336_3
 from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.blank import BlankScene
-from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
+from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, named_by_keys
 from loaded_tca.scene.equivalents import OF_HELICAL
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row
@@ -189,6 +189,7 @@ class CylindricalScene(BlankScene):
         return self._mesh
 
     @cached_property
+    @named_by_keys
     def _mesh(self) -> CylindricalMesh:
         """The macro geometry, which every number of the standards asks for again."""
         of_pinion, of_wheel = self._gear_values((CylindricalGear, CylindricalGear))

@@ -17,7 +17,7 @@ from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.pairs.rack import rack_pair
 from loaded_tca.plain import plain
 from loaded_tca.scene.blank import BlankGearSection, opposite_hands
-from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
+from loaded_tca.scene.build import build_materials, build_modifications, named_by_keys, parameters_of
 from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, Scene
@@ -144,6 +144,7 @@ class RackScene(CylindricalScene):
     )
 
     @cached_property
+    @named_by_keys
     def rack(self) -> Rack:
         """The rack."""
         values = parameters_of(Rack, self.geometry, self.wheel)
@@ -156,6 +157,7 @@ class RackScene(CylindricalScene):
         return self.rack.radius
 
     @cached_property
+    @named_by_keys
     def _gear(self) -> CylindricalGear:
         """The pinion; where the distance is given and its profile shift is not, with what leaves no backlash."""
         values = parameters_of(CylindricalGear, self.geometry, self.pinion)
@@ -167,6 +169,7 @@ class RackScene(CylindricalScene):
         return as_measured(replace(pinion, profile_shift=shift), self.pinion)
 
     @cached_property
+    @named_by_keys
     def _mesh(self) -> CylindricalMesh:
         """The mesh of the pinion and the gear that stands for the rack."""
         return rack_mesh(self._gear, self.rack, self.geometry.distance_mm, self.mounting.axial_offset_mm)
