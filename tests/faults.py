@@ -3231,6 +3231,13 @@ FAULTS = (
         "if True:",
         "scene/test_arguments_by_keys.py::test_refusals_of_gears_in_scenes_name_keys",
     ),
+    Fault(
+        "the dedendum of an imported ring is silently that of the pinion's tool",
+        "exchange/gears.py",
+        "for name in RACK if elsewhere[name] not in section]",
+        "for name in RACK if elsewhere[name] not in section and not ring]",
+        "exchange/test_stage.py::test_dedendum_of_a_ring",
+    ),
 )
 
 
