@@ -43,6 +43,7 @@ from loaded_tca.scene.tools import (
     needs_stock,
     rack_rows,
     shortening,
+    tip_alteration,
 )
 from loaded_tca.scene.written import Equivalents
 
@@ -213,6 +214,11 @@ class CylindricalScene(BlankScene):
             ) - sum(shift for shift in shifts if shift is not None)
         pinion, wheel = (following if shift is None else shift for shift in shifts)
         return pinion, wheel
+
+    @property
+    def computed_tip_alteration(self) -> float:
+        """Coefficient k of both tips as ``pair.tip_shortening = "computed"`` has it."""
+        return tip_alteration(self.geometry, (self.pinion.teeth, self.wheel.teeth), self._profile_shifts)
 
     def _gear_values(self, kinds: tuple[type, type]) -> Iterator[dict[str, Any]]:
         """Values of both gears: of their sections, and those that follow from the pair."""
