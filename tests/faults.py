@@ -3245,6 +3245,13 @@ FAULTS = (
         "for pinion, wheel in ((sun, ring), (ring, ring)):",
         "stages/test_tip_shortening.py::test_tips_of_sun_and_planets_keep_the_clearance",
     ),
+    Fault(
+        "studies of double helical pairs have no safeties",
+        "studies/double_helical.py",
+        "if not is_rated(scene):",
+        "if scene is not None:",
+        "double_helical/test_rating.py::test_studies_have_the_safeties_of_the_worse_half",
+    ),
 )
 
 
