@@ -3252,6 +3252,20 @@ FAULTS = (
         "if scene is not None:",
         "double_helical/test_rating.py::test_studies_have_the_safeties_of_the_worse_half",
     ),
+    Fault(
+        "teeth of a rack are loaded as often as those of the gear that stands for it",
+        "scene/rack.py",
+        "return self.pinion.teeth * self.rack.pitch / self.wheel.length_mm",
+        "return self.pinion.teeth / self.rack.gear.teeth",
+        "scene/test_rack_scene.py::test_rating_of_a_rack_is_that_of_a_wheel_without_end",
+    ),
+    Fault(
+        "places on a rack in its rating count from the axis of the gear that stands for it",
+        "rating/evaluate.py",
+        " - np.array([0.0, inputs.scene.rack_radius or 0.0])",
+        "",
+        "scene/test_rack_scene.py::test_rating_of_a_rack_is_that_of_a_wheel_without_end",
+    ),
 )
 
 

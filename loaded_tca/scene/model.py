@@ -379,6 +379,11 @@ class Scene(InNotebooks, WithStandards, ABC):
         """What turns rotations of the wheel into travels of the rack that it stands for [mm]; None of wheels."""
         return None
 
+    @property
+    def wheel_cycles(self) -> float:
+        """Load cycles of a tooth of the wheel per turn of the pinion, for each mate: abs(z1/z2)."""
+        return abs(self.pinion.teeth / self.wheel.teeth)
+
     def require_turns(self, where: str) -> None:
         """Refuse what needs whole turns of both gears, said in words, where the wheel has none; it has."""
 

@@ -35,6 +35,13 @@ def _none(key_name: str, why: str) -> Rule:
     return rule((key_name,), lambda value: value is None or value == (), f"found; a rack has none: {why}")
 
 
+def _needs_length(length: float | None, rating: object) -> str | None:
+    """What is wrong with the rating of a rack whose teeth are not counted."""
+    if rating is None or length is not None:
+        return None
+    return "missing; [rating] needs it: load cycles of the rack's teeth are strokes over this length"
+
+
 @dataclass(frozen=True, kw_only=True)
 class RackGeometry(Geometry):
     """[pair] of a pinion and a rack."""
@@ -83,7 +90,6 @@ class RackSection(BlankGearSection):
         _none("support", "it is held at its bed"),
         _none("pitch", "whole revolutions are those of gears"),
         _none("tooth", "whole revolutions are those of gears"),
-        _none("strength", "load cycles of its teeth are not counted"),
         rule(
             ("flank.form",),
             lambda form: form == "analytic",
@@ -138,7 +144,7 @@ class RackScene(CylindricalScene):
         *(demand for demand in Scene.rules if demand not in REVOLUTION_RULES),
         opposite_hands(),
         _none("revolution", "whole revolutions are those of gears"),
-        _none("rating", "load cycles of its teeth are not counted"),
+        Rule(("wheel.length_mm", "rating"), _needs_length),
         _none("pinion.pitch", "whole revolutions are those of gears"),
         _none("pinion.tooth", "whole revolutions are those of gears"),
     )
@@ -223,6 +229,12 @@ class RackScene(CylindricalScene):
     def require_turns(self, where: str) -> None:
         """Refuse what needs whole turns of both gears, said in words."""
         raise InputError(f'wheel.teeth: found "rack"; allowed a number of teeth in {where}')
+
+    @property
+    def wheel_cycles(self) -> float:
+        """Load cycles of a tooth of the rack per turn of the pinion: part of a stroke over the whole length."""
+        assert self.wheel.length_mm is not None  # refused before
+        return self.pinion.teeth * self.rack.pitch / self.wheel.length_mm
 
     @property
     def flank_names(self) -> tuple[str, str]:
