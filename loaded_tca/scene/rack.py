@@ -143,10 +143,16 @@ class RackScene(CylindricalScene):
     rules: ClassVar[tuple[Rule, ...]] = (
         *(demand for demand in Scene.rules if demand not in REVOLUTION_RULES),
         opposite_hands(),
-        _none("revolution", "whole revolutions are those of gears"),
         Rule(("wheel.length_mm", "rating"), _needs_length),
-        _none("pinion.pitch", "whole revolutions are those of gears"),
-        _none("pinion.tooth", "whole revolutions are those of gears"),
+        *(
+            rule(
+                (name,),
+                lambda value: value is None or value == (),
+                "found; not allowed beside a rack: it belongs to whole revolutions, which need a wheel with teeth all "
+                "around",
+            )
+            for name in ("revolution", "pinion.pitch", "pinion.tooth")
+        ),
     )
 
     @cached_property
