@@ -2092,7 +2092,7 @@ FAULTS = (
     Fault(
         "rating: both gears turn as often as the pinion",
         "rating/inputs.py",
-        "np.array([1.0, ratio])",
+        "np.array([1.0, self.scene.wheel_cycles])",
         "np.array([1.0, 1.0])",
         "rating/test_rating.py::test_load_cycles_count_turns_of_each_gear",
     ),
