@@ -29,6 +29,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.supports import warn_of_supports
 from loaded_tca.results.warnings import warn_of_accuracy
 from loaded_tca.scene import Scene
+from loaded_tca.scene.build import arguments_by_keys
 from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread, side_by_side, with_jobs
 from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
@@ -144,7 +145,8 @@ def _root_models(scene: Scene, pair: GearPair) -> list[Callable[[], Any]]:
     """Works that make the models of root stress of pinion and wheel; none if the scene does not ask for it."""
     if not scene.analysis.root_stress:
         return []
-    require_teeth(pair, scene.analysis.without_bodies)
+    with arguments_by_keys(type(scene)):
+        require_teeth(pair, scene.analysis.without_bodies)
     return [partial(_root_model, pair, *one) for one in (("pinion", pair.pinion), ("wheel", pair.wheel))]
 
 

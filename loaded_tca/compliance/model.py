@@ -19,6 +19,7 @@ from loaded_tca.compliance.compliance import rim_compliance, tooth_compliance
 from loaded_tca.compliance.teeth import way_out_told
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.scene import Scene
+from loaded_tca.scene.build import arguments_by_keys
 from loaded_tca.supports import SupportCompliance, support_compliance
 
 Solved = TypeVar("Solved", bound="_OfPairs")
@@ -153,7 +154,7 @@ def teeth_and_bodies(scene: Scene, pair: GearPair, neighbours: int) -> BendingPa
     """Teeth, foundations and gear bodies by finite elements; None where the scene lets the flanks alone give way."""
     if not scene.analysis.teeth_bend:
         return None
-    with way_out_told():
+    with arguments_by_keys(type(scene)), way_out_told():
         return tooth_compliance(pair, neighbours=neighbours)
 
 

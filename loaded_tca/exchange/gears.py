@@ -308,10 +308,12 @@ def _by_tool(reading: Reading, gear: Component, flank: Component | None, module:
     return None
 
 
-def _own_rack(reading: Reading, gear: Component, flank: Component | None, pair: dict[str, Any]) -> dict[str, float]:
+def _own_rack(
+    reading: Reading, gear: Component, flank: Component | None, pair: dict[str, Any], names: list[str]
+) -> dict[str, float]:
     """What the rack of a gear has other than that of the pair; notes what this has by the tool of the other gear."""
     rack = {}
-    for name in (one for one in RACK if one in pair):
+    for name in (one for one in names if one in pair):
         value = _by_tool(reading, gear, flank, pair["normal_module_mm"], name)
         if value is None:
             by_other = f"{name} {plain(pair[name], 6)} is that by the tool of the other gear"
@@ -359,13 +361,13 @@ def gear_section(
     if ring and section.get("profile_shift"):
         reading.note(f"{component}: a positive profile shift of the ring thickens its teeth, as in ISO 21771")
     section |= _tip(reading, component, None if ring else flank)
-    if not ring:
-        section |= _own_rack(reading, component, flank, pair)
-    elif (root := reading.number(component, "root_diameter", LENGTH)) is not None:
-        section["root_diameter_mm"] = abs(root)
     if ring:
         section |= _cutter(reading, component, flank)
-    elif bore := reading.number(component, "inner_diameter", LENGTH):
+        if (root := reading.number(component, "root_diameter", LENGTH)) is not None:
+            section["root_diameter_mm"] = abs(root)
+    elsewhere = {"dedendum_coefficient": "root_diameter_mm", "root_radius_coefficient": "cutter"}
+    section |= _own_rack(reading, component, flank, pair, [name for name in RACK if elsewhere[name] not in section])
+    if not ring and (bore := reading.number(component, "inner_diameter", LENGTH)):
         section["bore_diameter_mm"] = bore
     roughness = reading.number(component, "arithmetic_average_roughness_flank", SMALL_LENGTH)
     if roughness:

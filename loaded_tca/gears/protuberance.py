@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from math import inf, sqrt
+from math import degrees, inf, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,7 +43,8 @@ def protuberance_checks(gear: CylindricalGear) -> Iterator[tuple[bool, str]]:
     fits = angle is None or 0.0 < real(angle) < gear.pressure_angle
     yield (
         fits,
-        f"protuberance_angle: {angle} rad is not between 0 and the pressure angle {plain(gear.pressure_angle, 6)} rad",
+        f"protuberance_angle: {angle} rad is not between 0 and the pressure angle {plain(gear.pressure_angle, 6)} rad "
+        f"({plain(degrees(gear.pressure_angle), 6)} deg)",
     )
 
 
@@ -63,7 +64,7 @@ def flank_after_protuberance(gear: CylindricalGear) -> float:
             return find_root(gear.cut_into_flank, float(after), float(before))
     raise GeometryError(
         f"{gear.name}: protuberance: the undercut of {plain(gear.residual_undercut, 6)} mm that grinding leaves of it "
-        "does not come back to the flank; reduce protuberance or protuberance_angle"
+        "does not come back to the flank; reduce protuberance_angle or the protuberance"
     )
 
 

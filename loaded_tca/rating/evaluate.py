@@ -254,7 +254,7 @@ def local_flanks(inputs: CommonInputs, loads: Arrays, strength: Array) -> Arrays
     radius, axial = inputs.loads.places
     return {
         "local_flank_stress": stress,
-        "local_flank_radius": radius,
+        "local_flank_radius": radius - np.array([0.0, inputs.scene.rack_radius or 0.0]),
         "local_flank_axial": axial,
         "local_flank_safety": _safety(both(inputs, strength), stress[:, None]),
     }

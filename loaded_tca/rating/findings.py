@@ -95,8 +95,10 @@ def _kind(mode: str) -> str:
 def _place(rating: Rating, worst: Worst) -> str:
     at = worst.case, worst.gear
     if worst.kind == FLANK:
-        diameter, axial = 2.0 * rating.local_flank_radius[at], rating.local_flank_axial[at]
-        return f"diameter {plain(diameter)} mm, axial {axial:z.1f} mm"
+        radius, axial = rating.local_flank_radius[at], rating.local_flank_axial[at]
+        if worst.gear and rating.result.scene.rack_radius is not None:
+            return f"{plain(radius)} mm above the reference line, axial {axial:z.1f} mm"
+        return f"diameter {plain(2.0 * radius)} mm, axial {axial:z.1f} mm"
     angle, axial = np.degrees(rating.local_root_angle[at]), rating.local_root_axial[at]
     return f"tangent angle {angle:.0f} deg, axial {axial:z.1f} mm"
 

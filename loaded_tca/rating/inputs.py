@@ -135,8 +135,8 @@ class CommonInputs(ABC):
     @property
     def cycles_per_hour(self) -> Array:
         """Load cycles of pinion and wheel in an hour of each case (c, 2)."""
-        ratio = abs(self.scene.pinion.teeth / self.scene.wheel.teeth)
-        return 60.0 * self.cases.speed[:, None] * np.array([1.0, ratio]) * self.duty.meshes
+        per_turn = np.array([1.0, self.scene.wheel_cycles])
+        return 60.0 * self.cases.speed[:, None] * per_turn * self.duty.meshes
 
     @property
     def cycles(self) -> Array:
@@ -204,7 +204,6 @@ def inputs_of(result: CycleNumbers, duty: Duty = Duty()) -> RatingInputs:
     scene = result.scene
     if not isinstance(scene, CylindricalScene):
         raise InputError(f'pair.type: "{scene.geometry.type}"; ISO 6336 is for cylindrical pairs')
-    scene.require_turns("a rating")
     outside = [
         f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
     ]

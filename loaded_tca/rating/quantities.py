@@ -131,7 +131,10 @@ NUMBERS: dict[str, Number] = {
     **_numbers(
         OF_GEARS,
         "mm",
-        {"local_flank_radius": "local: radius of its place", "local_flank_axial": "local: axial place"},
+        {
+            "local_flank_radius": "local: radius of its place, of a rack height above the reference line",
+            "local_flank_axial": "local: axial place",
+        },
     ),
     **_numbers(OF_GEARS, "1", {"local_flank_safety": "local: safety against pitting"}),
     **_numbers(

@@ -12,6 +12,7 @@ from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.gears.protuberance import notch_factor
 from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_3 import THIN_RIM
+from loaded_tca.scene.build import arguments_by_keys
 from loaded_tca.scene.section import values_of
 
 if TYPE_CHECKING:
@@ -63,7 +64,8 @@ def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = Fals
     if scene.has_pitch_deviations and not whole_revolution:
         give_accuracy_warning(kinds.PITCH_DEVIATIONS.sentence(), stacklevel=3)
     if scene.analysis.without_bodies:
-        require_teeth(pair, scene.analysis.without_bodies)
+        with arguments_by_keys(type(scene)):
+            require_teeth(pair, scene.analysis.without_bodies)
     else:
         warn_of_teeth(pair)
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):

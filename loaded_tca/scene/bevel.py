@@ -21,7 +21,7 @@ from loaded_tca.scene import spiral
 from loaded_tca.scene.bevel_blank import MEASURED, MEASURED_RULES, Blank, Measured, settings_table
 from loaded_tca.scene.bevel_rows import blank_rows, common_blank_rows, cone_rows, depth_rows
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
-from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
+from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, named_by_keys, parameters_of
 from loaded_tca.scene.equivalents import OF_BEVEL
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.machine_settings import METHODS, Method, Settings
@@ -343,6 +343,7 @@ class BevelScene(SpiralScene, BlankScene):
             table[name] = kept | settings_table(gear)
         return scene_from_table(table)
 
+    @named_by_keys
     def mesh(self) -> BevelMesh:
         """Return the macro geometry: cones, cone distances, contact ratios."""
         blanks = self.blanks()

@@ -6,11 +6,12 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from functools import wraps
+from typing import Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 
-from loaded_tca.errors import InputError, named, require
+from loaded_tca.errors import GeometryError, InputError, named, require
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
@@ -22,8 +23,8 @@ from loaded_tca.pairs.tooth_deviations import ToothDeviations
 from loaded_tca.plain import plain
 from loaded_tca.scene.flank_form import FITTED_DEGREE, FlankForm, Measurement
 from loaded_tca.scene.pitch import LARGEST_INDEX, Pitch
-from loaded_tca.scene.section import Section, as_table
-from loaded_tca.scene.sections import ElasticMaterial, GearSection, Modifications
+from loaded_tca.scene.section import Section, Subsection, as_table, entries
+from loaded_tca.scene.sections import ElasticMaterial, GearSection
 from loaded_tca.tooth import ToothForm, ToothGeometry
 from loaded_tca.units import UNITS, ending_of, without_unit
 
@@ -61,21 +62,61 @@ def build_modifications(pinion: GearSection, wheel: GearSection) -> tuple[FlankM
     )
 
 
-KEYS = {without_unit(field.name): field.name for field in fields(Modifications) if "_" in without_unit(field.name)}
-ARGUMENT = re.compile(rf"\b({'|'.join(KEYS)})\b")
-"""Arguments of modifications, without unit, that are no words of a sentence; the keys that they have in files."""
+def keys_of_arguments(scene: type[Section]) -> dict[str, str]:
+    """Names of arguments, without unit -> the keys of a scene or of a section inside that give them with one.
+
+    Examples
+    --------
+    >>> from loaded_tca.scene import CylindricalScene
+    >>> keys_of_arguments(CylindricalScene)["tip_chamfer_angle"]
+    'tip_chamfer_angle_deg'
+    """
+    keys: dict[str, str] = {}
+    for name, (_, entry) in entries(scene).items():
+        if isinstance(entry, Subsection):
+            keys |= keys_of_arguments(entry.section)
+        elif ending_of(name):
+            keys[without_unit(name)] = name
+    return keys
+
+
+def _arguments_in_messages(scene: type[Section]) -> re.Pattern[str]:
+    """Arguments of gears as messages name them: anywhere, but words of a sentence only in front of a colon."""
+    anywhere = "|".join(name for name in keys_of_arguments(scene) if "_" in name)
+    words = "|".join(name for name in keys_of_arguments(scene) if "_" not in name)
+    return re.compile(rf"\b(?:{anywhere})\b|(?:^|(?<=: ))(?:{words})(?=:)")
 
 
 @contextmanager
-def modifications_by_keys() -> Iterator[None]:
-    """Name keys of files, with their units, where problems of modifications name arguments."""
+def arguments_by_keys(scene: type[Section]) -> Iterator[None]:
+    """Name keys of files, with their units, where refusals of gears and pairs name arguments."""
     try:
         yield
-    except InputError as error:
-        raise InputError(
-            ARGUMENT.sub(lambda found: KEYS[found[0]], problem) if ".modifications." in problem else problem
-            for problem in error.problems
-        ) from None
+    except (InputError, GeometryError) as error:
+        keys, names = keys_of_arguments(scene), _arguments_in_messages(scene)
+        problems = error.problems if isinstance(error, InputError) else (str(error),)
+        sentences = [names.sub(lambda name: keys[name[0]], problem) for problem in problems]
+        by_keys = InputError(sentences) if isinstance(error, InputError) else GeometryError(sentences[0])
+        for note in getattr(error, "__notes__", ()):
+            by_keys.add_note(note)
+        raise by_keys.with_traceback(error.__traceback__) from None
+
+
+Made = TypeVar("Made")
+Arguments = ParamSpec("Arguments")
+
+
+def named_by_keys(
+    function: Callable[Concatenate[Any, Arguments], Made],
+) -> Callable[Concatenate[Any, Arguments], Made]:
+    """Function of a scene, its first argument, whose refusals are those of :func:`arguments_by_keys`."""
+
+    @wraps(function)
+    def with_keys(scene: Any, /, *values: Arguments.args, **options: Arguments.kwargs) -> Made:
+        with arguments_by_keys(type(scene)):
+            return function(scene, *values, **options)
+
+    return with_keys
 
 
 def build_rounding(gear: GearSection) -> EdgeRounding:

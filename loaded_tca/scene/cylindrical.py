@@ -21,7 +21,7 @@ from loaded_tca.plain import plain
 from loaded_tca.reference import iso6336_3
 from loaded_tca.reference.iso1328 import flank_tolerances
 from loaded_tca.scene.blank import BlankScene
-from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
+from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, named_by_keys
 from loaded_tca.scene.equivalents import OF_HELICAL
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row
@@ -43,6 +43,7 @@ from loaded_tca.scene.tools import (
     needs_stock,
     rack_rows,
     shortening,
+    tip_alteration,
 )
 from loaded_tca.scene.written import Equivalents
 
@@ -189,6 +190,7 @@ class CylindricalScene(BlankScene):
         return self._mesh
 
     @cached_property
+    @named_by_keys
     def _mesh(self) -> CylindricalMesh:
         """The macro geometry, which every number of the standards asks for again."""
         of_pinion, of_wheel = self._gear_values((CylindricalGear, CylindricalGear))
@@ -212,6 +214,11 @@ class CylindricalScene(BlankScene):
             ) - sum(shift for shift in shifts if shift is not None)
         pinion, wheel = (following if shift is None else shift for shift in shifts)
         return pinion, wheel
+
+    @property
+    def computed_tip_alteration(self) -> float:
+        """Coefficient k of both tips as ``pair.tip_shortening = "computed"`` has it."""
+        return tip_alteration(self.geometry, (self.pinion.teeth, self.wheel.teeth), self._profile_shifts)
 
     def _gear_values(self, kinds: tuple[type, type]) -> Iterator[dict[str, Any]]:
         """Values of both gears: of their sections, and those that follow from the pair."""

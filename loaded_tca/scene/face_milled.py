@@ -21,7 +21,7 @@ from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
 from loaded_tca.plain import plain
 from loaded_tca.scene import bevel_rows, hypoid, sections, spiral
 from loaded_tca.scene.blank import opposite_hands
-from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
+from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, named_by_keys
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Hand, Row, Scene
 from loaded_tca.scene.parse import family
@@ -305,6 +305,7 @@ class FaceMilledScene(SpiralScene):
         return self._mesh
 
     @cached_property
+    @named_by_keys
     def _mesh(self) -> FaceMilledMesh:
         """Both gears, which an overview asks for a dozen times: pitch cones of a hypoid pair are found by iteration."""
         shaft_angle, offset = radians(self.geometry.shaft_angle_deg), self.geometry.offset_mm

@@ -16,7 +16,7 @@ from loaded_tca.gears.undercut import undercut_sentences
 from loaded_tca.pairs.cylindrical import internal_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.plain import plain
-from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
+from loaded_tca.scene.build import build_materials, build_modifications, named_by_keys, parameters_of
 from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
 from loaded_tca.scene.keys import Choice, Number, Whole, key
 from loaded_tca.scene.model import Hand, Row, Scene
@@ -178,6 +178,7 @@ class InternalScene(CylindricalScene):
         return self._mesh
 
     @cached_property
+    @named_by_keys
     def _mesh(self) -> InternalMesh:  # type: ignore[override]
         """The macro geometry, kept as that of external pairs is."""
         of_pinion, of_ring = self._gear_values((CylindricalGear, RingGear))

@@ -19,11 +19,11 @@ from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
 from loaded_tca.pairs.tooth_deviations import ToothDeviations, ToothFlanks
 from loaded_tca.plain import plain
 from loaded_tca.scene.build import (
+    arguments_by_keys,
     build_rounding,
     build_tooth_deviations,
     described_gear,
     in_base_units,
-    modifications_by_keys,
 )
 from loaded_tca.scene.keys import Line, key
 from loaded_tca.scene.load import Load, life_is_given, within_solved
@@ -269,7 +269,7 @@ class Scene(InNotebooks, WithStandards, ABC):
         """
         known = sense in (None, "positive", "negative")
         require((known, f"sense: {sense!r:.60} is not 'positive' or 'negative'"))
-        with modifications_by_keys():
+        with arguments_by_keys(type(self)):
             pair = self.analytic_pair(sense or self.sense)
         require(*(check for number in range(len(GEARS)) for check in self._bore_on_shaft(number, pair.face_width)))
         side = pair.pinion.flank.side if sense in (None, self.sense) else -pair.pinion.flank.side
@@ -378,6 +378,11 @@ class Scene(InNotebooks, WithStandards, ABC):
     def rack_radius(self) -> float | None:
         """What turns rotations of the wheel into travels of the rack that it stands for [mm]; None of wheels."""
         return None
+
+    @property
+    def wheel_cycles(self) -> float:
+        """Load cycles of a tooth of the wheel per turn of the pinion, for each mate: abs(z1/z2)."""
+        return abs(self.pinion.teeth / self.wheel.teeth)
 
     def require_turns(self, where: str) -> None:
         """Refuse what needs whole turns of both gears, said in words, where the wheel has none; it has."""

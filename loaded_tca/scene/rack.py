@@ -17,7 +17,7 @@ from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.pairs.rack import rack_pair
 from loaded_tca.plain import plain
 from loaded_tca.scene.blank import BlankGearSection, opposite_hands
-from loaded_tca.scene.build import build_materials, build_modifications, parameters_of
+from loaded_tca.scene.build import build_materials, build_modifications, named_by_keys, parameters_of
 from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry, MountingErrors, backlash_rows
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, Scene
@@ -33,6 +33,13 @@ LENGTH_mm = above_zero(100000.0)
 def _none(key_name: str, why: str) -> Rule:
     """Rule: a key that a rack has no use for is not given."""
     return rule((key_name,), lambda value: value is None or value == (), f"found; a rack has none: {why}")
+
+
+def _needs_length(length: float | None, rating: object) -> str | None:
+    """What is wrong with the rating of a rack whose teeth are not counted."""
+    if rating is None or length is not None:
+        return None
+    return "missing; [rating] needs it: load cycles of the rack's teeth are strokes over this length"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,7 +90,6 @@ class RackSection(BlankGearSection):
         _none("support", "it is held at its bed"),
         _none("pitch", "whole revolutions are those of gears"),
         _none("tooth", "whole revolutions are those of gears"),
-        _none("strength", "load cycles of its teeth are not counted"),
         rule(
             ("flank.form",),
             lambda form: form == "analytic",
@@ -137,13 +143,20 @@ class RackScene(CylindricalScene):
     rules: ClassVar[tuple[Rule, ...]] = (
         *(demand for demand in Scene.rules if demand not in REVOLUTION_RULES),
         opposite_hands(),
-        _none("revolution", "whole revolutions are those of gears"),
-        _none("rating", "load cycles of its teeth are not counted"),
-        _none("pinion.pitch", "whole revolutions are those of gears"),
-        _none("pinion.tooth", "whole revolutions are those of gears"),
+        Rule(("wheel.length_mm", "rating"), _needs_length),
+        *(
+            rule(
+                (name,),
+                lambda value: value is None or value == (),
+                "found; not allowed beside a rack: it belongs to whole revolutions, which need a wheel with teeth all "
+                "around",
+            )
+            for name in ("revolution", "pinion.pitch", "pinion.tooth")
+        ),
     )
 
     @cached_property
+    @named_by_keys
     def rack(self) -> Rack:
         """The rack."""
         values = parameters_of(Rack, self.geometry, self.wheel)
@@ -156,6 +169,7 @@ class RackScene(CylindricalScene):
         return self.rack.radius
 
     @cached_property
+    @named_by_keys
     def _gear(self) -> CylindricalGear:
         """The pinion; where the distance is given and its profile shift is not, with what leaves no backlash."""
         values = parameters_of(CylindricalGear, self.geometry, self.pinion)
@@ -167,6 +181,7 @@ class RackScene(CylindricalScene):
         return as_measured(replace(pinion, profile_shift=shift), self.pinion)
 
     @cached_property
+    @named_by_keys
     def _mesh(self) -> CylindricalMesh:
         """The mesh of the pinion and the gear that stands for the rack."""
         return rack_mesh(self._gear, self.rack, self.geometry.distance_mm, self.mounting.axial_offset_mm)
@@ -220,6 +235,12 @@ class RackScene(CylindricalScene):
     def require_turns(self, where: str) -> None:
         """Refuse what needs whole turns of both gears, said in words."""
         raise InputError(f'wheel.teeth: found "rack"; allowed a number of teeth in {where}')
+
+    @property
+    def wheel_cycles(self) -> float:
+        """Load cycles of a tooth of the rack per turn of the pinion: part of a stroke over the whole length."""
+        assert self.wheel.length_mm is not None  # refused before
+        return self.pinion.teeth * self.rack.pitch / self.wheel.length_mm
 
     @property
     def flank_names(self) -> tuple[str, str]:

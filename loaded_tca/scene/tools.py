@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import inf, radians
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
 from loaded_tca.gears.chamfer import chamfered_land
 from loaded_tca.gears.tips import computed_tip_alteration
@@ -112,18 +113,22 @@ class CutSection(MeasuredSection):
     )
 
 
-def _shortened_once(shortening: str, *own: Any) -> str | None:
-    """What is wrong where the tips of a pair with a computed shortening are given; ``own``: of pinion and wheel."""
+def shortened_once(gears: tuple[str, ...]) -> Rule:
+    """Rule of scenes and stages: a computed tip shortening stands alone; ``gears`` are the sections of gears."""
     names = "tip_diameter_mm", "tip_alteration_coefficient", "topping"
-    given = [
-        f"{gear}.{name} = {'true' if value is True else value}"
-        for gear, values in zip(("pinion", "wheel"), (own[:3], own[3:]), strict=True)
-        for name, value in zip(names, values, strict=True)
-        if value is not None and value is not False
-    ]
-    if shortening == "computed" and given:
-        return f'found "computed" beside {" and ".join(given)}; give one of them: each says where tips are'
-    return None
+    paths = [f"{gear}.{name}" for gear in gears for name in names]
+
+    def complain(shortening: str, *values: Any) -> str | None:
+        beside = [
+            f"{path} = {'true' if value is True else value}"
+            for path, value in zip(paths, values, strict=True)
+            if value is not None and value is not False
+        ]
+        if shortening == "computed" and beside:
+            return f'found "computed" beside {" and ".join(beside)}; give one of them: each says where tips are'
+        return None
+
+    return Rule(("pair.tip_shortening", *paths), complain)
 
 
 def needs_stock(protuberance: float | None, stock: float | None) -> str | None:
@@ -141,17 +146,7 @@ def needs_protuberance(angle: float | None, protuberance: float | None) -> str |
     return None if angle is None or protuberance else f"found {plain(angle, 6)}; it needs protuberance_um above 0"
 
 
-SHORTENED_ONCE = Rule(
-    (
-        "pair.tip_shortening",
-        *(
-            f"{gear}.{name}"
-            for gear in ("pinion", "wheel")
-            for name in ("tip_diameter_mm", "tip_alteration_coefficient", "topping")
-        ),
-    ),
-    _shortened_once,
-)
+SHORTENED_ONCE = shortened_once(GEARS)
 """Rule of scenes: a computed tip shortening stands alone."""
 
 
@@ -165,11 +160,9 @@ def cut_parameters(gear: type, geometry: Geometry, own: CutSection) -> dict[str,
     return values
 
 
-def shortening(geometry: Geometry, teeth: tuple[int, int], shifts: tuple[float, float]) -> dict[str, float]:
-    """Tip alteration of both gears where the scene has it computed, as a parameter of gears."""
-    if geometry.tip_shortening != "computed":
-        return {}
-    coefficient = computed_tip_alteration(
+def tip_alteration(geometry: Geometry, teeth: tuple[int, int], shifts: tuple[float, float]) -> float:
+    """Tip alteration coefficient of both gears that keeps the clearance."""
+    return computed_tip_alteration(
         teeth,
         shifts,
         geometry.normal_module_mm,
@@ -177,7 +170,13 @@ def shortening(geometry: Geometry, teeth: tuple[int, int], shifts: tuple[float, 
         helix_angle=radians(geometry.helix_angle_deg),
         centre_distance=geometry.centre_distance_mm,
     )
-    return {"tip_alteration_coefficient": coefficient}
+
+
+def shortening(geometry: Geometry, teeth: tuple[int, int], shifts: tuple[float, float]) -> dict[str, float]:
+    """Tip alteration of both gears where the scene has it computed, as a parameter of gears."""
+    if geometry.tip_shortening != "computed":
+        return {}
+    return {"tip_alteration_coefficient": tip_alteration(geometry, teeth, shifts)}
 
 
 def rack_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:

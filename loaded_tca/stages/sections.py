@@ -55,7 +55,7 @@ from loaded_tca.scene.section import (
     told_as_written,
 )
 from loaded_tca.scene.sections import FACTOR, Analysis, DIAMETER_mm, ElasticMaterial, LubricantSection
-from loaded_tca.scene.tools import ADDENDUM, DEDENDUM, ROOT_RADIUS
+from loaded_tca.scene.tools import ADDENDUM, DEDENDUM, ROOT_RADIUS, TIP_SHORTENING, shortened_once
 from loaded_tca.scene.written import Equivalents
 from loaded_tca.stages.kinematics import spacing_problems
 
@@ -196,6 +196,12 @@ class StageGeometry(Section):
         'root radius of the basic rack in modules, rho_fP/m_n, or "full", the largest that fits; likewise',
         0.38,
     )
+    tip_shortening: str = key(
+        TIP_SHORTENING,
+        '"computed": tips of sun and ring are altered by k of their mesh with the planets (ISO 21771) where that '
+        "shortens them, those of planets by the one that shortens more",
+        "none",
+    )
 
     equivalents: ClassVar[Equivalents] = OF_HELICAL
 
@@ -316,6 +322,7 @@ class Stage(InNotebooks, Section):
             for gear in ("sun", "planet", "ring")
             for name, why in OF_ONE_PITCH.items()
         ),
+        shortened_once(("sun", "planet", "ring")),
         Rule(
             ("load.sun_torque_Nm", "analysis.torques_Nm"),
             lambda torque, several: (
@@ -393,6 +400,7 @@ class Stage(InNotebooks, Section):
     def _meshes(self, distance: float | None) -> tuple[CylindricalScene, InternalScene]:
         """Scenes of both meshes under a planet's part of the first torque; problems have the names of the stage."""
         common = {**contents(self.geometry), "type": "cylindrical", "centre_distance_mm": distance}
+        common["tip_shortening"] = "none"  # of planets, which both meshes ask for: see _shortened
         driving: Driving = "pinion" if self.stage.driving == "sun" else "wheel"
         planets, torque = len(self.stage.angles), 1e-3 * self.sun_torques[0]
         other = OTHER[self.sun.hand or "right"]
@@ -416,7 +424,7 @@ class Stage(InNotebooks, Section):
                 load=Load(pinion_torque_Nm=torque * self.planet.teeth / self.sun.teeth / planets),
                 **shared,
             )
-        return of_sun, of_ring
+        return _shortened(of_sun, of_ring) if self.geometry.tip_shortening == "computed" else (of_sun, of_ring)
 
     def require_assembly(self) -> None:
         """Refuse planets that cannot be put in, or touch each other.
@@ -492,6 +500,24 @@ class Stage(InNotebooks, Section):
     def to_toml(self) -> str:
         """Return a stage file with every key; ``parse_stage`` makes the same stage of it."""
         return "\n".join(toml_lines(self, "")) + "\n"
+
+
+def _shortened(of_sun: CylindricalScene, of_ring: InternalScene) -> tuple[CylindricalScene, InternalScene]:
+    """Scenes of both meshes with tips that keep the clearances; planets are in both."""
+    with in_words_of(SUN_MESH):
+        sun = of_sun.computed_tip_alteration
+    with in_words_of(RING_MESH):
+        ring = of_ring.computed_tip_alteration
+    changes = []
+    for pinion, wheel in ((sun, min(sun, ring)), (min(sun, ring), ring)):
+        changes.append({"pinion.tip_alteration_coefficient": pinion, "wheel.tip_alteration_coefficient": wheel})
+    with in_words_of(SUN_MESH):
+        external = of_sun.with_changes(changes[0])
+    with in_words_of(RING_MESH):
+        internal = of_ring.with_changes(changes[1])
+    assert isinstance(external, CylindricalScene)
+    assert isinstance(internal, InternalScene)
+    return external, internal
 
 
 def _gears_of(sun_scene: CylindricalScene, ring_scene: InternalScene) -> tuple[CylindricalMesh, InternalMesh]:

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from loaded_tca.rating.rating import OfCases
+
 FIGURES = {
     "S_H": "safety against pitting S_H",
     "S_F": "safety against tooth breakage S_F",
@@ -72,7 +74,11 @@ def rating_figures(result: MeshCycle) -> dict[str, Array]:
     """
     if not is_rated(result.scene):
         return {}
-    rating, count = rating_of(result, warn=False), len(result.torque)
+    return figures_of_rating(rating_of(result, warn=False), len(result.torque))
+
+
+def figures_of_rating(rating: OfCases, count: int) -> dict[str, Array]:
+    """Safeties and lives of a rating (torques,) as :func:`rating_figures` has them; ``count`` torques are analysed."""
     unknown = np.full(count, np.nan)
     safeties, lives = (
         {mode: np.broadcast_to(values[..., n].min(axis=1), count) for n, mode in enumerate(rating.modes)}

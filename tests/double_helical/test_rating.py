@@ -12,6 +12,7 @@ from loaded_tca.cli import main
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
 from loaded_tca.reports.rating_page import halves_rating_content
+from loaded_tca.studies import double_helical as studies
 from tests.samples import double_helical as samples
 from tests.samples.rating import RATED
 
@@ -163,3 +164,31 @@ def test_bins_above_the_torques_that_were_solved_are_refused(held):
     scene = held.scene.with_changes({"load": {"case": [{"pinion_torque_Nm": 1700.0, "hours": 1.0}]}})
     with pytest.raises(InputError, match=r"load\.case: a bin has 1700 N m; allowed up to 1600, the largest that was"):
         replace(held, scene=scene).rating()
+
+
+@pytest.fixture
+def without_analysis(monkeypatch):
+    def give(result):
+        monkeypatch.setattr(studies, "analyse_double_helical", lambda _scene: result)
+
+    return give
+
+
+def test_studies_have_the_safeties_of_the_worse_half(held, held_rating, without_analysis):
+    """Of both halves and both gears the least, as studies of other pairs have those of both gears."""
+    without_analysis(held)
+    figures = studies.halves_figures(held.scene)
+    halves = held_rating.half_a, held_rating.half_b
+    for name, number in {"S_H": "flank_safety", "S_F": "root_safety", "S_H_local": "local_flank_safety"}.items():
+        assert_array_equal(figures[name], np.min([getattr(half, number).min(axis=1) for half in halves], axis=0))
+    lives = [half.life_hours[..., [half.modes.index(mode) for mode in ("flank", "root")]] for half in halves]
+    assert_array_equal(figures["life_h"], np.min([life.min(axis=(1, 2)) for life in lives], axis=0))
+    unrated = studies.halves_figures(held.scene.with_changes({"rating": None}))
+    assert unrated.keys() == figures.keys() - {"S_H", "S_F", "S_H_local", "S_F_local", "life_h", "life_local_h"}
+
+
+def test_studies_have_the_safeties_of_all_bins(under_bins, without_analysis):
+    without_analysis(under_bins.result)
+    figures = studies.halves_figures(under_bins.scene)
+    flank = under_bins.spectrum_safety[:, under_bins.modes.index("flank")].min()
+    assert_array_equal(figures["S_H"], np.full(len(under_bins.result.torque), flank))

@@ -312,3 +312,31 @@ def test_hand_of_a_ring_is_that_of_its_planet() -> None:
     distance = {f"{stage}.center_distance": (79.5, "mm") for stage in range(211, 223) if stage not in range(214, 220)}
     scene = import_stage(changed(planetary(), helical | others | distance), "220").scene
     assert scene.hands == ("left", "left")
+
+
+RING_TOOLS = {
+    "that of its cutter": ({"85.addendum_coefficient_reference_profile": (1.4, "none")}, 1.4, []),
+    "that of the pinion's tool": (
+        {"85.addendum_coefficient_reference_profile": None},
+        1.25,
+        [
+            "ring_gear 58: no tool with addendum_coefficient_reference_profile; dedendum_coefficient 1.25 is that by "
+            "the tool of the other gear"
+        ],
+    ),
+    "its root diameter": (
+        {"85.addendum_coefficient_reference_profile": None, "58.root_diameter": (-255.0, "mm")},
+        None,
+        [],
+    ),
+}
+
+
+@pytest.mark.parametrize(("attributes", "dedendum", "notes"), RING_TOOLS.values(), ids=RING_TOOLS)
+def test_dedendum_of_a_ring(attributes, dedendum, notes) -> None:
+    """|d_f| = |d| + 2 m_n (h_fP - x_E), or as the model has it; what is not the ring's is in the list."""
+    imported = import_stage(changed(planetary(), attributes), "220")
+    ring = imported.scene.mesh().wheel
+    expected = 255.0 if dedendum is None else 4.0 * (61 + 2.0 * (dedendum - ring.profile_shift))
+    assert_allclose(2.0 * ring.root_radius, expected, rtol=1e-12)
+    assert [one for one in imported.read_as if "tool" in one] == notes

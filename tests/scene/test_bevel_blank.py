@@ -323,7 +323,7 @@ def test_factors_and_slot_widths_that_are_given_do_not_meet_the_usual_ones():
             r"wheel.face_angle_deg: found 71; with \[pair.blank\] allowed with wheel.face_apex",
         ),
         ({"pinion.face_apex_mm": 1.0}, "pinion.face_apex_mm: found 1; allowed with face_angle_deg"),
-        ({"pair.blank.cutter_radius_mm": 30.0}, "pair.blank: cutter_radius: 30.0 mm; a duplex taper needs at least"),
+        ({"pair.blank.cutter_radius_mm": 30.0}, "pair.blank: cutter_radius_mm: 30.0 mm; a duplex taper needs at least"),
         (
             {"pair.blank.profile_shift": 0.5, "pair.blank.dedendum_factor": 0.9},
             "pair.blank: dedendum_factor: 0.9 is not above addendum_factor",
@@ -511,11 +511,11 @@ def test_measured_means_that_do_not_fit_are_refused_by_their_keys(changes, told)
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"pinion.mean_dedendum_mm": 1.5}, "pair.blank: mean_dedendum: no clearance is left, h_fm1 - h_am2 = -0.09"),
-        ({"pinion.mean_dedendum_mm": 2.6}, "pair.blank: mean_dedendum: the clearances h_fm1 - h_am2 = 1.009 mm and"),
+        ({"pinion.mean_dedendum_mm": 1.5}, "pair.blank: mean_dedendum_mm: no clearance is left, h_fm1 - h_am2 = -0.09"),
+        ({"pinion.mean_dedendum_mm": 2.6}, "pair.blank: mean_dedendum_mm: the clearances h_fm1 - h_am2 = 1.009 mm and"),
         (
             {"pinion.mean_normal_thickness_mm": 7.0},
-            "pair.blank: mean_normal_thickness: 7 and 3.511 mm together are more than the mean normal pitch, 10.0949",
+            "pair.blank: mean_normal_thickness_mm: 7 and 3.511 mm together are more than the mean normal pitch, 10.09",
         ),
     ],
 )

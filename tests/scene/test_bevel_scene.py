@@ -136,7 +136,7 @@ CANNOT_BE = [
     (
         {"pinion.bore_diameter_mm": 60.0},
         InputError,
-        r"pinion: bore_diameter: 60 mm is not below .* at the toe, 55.0812 mm",
+        r"pinion: bore_diameter_mm: 60 mm is not below .* at the toe, 55.0812 mm",
     ),
     ({"pinion.face_angle_deg": 20.0}, InputError, "pinion: face cone, 20.0000 deg, is not above the pitch cone"),
     ({"wheel.root_angle_deg": 70.0}, InputError, "wheel: root cone, 70.0000 deg, is not below the pitch cone"),

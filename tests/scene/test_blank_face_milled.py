@@ -170,7 +170,7 @@ def test_what_does_not_fit_is_refused_by_its_key(example, changes, told):
 
 def test_contact_that_cannot_be_is_refused_by_its_section(example):
     scene = example.with_changes({"pair.settings.path_angle_deg": 175.0, "pair.settings.contact_length_mm": 2.0})
-    with pytest.raises(GeometryError, match=r"pair\.settings: path_angle: a path at 175 deg .* a path more across"):
+    with pytest.raises(GeometryError, match=r"pair\.settings: path_angle_deg: a path at 175 deg .* a path more across"):
         scene.pair()
 
 

@@ -94,7 +94,7 @@ def test_span_is_measured_on_teeth_with_the_shift_that_the_centre_distance_leave
 
 def test_refused_measure_names_the_shift_that_the_centre_distance_asks_for():
     scene = read_scene(SCENES / "spur.toml").with_changes({**SPUR, "wheel.span_measurement_mm": 45.0})
-    with pytest.raises(InputError, match=r"^wheel: span_measurement: 45 mm over 9 teeth") as refusal:
+    with pytest.raises(InputError, match=r"^wheel: span_measurement_mm: 45 mm over 9 teeth") as refusal:
         scene.mesh()
     assert refusal.value.__notes__ == [
         "pair.centre_distance_mm = 82.4 and the profile shift that is given ask for 1.0236 on the other gear"

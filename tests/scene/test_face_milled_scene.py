@@ -219,7 +219,7 @@ CANNOT_BE = [
     (
         {"pinion.bore_diameter_mm": 60.0},
         InputError,
-        r"pinion: bore_diameter: 60 mm is not below the root diameter at the toe, 51\.49",
+        r"pinion: bore_diameter_mm: 60 mm is not below the root diameter at the toe, 51\.49",
     ),
     (
         {"pair.pinion_flank": "convex", "pinion.cutter.convex": None},

@@ -149,13 +149,13 @@ test_bad_scenes_are_refused = refused_calls(
     (lambda: changed(wheel__cutter={"teeth": 70, "shift": 1}), "wheel.cutter.shift: unknown key"),
     (
         lambda: warn_of_gears(changed(wheel__outer_diameter_mm=195.0), changed(wheel__outer_diameter_mm=195.0).pair()),
-        "outer_diameter: 195 mm is not between",
+        "outer_diameter_mm: 195 mm is not between",
     ),
 )
 
 test_gears_that_cannot_mesh_are_refused = refused_calls(
     (lambda: changed(wheel__tip_diameter_mm=176.0, pinion__profile_shift=0.0).pair(), "involute interference"),
-    (lambda: changed(pair__centre_distance_mm=40.0).pair(), "centre_distance: 40 mm is not above"),
+    (lambda: changed(pair__centre_distance_mm=40.0).pair(), "centre_distance_mm: 40 mm is not above"),
     (
         lambda: changed(wheel__teeth=-30, wheel__tip_diameter_mm=88.0, pinion__profile_shift=0.0).interferences(),
         "overlap interference",

@@ -25,6 +25,22 @@ SPUR = EXAMPLE.with_changes(
 )
 """A spur pinion on a rack without modifications: a line contact, in its middle position."""
 RADIUS, BASE = 30.0, 30.0 * cos(radians(20.0))
+HARD = {"material": "18CrNiMo7-6", "flank_Rz_um": 4.8, "root_Rz_um": 20.0}
+RATING = {
+    "required_flank_safety": 1.0,
+    "required_root_safety": 1.4,
+    "life_hours": 100.0,
+    "dynamic_factor": "given",
+    "transverse_load_factor": 1.0,
+}
+RATED = {
+    "pinion.strength": HARD,
+    "wheel.strength": HARD,
+    "wheel.length_mm": 500.0,
+    "operation": {"pinion_speed_rpm": 150.0},
+    "lubricant": {"viscosity_40_mm2_s": 220.0, "viscosity_100_mm2_s": 19.0, "oil_temperature_C": 70.0},
+    "rating": RATING,
+}
 
 
 def with_wheel(teeth: int) -> dict[str, Any]:
@@ -102,8 +118,8 @@ def test_reliefs_of_the_rack_start_below_its_tip_line() -> None:
         ("wheel.profile_shift", 0.1, "wheel.profile_shift: found; a rack has none: give pair.distance_mm"),
         ("wheel.support", {"stiffness": np.eye(6).tolist()}, "wheel.support: found; a rack has none"),
         ("wheel.pitch", {"runout_um": 5.0}, "wheel.pitch: found; a rack has none"),
-        ("pinion.pitch", {"runout_um": 5.0}, "pinion.pitch: found; a rack has none"),
-        ("revolution", {"pitches": 2}, "revolution: found; a rack has none"),
+        ("pinion.pitch", {"runout_um": 5.0}, "pinion.pitch: found; not allowed beside a rack: it belongs"),
+        ("revolution", {"pitches": 2}, "revolution: found; not allowed beside a rack"),
         ("wheel.flank.form", "bspline", 'wheel.flank.form: found "bspline"; allowed "analytic"'),
         (
             "wheel.modifications.tip_relief_start_length_mm",
@@ -120,6 +136,11 @@ def test_what_a_rack_does_not_have_is_refused_by_its_key(key: str, value: Any, m
     assert any(problem.startswith(message) for problem in refused.value.problems), refused.value.problems
 
 
+def test_rating_of_a_rack_needs_its_length() -> None:
+    with pytest.raises(InputError, match=r"^wheel\.length_mm: missing; \[rating\] needs it"):
+        SPUR.with_changes(RATED | {"wheel.length_mm": None})
+
+
 def test_whole_revolutions_tolerances_and_numbers_of_wheels_are_refused() -> None:
     with pytest.raises(InputError, match=r'wheel\.teeth: found "rack"; allowed a number of teeth'):
         analyse_revolution(SPUR)
@@ -128,8 +149,6 @@ def test_whole_revolutions_tolerances_and_numbers_of_wheels_are_refused() -> Non
     with pytest.raises(InputError, match=r'wheel\.teeth: found "rack"; ISO 1328-1'):
         SPUR.pitch_tolerances(0, 6)
     result = solved(SPUR.with_changes(with_wheel(40)))
-    with pytest.raises(InputError, match=r'wheel\.teeth: found "rack"; allowed a number of teeth in a rating'):
-        solved(SPUR).rating()
     with pytest.raises(NotAskedError, match="rack_force: the wheel is no rack"):
         _ = result.rack_force
 
@@ -138,3 +157,28 @@ def test_example_is_the_rack_that_its_text_says() -> None:
     """Its transverse pitch is 10 mm, and overview and file have it back."""
     assert pi * 3.0 / cos(radians(EXAMPLE.geometry.helix_angle_deg)) == pytest.approx(10.0, abs=1e-4)
     assert any("force along the rack" in row[0] for row in EXAMPLE.force_rows([1.0]))
+
+
+@pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # few cells, and a face without crowning
+def test_rating_of_a_rack_is_that_of_a_wheel_without_end() -> None:
+    """ISO 6336-2 with (u + 1)/u = 1: sigma_H0 = Z_H Z_E Z_eps sqrt(F_t/(d_1 b)); a tooth is loaded once in a stroke."""
+    analysis = {"positions": 5, "cells": [6, 8], "compliance": "contact", "free_edges": False}
+    rating = solved(SPUR.with_changes(RATED | {"analysis": analysis})).rating()
+    zone = sqrt(2.0 / (cos(radians(20.0)) * sin(radians(20.0))))
+    elasticity = sqrt(206000.0 / (2.0 * pi * (1.0 - 0.3**2)))
+    ratio = sqrt((4.0 - SPUR.mesh().transverse_contact_ratio) / 3.0)
+    stress = zone * elasticity * ratio * sqrt(250e3 / RADIUS / (2.0 * RADIUS * 29.0))
+    within = 1e-5  # z1/z2 = 1e-5 of the gear that stands for the rack, of which stresses have half
+    assert rating.sigma_H0 == pytest.approx(stress, rel=within)
+    turns = 60.0 * 150.0 * 100.0
+    assert rating.cycles == pytest.approx(np.array([[turns, turns * 20.0 * 3.0 * pi / 500.0]]), rel=1e-9)
+    assert abs(rating.local_flank_radius[0, 1]) < 3.0  # from the reference line, within the teeth
+    assert any("of the pinion" in note or "reference line" in note for note in rating.notes())
+
+
+def test_root_factors_of_wheels_come_to_those_of_the_rack() -> None:
+    """Y_F and Y_S of the wheel, of first order in 1/z2: 0.0025 and 0.011 apart at 4000 teeth."""
+    nominal = SPUR.with_changes({"wheel.thickness_allowance_um": None})
+    coarse, fine = (np.array(nominal.with_changes(with_wheel(z)).root_factors[1]) for z in (4000, 8000))
+    # the critical section of the gear that stands for the rack is rounded by 3e-5 modules, 1e-11 of its diameter
+    assert nominal.root_factors[1] == pytest.approx(2.0 * fine - coarse, abs=1e-4)

@@ -90,10 +90,10 @@ test_thickness_of_rings_refuses = refused_calls(
     (lambda: scene(wheel__ball_diameter_mm=5.0), "^wheel.ball_diameter_mm: found 5; it needs ball_measurement_mm"),
     (
         lambda: scene(pair__helix_angle_deg=15.0, wheel__tip_diameter_mm=181.5, wheel__span_measurement_mm=70.0).mesh(),
-        "^wheel: span_measurement: no span touches the helical teeth of a ring",
+        "^wheel: span_measurement_mm: no span touches the helical teeth of a ring",
     ),
     (
         lambda: scene(wheel__ball_measurement_mm=190.0, wheel__ball_diameter_mm=BALLS).mesh(),
-        "^wheel: ball_measurement: 190 mm between balls of 5.1 mm makes the teeth",
+        "^wheel: ball_measurement_mm: 190 mm between balls of 5.1 mm makes the teeth",
     ),
 )

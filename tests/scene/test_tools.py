@@ -151,7 +151,7 @@ test_tools_refuse = refused_calls(
     ),
     (
         lambda: scene(pinion__protuberance_um=100.0, pinion__grinding_stock_um=900.0).mesh(),
-        "^pinion: grinding_stock: 0.9 mm is not from 0 to a quarter of a module",
+        "^pinion: grinding_stock_um: 0.9 mm is not from 0 to a quarter of a module",
     ),
     (
         lambda: scene(pinion__tip_chamfer_mm=0.3, pinion__tip_rounding_mm=0.2),

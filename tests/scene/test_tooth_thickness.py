@@ -107,7 +107,7 @@ test_thickness_keys_refuse = refused_calls(
     ),
     (
         lambda: scene(pinion__span_measurement_mm=41.4, pinion__span_teeth=4).mesh(),
-        "^pinion: span_measurement: 41.4 mm over 4 teeth makes the teeth 9.392 mm thicker .* is 32.5744 mm",
+        "^pinion: span_measurement_mm: 41.4 mm over 4 teeth makes the teeth 9.392 mm thicker .* is 32.5744 mm",
     ),
     (
         lambda: scene(pinion__span_measurement_mm=6.0, pinion__span_teeth=1).mesh(),
@@ -115,11 +115,11 @@ test_thickness_keys_refuse = refused_calls(
     ),
     (
         lambda: scene(pinion__ball_measurement_mm=113.0, pinion__ball_diameter_mm=9.0).mesh(),
-        "^pinion: ball_measurement: 113 mm over balls of 9 mm",
+        "^pinion: ball_measurement_mm: 113 mm over balls of 9 mm",
     ),
     (
         lambda: scene(pinion__thickness_allowance_um=-1600.0).mesh(),
-        "^pinion: thickness_allowance: -1.6 mm is",
+        "^pinion: thickness_allowance_um: -1.6 mm is",
     ),
 )
 

@@ -51,7 +51,7 @@ test_bad_stage_is_refused = refused_calls(
     (lambda: on_angles(0.0, 90.0, 172.8), "stage.planet_angles_deg: found planets on one side of a sun .*187.2 deg"),
     (lambda: parse_stage('stage = "wind_spur.toml"'), "not a stage but a study of wind_spur.toml"),
     (lambda: read_scene(EXAMPLES / "wind_spur.toml"), "not the scene of a pair but a planetary stage; run it with"),
-    (lambda: meshes(sun__bore_diameter_mm=60.0), "sun: bore_diameter: 60 mm is not below"),
+    (lambda: meshes(sun__bore_diameter_mm=60.0), "sun: bore_diameter_mm: 60 mm is not below"),
     (lambda: meshes(planet__tip_diameter_mm=60.0), "planet: the tip circle, diameter 60.0000 mm", GeometryError),
     (lambda: meshes(ring__tip_diameter_mm=90.0), "ring: the tip circle, diameter 90.0000 mm", GeometryError),
 )
