@@ -35,7 +35,10 @@ _SAFETIES = "flank_safety", "root_safety", "local_flank_safety", "local_root_saf
 _OF_CASES = {
     "K_A": NUMBERS["K_A"],
     "K_gamma": Number(
-        CASE, "1", "largest share of a half over an even one", label="K_gamma: largest share of a half over an even one"
+        CASE,
+        "1",
+        "largest share of a half over an even share",
+        label="K_gamma: largest share of a half over an even share",
     ),
     "K_Hbeta": Number(CASE, "1", "K_Hbeta of the worse half", label="K_Hbeta of the worse half"),
     "whole_flank_safety": Number(OF_GEARS, "1", "whole gear, b = 2 b_B: safety against pitting S_H"),
@@ -89,8 +92,11 @@ class DoubleHelicalRating(OfCases):
     dataset: xarray.Dataset
 
     def __repr__(self) -> str:
-        flank, root = self.flank_safety.min(), self.root_safety.min()
-        return f"{type(self).__name__}({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
+        flank, root = float(self.flank_safety.min()), float(self.root_safety.min())
+        return (
+            f"{type(self).__name__}({len(self.torque)} torques, least S_H {plain(flank, 3)}, least S_F "
+            f"{plain(root, 3)})"
+        )
 
     @property
     def scene(self) -> DoubleHelicalScene:

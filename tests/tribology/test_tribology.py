@@ -270,7 +270,7 @@ def test_a_loss_factor_of_few_positions_is_doubted():
     flanks = {"pinion__modifications": None, "wheel__modifications": None}
     with pytest.warns(AccuracyWarning) as caught:
         shared("mesh_cycle_spur", positions=5, **flanks).tribology()
-    assert any("with every second position the loss factor is another one by" in str(one.message) for one in caught)
+    assert any("from every second position alone the loss factor differs by" in str(one.message) for one in caught)
 
 
 @pytest.mark.thorough
@@ -430,7 +430,7 @@ def test_wear_of_both_gears_is_as_their_ways():
 
 
 WARNINGS = [
-    ({"bulk_temperature_C": 60.0}, "the bulk temperature, 60 °C, is below that of the oil, 80 °C"),
+    ({"bulk_temperature_C": 60.0}, "the bulk temperature, 60 °C, is below the temperature of the oil, 80 °C"),
     ({"pinion_speed_rpm": 10.0}, "the pitch line velocity, 0.0534 m/s, is outside 1 to 60 m/s"),
 ]
 
@@ -447,7 +447,7 @@ def test_extremes_at_edges_and_between_positions_are_warned_of():
     with pytest.warns(AccuracyWarning) as caught:
         shared("fzg_c14").tribology(1500.0, OIL, ROUGHNESS)
     told = " ".join(str(one.message) for one in caught)
-    assert "with every second position the largest flash temperature is another one by" in told
+    assert "from every second position alone the largest flash temperature differs by" in told
     with pytest.warns(AccuracyWarning) as caught:
         shared("mesh_cycle_helical").tribology(1500.0, OIL, ROUGHNESS)
     assert any("the least film thickness lies at an edge of a flank" in str(one.message) for one in caught)
