@@ -287,8 +287,8 @@ def _of_pair(rating: DoubleHelicalRating) -> Iterator[str]:
         yield (
             f"the share of half {HALVES[half]} is {plain(100.0 * mean[torque, half], 3)} % of the torque in the mean "
             f"and {plain(100.0 * shares[torque, :, half].max(), 3)} % at most under "
-            f"{shown_torque(result.torque[torque])}: life under the largest is on the safe side"
+            f"{shown_torque(result.torque[torque])}: the life under the largest share is on the safe side"
         )
     if any(case.reversed for case in scene.load.case or ()):
-        yield "reversed bins are shared as the same torques are the other way"
-    yield from (f"{note}; stresses are those there" for note in result.notes_of_places())
+        yield "the halves share reversed bins as they share the same torques that are not reversed"
+    yield from (f"{note}; stresses here are those of half_a and half_b" for note in result.notes_of_places())

@@ -110,7 +110,7 @@ test_refusals_of_coast_sides = refusals(
     refused,
     (bins(*ROWS), {}, "coast: the scene has no load spectrum with reversed bins"),
     (reversed_first(*ROWS), {"analysis.root_stress": True}, "coast: analysis.root_stress is not false"),
-    (reversed_first(*ROWS), {"pair.driving": "pinion"}, r"coast: \[pair\] of its scene is not that of coast_side"),
+    (reversed_first(*ROWS), {"pair.driving": "pinion"}, r"coast: the section \[pair\] of its scene differs"),
     (
         reversed_first(*ROWS),
         {"pinion.face_width_mm": 21.0},

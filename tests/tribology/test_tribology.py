@@ -204,7 +204,7 @@ def test_bevel_gears_need_a_friction_and_a_bulk_temperature():
         _ = known(result, friction=None).efficiency
     with pytest.raises(NotAskedError, match="needs bulk_temperature_C"):
         _ = known(result, bulk_temperature_C=None).contact_temperature
-    with pytest.raises(InputError, match="mean of cylindrical gears"):
+    with pytest.raises(InputError, match="is for cylindrical gears only"):
         known(result, friction="ISO/TS 6336-22")
 
 
@@ -216,9 +216,9 @@ def test_one_tooth_pair_and_one_position_have_no_mean():
     alone = shared("mesh_cycle_spur", analysis__load_sharing=False)
     with pytest.raises(NotAskedError, match=r"analysis\.load_sharing"):
         _ = alone.tribology().loss_factor
-    with pytest.raises(NotAskedError, match=r"friction_power: of one tooth pair alone no mesh is known"):
+    with pytest.raises(NotAskedError, match=r"friction_power: one tooth pair alone makes no mesh"):
         _ = known(alone, bulk_temperature_C=90.0, friction=0.05).friction_power
-    with pytest.raises(NotAskedError, match=r"friction_power: of one tooth pair alone no mesh is known"):
+    with pytest.raises(NotAskedError, match=r"friction_power: one tooth pair alone makes no mesh"):
         known(alone, bulk_temperature_C=90.0, friction=0.05).over_flank("friction_power")
     assert np.isfinite(known(alone, bulk_temperature_C=90.0, friction=0.05).contact_temperature).any()
 
