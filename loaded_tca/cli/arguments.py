@@ -48,11 +48,11 @@ pinion come from local synthesis, which gives the contact at the mean point that
 face_milled asks for, or a usual one.
 
 With --measured SCENE has face-milled gears, and FILE is the scene with settings that bring the deviations of measured
-flanks to zero in least squares, as far as the chosen settings can. The file of a measured
-flank has the columns of docs/guide/measured_flank.md, and a column weight. Comments "# gear = wheel" and
-"# flank = convex" in the file say which flank it is, or the name of the flank before the file: wheel.convex=FILE. LIMIT
-is the largest change of a setting in its unit. Default settings: radial, root angle and ratio of roll of each measured
-gear; cradle angle instead of the ratio of roll for a gear that is cut without roll.
+flanks to zero in least squares, as far as the chosen settings can. The file of a measured flank has the columns of
+docs/guide/measured_flank.md, and a column weight. Comments "# gear = wheel" and "# flank = convex" in the file say
+which flank it is, or the name of the flank before the file: wheel.convex=FILE. LIMIT is the largest change of a setting
+in its unit. Default settings: radial, root angle and ratio of roll of each measured gear; cradle angle instead of the
+ratio of roll for a gear that is cut without roll.
 
 files beside FILE (out.toml):
   out_corrections.csv       one row per setting: its correction, standard deviation and limit, in its unit

@@ -124,7 +124,7 @@ FIGURES: dict[str, Figure] = {
         of=lambda row: MICROMETRES * float(np.ptp(row.axial_motion)), label="  over the pitch, peak to peak"
     ),
     "axial_force_left_N": Figure(
-        of=lambda row: float(np.abs(row.axial_force_left).max()), label="largest axial force that is left"
+        of=lambda row: float(np.abs(row.axial_force_left).max()), label="largest axial force of both halves together"
     ),
     **{
         f"half_{name}_peak_pressure_MPa": Figure(

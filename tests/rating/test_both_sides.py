@@ -114,6 +114,6 @@ test_refusals_of_coast_sides = refusals(
     (
         reversed_first(*ROWS),
         {"pinion.face_width_mm": 21.0},
-        r"coast: \[pinion\] of its scene is not that of",
+        r"coast: the section \[pinion\] of its scene differs",
     ),
 )

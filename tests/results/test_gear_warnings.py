@@ -161,7 +161,7 @@ def test_rim_is_what_a_bore_leaves_of_the_body_and_none_of_a_solid_gear(name):
     [
         (
             {"material.youngs_modulus_MPa": 206.0},
-            "material.youngs_modulus_MPa: 206 MPa is less than that of any material",
+            "material.youngs_modulus_MPa: 206 MPa is less than the modulus of any",
         ),
         ({"material.youngs_modulus_MPa": 206e4}, "material.youngs_modulus_MPa: 2060000 MPa is more than"),
         ({"analysis.torques_Nm": (2e6,)}, "load.pinion_torque_Nm: 2000000 N m is more than the torque of any"),
