@@ -41,7 +41,7 @@ THICKEST_LAYER = 1.2
 
 @checked
 def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
-    """Analyse a scene: at every position of a pitch one tooth pair carries the load, or all in contact share it.
+    """Analyse a scene: at every position of a pitch one tooth pair carries the load, or all pairs in contact share it.
 
     Parameters
     ----------

@@ -41,385 +41,425 @@ class Kind:
 EDGE_NOT_FREE = Kind(
     "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent; the free edge is left "
     "out (analysis.free_edges)",
-    "a tip or face end ends the contact; theory has an infinite pressure at a sharp edge, and the half-space goes "
-    "on beyond it, which is too stiff there: K_Hbeta grows with the cells, by `face_load_factor_error` at the most",
-    "`free_edges = true`; read `peak_pressure`, not `edge_pressure` or the cells of the map; more crowning, end or "
-    "tip relief on the gears",
+    "the contact ends at a tip or a face end. In theory the pressure at a sharp edge is infinite. The half-space of "
+    "the model goes on beyond the edge and is too stiff there: K_Hbeta grows with the number of cells, by "
+    "`face_load_factor_error` at the most",
+    "`free_edges = true`; read `peak_pressure`, not `edge_pressure` and not the cells of the map; give the gears more"
+    " crowning, end relief or tip relief",
 )
 EDGE = Kind(
     "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent",
-    "a tip or face end ends the contact; theory has an infinite pressure at a sharp edge",
-    "read `peak_pressure`, not `edge_pressure` or the cells of the map; more crowning, end or tip relief on the gears",
+    "the contact ends at a tip or a face end. In theory the pressure at a sharp edge is infinite",
+    "read `peak_pressure`, not `edge_pressure` and not the cells of the map; give the gears more crowning, end relief"
+    " or tip relief",
 )
 ROUNDED_EDGE = Kind(
     "the pressure at a rounded edge has an estimated error above {limit:.0%}, {size}",
-    "two edges that meet askew, or a rounding much smaller than the contact, need more columns than are made; where "
-    "a rounded edge meets a sharp one or the start of a linear relief, the pressure has no limit",
-    "read `edge_pressure` with its error; a larger radius, or one for the sharp edge, too; a parabolic relief",
+    "two edges that meet askew, or a rounding much smaller than the contact, need more columns of cells than the "
+    "analysis makes. Where a rounded edge meets a sharp edge or the start of a linear relief, the pressure has no "
+    "limit",
+    "read `edge_pressure` together with its error; use a larger radius, give the sharp edge a radius, too, or use a "
+    "parabolic relief",
 )
 RELIEF_START = Kind(
     "the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent",
-    "the flank has a relief start there",
-    '`tip_relief_form = "parabolic"`, or read `peak_pressure`, not the cells of the map',
+    "a linear relief starts within the contact, and the slope of the flank jumps there",
+    '`tip_relief_form = "parabolic"`; or read `peak_pressure`, not the cells of the map',
 )
 LINE_LOAD_SLOPES = Kind(
-    "an edge cuts the slices of the largest line load: one derivative in four is off by more than 5%, one in six by "
-    "more than 10%",
-    "which cells the edge leaves of a slice changes with every step of a key: analyses on both sides differ by as "
-    "much as the derivative",
-    "read the derivatives of the load share and of the peak pressure",
+    "an edge of a flank cuts the slices with the largest line load: of the derivatives of such line loads one in four"
+    " is off by more than 5%, one in six by more than 10%",
+    "with every step of a key the edge leaves other cells of a slice: even differences of analyses on both sides of a"
+    " value are off by as much as the derivative",
+    "read the derivatives of the load share and of the peak pressure instead",
 )
 PEAK_SLOPES = Kind(
-    "an edge cuts the slices of the peak pressure, or the pair carries less than 5% of the torque: one derivative "
-    "in eight is off by more than 5%, one in thirty by more than 10%",
-    "a corner of a contact, or one that has only just come under load, has few cells: the peak follows them",
-    "read the derivatives of other contacts, or compare two grids; more crowning, end or tip relief on the gears",
+    "an edge of a flank cuts the slices with the peak pressure, or a pair at an edge carries less than 5% of the "
+    "torque: of the derivatives of such peak pressures one in eight is off by more than 5%, one in thirty by more "
+    "than 10%",
+    "only few cells lie in the corner of a contact, or in a contact that has only just come under load: the peak "
+    "pressure follows these few cells",
+    "read the derivatives of other contacts, or compare two grids; give the gears more crowning, end relief or tip "
+    "relief",
 )
 PEAK_BESIDE_JUMP = Kind(
-    "the curvature of the gap jumps beside the peak pressure, as at the start of a parabolic relief: its derivatives "
-    "by keys that move contacts or starts are off by 10 to 30%, some by half",
-    "the peak stands a part of the contact's width beside the start and goes with it, while the derivative holds its "
-    "place; finer grids are no better",
-    "analyses on both sides; a relief that starts elsewhere; amounts of reliefs are within 12 %",
+    "the curvature of the gap jumps beside the peak pressure, as at the start of a parabolic relief: derivatives of "
+    "the peak pressure by keys that move the contact or the start of the relief are off by 10 to 30%, some by half",
+    "the peak lies within half a width of the contact from the start of the relief and moves with this start. The "
+    "derivative holds the place of the peak. Finer grids do not help",
+    "analyse values on both sides of the present one; start the relief elsewhere; derivatives by amounts of reliefs "
+    "are within 12 %",
 )
 EDGES_AT_ONE_PLACE = Kind(
-    "edges of both gears lie at one place: derivatives of the transmission error have a kink, and by growing values "
-    "are up to {size:.2g} um per {unit} off those by falling ones ({key}; {count} of {keys} keys)",
-    "to one side of the key the pinion's end rules and to the other the wheel's, and on one of them the contact is "
-    "shorter; and a misalignment over the common face tilts the wheel by more as that gets shorter: the derivative is "
-    "the mean of both sides",
-    "faces of two widths or an offset, so that one gear ends the contact; else analyses on both sides",
+    "edges of both gears lie at one place: the transmission error has a kink there, and its derivatives for growing "
+    "values differ by up to {size:.2g} um per {unit} from those for falling values ({key}; {count} of {keys} keys)",
+    "to one side of the present value the edge of the pinion ends the contact, to the other side the edge of the "
+    "wheel, and to one of both sides the contact gets shorter. A misalignment that is given over the common face also"
+    " tilts the wheel more where this face gets shorter. The derivative is the mean of both sides",
+    "give the gears faces of two widths or an offset, so that one gear alone ends the contact; else analyse values on"
+    " both sides of the present one",
 )
 FACE_ENDS_AT_ONE_PLACE = Kind(
-    "faces of both gears end at one place: the derivative of K_Hbeta has a kink, it is {falling:+.2g} per {unit} by "
-    "falling and {growing:+.2g} by growing values ({key}; {count} of {keys} keys)",
-    "the common face, over which K_Hbeta counts, gets shorter to either side of the key, or one end of it does: the "
-    "derivative is the mean of both sides; beside ends of the load it depends on the cells, its sign, too",
-    "faces of two widths or an offset; else analyses to the side that is meant, over more than a cell",
+    "faces of both gears end at one place: K_Hbeta has a kink there, and its derivative is {falling:+.2g} per {unit} "
+    "for falling and {growing:+.2g} per {unit} for growing values ({key}; {count} of {keys} keys)",
+    "K_Hbeta counts over the common face, and this face, or one end of it, gets shorter to both sides of the present "
+    "value. The derivative is the mean of both sides. Where the face ends close to an end of the load, the derivative"
+    " and even its sign depend on the cells",
+    "give the gears faces of two widths or an offset; else analyse values to the side that is meant, in steps that "
+    "move the face by more than a cell",
 )
 FACE_END_IN_LOAD = Kind(
-    "K_Hbeta is that of the strip at an end of the face which goes with a key: its derivative depends on the cells, at "
-    "times its sign ({key}; {count} of {keys} keys)",
-    "the load is the highest where a face ends, in a cell that the end cuts: analyses over steps below a cell scatter "
-    "by as much as the derivative",
-    "analyses over more than a cell along the contact; end relief or crowning that takes the load from the end",
+    "K_Hbeta is that of the strip at one end of the face, and this end moves with a key: the derivative of K_Hbeta "
+    "depends on the cells, at times even its sign ({key}; {count} of {keys} keys)",
+    "the load is highest where the face ends, in a cell that this end cuts: differences of analyses over steps below "
+    "a cell scatter by as much as the derivative",
+    "use analyses over steps of more than a cell along the contact; use end relief or crowning that takes the load "
+    "away from the end of the face",
 )
 SLOPES_BY_GRIDS = Kind(
-    "derivatives of the transmission error depend on the grid by up to {size:.2g} um per {unit}, more than 5% of what "
-    "they differ by over the positions ({key}; {count} of {keys} keys)",
-    "edges, arcs and relief starts run through cells: where grids stay, or go with the contact points, derivatives are "
-    "others by that, as they would not be on small cells; peak to peak and harmonics are off by about as much",
+    "derivatives of the transmission error depend on the grid by up to {size:.2g} um per {unit}, more than 5% of "
+    "their range over the positions ({key}; {count} of {keys} keys)",
+    "edges, arcs and relief starts run through cells. So the derivatives differ by this size with the place of the "
+    "grids, whether these stay or move with the contact points; on small cells they would not. Derivatives of peak to"
+    " peak and of harmonics are off by about as much",
     "more `cells`, or a smaller `accuracy`; compare two grids",
 )
 NEARLY_PLASTIC = Kind(
     "the cap on the pressure leaves fewer than {cells} cells of a contact below it: derivatives of load shares are "
-    "off by 10 to 30%, and peak to peak by as much as itself",
-    "cells at the cap do not answer to a key, the few others carry all of it: derivatives follow single cells",
-    "more `cells`; else a higher `max_pressure_MPa`, less torque, or analyses on both sides",
+    "off by 10 to 30%, those of peak to peak by as much as their own size",
+    "cells at the cap do not respond to a key. The few cells below the cap take the whole change, so that derivatives"
+    " follow single cells",
+    "more `cells`; else a higher `max_pressure_MPa` or less torque, or analyse values on both sides of the present one",
 )
 STRIPS_ALIKE = Kind(
-    "another strip of the face carries as much but for {lacking:.1g}: K_Hbeta has a kink, beyond which derivatives "
-    "are others by up to {size:.0%} ({key}; {count} of {keys} keys)",
-    "K_Hbeta is the largest of 30 strips, and beyond the change by which another one becomes the largest it follows "
-    "that: of an aligned pair it rises to either side",
-    "analyses on both sides, or a Monte Carlo study; not the spread to first order",
+    "another strip of the face carries nearly the largest load, {lacking:.2%} less: K_Hbeta has a kink, and beyond it"
+    " derivatives differ by up to {size:.0%} ({key}; {count} of {keys} keys)",
+    "K_Hbeta follows the strip with the largest load, of 30 strips. Beyond the change of a key by which another strip"
+    " gets the largest load, it follows that other strip: for an aligned pair K_Hbeta rises to both sides",
+    "analyse values on both sides of the present one, or use a Monte Carlo study; do not use the spread to first order",
 )
 STRIPS_BESIDE = Kind(
-    "K_Hbeta follows the largest of its strips by {slope:.3g} per {unit}, while the load moves along the face: through "
-    "it and those beside it the derivative is {other:.3g} ({key}; {count} of {keys} keys)",
-    "K_Hbeta is the largest of 30 strips: where the load moves along the face each strip in turn is the largest, and "
-    "derivatives swing about that of the load itself, which changes over more than a strip follow",
-    "take the derivative through three strips for changes that move the load by a strip or more",
+    "K_Hbeta follows the strip with the largest load by {slope:.3g} per {unit}, while the load moves along the face: "
+    "through this strip and both strips beside it the derivative is {other:.3g} ({key}; {count} of {keys} keys)",
+    "K_Hbeta is that of the strip with the largest load, of 30 strips. While the load moves along the face, each "
+    "strip in turn has the largest load, and its derivative swings about the derivative of the load itself. A change "
+    "that moves the load by more than a strip follows the derivative of the load",
+    "for changes that move the load by a strip or more, take the second number, the derivative through three strips",
 )
 CONTACTS_ALIKE = Kind(
-    "{figure}: the largest stresses of two contacts differ by {lacking:.1%}; derivatives are those of the larger one, "
-    "and where the other becomes the larger they change by up to {size:.0%} ({key}; {count} of {keys} keys)",
-    "local safeties are those of the largest pressure and root tension of all positions, and beyond the change by "
-    "which another contact has the largest they follow that",
-    "analyses on both sides, or more positions; not the spread to first order",
+    "{figure}: the largest stresses of two contacts differ by {lacking:.1%}; derivatives are those of the contact "
+    "with the larger stress, and where the other contact gets the larger stress they change by up to {size:.0%} "
+    "({key}; {count} of {keys} keys)",
+    "local safeties follow from the largest pressure and the largest root tension of all positions. Beyond the change"
+    " of a key by which another contact gets the largest stress, they follow that other contact",
+    "analyse values on both sides of the present one, or use more positions; do not use the spread to first order",
 )
 TRANSVERSE_HELD = Kind(
-    "rating: derivatives hold K_Halpha of the analysis, on which safeties after the standard depend",
-    "it is the largest line load of the mesh over the mean one and moves with reliefs and crownings; pressures and "
-    "root tensions of local safeties do not depend on it",
-    'analyses on both sides; `transverse_load_factor = "method B"` or a number; local safeties',
+    "rating: derivatives hold K_Halpha of the analysis constant, though safeties after the standard depend on it",
+    "K_Halpha is the largest line load of the mesh over the mean line load, and changes with reliefs and crownings. "
+    "Pressures and root tensions of local safeties do not depend on it",
+    'analyse values on both sides of the present one; or give `transverse_load_factor = "method B"` or a number; or '
+    "read local safeties",
 )
 ANOTHER_POSITION = Kind(
-    "{figure}: its derivatives end within a tolerance: beyond a change by {change:+.2g} {unit} another position is "
-    "the highest or lowest, and they are others by {size:.0%} ({key}; {count} of {keys} keys)",
-    "the figure is that of one position, or of two, and follows another one beyond that change, by values and "
-    "derivatives of all positions: it may grow to either side where the table has it fall",
-    "read the change as far as that only; beyond it analyses, or a Monte Carlo study; not the spread to first order",
+    "{figure}: its derivatives do not hold over the whole tolerance: beyond a change by {change:+.2g} {unit} another "
+    "position is the highest or lowest, and the derivatives differ by {size:.0%} ({key}; {count} of {keys} keys)",
+    "the figure is that of one position, or of two. Beyond the change that is given, which follows from values and "
+    "derivatives of all positions, it is that of another position: it may grow to both sides where the table has it "
+    "fall",
+    "use the derivative up to that change only; beyond it use analyses or a Monte Carlo study, not the spread to "
+    "first order",
 )
 PAIR_COMES_OR_GOES = Kind(
-    "derivatives end within a tolerance: beyond a change by {change:+.2g} {unit} a tooth pair comes under load or "
-    "leaves it, by which load shares are off by up to {share:.1%} ({key}; {count} of {keys} keys)",
-    "a pair that nearly touches, or only just does, carries nothing to one side of that change and ever more to the "
-    "other: derivatives are those of the pairs that carry now, and differences over both sides grow with their step",
-    "read the change as far as that only; beyond it analyses, or a Monte Carlo study; not the spread to first order",
+    "derivatives do not hold over the whole tolerance: beyond a change by {change:+.2g} {unit} a tooth pair comes "
+    "under load or loses its load, and load shares are off by up to {share:.1%} ({key}; {count} of {keys} keys)",
+    "a tooth pair that nearly touches, or only just touches, carries nothing to one side of that change and more and "
+    "more to the other side. Derivatives are those of the pairs that carry load now; difference quotients over both "
+    "sides grow with their step",
+    "use the derivatives up to that change only; beyond it use analyses or a Monte Carlo study, not the spread to "
+    "first order",
 )
 RELIEF_START_BESIDE = Kind(
-    "a linear relief starts in the contact beside its point: derivatives depend on the grid by up to 25%",
-    "the start runs through cells that have the gap of their middles: derivatives by mounting errors, machine "
-    "settings and starts are off by 15 to 25 %, of either sign, and by more for line loads whose slice lies there",
-    '`tip_relief_form = "parabolic"`, or compare two grids; amounts of reliefs are as exact as elsewhere',
+    "a linear relief starts within the contact, beside the contact point: derivatives depend on the grid by up to 25%",
+    "the start of the relief runs through cells, and each cell has the gap of its middle. Derivatives by mounting "
+    "errors, machine settings and relief starts are off by 15 to 25 %, with either sign; those of line loads are off "
+    "by more if the slice lies there",
+    '`tip_relief_form = "parabolic"`, or compare two grids; derivatives by amounts of reliefs are as exact as '
+    "elsewhere",
 )
 PEAK_ERROR = Kind(
-    "the estimated error of the peak pressure stays above {allowed:g}",
-    "the finest grid allowed is too coarse for the accuracy asked for; at edges and relief starts, where grids are "
-    "refined until the approach agrees, the line load still moves by more than that; where the curvature of the gap "
-    "jumps, the pressure beside the peak",
+    "the estimated relative error of the peak pressure stays above {allowed:g}",
+    "the finest grid allowed is too coarse for the accuracy asked for. At edges and relief starts grids are refined "
+    "until the approach agrees, and the line load still changes by more than the accuracy. Where the curvature of the"
+    " gap jumps, the pressure beside the peak does so",
     "a larger `accuracy`, or `cells`; at edges a smaller `accuracy`",
 )
 PEAK_MOVES = Kind(
-    "the peak pressure moves by more than {limit:.0%} as the teeth bend beneath it",
-    "the forces of the slices bend the teeth otherwise than when the grid was chosen, and the peak changed by more "
-    "than its load: its error is as large",
-    "fewer `cells` along the contact, or a larger `accuracy`; compare the same position a pitch later",
+    "the peak pressure changes by more than {limit:.0%} as the teeth bend after the grid was chosen",
+    "under the final forces of the slices the teeth bend in another way than when the grid was chosen, and the peak "
+    "pressure changed by this much more than its load. The error of the peak pressure is as large",
+    "fewer `cells` along the contact, or a larger `accuracy`; compare the same position one pitch later",
 )
 BOX = Kind(
-    "the contact reaches the box of its grid",
-    "the grid ends before the contact does, after it was made larger eight times: the pressure at its border is "
-    "that of a body ending there",
-    "less torque, or a higher `max_pressure_MPa`: a contact that outgrows its estimate 25 times over is no small "
-    "area of the flank",
+    "the contact reaches the border of its grid",
+    "the contact goes on beyond the grid, although the grid was made larger eight times: the pressure at the border "
+    "is that of a body which ends there",
+    "less torque, or a higher `max_pressure_MPa`: a contact more than 25 times as large as estimated is no small area"
+    " of the flank",
 )
 NO_TORQUE = Kind(
-    "{torque:g} N m is next to no torque, the gaps it closes are rounding: taken for no load",
-    "forces below 1e-12 E* m_n² (1 µN at module 3) deform flanks by what rounding puts into their gaps",
-    "nothing, or a torque that is one",
+    "{torque:g} N m is next to no torque and is taken for no load: the gaps that it closes are rounding errors",
+    "forces below 1e-12 E* m_n² (1 µN at module 3) deform the flanks by no more than the rounding errors of their gaps",
+    "nothing, or a larger torque",
 )
 IN_ONE_PIECE = (
-    "of a pinion in one piece with its shaft `bore_diameter_mm = 0`, or none beside a `[pinion.shaft]`, which has its "
-    "torsion"
+    "for a pinion in one piece with its shaft give `bore_diameter_mm = 0`; beside a `[pinion.shaft]`, which has this "
+    "torsion, give no bore"
 )
 """What bore to give a gear that has none."""
 BODY_TWIST = Kind(
     "the twist of the gear bodies about their bores, {bores} mm, is up to {share:.0%} of the deflection: the mesh "
-    "stiffness is that of the bodies",
-    "with teeth that bend: bores are held rigid, and small ones let the whole body turn",
-    f"the `bore_diameter_mm` of the hub or shaft seat; {IN_ONE_PIECE}",
+    "stiffness is mostly that of the bodies",
+    "given for teeth that bend: the model holds the bores rigid, and about a small bore the whole body twists",
+    f"give the `bore_diameter_mm` of the hub or shaft seat; {IN_ONE_PIECE}",
 )
 RIGID_BORES = Kind(
-    "bores of {bores} mm are held rigid: the mesh is about {share:.0%} stiffer than with {usual} mm, the seats of "
-    "shafts or the default bores",
-    "with teeth that bend: a thin rim on a bearing, a sleeve or a web gives way, which the model does not have; the "
-    "size is that of two models with these bores",
-    "the diameter of what is as stiff as a shaft as `bore_diameter_mm`, or none; else finite elements of the whole "
-    "gear",
+    "bores of {bores} mm are held rigid: the mesh is about {share:.0%} stiffer than with bores of {usual} mm, the "
+    "seats of shafts or the default bores",
+    "given for teeth that bend: a thin rim on a bearing, a sleeve or a web is not rigid, which the model leaves out; "
+    "the percentage comes from two models with these bores",
+    "give the diameter of the part that is as stiff as a shaft as `bore_diameter_mm`, or leave this key out; else use"
+    " finite elements of the whole gear",
 )
 FEW_CELLS = Kind(
     "fewer than 8 cells lie across the contact",
-    "the grid is wide for its contact: a pair that barely carries load, or few `cells`",
-    "nothing if its `load_share` is small; else more `cells`, or `accuracy`",
+    "the grid is wide for its contact: the pair barely carries load, or there are few `cells`",
+    "nothing if the `load_share` of the pair is small; else more `cells`, or `accuracy` instead of `cells`",
 )
 WIDE = Kind(
     "the contact is so wide that the tooth is no half-space",
-    "half its width is above a quarter of the module",
-    "an estimate, all of it: less torque, or finite elements",
+    "half the width of the contact is above a quarter of the module",
+    "take all numbers as estimates only; use less torque, or finite elements",
 )
 DEFLECTION = Kind(
     "the deflection under load is up to {deflection:.3g} mm, more than {reach:g} modules: tooth pairs with a larger "
     "initial separation are not looked for",
-    "only pairs with a smaller one share the load; another one may come to bear under so much load",
-    "less torque; else read the shares as those of too few pairs",
+    "only tooth pairs with a smaller initial separation share the load in the model; under so much load a further "
+    "pair may come into contact",
+    "less torque; else read the load shares as those of too few tooth pairs",
 )
 FILLET = Kind(
     "fillet interference: {what}",
-    "the mating gear's tip touches where the flank ends and the fillet begins",
-    "tip diameters, profile shifts, or the cutter; `check` tells the diameters",
+    "the tip of the mating gear touches the root where the flank ends and the fillet begins",
+    "change tip diameters, profile shifts, or the cutter; `check` shows the diameters",
 )
 UNDERCUT = Kind(
-    "undercut: the trochoid of its fillet ends the flank of the {gear} at diameter {form:.4f} mm, where the tip of the "
-    "{mating} would use an involute down to {wanted:.4f} mm: {lost:.4f} mm of the path of contact are lost, {share:.1%}"
-    ", and the transverse contact ratio is {ratio:.4f} instead of {whole:.4f} ({place}); a profile_shift of "
-    "{shift:.4f} avoids it",
-    "the mating flank leaves the corner where flank and fillet meet, as it leaves a tip: contact begins later or ends "
-    "earlier, fewer teeth share the load, and the root below the corner is thin; all of it is in the numbers",
-    "more profile shift, more teeth, a larger pressure angle; nothing, if the contact ratio suffices",
+    "undercut: the trochoid of the fillet ends the flank of the {gear} at diameter {form:.4f} mm, where the tip of "
+    "the {mating} would use an involute down to {wanted:.4f} mm: {lost:.4f} mm of the path of contact are lost, "
+    "{share:.1%}, and the transverse contact ratio is {ratio:.4f} instead of {whole:.4f} ({place}); a profile_shift "
+    "of {shift:.4f} avoids the undercut",
+    "the mating flank leaves the corner where flank and fillet meet, just as it leaves a tip. Contact begins later or"
+    " ends earlier, fewer teeth share the load, and the root below the corner is thin. The numbers of the result "
+    "contain all of this",
+    "more profile shift, more teeth, or a larger pressure angle; nothing, if the contact ratio suffices",
 )
 NOTCH = Kind(
-    "grinding notch: {gear}: the stock for grinding is {depth:.3g} um above the protuberance of its tool: a notch so "
-    "deep is left at the root form circle, by which ISO 6336-3 raises Y_S by {percent:.2g} % if it is as round as the "
-    "tip of the tool",
-    "teeth bend and roots are stressed without the notch, which no element resolves; safeties of roots leave it out",
-    "a protuberance above the stock",
+    "grinding notch: {gear}: the stock for grinding is {depth:.3g} um larger than the protuberance of the tool and "
+    "leaves a notch of this depth at the root form circle; ISO 6336-3 raises Y_S by {percent:.2g} % for it, if it is "
+    "as round as the tip of the tool",
+    "bending and root stress are those of teeth without the notch, which no element resolves; root safeties leave the"
+    " notch out, too",
+    "a protuberance larger than the stock",
 )
 BACKLASH = Kind(
-    "negative backlash: teeth are thicker than the spaces of the mating gear, so that whole gears jam, while the "
-    "analysis has the contact of one flank of each",
-    "both flanks of a tooth touch, and the load of the back adds to that of the flank in contact; no number of the "
-    "result contains it",
-    "a smaller sum of profile shifts, or a larger centre distance: `check` has the sum that leaves no backlash; of "
-    "bevel gears thinner teeth",
+    "negative backlash: teeth are thicker than the tooth spaces of the mating gear, so that whole gears jam; the "
+    "analysis has only the contact of one flank of each gear",
+    "both flanks of a tooth touch, and the load on the back flank adds to the load on the flank in contact. No number"
+    " of the result contains the load on the back flank",
+    "a smaller sum of profile shifts, or a larger centre distance: `check` shows the sum at which the backlash is "
+    "zero; for bevel gears thinner teeth",
 )
 NO_TOOTH = Kind(
-    "{gear}: {fault}; its flank in contact is analysed all the same",
-    "pressure on half-spaces needs no tooth behind the flank; a gear would have none",
-    "profile shift, tip diameter, cutter, or smaller amounts of the modifications",
+    "{gear}: {fault}; the flank in contact is analysed nevertheless",
+    "half-spaces have a pressure even without a tooth behind the flank; a real gear would not have this tooth",
+    "change profile shift, tip diameter or cutter, or use smaller amounts of the modifications",
 )
 THIN_RIM = Kind(
-    "root stress of the {gear}: the rim below its teeth is {rim:.2g} tooth heights thick, less than {least:g}: on a "
-    "bore that is held rigid stress falls as the rim thins, on a real one it rises",
-    "a real rim bends, and root stress on it rises by Y_B of ISO 6336-3; the bore of the model takes that strain",
-    f"multiply by Y_B, or finite elements of the whole gear; {IN_ONE_PIECE}",
+    "root stress of the {gear}: the rim below its teeth is {rim:.2g} tooth heights thick, less than {least:g}: with "
+    "the rigid bore of the model root stress falls as the rim gets thinner, on a real gear it rises",
+    "a real rim bends, and its root stress rises by Y_B of ISO 6336-3; in the model the rigid bore takes that strain",
+    f"multiply root stress by Y_B, or use finite elements of the whole gear; {IN_ONE_PIECE}",
 )
 UNCOVERED = Kind(
-    "{direction}: the points leave {left} of the flank uncovered; there the deviation is a continuation",
-    "measured points do not reach the edges",
-    "results near these edges rest on no measurement",
+    "{direction}: the measured points leave {left} of the flank uncovered; there the deviation is extrapolated",
+    "the measured points do not reach the edges of the flank",
+    "do not rely on results near these edges, which no measurement supports",
 )
 SWINGS = Kind(
-    "the points deviate by {points}, the flank by {flank}: its continuation beyond them swings",
-    "a B-spline through every point follows the noise, too, and goes on with it beyond the outermost points: near "
-    "the edges the flank is no measured one",
+    "the points deviate by {points}, the flank by {flank}: the flank oscillates where it is extrapolated beyond the "
+    "points",
+    "a B-spline through every point also follows the noise of the measurement, and extrapolates it beyond the "
+    "outermost points: near the edges the flank is not the measured one",
     "`degree = 3` with `coefficients = [4, 4]`, or few more; points nearer to the edges; compare two fits",
 )
 COARSE_FIT = Kind(
-    "the B-spline through {points} points misses the flank by {error} between them: take more points; the relief "
-    "start where a linear relief starts is rounded off by any number",
-    "the fit is coarse",
+    "the B-spline through {points} points misses the flank by {error} between the points: take more points; the start"
+    " of a linear relief gets rounded off, however many points there are",
+    "the fit has too few points",
     "more points",
 )
 UNIT = Kind(
     "{key}: {amount:.6g} mm is more than {most:g} mm; is its unit right?",
-    "modifications are some hundredths of a millimetre",
-    "the amount in the unit of its key: um in scenes, mm in Python",
+    "usual modifications are some hundredths of a millimetre",
+    "give the amount in the unit of its key: um in scenes, mm in Python",
 )
 ODD_INPUT = Kind(
     "{key}: {value:g} {unit} is {what}; is its unit right?",
-    "the number is taken as it stands, in the unit of its key",
-    "moduli of steel are 2.06e5 MPa, of plastics some 1e3; torques are in N m",
+    "the program takes the number as it is, in the unit of its key",
+    "check the unit: moduli of steel are 2.06e5 MPa, those of plastics some 1e3 MPa; torques are in N m",
 )
 CONTACT_RATIO = Kind(
-    "the contact ratio is {ratio:.3g}, below 1: over a part of each pitch no flanks touch but a tip or a face end",
-    "the path of contact is shorter than a pitch: one pair leaves it before the next one comes, tips drag on",
-    "larger tip diameters, a smaller centre distance, more teeth, or a helix: `check` tells the contact ratio",
+    "the contact ratio is {ratio:.3g}, below 1: over a part of each pitch the gears touch at a tip or a face end only",
+    "the path of contact is shorter than a pitch: one pair leaves it before the next pair enters it, and meanwhile a "
+    "tip stays in contact",
+    "larger tip diameters, a smaller centre distance, more teeth, or a helix; `check` shows the contact ratio",
 )
 CLEARANCE = Kind(
     "the tip of the mating gear comes within {clearance:.3g} mm of the root of the {gear}, less than {least:g} modules",
-    "rolling flanks do not touch there, but tips and roots of gears with tolerances may",
+    "rolling flanks do not touch there, but tips and roots of real gears, which have tolerances, may touch",
     "a smaller tip diameter of the mating gear, or a deeper dedendum",
 )
 BEYOND_YIELD = Kind(
-    "4/pi of the mean pressure of a contact is above {most:.4g} MPa, which no gear material with a Young's modulus of "
-    "{modulus:.6g} MPa carries without yielding",
-    "4/pi of its mean is the peak of a line contact; load on cells beside edges, which `peak_pressure` leaves out, "
-    "counts, too. The contact is elastic: real flanks yield below their surface, and carry the load on a wider contact",
-    "`max_pressure_MPa`, less torque, or another unit of what was given",
+    "4/pi of the mean pressure of a contact is above {most:.4g} MPa, which no gear material with a Young's modulus of"
+    " {modulus:.6g} MPa carries without yielding",
+    "for a line contact 4/pi of the mean pressure is the peak pressure. The mean pressure also contains the load on "
+    "cells beside edges, which `peak_pressure` leaves out. The contact is elastic; real flanks yield below their "
+    "surface, and carry the load on a wider contact",
+    "give `max_pressure_MPa` or less torque, or correct the unit of an input",
 )
 ROOT_BEYOND_YIELD = Kind(
-    "root stress of the {gear} is up to {stress:.4g} MPa, above {most:g}, which no gear steel carries without yielding",
-    "stress is elastic: real roots yield, and the stress range of the next turns is another",
-    "less torque, a larger module or fillet, or another unit of what was given",
+    "root stress of the {gear} is up to {stress:.4g} MPa, above {most:g} MPa, which no gear steel carries without "
+    "yielding",
+    "the computed stress is elastic; real roots yield, and their stress range in later turns is different",
+    "less torque, a larger module or fillet, or correct the unit of an input",
 )
 UNMODIFIED_TOOTH = Kind(
-    "{gear}, with its modifications: {fault}; it bends like the tooth without them",
-    "the modified tooth cannot be meshed, for instance where it is pointed; its contact has the modifications, its "
-    "bending has not",
-    "smaller amounts; the compliance is that of a tooth a few hundredths of a millimetre thicker",
+    "{gear}, with its modifications: {fault}; the bending is that of the tooth without modifications",
+    "the tooth with its modifications cannot be meshed with elements, for instance where it is pointed. The contact "
+    "has the modifications, the bending has not",
+    "smaller amounts of the modifications; the compliance is that of a tooth a few hundredths of a millimetre thicker",
 )
 FACE_ELEMENTS = Kind(
-    "root stress of the {gear}: across its face elements are {width:.2g} modules wide; where contacts cover a part "
-    "of the face alone, root stress is too low, by a tenth at 2 modules",
-    "the face is so wide that few elements lie across it",
-    "read root stress under a contact of the whole face; a contact that covers a part of it has more",
+    "root stress of the {gear}: the elements along its face are {width:.2g} modules wide; where a contact covers only"
+    " a part of the face, root stress is too low, by a tenth with elements of 2 modules",
+    "the face is so wide that only few elements lie along it",
+    "use root stress under a contact of the whole face; under a contact of a part of it the real root stress is higher",
 )
 LARGE_MOTIONS = Kind(
     "gears on their supports move by up to {way:.3g} mm and tilt by up to {tilt:.3g} mrad, more than {modules:g} "
-    "modules or {most:g} mrad: supports are linear, and so soft that the gears hardly mesh",
-    "motions of that size shift the contact by parts of the tooth; stiffnesses may have another unit than was meant",
-    "stiffer supports, less torque, or the unit of compliance and stiffness: mm, rad, N, N mm",
+    "modules or {most:g} mrad: the supports, which are linear, are so soft that the gears hardly mesh",
+    "motions of that size shift the contact by a part of the tooth; a stiffness may have another unit than was meant",
+    "stiffer supports, less torque, or the right unit of compliance and stiffness: mm, rad, N, N mm",
 )
 SUPPORT_MOMENT = Kind(
-    "the forces on the supports of the pinion turn it by {part:.1%} more or less than its torque",
-    "forces have the direction of the normal at the contact point, all over the contact: on flanks that curve within "
-    "it, as those of hypoid pairs do, motions of the gears and forces on bearings are off by about that part",
-    "motions and forces on bearings to that part only; less torque, which makes the contact shorter",
+    "the forces on the supports of the pinion have a moment about its axis that differs by {part:.1%} from its torque",
+    "all over the contact the forces have the direction of the normal at the contact point. On flanks whose normal "
+    "turns within the contact, as on those of hypoid pairs, motions of the gears and forces on bearings are off by "
+    "about that percentage",
+    "take motions and forces on bearings as exact to that percentage only; less torque makes the contact shorter",
 )
 EXTREME_AT_EDGE = Kind(
-    "tribology: the {extreme} lies at an edge of a flank, where it is that of a line contact of the flank beside it or "
-    "of its arc",
-    "slices that reach a tip or a face end are real heat, but their pressure rises towards the edge: film and flash "
-    "temperature there are indicative",
-    "read the numbers of other slices, `on_edge` in the table of `slices`; tip or end relief; an edge with a radius",
+    "tribology: the {extreme} lies at an edge of a flank, where it is that of a line contact with the curvature of "
+    "the flank beside the edge, or of its arc",
+    "slices that reach a tip or a face end produce real heat, but their pressure rises towards the edge: film and "
+    "flash temperature there are indicative only",
+    "read the numbers of slices away from edges (column `on_edge` in the table of `slices`); tip or end relief; an "
+    "edge with a radius",
 )
 EXTREME_MOVES = Kind(
-    "tribology: with every second position the {extreme} is another one by {change:.1%}",
-    "it lies in a corner of the path, or in few positions: more of them may find a worse one, by as much as half that",
+    "tribology: from every second position alone the {extreme} differs by {change:.1%}",
+    "the extreme lies in a corner of the path of contact, or in few positions: more positions may find a worse one, "
+    "by up to half that percentage",
     "more `positions`: 17 and more for corners of helical gears",
 )
 SLICES_AT_CAP = Kind(
     "tribology: the pressure of slices is cut at the cap on the pressure",
-    "flash temperature and film follow the cut pressure, while the force of the slices is the whole one",
+    "flash temperature and film follow the cut pressure, while the force of the slices is not cut",
     "less torque, or a scene without `max_pressure_MPa`",
 )
 COLD_BULK = Kind(
-    "tribology: the bulk temperature, {bulk:g} °C, is below that of the oil, {oil:g} °C",
+    "tribology: the bulk temperature, {bulk:g} °C, is below the temperature of the oil, {oil:g} °C",
     "teeth that transmit power are warmer than the oil that cools them",
-    "the temperatures in the place of each other, or `bulk_temperature_C` left out",
+    "exchange both temperatures, or leave `bulk_temperature_C` out",
 )
 PITCH_VELOCITY = Kind(
     "tribology: the pitch line velocity, {velocity:.3g} m/s, is outside {low:g} to {high:g} m/s",
-    "coefficients of friction of the standards were fitted within",
-    "a number for `friction`, from a test",
+    "the coefficients of friction of the standards were fitted within this range",
+    "give `friction` as a number from a test",
 )
 RATED_AT_EDGE = Kind(
-    "rating: the largest pressure that the local safety of flanks follows from lies at an edge of a flank",
-    "it is that of a line contact with the mean load over a quarter module, and rises towards a sharp edge: indicative",
-    "tip or end relief, or an edge with a radius; safeties after ISO 6336 do not depend on it",
+    "rating: the largest pressure, from which the local safety of flanks follows, lies at an edge of a flank",
+    "it is the pressure of a line contact with the mean load over a quarter module, and rises towards a sharp edge: "
+    "it is indicative only",
+    "tip or end relief, or an edge with a radius; safeties after ISO 6336 do not depend on this pressure",
 )
 ABOVE_STATIC_STRENGTH = Kind(
     "rating: {where}: the stress {stress:.0f} MPa is above the static strength {strength:.0f} MPa under {torque}, "
-    "where the standard ends",
-    "the first load cycle may yield or break a tooth, so that safeties there are no measure of a life, which is 0",
+    "beyond which the standard does not apply",
+    "a tooth may yield or break in the first load cycle, so that safeties there are no measure of a life. The life is"
+    " given as 0",
     "a smaller torque or `operation.application_factor`, other allowable stresses, or a larger pair",
 )
 SPECTRUM_BETWEEN = Kind(
-    "rating: the damage of the spectrum may be wrong by {change:.1%}, since stresses are interpolated between {count} "
-    "torques that were solved",
-    "damage grows with a high power of the stress, which bends over the torque where contacts come to edges, reliefs "
-    "and further tooth pairs; the error is told by leaving out every second torque, and by how solved torques scatter",
-    "more torques, `analysis.torques_Nm`, up to the largest of the spectrum; where they scatter, more `cells`",
+    "rating: the damage of the spectrum may be wrong by {change:.1%}, since stresses are interpolated between {count}"
+    " analysed torques",
+    "damage grows with a high power of the stress, and the curve of the stress over the torque bends where contacts "
+    "come to edges, reliefs and further tooth pairs. The error is estimated by leaving out every second torque, and "
+    "by how much the results of analysed torques scatter",
+    "more torques in `analysis.torques_Nm`, up to the largest of the spectrum; where their results scatter, more "
+    "`cells`",
 )
 PITCH_DEVIATIONS = Kind(
-    "the gears have runout or teeth that differ, which an analysis of one pitch leaves out: all teeth count as alike",
-    "pitch deviations, flanks of single teeth and eccentricity repeat with a turn of their gear, not with every pitch",
+    "the gears have runout or teeth that differ; an analysis of one pitch leaves this out and takes all teeth as alike",
+    "pitch deviations, flanks of single teeth and eccentricity repeat with each turn of their gear, not with each "
+    "pitch",
     "`loaded-tca revolution`, or `analyse_revolution`",
 )
 OPEN_REVOLUTION = Kind(
-    "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: the ends of the curve do not meet, so "
-    "that orders of the gears mix and deviations are those of this part",
-    "amplitudes of a curve that is not closed leak into neighbouring orders, whichever gear they are named after; "
-    "spans hold for the part that is there",
+    "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: both ends of the curve do not meet, so "
+    "that orders of the gears mix, and deviations hold for this part of the turn only",
+    "amplitudes of a curve that is not closed leak into neighbouring orders, whichever gear these are named after; "
+    "spans hold for the part of the turn that was analysed",
     '`pitches = "hunting"`, or a multiple of the number of teeth of that gear',
 )
 WEAK_SETTINGS = Kind(
-    "settings from measured flanks: together these hardly change the flanks, by {effect} um where each by itself "
-    "changes them by up to 10 um: {changes}",
-    "noise of the measurement turns into large corrections that undo each other: what is left is small, the settings "
-    "are not those of the machine",
-    "fewer settings, limits for their changes, or both flanks of the gear measured; compare the standard deviations",
+    "settings from measured flanks: together the following changes alter the flanks by only {effect} um, though each "
+    "of them alone alters the flanks by up to 10 um: {changes}",
+    "noise of the measurement turns into large corrections that cancel each other: the deviations that remain are "
+    "small, but the settings are not those of the machine",
+    "fewer settings, limits for their changes, or measurements of both flanks of the gear; compare the standard "
+    "deviations of the settings",
 )
 SHARES_OF_HALVES = Kind(
-    "the shares of the halves are off by up to {error:.1%} of the torque, between torques of the halves that were "
-    "analysed",
-    "deflections bend over the torque where contacts come to edges, reliefs and further tooth pairs; the error is "
-    "told by how much compliances and deflections of neighbouring torques disagree",
-    "a gear that floats, halves that are alike, or more crowning and relief, so that contacts stay off the edges",
+    "the shares of the halves are off by up to {error:.1%} of the torque, since they lie between the torques for "
+    "which the halves were analysed",
+    "the curve of the deflection over the torque bends where contacts come to edges, reliefs and further tooth pairs."
+    " The error is estimated from how much compliances and deflections of neighbouring torques disagree",
+    "a gear that floats, two halves that are alike, or more crowning and relief, so that contacts stay off the edges",
 )
 SHUTTLES = Kind(
-    "the {gear} shuttles along its axis by up to {way:.3g} um from its mean place, more than a thousandth of the width "
-    "of a half",
-    "flanks are analysed where the floating gear stands in the mean: ends of the faces, crowning and reliefs move with "
-    "it by as much, which pressures leave out; the motion itself and the shares have it",
-    "smaller apex runout and slopes; the change of the face load factor by `pair.apex_offset_mm` of that size",
+    "the {gear} shuttles along its axis by up to {way:.3g} um from its mean place, more than a thousandth of the "
+    "width of a half",
+    "flanks are analysed with the floating gear at its mean place. In reality ends of the faces, crowning and reliefs"
+    " move with the gear by as much. Pressures leave this out; the axial motion itself and the shares contain it",
+    "smaller apex runout and slopes; see how the face load factor changes with a `pair.apex_offset_mm` of that size",
 )
 MEASURED_HALF = Kind(
-    "half {half} of the {gear} has a measured flank that the other half has not, between gears that are held along "
-    "the axes: it is turned onto its pitch point, so that shares leave out how it stands against the other half",
-    "a measured flank is turned until it holds the pitch point: what its deviations say there, a shift of the apex, "
-    "is left out of the shares and of the transmission error",
+    "half {half} of the {gear} has a measured flank, the other half has none, and both gears are held along their "
+    "axes: the measured flank is turned onto its pitch point, so that the shares leave out its place against the "
+    "other half",
+    "a measured flank is turned until it passes through the pitch point: its deviation at the pitch point, which is a"
+    " shift of the apex, is left out of the shares and of the transmission error",
     "`pair.apex_offset_mm` for the apex as measured, modifications of the same size, or a gear that floats freely",
 )
 
@@ -432,7 +472,7 @@ def kind_of(sentence: str) -> Kind | None:
 
     Examples
     --------
-    >>> kind_of("the contact reaches the box of its grid (at 1 of 9 pressure maps; the first: ...)").advice[:11]
+    >>> kind_of("the contact reaches the border of its grid (at 1 of 9 pressure maps; the first: ...)").advice[:11]
     'less torque'
     """
     return max((one for one in KINDS if one.words in sentence), key=lambda one: len(one.words), default=None)

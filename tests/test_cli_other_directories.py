@@ -6,8 +6,8 @@ from loaded_tca.cli import main
 
 HELD = {
     "revolution.nc": "holds a whole revolution",
-    "tribology.nc": "holds tribology alone",
-    "comparison.json": "holds a comparison of results, of which 'loaded-tca {}' takes none",
+    "tribology.nc": "holds only tribology",
+    "comparison.json": "holds a comparison of results, which 'loaded-tca {}' does not take",
     "rigid/result.nc": "holds results in rigid; give one of them: 'loaded-tca {} {}/rigid'",
 }
 

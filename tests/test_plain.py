@@ -47,7 +47,7 @@ def test_sentences_have_plain_numbers_signs_and_words():
 
 
 def test_warnings_have_plain_numbers():
-    odd = ODD_INPUT.sentence(key="k", value=2.06e8, unit="MPa", what="more than that of any material of gears")
+    odd = ODD_INPUT.sentence(key="k", value=2.06e8, unit="MPa", what="more than the modulus of any gear material")
     assert odd.startswith("k: 206000000 MPa is more")
     kink = ANOTHER_POSITION.sentence(figure="peak to peak", change=130.0, unit="um", size=0.5, key="k", count=1, keys=2)
     assert "by +130 um another position" in kink

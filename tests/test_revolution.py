@@ -226,7 +226,7 @@ def test_curves_for_dynamics_are_those_of_the_dataset():
 
 def test_analysis_of_one_pitch_says_that_deviations_are_left_out():
     scene = helical().with_changes({"wheel.pitch.runout_um": 5.0, "analysis.positions": 1})
-    with pytest.warns(match="leaves out: all teeth count as alike"):
+    with pytest.warns(match="takes all teeth as alike"):
         analyse(scene)
 
 

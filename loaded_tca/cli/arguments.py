@@ -20,61 +20,64 @@ FILES = """files in DIR:
   positions.csv             one row per torque and position
   contacts.csv              one row per torque, position and tooth pair, only where pairs share the load
 {pictures}
-Pictures of these names that the result does not have are removed; docs/reference/files.md says more.
-Of a scene with pair.double_helical: double_helical.nc, .json and .csv, half_a.nc and half_b.nc, which are results of a
+Older pictures of these names are removed if the result does not have them; docs/reference/files.md says more.
+A scene with pair.double_helical gives double_helical.nc, .json and .csv, half_a.nc and half_b.nc, each the result of a
 pair, and halves_*.png; docs/guide/double_helical.md says more."""
 TEETH = """files in DIR:
   pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
   pressure.vtk              the cells under pressure on the pinion's flank, in MPa
   pinion.stl, wheel.stl     closed solids, each in its gear's own frame
-  teeth.png                 a picture of all that
+  teeth.png                 a picture of the teeth with this pressure
 All lengths are in mm."""
 COMPARE = """files in DIR:
-  comparison.csv            one row per shared torque and key figure: values, differences to the first result
-  comparison.json           the same, and the keys in which the scenes differ
+  comparison.csv            one row per common torque and key figure: values, differences from the first result
+  comparison.json           the same numbers, and the keys in which the scenes differ
 {comparison_pictures}
-Pictures are those of one torque; 'loaded-tca report DIR DIR --out FILE' writes a page with them;
+The pictures show one torque; 'loaded-tca report DIR DIR --out FILE' writes a page with them;
 docs/guide/comparing.md says more."""
-EASE_OFF = """The values at the corners and the angles, crownings and twist of the second order are printed.
+EASE_OFF = """The command prints the values at the corners, and the angles, crownings and twist of second order.
 
 files in DIR:
   ease_off.csv              the map: radius and axial coordinate, place on the flank, ease-off of every point
-  ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
-                            corners, and its angles, crownings and twist"""
+  ease_off.png              material that the flank lacks against the conjugate of its mating flank, in um, with the
+                            values at the corners of the flank, and its angles, crownings and twist"""
 SETTINGS = """SCENE has bevel gears with a section [pair.blank] and the radius of its cutter. FILE is a scene of type
-face_milled with the same blanks, and with all machine settings and cutters: in closed form, a start to be mended by
-what its contact shows ('loaded-tca run', 'vh', 'ease-off'), or with the pinion's by local synthesis, whose contact at
-the mean point is what [pair.settings] of a scene of type face_milled asks for, or what is usual.
+face_milled with the same blanks, and with all machine settings and cutters. The settings are those of closed formulas:
+a first design, to be improved by what its contact shows ('loaded-tca run', 'vh', 'ease-off'). Or the settings of the
+pinion come from local synthesis, which gives the contact at the mean point that [pair.settings] of a scene of type
+face_milled asks for, or a usual one.
 
 With --measured SCENE has face-milled gears, and FILE is the scene with settings that bring the deviations of measured
-flanks to zero in least squares, as far as the chosen settings can. A measured flank has the columns of
-docs/guide/measured_flank.md, and weight; comments "# gear = wheel" and "# flank = convex" say which it is, or its name
-before the file: wheel.convex=FILE. LIMIT is the largest change of a setting in its unit. Default settings: radial,
-root angle and ratio of roll of each measured gear, cradle angle instead of the latter where it does not roll.
+flanks to zero in least squares, as far as the chosen settings can. The file of a measured flank has the columns of
+docs/guide/measured_flank.md, and a column weight. Comments "# gear = wheel" and "# flank = convex" in the file say
+which flank it is, or the name of the flank before the file: wheel.convex=FILE. LIMIT is the largest change of a setting
+in its unit. Default settings: radial, root angle and ratio of roll of each measured gear; cradle angle instead of the
+ratio of roll for a gear that is cut without roll.
 
 files beside FILE (out.toml):
   out_corrections.csv       one row per setting: its correction, standard deviation and limit, in its unit
   out_deviations.csv        one row per measured point: deviation before and after
   out_deviations.png        the same over the flanks
 docs/guide/measured_settings.md says more."""
-MEASURED = """Slopes, crownings and twist by least squares over the measured points, with their standard deviations, and
-the form deviations that they leave. Points, profile and helix lines are read as docs/guide/measured_flank.md says.
-FILE of --out is the scene with these modifications on a flank by its equations."""
+MEASURED = """The command shows slopes, crownings and twist, found by least squares over the measured points, their
+standard deviations, and the form deviations that remain. It reads points, profile and helix lines as
+docs/guide/measured_flank.md says. FILE of --out is the scene with these modifications on the flank by its equations
+instead of the measured flank."""
 CHECK = """files in DIR:
   first_look.png            teeth in mesh at the pitch point with the path of contact, or both blanks of bevel pairs;
                             modifications along profile and face; the path of contact without load on both flanks
-and of stages first_look_sun.png and first_look_ring.png."""
+and for stages first_look_sun.png and first_look_ring.png."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
-touch. Axes are those of each gear's own frame, which does not turn with it: z the axis of the gear, x to the pitch
-point, turns right-handed.
+touch. Axes are those of each gear's own frame, which does not turn with the gear: z is the axis of the gear, x points
+to the pitch point, and rotations are right-handed.
 
 files in DIR:
   shaft.csv                 motions along each shaft, one row per torque and place
-  bearings.csv              forces and moments on the bearings; of rolling bearings element force, pressure and life
+  bearings.csv              forces and moments on the bearings; for rolling bearings element force, pressure and life
   shaft.png                 outlines of the shafts, their deflection in two planes"""
-VH = """V and H are mounting errors: of bevel and face-milled gears the offset and the axial displacement of the pinion
-[mm], of cylindrical ones the errors of the axes in their plane and out of it [deg]. Centre and size of each
-pattern, under load also the highest pressure, are shown, too.
+VH = """V and H are mounting errors: for bevel and face-milled gears the offset and the axial displacement of the pinion
+[mm], for cylindrical gears the errors of the axes in their plane and out of it [deg]. The command also shows centre and
+size of each pattern, and under load the highest pressure.
 
 files in DIR:
   vh_check.png              contact patterns by a marking compound, V upwards, H to the right
@@ -82,20 +85,21 @@ files in DIR:
 and with --loaded instead
   vh_under_load.png         highest pressure at each place of the flank
   vh_study.csv              key figures, one row per pair of errors and torque; the summary has the warnings
-  vh_study.nc, vh_study_maps/  the study behind it; the same command goes on from there"""
+  vh_study.nc, vh_study_maps/  the study that these come from; the same command continues it"""
 TRIBOLOGY = """[operation], [lubricant], roughness_Ra_um and the thermal keys of materials say how the pair runs; --set
-gives or changes them. What needs an input that is not given is left out, and the summary says which.
+gives or changes these. Numbers that need a missing input are left out, and the summary says which.
 
 files in DIR:
   tribology.nc              everything, to be read by xarray
   tribology.csv             one row per speed and torque
   tribology_slices.csv      every slice of every contact, first speed, all torques
 {tribology_pictures}
-Friction of the teeth alone; docs/guide/efficiency_and_scuffing.md says more."""
+Only the friction of the teeth is counted; docs/guide/efficiency_and_scuffing.md says more."""
 RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubricant] of the scene say what the gears
-are made of, what is required and how they run, of a stage [sun.strength], [planet.strength] and [ring.strength]; --set
-gives or changes them, and the load spectrum: load.spectrum=FILE, with torques up to the largest that was solved.
-Without one each torque stands for itself. Of a double helical pair both halves are rated under their shares.
+are made of, what is required and how they run; a stage has [sun.strength], [planet.strength] and [ring.strength]. --set
+gives or changes these, and the load spectrum: load.spectrum=FILE, with torques up to the largest that was solved.
+Without a load spectrum each torque is rated by itself. Both halves of a double helical pair are rated under their
+shares.
 
 files in DIR:
   rating.json               safeties, damage, lives and every factor of each torque or bin, and of all bins together
@@ -104,41 +108,42 @@ files in DIR:
 docs/guide/strong_enough.md says more."""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
-  subsurface.csv            the same over the depth, below the highest pressure
+  subsurface.csv            the same stresses over the depth, below the highest pressure
   subsurface_max_shear.png, subsurface_von_mises.png
 Stresses in MPa, tension positive, of a half-space without friction; docs/guide/stresses_below.md says more."""
 SENSITIVITIES = """KEY is a key of the scene, TOLERANCE its standard deviation, in the unit that the key ends in.
-Default keys: the modifications that the gears have, with starts and lengths of reliefs, all mounting errors (but
+Default keys: the modifications that the gears have, with starts and lengths of reliefs, all mounting errors (except
 misalignment_um, which adds to out_of_plane_deg), and the torque. Default tolerances: 1 um, 0.01 mm, 0.01 deg;
-0.1 mm and 0.1 deg of starts and lengths of reliefs; of the torque a hundredth of the largest.
+0.1 mm and 0.1 deg for starts and lengths of reliefs; a hundredth of the largest torque for the torque.
 
 files in DIR:
   sensitivities.nc          derivatives of every position, pair and figure, all torques
-  sensitivities.csv         one row per torque and key: what a unit of it, and its tolerance, changes in key figures
+  sensitivities.csv         one row per torque and key: what a unit of the key, and its tolerance, change in key figures
   tornado.png               sensitivity times tolerance, a panel for each key figure
   sensitivity_curves.png    what each tolerance changes in the transmission error over the positions
   transmission_error_band.png  transmission error with the standard deviation by all tolerances, all torques
   removal_weights.png       where on the flanks removed material changes the transmission error
-All to first order; docs/guide/tolerances.md says more."""
+All numbers are to first order; docs/guide/tolerances.md says more."""
 DYNAMICS = """files:
   FILE                      over the pitch: transmission error in m and rad, mesh stiffness in N/m and N m/rad, tooth
                             pairs under load, normal force; a row for each torque and mesh phase
-  the same with _orders     Fourier coefficients of these curves, amplitudes and phases
-All in SI units; lines that begin with # say what the columns are. Only of results with load sharing."""
+  FILE with _orders added   Fourier coefficients of these curves, amplitudes and phases
+All in SI units; lines that begin with # say what the columns are. The result must have load sharing."""
 STUDY = """files in DIR:
   study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
   study.csv                 the same, one row per variant and torque
   ranking.csv               one row per variant, the best by --rank-by first
-  shortfall.csv             of scenes with strengths: how probable safeties below those required are
-  study_*.png               pictures that fit what varies
-  study.rows.jsonl          the variants that are done; the same command goes on from there
+  shortfall.csv             for scenes with strengths: how probable safeties below the required ones are
+  study_*.png               pictures, depending on what varies
+  study.rows.jsonl          the variants that are done; the same command continues from there
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
-pictures, accuracy warnings with what to do, and the scene file; of a stage its phases, shares and orders; of a study
-what varies, the ranking, best and worst variant; of a design start and optimum; of two results or more what differs in
-their scenes, key figures side by side, and pictures on one scale. It prints on A4. Needs the package jinja2. With
---interactive a page for a browser instead, whose sliders move all pictures, the teeth in space among them; of a study
-parallel coordinates and a scatter. It fetches nothing. Needs the package plotly, too."""
+pictures, accuracy warnings with what to do, and the scene file; for a stage its phases, shares and orders; for a study
+what varies, the ranking, best and worst variant; for a design start and optimum; for two results or more what
+differs in their scenes, key figures side by side, and pictures on one scale. It prints on A4. Needs the package jinja2.
+With --interactive a page for a browser instead, whose sliders move all pictures, with the teeth in space among them;
+for a study parallel coordinates and a scatter plot. The page loads nothing from elsewhere and needs the package plotly,
+too."""
 REVOLUTION = """files in DIR:
   revolution.nc             everything, to be read by loaded_tca.Revolution.load or xarray
   revolution.json           the key figures: single-flank deviations, orders, worst teeth
@@ -148,9 +153,9 @@ REVOLUTION = """files in DIR:
   revolution_error.png      transmission error over the revolution, rigid and under each torque
   revolution_spectrum.png   its orders under the largest torque
   revolution_shares.png     share of every tooth as a band, highest pressure of every tooth
-  revolution_waterfall.png  orders over the torque; of two torques or more
+  revolution_waterfall.png  orders over the torque; with two torques or more
 [pinion.pitch], [wheel.pitch] and [revolution] of the scene say where the teeth stand and which pitches follow each
-other; docs/guide/whole_revolutions.md says more. Of a double helical pair: double_helical_revolution.nc, .json, .csv,
+other; docs/guide/whole_revolutions.md says more. A double helical pair gives double_helical_revolution.nc, .json, .csv,
 double_helical_orders.csv, half_a_revolution.nc and half_b_revolution.nc, and halves_revolution_*.png."""
 STAGE = """files in DIR:
   stage.nc, sun_mesh.nc, ring_mesh.nc
@@ -161,32 +166,32 @@ STAGE = """files in DIR:
   stage_phases.png          phases of the meshes of all planets
   stage_shares.png          share of every planet, under the largest torque
   stage_load_factor.png     K_gamma over the pin errors, all torques
-  stage_sun_orbit.png       motion of the sun's axis, all torques; of a sun that is not held rigid
+  stage_sun_orbit.png       motion of the sun's axis, all torques; if the sun is not held rigid
   stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
-  stage_orders.png          their orders of the mesh
-and with [rating] and what it needs the files of 'loaded-tca rating'.
+  stage_orders.png          mesh orders of these transmission errors
+and, with [rating] and its inputs, the files of 'loaded-tca rating'.
 Numbers have their units in their names; docs/guide/planetary_stages.md says more."""
 IMPORT = """MODEL is a REXS file of version 1.0 to 1.7: XML (.rexs), JSON (.rexsj) or zip (.rexsz). FILE is a scene of
 the cylindrical stage: flanks, tools, modifications, materials, shafts, bearings, and the loads of other stages on the
-same shafts. What was not taken stands above the scene and is shown, with the ids of its
-components; docs/guide/gearbox_models.md says more."""
+same shafts. What was not taken over is listed above the scene and is shown, with the ids
+of its components; docs/guide/gearbox_models.md says more."""
 EXPORT = """FILE is the model with the load distribution over the face, K_Hbeta, the mesh stiffness (version 1.5 on),
-deflection and torsion of the shafts and forces on their bearings; everything else and its format stay."""
+deflection and torsion of the shafts and forces on their bearings; the rest of the model and its format stay."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 EXIT_CODES = {
     0: "done",
-    1: "a fault of the program, or of who was to compute for it",
+    1: "a fault of the program, or of processes that were to compute for it",
     2: "the input, or the place for the output, cannot be used",
     3: "no convergence",
     130: "interrupted",
 }
 """Exit code of every command -> what it says."""
-KEYS = """Of sections with the same keys one is shown, with the names of the others. WORD is looked for in names and
-meanings, capitals or not, and may be what standards and other programs call a key, as beta or da;
-docs/reference/scene_keys.md says more."""
+KEYS = """Of several sections with the same keys one section is shown, with the names of the other sections. The command
+looks for WORD in names and meanings, capitals or not. WORD may also be the name that standards and other programs give
+a key, such as beta or da; docs/reference/scene_keys.md says more."""
 
 
-BESIDE = "beside the result; with options that choose a part of it, in a directory there that these name"
+BESIDE = "beside the result; with options that choose a part of it, in a directory there that the options name"
 """Where the files of what is made of a result go by default."""
 Command = Callable[..., argparse.ArgumentParser]
 """Adds a command of a name, a function to run, a text, and a text below its options."""
@@ -229,7 +234,9 @@ def command_line() -> argparse.ArgumentParser:
     check.add_argument("--out", metavar="DIR", type=_path, help="directory for the picture; default: none is drawn")
     check.add_argument("--json", action="store_true", help="show the table as JSON: names end in units")
     _add_changes(check)
-    text = "show the keys of scene and stage files with units, defaults and meanings, of a word those that have it"
+    text = (
+        "show the keys of scene and stage files with units, defaults and meanings; with WORD only the keys that have it"
+    )
     command("keys", run_by.keys, text, KEYS).add_argument("word", metavar="WORD", nargs="?", help="default: all keys")
     return parser
 
@@ -250,7 +257,7 @@ def _add_analyses(command: Command) -> None:
     beside = run.add_mutually_exclusive_group()
     text = "analyse the coast side too, and compare: directories drive and coast in DIR, comparison.* beside them"
     beside.add_argument("--coast", action="store_true", help=text)
-    text = "of gears on supports: analyse them held, too, and compare: directories supports and rigid in DIR"
+    text = "for gears on supports: analyse them held rigid, too, and compare: directories supports and rigid in DIR"
     beside.add_argument("--rigid", action="store_true", help=text)
     text = "analyse a whole revolution, each tooth at its own place"
     revolution = command("revolution", run_by.revolution, text, REVOLUTION)
@@ -261,7 +268,8 @@ def _add_analyses(command: Command) -> None:
     _add_changes(stage)
     stage.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     text = (
-        "works done at once, at most one a core; default: LOADED_TCA_JOBS, or one a core; results do not depend on it"
+        "parts of the work done at once, at most one per core; default: LOADED_TCA_JOBS, or one per core; results do "
+        "not depend on it"
     )
     for analysis in (demo, run, revolution, stage):
         analysis.add_argument("--jobs", metavar="N", type=_jobs, help=text)
@@ -285,11 +293,13 @@ def _add_readers(command: Command) -> None:
         reader.add_argument("--position", metavar="N", type=_int, help=f"position of {of_position}, from 1; {peak}")
     plot.add_argument("--pdf", action="store_true", help="write at_a_glance.pdf too, a sheet of A4")
     plot.add_argument("--all", action="store_true", help="draw contact_patterns.png and full_mesh.png too")
-    tooth.add_argument("--fillet-radius", metavar="MM", type=_float, help="of arcs at the root; default: by the module")
-    tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")
+    tooth.add_argument(
+        "--fillet-radius", metavar="MM", type=_float, help="radius of arcs at the root; default: by the module"
+    )
+    tooth.add_argument("--whole-gears", action="store_true", help="write all teeth to the STL files, not one tooth")
     below.add_argument("--pair", metavar="K", type=_int, help=f"tooth pair, as load_share.png counts; {peak}")
     below.add_argument(
-        "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
+        "--gear", choices=("pinion", "wheel"), default="pinion", help="gear below whose flank; default: pinion"
     )
 
 
@@ -298,7 +308,7 @@ def _add_tribology(command: Command) -> None:
     text = "show loss, temperatures, films, scuffing and micropitting of a result at one speed or several"
     reader = command("tribology", run_by.tribology, text, TRIBOLOGY)
     reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
-    text = "of the pinion; default: operation.pinion_speed_rpm of the scene"
+    text = "speeds of the pinion; default: operation.pinion_speed_rpm of the scene"
     reader.add_argument("--speed", metavar="RPM", nargs="+", type=_float, help=text)
     text = "another value of a key, for instance lubricant.oil_temperature_C=90; may be given again for other keys"
     reader.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
@@ -311,7 +321,9 @@ def _add_rating(command: Command) -> None:
     reader = command("rating", run_by.rating, text, RATING)
     text = "result.nc, or stage.nc of a stage, or the directory that holds it"
     reader.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
-    text = "result of the coast side, whose flanks carry reversed bins: of run --coast, DIR/coast beside DIR/drive"
+    text = (
+        "result of the coast side, whose flanks carry reversed bins: after run --coast it is DIR/coast beside DIR/drive"
+    )
     reader.add_argument("--coast", metavar="DIR|FILE", type=_path, help=text)
     text = "another value of a key, for instance rating.life_hours=5000; may be given again for other keys"
     reader.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
@@ -320,35 +332,44 @@ def _add_rating(command: Command) -> None:
 
 def _add_comparisons(command: Command) -> None:
     """Add the commands that show what changes."""
-    compare = command("compare", run_by.compare, "show what two or more results differ in", COMPARE)
+    compare = command("compare", run_by.compare, "show how two or more results differ", COMPARE)
     compare.add_argument(
-        "results", metavar="DIR|FILE", nargs="+", type=_path, help="results; the first is what others are compared with"
+        "results", metavar="DIR|FILE", nargs="+", type=_path, help="results; the others are compared with the first"
     )
     compare.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
-    compare.add_argument("--names", metavar="NAME", nargs="+", help="of the results; default: from their directories")
+    compare.add_argument(
+        "--names", metavar="NAME", nargs="+", help="names of the results; default: from their directories"
+    )
     compare.add_argument("--torque", metavar="NM", type=_float, help="pinion torque of the pictures; default: largest")
     compare.add_argument(
         "--position",
         metavar="N",
         type=_int,
-        help="position of the maps in the first result, from 1; default: own peaks",
+        help="position of the maps in the first result, from 1; default: that of the peak pressure of each result",
     )
     slopes = command(
-        "sensitivities", run_by.sensitivities, "show what keys of the scene and their tolerances change", SENSITIVITIES
+        "sensitivities",
+        run_by.sensitivities,
+        "show what keys of the scene and their tolerances change in a result",
+        SENSITIVITIES,
     )
     slopes.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
-    text = "for instance mounting.axial_offset_mm=0.05"
+    text = "keys with their tolerances, for instance mounting.axial_offset_mm=0.05"
     tolerance = _key_with("tolerance", "mounting.axial_offset_mm=0.05")
     slopes.add_argument("--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=tolerance, help=text)
     slopes.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {BESIDE}")
-    slopes.add_argument("--torque", metavar="NM", type=_float, help="pinion torque shown; default: largest, bands all")
+    slopes.add_argument(
+        "--torque", metavar="NM", type=_float, help="pinion torque shown; default: largest, in bands all"
+    )
 
 
 def _add_tables_and_maps(command: Command) -> None:
     """Add the tables for gear dynamics and the ease-off."""
     dynamics = command("dynamics", run_by.dynamics, "write tables that programs of gear dynamics read", DYNAMICS)
     dynamics.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
-    dynamics.add_argument("--out", metavar="FILE", type=_path, help="first table; default: dynamics.csv beside it")
+    dynamics.add_argument(
+        "--out", metavar="FILE", type=_path, help="first table; default: dynamics.csv beside the result"
+    )
     ease_off = command("ease-off", run_by.ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     _add_scene(ease_off)
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
@@ -378,29 +399,33 @@ def _add_tables_and_maps(command: Command) -> None:
     vh.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
     for name, what in (("v", "V, upwards"), ("h", "H, to the right")):
         text = (
-            f"values of {what}; default: none, and a hundredth of the module to either side, as an angle over the face"
+            f"values of {what}; default: 0, and a hundredth of the module to both sides (angles: of that over the face)"
         )
         vh.add_argument(f"--{name}", metavar=name.upper(), nargs="+", type=_float, help=text)
     for reader in (ease_off, vh):
         reader.add_argument(
-            "--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion"
+            "--gear", choices=("pinion", "wheel"), default="pinion", help="gear whose flank is drawn; default: pinion"
         )
     vh.add_argument(
-        "--loaded", action="store_true", help="under the torques of the scene, with all its analysis asks for"
+        "--loaded",
+        action="store_true",
+        help="analyse under the torques of the scene, with all that its [analysis] asks for",
     )
     _add_engine(vh)
 
 
 def _add_measured(command: Command) -> None:
     """Add the modifications of a measured flank."""
-    text = "show what modifications a measured flank has, beside those of its scene"
+    text = "show the modifications of a measured flank, beside those of its scene"
     reader = command("measured", run_by.measured, text, MEASURED)
     _add_scene(reader)
     text = "measured flank; default: that of [pinion.flank] or [wheel.flank]"
     reader.add_argument("--file", metavar="FILE", type=_path, help=text)
-    text = "whose flank; default: that of the file's comment '# gear = wheel', or the one that the scene has measured"
+    text = (
+        "gear of the flank; default: from the comment '# gear = wheel' of the file, or the gear measured in the scene"
+    )
     reader.add_argument("--gear", choices=("pinion", "wheel"), help=text)
-    text = "what deviations count from: the flank with the modifications of the scene (default), or the bare one"
+    text = "flank from which deviations count: the one with the modifications of the scene (default), or without them"
     kinds = "modified", "unmodified"
     reader.add_argument("--from", dest="measured_from", choices=kinds, default=kinds[0], help=text)
     reader.add_argument("--out", metavar="FILE", type=_path, help="scene with these modifications; default: none")
@@ -413,8 +438,8 @@ def _add_exchange(command: Command) -> None:
     reader.add_argument("model", metavar="MODEL", type=_path, help="REXS file")
     reader.add_argument("--stage", metavar="ID", help="id of the stage")
     reader.add_argument("--out", metavar="FILE", type=_path, help="scene file to write; default: it is shown")
-    reader.add_argument("--load-case", metavar="ID", help="load case whose torques and speeds hold; default: none")
-    text = "on the pinion, instead of what the loads on the shafts give"
+    reader.add_argument("--load-case", metavar="ID", help="load case that gives torques and speeds; default: none")
+    text = "torque on the pinion, instead of the torque that the loads on the shafts give"
     reader.add_argument("--torque", metavar="NM", type=_torque, help=text)
     writer = command("export", run_by.export_model, "write a gearbox model (REXS) with the numbers of a result", EXPORT)
     writer.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
@@ -433,14 +458,16 @@ def _add_studies(command: Command) -> None:
     study.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     _add_engine(study)
     study.add_argument(
-        "--rank-by", metavar="FIGURE", help="figure of study.csv that ranks, best first; default: TE span"
+        "--rank-by",
+        metavar="FIGURE",
+        help="figure of study.csv by which variants are ranked, best first; default: peak-to-peak TE",
     )
     study.add_argument(
         "--keep-maps",
         metavar="N,N,...",
         type=_numbers,
         default=(),
-        help="variants, from 0, whose results are kept whole",
+        help="numbers of the variants, from 0, whose whole results are kept",
     )
     text = "write a report of a result, several results, a planetary stage, a study or a design as HTML"
     report = command("report", run_by.report, text, REPORT)
@@ -449,24 +476,28 @@ def _add_studies(command: Command) -> None:
     text = "results to compare with the first one, as 'loaded-tca compare' takes them"
     report.add_argument("others", metavar="DIR|FILE", nargs="*", type=_path, help=text)
     report.add_argument(
-        "--out", metavar="FILE", type=_path, help="default: report.html beside the result, of one alone"
+        "--out", metavar="FILE", type=_path, help="HTML file; default for one result: report.html beside it"
     )
-    text = "of a result or a study, a page with sliders for a browser; default of --out: interactive.html"
+    text = "for a result or a study: write a page with sliders for a browser; default of --out: interactive.html"
     report.add_argument("--interactive", action="store_true", help=text)
-    text = "of several results; default: from their directories"
+    text = "names of several results; default: from their directories"
     report.add_argument("--names", metavar="NAME", nargs="+", help=text)
-    text = "of several results, pinion torque of the pictures; default: largest"
+    text = "for several results: pinion torque of the pictures; default: largest"
     report.add_argument("--torque", metavar="NM", type=_float, help=text)
     report.add_argument(
-        "--rank-by", metavar="FIGURE", help="of a study, figure that ranks, best first; default: TE span"
+        "--rank-by",
+        metavar="FIGURE",
+        help="for a study: figure by which variants are ranked, best first; default: peak-to-peak TE",
     )
 
 
 def _add_engine(parser: argparse.ArgumentParser) -> None:
     """Add who analyses the variants of a study."""
     engine = parser.add_mutually_exclusive_group()
-    engine.add_argument("--workers", metavar="N", type=_int, help="processes on this machine; default: this one alone")
-    engine.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://host:8786")
+    engine.add_argument(
+        "--workers", metavar="N", type=_int, help="processes on this machine; default: this process alone"
+    )
+    engine.add_argument("--scheduler", metavar="ADDRESS", help="address of a Dask cluster, such as tcp://host:8786")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -569,7 +600,7 @@ def _commands_of(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentP
 
 def _path(text: str) -> Path:
     if not text:
-        raise argparse.ArgumentTypeError("the name is empty; '.' is the directory that you are in")
+        raise argparse.ArgumentTypeError("the name is empty; '.' means the current directory")
     return Path(text)
 
 

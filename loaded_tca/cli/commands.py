@@ -201,7 +201,7 @@ def rating(options: argparse.Namespace) -> None:
         result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
         rated = result.rating(coast=None if options.coast is None else _coast_of(options.coast))
     else:
-        require((options.coast is None, f"--coast: not of a {kind.FILE}; allowed with the result of one pair"))
+        require((options.coast is None, f"--coast: not allowed with {kind.FILE}; allowed with the result of one pair"))
         result, directory = _changed_joined(options, kind)
         rated = result.rating()
     print_summary(rated.summary(), _rating_files(rated, directory))
@@ -569,7 +569,7 @@ def report(options: argparse.Namespace) -> None:
         _report_comparison(options)
         return
     of_several = options.names is None and options.torque is None
-    require((of_several, "--names, --torque: of a comparison; give two results or more"))
+    require((of_several, "--names, --torque: only for a comparison; give two results or more"))
     path, out = file_of_report(options.result), options.out
     out = path.parent / (INTERACTIVE_REPORT if options.interactive else REPORT) if out is None else out
     check_files([out], path)
@@ -586,7 +586,7 @@ def _report_comparison(options: argparse.Namespace) -> None:
 
     require(
         (options.out is not None, "--out: missing; several results have no directory in common, give a file"),
-        (options.rank_by is None, "--rank-by: of a study; a comparison has no ranking"),
+        (options.rank_by is None, "--rank-by: only for a study; a comparison has no ranking"),
     )
     paths = [options.result, *options.others]
     for path in paths:

@@ -160,22 +160,22 @@ def require_result(directory: Path, path: Path, command: str) -> None:
     parts = [one.name for one in sorted(directory.iterdir()) if (one / RESULT).is_file()]
     if (directory / REVOLUTION_FILES[0]).is_file() or (directory / HALVES_REVOLUTION_FILE).is_file():
         raise InputError(
-            f"{directory}: holds a whole revolution, of which '{command}' takes none: its numbers are in "
-            "revolution.json and its tables; give the directory of 'loaded-tca run'"
+            f"{directory}: holds a whole revolution, which '{command}' does not take: the numbers are in "
+            "revolution.json and the tables; give the directory of 'loaded-tca run'"
         )
     if parts:
         these = " or ".join(f"'{command} {directory / name}'" for name in parts)
         raise InputError(f"{directory}: holds results in {', '.join(parts)}; give one of them: {these}")
     if (directory / COMPARISON_DATA).is_file():
         raise InputError(
-            f"{directory}: holds a comparison of results, of which '{command}' takes none: its numbers are in "
+            f"{directory}: holds a comparison of results, which '{command}' does not take: the numbers are in "
             f"{COMPARISON} and {COMPARISON_DATA}; give the directory of one of the results, or of several to "
             "'loaded-tca report'"
         )
     if any((directory / name).is_file() for name in TRIBOLOGY_FILES):
         raise InputError(
-            f"{directory}: holds tribology alone, without the result that it is of; give the directory of "
-            "'loaded-tca run', whose report has tribology where its scene has [operation] or [lubricant]"
+            f"{directory}: holds only tribology, without the result that it belongs to; give the directory of "
+            "'loaded-tca run', whose report has tribology if the scene has [operation] or [lubricant]"
         )
 
 

@@ -31,7 +31,7 @@ TEETH_DO_NOT_BEND = 'analysis.compliance = "contact"'
 
 @contextmanager
 def way_out_told(way_out: str = TEETH_DO_NOT_BEND) -> Iterator[None]:
-    """Add to errors about gear bodies the setting with which an analysis needs none."""
+    """Add to errors about gear bodies the setting with which an analysis needs no gear bodies."""
     try:
         yield
     except (InputError, GeometryError) as error:
@@ -70,7 +70,7 @@ def require_teeth(pair: GearPair, way_out: str = TEETH_DO_NOT_BEND) -> None:
 
 
 def warn_of_teeth(pair: GearPair) -> None:
-    """Warn of teeth that cannot exist, though nothing but their flanks in contact is computed.
+    """Warn of teeth that cannot exist, though only their flanks in contact are computed.
 
     Parameters
     ----------

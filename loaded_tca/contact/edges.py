@@ -75,7 +75,7 @@ class FreeEdge:
 
 @dataclass(frozen=True)
 class RoundedEdge:
-    """A straight line in the plane of a grid, from which on a surface is rounded.
+    """A straight line in the plane of a grid, beyond which a surface is rounded.
 
     Parameters
     ----------

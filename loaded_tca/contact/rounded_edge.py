@@ -248,7 +248,7 @@ def edge_pressures(
     at_least: float = 0.0,
     tolerance: float = TOLERANCE,
 ) -> list[EdgePressure]:
-    r"""Peak pressures at rounded edges that a contact reaches, its force kept.
+    r"""Peak pressures at rounded edges that a contact reaches, under the force of this contact.
 
     Columns are graded along y: for an edge along y hand in everything with x and y exchanged and ``slice_axis`` 0. Of
     a rounding that is pressed on the width d, with the normal n, cells are d/m over n_x and n_y; d is told by a

@@ -314,24 +314,26 @@ class ContactSolution(Solution):
         sentences = []
         if self.reaches_border:
             sentences.append(
-                "contact reaches the box: the pressure at its border is that of a body ending there, which "
-                "grows with the number of cells"
+                "the contact reaches the border of the grid: the pressure at this border is that of a body which "
+                "ends there, and grows with the number of cells"
             )
         if self.reaches_material_edge and self.problem.max_pressure is None:
             sentences.append(
-                "contact reaches an end of the material, where the pressure has no limit: that of the cells beside it "
-                "grows with their number"
+                "the contact reaches an end of the material, where the pressure has no limit: the pressure of the "
+                "cells beside this end grows with the number of cells"
             )
         if self.slope_jump > 0.0 and float(self.pressure.max()) < (self.problem.max_pressure or math.inf):
             grown = growth(self.slope_jump, self.problem.contact_modulus)
             sentences.append(
                 f"the slope of the gap jumps by {plain(1e3 * self.slope_jump, 3)} mrad inside the contact: at a ridge "
-                f"the pressure has no limit, that of the cells beside it grows by about {plain(grown, 3)} MPa whenever "
-                "cells are halved, at an apex by half as much again; waves of roughness have too few cells"
+                "the pressure has no limit, and the pressure of the cells beside the ridge grows by about "
+                f"{plain(grown, 3)} MPa each time the size of the cells is halved, at an apex by half as much again; "
+                "if the gap is rough, the waves of its roughness have too few cells"
             )
         if 0 < min(self.cells_across) < FEWEST_CELLS:
             across = min(self.cells_across)
-            sentences.append(f"contact is {across} cells across: fewer than {FEWEST_CELLS} leave errors above 1 %")
+            words = f"the contact is {across} cells across: fewer than {FEWEST_CELLS} cells leave errors above 1 %"
+            sentences.append(words)
         return tuple(sentences)
 
     @cached_property

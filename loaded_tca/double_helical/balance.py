@@ -129,7 +129,7 @@ class Halves:
     def __post_init__(self) -> None:
         require((self.stiffness >= 0.0, f"stiffness: found {plain(self.stiffness, 6)} N/mm; allowed from 0 on"))
         if self.stiffness == 0.0 and self.axial_rate == 0.0:
-            raise InputError("axial_rate: found 0; allowed others where nothing holds the gear that floats")
+            raise InputError("axial_rate: found 0; allowed other values than 0 if nothing holds the floating gear")
 
 
 class Shares(NamedTuple):

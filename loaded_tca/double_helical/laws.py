@@ -32,7 +32,7 @@ def half_law(cycle: MeshCycle | Revolution, axial_rate: float) -> HalfLaw:
     length = -pair.driving * pair.base_radii[1]
     deflection = length * cycle.transmission_error
     if not np.isfinite(deflection).all():
-        raise GeometryError("its flanks are out of contact at some positions, where it cannot share a torque")
+        raise GeometryError("its flanks are out of contact at some positions; there it cannot share a torque")
     return HalfLaw(
         force=cycle.torque / pair.base_radii[0],
         deflection=deflection - axial_rate * offset,

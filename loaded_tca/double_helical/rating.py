@@ -35,7 +35,10 @@ _SAFETIES = "flank_safety", "root_safety", "local_flank_safety", "local_root_saf
 _OF_CASES = {
     "K_A": NUMBERS["K_A"],
     "K_gamma": Number(
-        CASE, "1", "largest share of a half over an even one", label="K_gamma: largest share of a half over an even one"
+        CASE,
+        "1",
+        "largest share of a half over an even share",
+        label="K_gamma: largest share of a half over an even share",
     ),
     "K_Hbeta": Number(CASE, "1", "K_Hbeta of the worse half", label="K_Hbeta of the worse half"),
     "whole_flank_safety": Number(OF_GEARS, "1", "whole gear, b = 2 b_B: safety against pitting S_H"),
@@ -89,8 +92,11 @@ class DoubleHelicalRating(OfCases):
     dataset: xarray.Dataset
 
     def __repr__(self) -> str:
-        flank, root = self.flank_safety.min(), self.root_safety.min()
-        return f"{type(self).__name__}({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
+        flank, root = float(self.flank_safety.min()), float(self.root_safety.min())
+        return (
+            f"{type(self).__name__}({len(self.torque)} torques, least S_H {plain(flank, 3)}, least S_F "
+            f"{plain(root, 3)})"
+        )
 
     @property
     def scene(self) -> DoubleHelicalScene:
@@ -281,8 +287,8 @@ def _of_pair(rating: DoubleHelicalRating) -> Iterator[str]:
         yield (
             f"the share of half {HALVES[half]} is {plain(100.0 * mean[torque, half], 3)} % of the torque in the mean "
             f"and {plain(100.0 * shares[torque, :, half].max(), 3)} % at most under "
-            f"{shown_torque(result.torque[torque])}: life under the largest is on the safe side"
+            f"{shown_torque(result.torque[torque])}: the life under the largest share is on the safe side"
         )
     if any(case.reversed for case in scene.load.case or ()):
-        yield "reversed bins are shared as the same torques are the other way"
-    yield from (f"{note}; stresses are those there" for note in result.notes_of_places())
+        yield "the halves share reversed bins as they share the same torques that are not reversed"
+    yield from (f"{note}; stresses here are those of half_a and half_b" for note in result.notes_of_places())

@@ -47,7 +47,11 @@ NUMBERS = numbers(
         "transmission_error": Number(
             CYCLE, "rad", "loaded transmission error, absolute, of both halves together", at_base_circle=True
         ),
-        "mesh_stiffness": (CYCLE, "N/(mm um)", "tangent of the force over the face width of both halves to it"),
+        "mesh_stiffness": (
+            CYCLE,
+            "N/(mm um)",
+            "derivative of the force over the face width of both halves with respect to the transmission error",
+        ),
         "torque_share": Number(OVER_HALVES, "1", "share of the half in the torque", columns=("half_{}_torque_share",)),
         "axial_motion": Number(
             CYCLE, "mm", "motion of the floating gear along its axis, towards half a", columns=("axial_motion_um",)
@@ -74,7 +78,10 @@ NUMBERS = numbers(
             (*HALF, "strip"), "N/mm", "normal force per face width in each strip, mean over the pitch", columns=()
         ),
         "share_factor": Number(
-            TORQUE, "1", "largest share of a half over an even one", label="largest share of a half over an even one"
+            TORQUE,
+            "1",
+            "largest share of a half over an even share",
+            label="largest share of a half over an even share",
         ),
     }
 )
@@ -117,7 +124,7 @@ FIGURES: dict[str, Figure] = {
         of=lambda row: MICROMETRES * float(np.ptp(row.axial_motion)), label="  over the pitch, peak to peak"
     ),
     "axial_force_left_N": Figure(
-        of=lambda row: float(np.abs(row.axial_force_left).max()), label="largest axial force that is left"
+        of=lambda row: float(np.abs(row.axial_force_left).max()), label="largest axial force of both halves together"
     ),
     **{
         f"half_{name}_peak_pressure_MPa": Figure(
@@ -211,10 +218,10 @@ class DoubleHelicalResult(JoinedResult):
         for shares, torque in zip(self.torque_share, self.torque.tolist(), strict=True):
             for name, share in zip(HALVES, shares.T, strict=True):
                 if (share <= 0.0).any():
-                    words = "all" if (share <= 0.0).all() else "some"
+                    words = "any position" if (share <= 0.0).all() else "some positions"
                     sentences.append(
-                        f"under {shown_torque(torque)} half {name} carries nothing at {words} positions: its flanks "
-                        "stand farther apart than those of the other half give way"
+                        f"under {shown_torque(torque)} half {name} carries no load at {words}: the gap between "
+                        "its flanks is larger than the deflection of the other half"
                     )
         return (*sentences, *self.notes_of_places())
 
@@ -224,8 +231,8 @@ class DoubleHelicalResult(JoinedResult):
         largest = int(self.torque.argmax())
         return [
             f"under {shown_torque(torque)} the {self.scene.geometry.floating} stands {plain(way, 3)} mm along its axis "
-            f"from where it stands under {shown_torque(self.torque[largest])}, which half_a and half_b are of: for "
-            "mesh cycles there, analyse that torque by itself"
+            f"from its place under {shown_torque(self.torque[largest])}, for which half_a and half_b hold the mesh "
+            f"cycles: for mesh cycles at its place under {shown_torque(torque)}, analyse this torque by itself"
             for torque, way in zip(self.torque.tolist(), (places - places[largest]).tolist(), strict=True)
             if abs(way) > FACES * self.scene.narrow_half
         ]

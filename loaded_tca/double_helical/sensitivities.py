@@ -162,7 +162,7 @@ def double_helical_sensitivities(result: DoubleHelicalResult, keys: Sequence[str
             problems += error.problems
             continue
         if key not in (TORQUE, APEX) and not key.startswith("mounting.") and ".modifications." not in key:
-            problems.append(f"{key}: not of the derivatives of both halves together; allowed are {ALLOWED}")
+            problems.append(f"{key}: there are no derivatives of both halves together; allowed are {ALLOWED}")
     if apart := result.notes_of_places():
         problems.append(f"sensitivities: {apart[0]}")
     if problems:

@@ -62,7 +62,7 @@ Value = str | float | bool | tuple[Any, ...]
 
 @dataclass(frozen=True)
 class Attribute:
-    """A value of a component with its unit, as the file has them: text of XML is text still."""
+    """A value of a component with its unit, as the file has them: values of XML stay text."""
 
     value: Value
     unit: str = "none"

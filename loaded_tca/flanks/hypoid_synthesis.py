@@ -64,7 +64,7 @@ LARGEST_STEP = 0.3
 
 @dataclass(frozen=True)
 class Mismatch:
-    """What is removed from a flank of the pinion that is conjugate to the wheel, as a parabola about P.
+    """Material removed from a flank of the pinion that is conjugate to the wheel, as a parabola about P.
 
     Attributes
     ----------

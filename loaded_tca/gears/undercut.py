@@ -59,7 +59,7 @@ class Undercut:
 
 
 def undercuts(mesh: CylindricalMesh | InternalMesh) -> tuple[Undercut | None, Undercut | None]:
-    """Undercuts of pinion and wheel; None where one takes nothing that the mating gear would use.
+    """Undercuts of pinion and wheel; None of a gear without an undercut in what the mating gear would use.
 
     Parameters
     ----------

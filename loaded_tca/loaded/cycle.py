@@ -1,4 +1,4 @@
-"""Load of the tooth pairs over the positions of a pitch: one carries the torque, or all in contact share it."""
+"""Load of the tooth pairs over the positions of a pitch: one carries the torque, or all pairs in contact share it."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ from loaded_tca.tooth.families import BevelTooth
 
 @dataclass(frozen=True)
 class BevelMounting:
-    """Mounting errors of bevel gears, zero where the two apexes are one.
+    """Mounting errors of bevel gears, zero where both apexes coincide.
 
     Parameters
     ----------

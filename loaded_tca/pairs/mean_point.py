@@ -43,7 +43,7 @@ OTHER_FLANK: dict[FlankName, FlankName] = {"concave": "convex", "convex": "conca
 
 @dataclass(frozen=True)
 class MeanContact:
-    """How two flanks touch at their mean points, or are asked to.
+    """How two flanks touch at their mean points, or are to touch there.
 
     Attributes
     ----------

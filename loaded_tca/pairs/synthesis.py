@@ -89,7 +89,7 @@ def local_synthesis(
     tooth_angle: float | None = None,
     place: tuple[Array, Array] | None = None,
 ) -> FaceMilledGear:
-    """Return the pinion with settings at which it touches the wheel as it is asked to.
+    """Return the pinion with the settings at which it touches the wheel as asked for.
 
     Parameters
     ----------

@@ -276,12 +276,12 @@ ALWAYS = {
     ),
     "transmission_error": Picture(
         "over the positions, all torques",
-        "Absolute, and below less its mean over a pitch. The unloaded one is that of the flanks.",
+        "Above absolute, below less its mean over a pitch. The unloaded transmission error is that of the flanks.",
         lambda one: plot_transmission_error(one.result),
     ),
     "peak_pressure": Picture(
         "over the positions, all torques",
-        "Broad dashed lines: after Hertz, where Hertz holds. Crosses and arrows: pressure at an edge, "
+        "Broad dashed lines: pressure after Hertz, where Hertz holds. Crosses and arrows: pressure at an edge, "
         "mesh-dependent where the edge is sharp.",
         lambda one: plot_peak_pressure(one.result),
     ),
@@ -321,7 +321,8 @@ SHARED = {
     ),
     "mesh_stiffness": Picture(
         "over the positions, all torques",
-        "Solid: tangent of the force over the face width to the transmission error. Dotted: secant from no load.",
+        "Solid: derivative of the force over the face width with respect to the transmission error. Dotted: secant "
+        "from no load.",
         lambda one: plot_mesh_stiffness(one.result),
     ),
     "line_load": Picture(
@@ -346,8 +347,8 @@ SHARED = {
         lambda one: plot_pressure_envelope(one.result, one.torque),
     ),
     "path_pressure": Picture(
-        "from the begin to the end of contact, all torques",
-        "Peak pressure of a tooth pair from the begin to the end of its contact.",
+        "from the beginning to the end of contact, all torques",
+        "Peak pressure of a tooth pair from the beginning to the end of its contact.",
         lambda one: plot_path_pressure(one.result),
     ),
 }
@@ -371,7 +372,8 @@ ROOTS = {
 ON_SUPPORTS = {
     "misalignment": Picture(
         "misalignment of cylindrical gears over the torque, with its band over the pitch",
-        "Misalignment of both gears by their supports, counted as that of the mounting, which is not in it.",
+        "Misalignment of both gears by their supports, counted as the misalignment of the mounting, which it does not "
+        "contain.",
         lambda one: (
             plot_misalignment(one.result)
             if len(one.result.torque) > 1 and np.isfinite(one.result.misalignment).any()

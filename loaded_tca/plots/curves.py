@@ -58,7 +58,7 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
 
 
 def plot_peak_pressure(result: MeshCycle) -> Figure:
-    """Peak pressure over the positions for each torque, with that after Hertz and the pressure at edges.
+    """Peak pressure over the positions for each torque, with the pressure after Hertz and the pressure at edges.
 
     Where tooth pairs share the load, the peak and that after Hertz are those of the pair with the highest peak, the
     pressure at an edge is the highest of all pairs: single filled markers at rounded edges, crosses at sharp ones,

@@ -183,8 +183,8 @@ RATING_PICTURES = {
     ),
     "rating_damage": RatingPicture(
         "damage of the load cases over their torques",
-        "Damage of each load case in the required life at the required safeties. Of a load spectrum they add up, and "
-        "1 is the end of the life; without one, each torque stands for itself.",
+        "Damage of each load case in the required life at the required safeties. Under a load spectrum "
+        "the damages add up, and 1 is the end of the life; without a load spectrum each torque stands for itself.",
         "damage",
         plot_damage,
     ),

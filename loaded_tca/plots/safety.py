@@ -138,7 +138,7 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
 
 
 def plot_safeties(rating: OfCases) -> Figure:
-    """Safeties of the standard and local ones of all gears beside those required, with those of each case.
+    """Safeties of the standard and local safeties of all gears beside the required ones, and the safeties of each case.
 
     Parameters
     ----------
@@ -286,10 +286,10 @@ class RatingPicture(NamedTuple):
 
 SAFETY_PICTURES = {
     "safeties": RatingPicture(
-        "safeties of the standard and local ones beside those required",
-        "Of all gears the least of all cases, or that of all bins of a load spectrum together; where the local one is "
-        "below that of the standard, the contact of the analysis carries its load less evenly than the standard "
-        "assumes, or its pressure lacks Z_eps.",
+        "safeties of the standard and local safeties beside the required ones",
+        "Of each gear the smallest safety of all cases, or the safety under all bins of a load spectrum together. "
+        "Where the local safety is below that of the standard, the contact of the analysis carries its load less "
+        "evenly than the standard assumes, or the local pressure lacks Z_eps.",
         "flank_safety",
         plot_safeties,
     ),
@@ -302,7 +302,7 @@ SAFETY_PICTURES = {
     ),
     "root_safety": RatingPicture(
         "local safety against breakage over fillet and face of both gears, in the worst case",
-        "With the extremes of a whole turn at each place, and below its smallest over the face.",
+        "Safety with the extreme stresses of a whole turn at each place; below, its smallest value over the face.",
         "local_root_safety",
         plot_root_safety,
         of_places=True,

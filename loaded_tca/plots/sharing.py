@@ -60,7 +60,7 @@ PART_WITH_PHASE = 0.01
 
 
 def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
-    """Share of each tooth pair in the torque over the positions, a panel for each torque, and how many carry load.
+    """Share of each tooth pair in the torque over the positions, a panel for each torque; number of loaded pairs.
 
     Parameters
     ----------
@@ -306,7 +306,7 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
 
 
 def plot_path_pressure(result: MeshCycle) -> Figure:
-    """Peak pressure from the begin to the end of contact: every tooth pair at the angle of its own teeth, one curve.
+    """Peak pressure from beginning to end of contact: every tooth pair at the angle of its own teeth, one curve.
 
     For a spur pair that is the pressure from A to E, single contact from B to D. Dotted lines mark where the unloaded
     contact point comes to an edge of the flanks towards the pinion's root and tip (A, E), a pitch from the other end

@@ -240,7 +240,7 @@ def plot_stage_orders(result: StageResult, torque: int | None = None) -> Figure:
 STAGE_CAPTIONS = {
     "stage_phases": "Planets in phase have the same direction. Between both dials: how far the mesh of a planet with "
     "the ring is ahead of its mesh with the sun.",
-    "stage_shares": "Share of every planet in the torque of the sun; the largest over an even one is K_gamma.",
+    "stage_shares": "Share of every planet in the torque of the sun; the largest over an even share is K_gamma.",
     "stage_load_factor": "K_gamma as pin errors grow. Where they make it more than 1 it falls with the torque: errors "
     "stay, deflections grow. Three planets about a floating sun stay at 1, whatever the pins.",
     "stage_sun_orbit": "How far the sun goes to even the shares out, in the frame of the carrier.",
@@ -261,7 +261,7 @@ STAGE_PICTURES: dict[str, Callable[[StageResult], Figure]] = {
 
 
 def stage_figures(result: StageResult) -> dict[str, Figure]:
-    """Draw every picture of a stage; none of the orbit of a sun that stays where it is.
+    """Draw every picture of a stage, without the orbit of a sun that does not move.
 
     Parameters
     ----------

@@ -75,7 +75,7 @@ def plot_misalignment(result: MeshCycle) -> Figure:
 
 
 def plot_face_load_on_supports(result: MeshCycle, rigid: MeshCycle, torque: int | None = None) -> Figure:
-    """Load over the face width with supports that give way, and beside it that of the same gears on rigid ones.
+    """Load over the face width with supports that give way, and beside it the load of the same gears on rigid supports.
 
     Parameters
     ----------

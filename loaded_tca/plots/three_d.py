@@ -43,7 +43,7 @@ EXTRA = "pyvista is not installed; install it with: pip install 'loaded_tca[thre
 
 
 def plot_teeth(result: MeshCycle, position: int | None = None, torque: int | None = None) -> Figure:
-    """Both teeth in contact in the fixed frame, seen through the wheel's towards the pinion's flank.
+    """Both teeth in contact in the fixed frame, seen through the tooth of the wheel towards the flank of the pinion.
 
     On that flank lie the contact points of all positions and the pressure of one.
 

@@ -409,7 +409,7 @@ TRIBOLOGY_PICTURES: dict[str, TribologyPicture] = {
     ),
     "efficiency": TribologyPicture(
         "efficiency of the mesh over speed and torque",
-        "One less the friction power of the teeth over the power at the pinion.",
+        "1 minus the ratio of the friction power of the teeth to the power at the pinion.",
         "efficiency",
         plot_efficiency,
     ),

@@ -120,7 +120,7 @@ def bevel_inputs_of(result: CycleNumbers) -> BevelInputs:
     except InputError as error:
         problems += error.problems
     except GeometryError as error:
-        problems.append(f"pair: ISO 10300-3 has no root stress of this pair: {error}")
+        problems.append(f"pair: ISO 10300-3 gives no root stress for this pair: {error}")
     common = common_inputs(result, problems)
     return BevelInputs(result, scene, **common, sheet=sheet)
 
@@ -199,7 +199,7 @@ def _stiffness_notes(inputs: BevelInputs) -> tuple[str, ...]:
         return ()
     if abs(modulus / STEEL_MODULUS - 1.0) <= NEARLY:
         return ()
-    return ("c', c_gamma: those of steel, which the gears are not",)
+    return ("c', c_gamma: the values are those of steel, but the gears are not of steel",)
 
 
 def _dynamic_factor(inputs: BevelInputs, load: Array, softer: Array) -> tuple[Array, tuple[str, ...]]:

@@ -151,7 +151,7 @@ class BevelSheet:
     def edge_notes(self, gear: int) -> tuple[str, ...]:
         """What of the edge radius of a gear's tool does not count."""
         asked, most = self.members[gear].edge_radius, self._room(gear) * self.pair.mean_normal_module
-        return (f"rho_a0: {plain(asked)} mm does not fit the slot; {plain(most)} mm counts",) if asked > most else ()
+        return (f"rho_a0: {plain(asked)} mm does not fit the slot; {plain(most)} mm is used",) if asked > most else ()
 
     def _tooth(self, gear: int) -> tuple[float, float, float]:
         """x_hm, x_sm and h_a0/m_mn of a gear."""
@@ -185,7 +185,7 @@ def bevel_sheet(scene: SpiralScene) -> BevelSheet:
     mesh = scene.mesh()
     steep = [
         f"pair: the pitch angle of the {name}, {plain(degrees(angle))} deg, is not below 90 deg; ISO 10300 has virtual "
-        "cylindrical gears of external bevel gears alone"
+        "cylindrical gears for external bevel gears only"
         for name, angle in zip(GEARS, _pitch_angles(mesh), strict=True)
         if angle >= 0.5 * pi
     ]
@@ -235,10 +235,11 @@ def _of_equations(mesh: BevelMesh) -> BevelSheet:
     pair = _virtual_pair((first, second), mesh.wheel.teeth, width, (pressure, 0.0), (0.0, 0.0))
     circle = mesh.wheel.cutter_circle
     notes = [
-        f"rho_a0: spherical involutes have no tool; {plain(FILLET_RADIUS_COEFFICIENT, 6)} m_mn, or what fits the slots"
+        f"rho_a0: spherical involutes have no tool; it is taken as {plain(FILLET_RADIUS_COEFFICIENT, 6)} m_mn, or as "
+        "the largest radius that fits the slots"
     ]
     if circle is None and pair.spiral_angle:
-        notes.append("K_F0: 1, the lengthwise curve has no cutter")
+        notes.append("K_F0: taken as 1, since no cutter makes the lengthwise curve")
     shifts = mesh.pinion.profile_shift + mesh.wheel.profile_shift
     if abs(shifts) > _ROUNDING:
         notes.append(f"scope: profile shifts have a sum of {plain(shifts)}; the standard holds for a sum of 0")
@@ -266,8 +267,8 @@ def _of_settings(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> BevelSheet:
     width, (first, second) = mesh.wheel.blank.face_width, members
     pair = _virtual_pair((first, second), mesh.wheel.teeth, width, (pressure, limit), offsets)
     notes = [
-        f"rho_a0: the blades of the {name} have no edge radius; {plain(FILLET_RADIUS_COEFFICIENT, 6)} m_mn, or "
-        "what fits"
+        f"rho_a0: the blades of the {name} have no edge radius; it is taken as {plain(FILLET_RADIUS_COEFFICIENT, 6)} "
+        "m_mn, or as the largest radius that fits the slots"
         for name, member in zip(GEARS, members, strict=True)
         if not member.edge_radius
     ]
@@ -278,14 +279,14 @@ def _of_settings(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> BevelSheet:
 def _require_drive_side(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> None:
     """Refuse teeth of one flank, and the flank of a hypoid pair of which formulas are missing."""
     problems = [
-        f"{gear.name}.cutter: one blade; rating needs whole teeth, concave and convex"
+        f"{gear.name}.cutter: has one blade; a rating needs whole teeth with a concave and a convex flank"
         for gear in mesh.gears
         if None in (gear.cutter.concave, gear.cutter.convex)
     ]
     if isinstance(mesh, HypoidMesh) and sides[0] != "concave":
         problems.append(
-            "pair.pinion_flank: the convex flank of a hypoid pinion is in contact; formulas of its curvature in "
-            "ISO 10300-1 were not found, rating covers the drive side"
+            "pair.pinion_flank: the convex flank of a hypoid pinion is in contact; the formulas of ISO 10300-1 for its "
+            "curvature were not found, so that a rating covers the drive side only"
         )
     if problems:
         raise InputError(problems)

@@ -38,7 +38,7 @@ def as_coast_side(coast: CycleNumbers, drive: CycleNumbers) -> CycleNumbers:
     asked = drive.scene.analysis.root_stress
     if coast.scene.analysis.root_stress != asked:
         raise InputError(
-            f"coast: analysis.root_stress is not {str(asked).lower()}, as of the drive side; give the same"
+            f"coast: analysis.root_stress is not {str(asked).lower()}, as on the drive side; give both the same value"
         )
     expected = drive.scene.coast_side()
     for part in fields(expected):
@@ -49,7 +49,7 @@ def as_coast_side(coast: CycleNumbers, drive: CycleNumbers) -> CycleNumbers:
             wanted, present = replace(wanted, strength=None), replace(present, strength=None)
         if wanted != present:
             section = part.name.replace("geometry", "pair")
-            raise InputError(f"coast: [{section}] of its scene is not that of coast_side() of the scene")
+            raise InputError(f"coast: the section [{section}] of its scene differs from that of scene.coast_side()")
     return replace(coast, scene=replace(expected, analysis=coast.scene.analysis))
 
 

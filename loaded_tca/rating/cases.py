@@ -134,7 +134,7 @@ def problems_of_cases(
     bins = load.case
     without = [place for place, case in enumerate(bins or ()) if case.speed_rpm is None]
     if operation is None and (bins is None or without):
-        where = f"; bin {without[0]} has none of its own" if without else ""
+        where = f", and bin {without[0]} has no speed of its own" if without else ""
         yield f"operation: missing; strength, cycles and K_v depend on {load.CASE.MEMBER}_speed_rpm{where}"
     for name, strength in strengths.items():
         if strength is None or not any(case.reversed for case in bins or ()):

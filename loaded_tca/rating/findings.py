@@ -53,9 +53,9 @@ def findings(rating: Rating) -> tuple[str, ...]:
     if rating.inputs.cases.is_spectrum:
         return tuple(of_all_bins(rating))
     local = worst_of(rating, "local_")
-    of_local = f"by local stresses what decides is {local.words(rating)}, at {_place(rating, local)}"
+    of_local = f"by local stresses the critical failure is {local.words(rating)}, at {_place(rating, local)}"
     sentences = [
-        f"after {rating.standard} what decides is {worst_of(rating).words(rating)}",
+        f"after {rating.standard} the critical failure is {worst_of(rating).words(rating)}",
         of_local,
         _pressures(rating),
     ]
@@ -77,13 +77,13 @@ def of_all_bins(rating: OfCases) -> Iterator[str]:
         n = of[place]
         damage = rating.values("damage")[:, gear, n]
         sentence = (
-            f"{words} what decides is {ALL_FAILURES[_kind(rating.modes[n])]} of the {rating.MEMBERS[gear]}: safety "
-            f"{plain(safeties[gear, n])} in {plain(rating.life_required)} h, required {plain(required[n])}"
+            f"{words} the critical failure is {ALL_FAILURES[_kind(rating.modes[n])]} of the {rating.MEMBERS[gear]}: "
+            f"safety {plain(safeties[gear, n])} in {plain(rating.life_required)} h, required {plain(required[n])}"
         )
         if np.isfinite(damage).all() and damage.sum() > 0.0:
             case = int(damage.argmax())
             torque, most = plain(1e-3 * float(rating.torque[case])), damage[case] / damage.sum()
-            sentence += f"; bin {case + 1}, {torque} N m, does {100.0 * most:.0f} % of the damage"
+            sentence += f"; bin {case + 1} ({torque} N m) does {100.0 * most:.0f} % of the damage"
         yield sentence
 
 
@@ -108,12 +108,16 @@ def _pressures(rating: Rating) -> str:
     case = int(rating.local_flank_safety.min(axis=1).argmin())
     pressure, standard = float(rating.local_flank_stress[case]), float(rating.sigma_H[case].max())
     if not rating.has("Z_beta"):
-        return f"the largest local pressure is {pressure:.0f} MPa beside sigma_H {standard:.0f} MPa"
+        return f"the largest local pressure is {pressure:.0f} MPa, sigma_H is {standard:.0f} MPa"
     uneven = standard / float(rating.Z_eps[case] * rating.Z_beta[case])
-    beyond = "above, by what relief, edges and the place of the load on the flank add" if pressure > uneven else "below"
+    beyond = (
+        "above this, since relief, edges and the place of the load on the flank add to it"
+        if pressure > uneven
+        else "below this"
+    )
     return (
-        f"the largest local pressure is {pressure:.0f} MPa beside sigma_H {standard:.0f} MPa, and {beyond} "
-        f"the {uneven:.0f} MPa that it has without Z_eps and Z_beta, which local stresses lack"
+        f"the largest local pressure is {pressure:.0f} MPa, sigma_H is {standard:.0f} MPa; without Z_eps and Z_beta, "
+        f"which local stresses do not have, sigma_H is {uneven:.0f} MPa, and the local pressure is {beyond}"
     )
 
 
@@ -125,6 +129,7 @@ def _tensions(rating: Rating) -> str:
     tension, standard = float(rating.local_root_stress[case, gear]), float(rating.sigma_F[case, gear])
     mean = float(rating.local_Y_M[case, gear])
     return (
-        f"the local root tension of the {GEARS[gear]} is {tension:.0f} MPa beside sigma_F {standard:.0f} MPa; its "
-        f"stress ratio {rating.local_stress_ratio[case, gear]:.2f} takes {100.0 * (1.0 - mean):.1f} % of the strength"
+        f"the local root tension of the {GEARS[gear]} is {tension:.0f} MPa, sigma_F is {standard:.0f} MPa; the "
+        f"local stress ratio R = {rating.local_stress_ratio[case, gear]:.2f} lowers the strength by "
+        f"{100.0 * (1.0 - mean):.1f} %"
     )

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 FEWEST = 5
 """Positions over a pitch: of fewer the largest pressure and K_Hbeta miss much of the mesh."""
 NEEDED = {
-    "strength": "nothing is rated without allowable stresses: give material, or kind with its stresses",
-    "rating": "it has the required safeties and the hours",
+    "strength": "a rating needs allowable stresses: give material, or kind with its stresses",
+    "rating": "this section has the required safeties and the hours",
     "lubricant": "the strength of flanks depends on viscosity_40_mm2_s",
 }
 """Sections of any rating, and why they are."""
@@ -205,7 +205,9 @@ def inputs_of(result: CycleNumbers, duty: Duty = Duty()) -> RatingInputs:
     if not isinstance(scene, CylindricalScene):
         raise InputError(f'pair.type: "{scene.geometry.type}"; ISO 6336 is for cylindrical pairs')
     outside = [
-        f"{name}: ISO 6336 has no {what} of this pair: {why}" for name, what, holds, why in _outside(scene) if not holds
+        f"{name}: ISO 6336 gives no {what} for this pair: {why}"
+        for name, what, holds, why in _outside(scene)
+        if not holds
     ]
     return RatingInputs(result, scene, **common_inputs(result, outside, duty), mesh=scene.mesh(), duty=duty)
 
@@ -223,7 +225,9 @@ def common_inputs(result: CycleNumbers, outside: Sequence[str] = (), duty: Duty 
     problems = missing_sections({**strengths, "rating": scene.rating, "lubricant": scene.lubricant})
     analysis, torques = scene.analysis, np.asarray(result.torque)
     if not analysis.load_sharing:
-        problems.append("analysis.load_sharing: false; K_Hbeta is that of a mesh: set it to true and run the scene")
+        problems.append(
+            "analysis.load_sharing: false; a rating needs K_Hbeta of the whole mesh: set it to true and run the scene"
+        )
     if len(result.path) < FEWEST:
         problems.append(f"analysis.positions: {len(result.path)}; a rating takes {FEWEST} or more: run the scene again")
     if not (torques > 0.0).all():

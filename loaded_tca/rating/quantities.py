@@ -17,18 +17,18 @@ OF_ROOTS = Asked(
 
 _RESONANCE = {
     "resonance_ratio": "resonance ratio N",
-    "resonance_ratio_of_analysis": "N by the mesh stiffness of the analysis",
+    "resonance_ratio_of_analysis": "N with the mesh stiffness of the analysis",
 }
 _EXCITATION = {
     "transmission_error_span": "transmission error, peak to peak",
     "transmission_error_order_1": "transmission error, order 1 of the tooth mesh",
 }
 OF_CYLINDRICAL = Asked(
-    lambda scene, _: isinstance(scene, CylindricalScene), "a factor of ISO 6336; bevel pairs have those of ISO 10300"
+    lambda scene, _: isinstance(scene, CylindricalScene), "a factor of ISO 6336; bevel pairs have factors of ISO 10300"
 )
 OF_BEVEL = Asked(
     lambda scene, _: not isinstance(scene, CylindricalScene),
-    "a factor of ISO 10300, of bevel and hypoid pairs; cylindrical pairs have those of ISO 6336",
+    "a factor of ISO 10300, for bevel and hypoid pairs; cylindrical pairs have factors of ISO 6336",
 )
 
 _LOADS = {
@@ -132,16 +132,19 @@ NUMBERS: dict[str, Number] = {
         OF_GEARS,
         "mm",
         {
-            "local_flank_radius": "local: radius of its place, of a rack height above the reference line",
-            "local_flank_axial": "local: axial place",
+            "local_flank_radius": "local: radius of the place of this pressure, of a rack the height above the reference line",
+            "local_flank_axial": "local: axial coordinate of this place",
         },
     ),
     **_numbers(OF_GEARS, "1", {"local_flank_safety": "local: safety against pitting"}),
     **_numbers(
-        OF_GEARS, "MPa", {"local_root_stress": "local: root tension with K_A K_gamma K_v where it decides"}, OF_ROOTS
+        OF_GEARS,
+        "MPa",
+        {"local_root_stress": "local: root tension with K_A K_gamma K_v at the place that decides"},
+        OF_ROOTS,
     ),
-    **_numbers(OF_GEARS, "rad", {"local_root_angle": "local: tangent angle of that place"}, OF_ROOTS),
-    **_numbers(OF_GEARS, "mm", {"local_root_axial": "local: axial place of it"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "rad", {"local_root_angle": "local: tangent angle of this place"}, OF_ROOTS),
+    **_numbers(OF_GEARS, "mm", {"local_root_axial": "local: axial coordinate of this place"}, OF_ROOTS),
     **_numbers(OF_GEARS, "1", {"local_stress_ratio": "local: smallest over largest stress R"}, OF_ROOTS),
     **_numbers(OF_GEARS, "1", {"local_Y_M": "local: mean stress influence factor Y_M"}, OF_ROOTS),
     **_numbers(OF_GEARS, "MPa", {"local_sigma_FG": "local: root strength sigma_FG"}, OF_ROOTS),

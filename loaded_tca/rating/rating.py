@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from loaded_tca.scene import Scene
     from loaded_tca.scene.rating import RatingSection
 
-NOT_COUNTED = "pitch deviations and load paths beside K_A K_gamma K_v are not in local safeties; Z_X is 1"
+NOT_COUNTED = "local safeties have pitch deviations and load paths only as far as K_A K_gamma K_v have them; Z_X is 1"
 WORDS = {
     FLANK: "flank",
     ROOT: "root",
@@ -187,8 +187,8 @@ class OfCases(Result):
 
 def shown_speeds(speed: Array) -> str:
     """Speeds (c,) [rpm] in words."""
-    least, most = speed.min(), speed.max()
-    return f"{least:g} rpm" if least == most else f"{least:g} to {most:g} rpm"
+    least, most = plain(float(speed.min()), 6), plain(float(speed.max()), 6)
+    return f"{least} rpm" if least == most else f"{least} to {most} rpm"
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -51,7 +51,7 @@ def local_root_factors(
     try:
         return ratio, iso6336_3.root_factors(made_of, cycles=cycles, stress_ratio=ratio, **common), ()
     except InputError:  # cast irons, of which the standard has no sensitivity
-        note = "local Y_M: the standard has no mean stress sensitivity of this material; 1 counts"
+        note = "local Y_M: the standard has no mean stress sensitivity for this material; Y_M is taken as 1"
         return ratio, iso6336_3.root_factors(made_of, cycles=cycles, **common), (note,)
 
 

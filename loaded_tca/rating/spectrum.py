@@ -73,19 +73,20 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
     if below.any():
         parts = arrays["damage"][below].sum(axis=0)[sums > 0.0] / sums[sums > 0.0]
         largest = float(parts[np.isfinite(parts)].max(initial=0.0))
-        part = f"their damage is {plain(largest, 1)} of all"
-        yield f"{below.sum()} bins lie below {plain(1e-3 * solved.torque[0])} N m, the smallest torque solved; {part}"
+        part = f"they do up to {plain(100.0 * largest, 1)} % of the damage"
+        least = f"{plain(1e-3 * solved.torque[0])} N m, the smallest torque that was solved"
+        yield f"{below.sum()} bins lie below {least}; {part}"
     if cases.reversed.any():
         bins = f"reversed bins ({cases.reversed.sum()} of {len(between)})"
         if of_both_sides:
-            yield f"{bins} load the flanks of the coast side, and stress roots, as its analysis has them"
+            yield f"{bins} load the flanks of the coast side and the roots as the analysis of the coast side has it"
         else:
-            yield f"{bins} load the other flanks, which are not analysed: no damage of these is counted"
-            yield f"{bins} stress roots as the same torques do the other way"
-        yield f"{bins} have Y_M of R = {plain(REVERSED, 6)}; the others have Y_M by root_stress_ratio"
+            yield f"{bins} load the other flanks, which are not analysed: damage of the other flanks is not counted"
+            yield f"{bins} stress the roots as much as the same torques that are not reversed"
+        yield f"{bins} have Y_M of the stress ratio R = {plain(REVERSED, 6)}; other bins have Y_M by root_stress_ratio"
     if abs(cases.repeated - 1.0) > ROUNDING:
         together = f"{plain(cases.life_hours / cases.repeated, 6)} h"
-        yield f"the hours of the bins, {together}, follow each other {plain(cases.repeated)} times"
+        yield f"the bins, together {together}, follow each other {plain(cases.repeated)} times"
 
 
 class OfSpectrum(OfCases):

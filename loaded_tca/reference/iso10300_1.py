@@ -488,7 +488,7 @@ def dynamic_factor_by_grade(outer_velocity: ArrayLike, grade: int) -> BevelDynam
     exponent = 0.25 * (grade - 4.0) ** 0.667
     constant = 50.0 + 56.0 * (1.0 - exponent)
     fastest = (constant + 13.0 - grade) ** 2 / 200.0
-    notes = (f"K_v: a velocity above {plain(fastest, 3)} m/s, the largest of method C for grade {grade}",)
+    notes = (f"K_v: the velocity is above {plain(fastest, 3)} m/s, the largest of method C for grade {grade}",)
     factor = (constant / (constant + np.sqrt(200.0 * speed))) ** -exponent
     return BevelDynamicFactor(factor, notes if bool(np.any(speed > fastest)) else ())
 

@@ -531,7 +531,7 @@ def _work_factors(
         if not low <= gear.hardness <= high:
             notes.append(
                 f"Z_W: {plain(gear.hardness, 6)} HBW is not within {plain(low, 6)} to {plain(high, 6)} HBW, "
-                "and counts as the nearer"
+                "and the nearer limit is used"
             )
     larger = int(gear_ratio >= 1.0)
     soft, hard = gears[larger], gears[1 - larger]
@@ -539,5 +539,7 @@ def _work_factors(
         ratio, step = hard.hardness / soft.hardness, max(gear_ratio, 1.0 / gear_ratio)
         work[larger] = np.asarray(through_hardened_work_factor(ratio, step))
         if step > _LARGEST_RATIO and ratio >= 1.2:
-            notes.append(f"Z_W: the gear ratio {plain(step, 6)} counts as {plain(_LARGEST_RATIO, 6)}")
+            notes.append(
+                f"Z_W: {plain(_LARGEST_RATIO, 6)} is used for the gear ratio {plain(step, 6)}, which is larger"
+            )
     return work, static, tuple(notes)

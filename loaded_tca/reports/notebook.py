@@ -160,7 +160,7 @@ def _cell(text: str) -> str:
 
 
 def card_of(subject: Any) -> Card:
-    """Return what a notebook shows of a subject; notebooks ask for it by themselves, but of the dataset of a study.
+    """Return what a notebook shows of a subject; notebooks call it by themselves, except for the dataset of a study.
 
     Parameters
     ----------

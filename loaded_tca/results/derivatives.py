@@ -193,7 +193,7 @@ NO_LOAD = "sensitivities: no tooth pair of the result carries load"
 
 
 def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
-    """Derivatives of a result to keys of its scene; see :meth:`MeshCycle.sensitivities`."""
+    """Derivatives of a result with respect to keys of its scene; see :meth:`MeshCycle.sensitivities`."""
     listed = isinstance(keys, Iterable) and not isinstance(keys, str | bytes)
     require((listed, f"keys: {keys!r:.80}; allowed is a list of keys"))
     keys = [*keys]

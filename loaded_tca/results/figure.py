@@ -58,7 +58,9 @@ def saying(sentence: str) -> Note:
 def of_peak(_: str, result: CycleNumbers, part: slice, figures: Sequence[Figures]) -> str:
     """How accurate the peak pressure is."""
     of_slices = any(entry["edge_positions"] or entry["relief_start_positions"] for entry in figures)
-    beside = "; where an edge or a relief start is reached, that of slices" if of_slices else ""
+    beside = (
+        "; where contacts reach an edge or a relief start, the error of the pressure of slices" if of_slices else ""
+    )
     return f"mesh-independent; error of the grid: {_errors_at_peak(result, part)}{beside}"
 
 
@@ -83,7 +85,7 @@ def of_face_load(_: str, result: CycleNumbers, __: slice, figures: Sequence[Figu
     moves = [entry["face_load_factor_by_positions"] for entry in figures]
     known = [f"{move:.1%}" for move in moves if math.isfinite(move)]
     strips = f"{max(known, key=lambda text: float(text[:-1]))} of the largest" if known else ""
-    by = f", whose halves move strips by {strips}" if known else ""
+    by = f"; from every second position alone loads of strips differ by {strips}" if known else ""
     return f"from 30 strips of the face and {len(result.path)} positions{by}"
 
 
@@ -99,7 +101,7 @@ def of_largest(_: str, result: CycleNumbers, *__: object) -> str:
 
 def of_orders(_: str, result: CycleNumbers, *__: object) -> str:
     """What positions do to orders of the tooth mesh."""
-    return f"of {len(result.path)} positions: higher orders are aliased into it"
+    return f"from {len(result.path)} positions: higher orders are aliased into this order"
 
 
 def of_bending(name: str, result: CycleNumbers, *_: object) -> str:
@@ -114,12 +116,12 @@ def compared(name: str, result: CycleNumbers, *_: object) -> str:
     if not any(words in name for percents in COMPARED.values() for words in percents):
         return ""
     for kind, percent in _percents(name, result):
-        return f"{kind}: those compared are within {plain(percent, 6)} % of finite elements"
+        return f"{kind}: the gears that were compared are within {plain(percent, 6)} % of finite elements"
     within = {kind: percent for kind, of in COMPARED.items() for words, percent in of.items() if words in name}
     others = ", ".join(f"{kind} within {plain(percent, 6)} %" for kind, percent in within.items())
     kinds = "helical teeth" if math.isfinite(result.scene.transverse_angles[1]) else "teeth of bevel gears"
     return (
-        f"{NO_ESTIMATE}: of {kinds} this figure was not compared with finite elements ({others}); compare it with "
+        f"{NO_ESTIMATE}: for {kinds} this figure was not compared with finite elements ({others}); compare it with "
         "finite elements or a measurement of such gears"
     )
 
@@ -140,7 +142,7 @@ def _errors_at_peak(result: CycleNumbers, part: slice) -> str:
         for place in (result.peak_contact(torque),)
     ]
     if np.isnan(errors).all():
-        return f"{NO_ESTIMATE}, since `cells` are given or nothing is under load: give `accuracy`, or compare two grids"
+        return f"{NO_ESTIMATE}, since `cells` are given or no pair is under load: give `accuracy`, or compare two grids"
     return ", ".join(map(in_percent, errors))
 
 

@@ -279,7 +279,7 @@ FIGURES: dict[str, Figure] = {
     "wind_up_mean_um": Figure(
         of=lambda under: mean_over_a_pitch(under.wind_up) * under.length,
         axis="mean wind-up",
-        label="wind-up in it, mean",
+        label="wind-up in the transmission error, mean",
         is_compared=True,
         needs="wind_up",
     ),

@@ -93,13 +93,13 @@ def _odd_inputs(scene: Scene) -> list[str]:
     """Questions about numbers that look like those of another unit."""
     sentences = []
     for modulus in dict.fromkeys(material.youngs_modulus_MPa for material in scene.materials):
-        what = f"{'less' if modulus < SOFTEST else 'more'} than that of any material of gears"
+        what = f"{'less' if modulus < SOFTEST else 'more'} than the modulus of any gear material"
         if not SOFTEST <= modulus <= STIFFEST:
             key = "material.youngs_modulus_MPa"
             sentences.append(kinds.ODD_INPUT.sentence(key=key, value=modulus, unit="MPa", what=what))
     largest = 1e-3 * max(scene.torques)
     if largest > LARGEST_TORQUE_Nm:
-        what = "more than that of any pinion on land"
+        what = "more than the torque of any pinion on land"
         sentences.append(kinds.ODD_INPUT.sentence(key="load.pinion_torque_Nm", value=largest, unit="N m", what=what))
     return sentences
 
@@ -122,7 +122,8 @@ def questions(scene: Scene) -> list[str]:
     hardest = hardest_pressure(*(material.youngs_modulus_MPa for material in scene.materials))
     for stress, most, name in ((contact, hardest, "sigma_H0"), (root, HARDEST_ROOT_MPa, "sigma_F0")):
         if stress > most:
-            what = f"a {name} of {plain(stress)} MPa, above {plain(most)}, which no material of gears carries"
+            above = f"above {plain(most)} MPa, which no gear material carries"
+            what = f"a torque with a {name} of {plain(stress)} MPa, {above}"
             sentences.append(
                 kinds.ODD_INPUT.sentence(key="load.pinion_torque_Nm", value=1e-3 * torque, unit="N m", what=what)
             )

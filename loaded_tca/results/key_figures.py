@@ -51,23 +51,26 @@ AXES = {
 """Key figure -> its label on axes, in the order of tables and files."""
 
 REASONS: Mapping[str, str] = {
-    STRESS: "sigma_H0 is the pressure of Hertz at the pitch point under an even load; the peak pressure has the load "
-    "as pairs and face share it, and the curvature where it acts",
+    STRESS: "sigma_H0 is the pressure of Hertz at the pitch point under an even load; the computed peak pressure has "
+    "the load as tooth pairs and face share it, and the curvature where this load acts",
     SINGLE_CONTACT[0]: "Z_B and Z_D are for the curvature where single contact begins, under the whole load; computed "
-    "teeth that bend hand it over gradually",
-    CONTACT_RATIO: "Z_eps stands for an even load on contact lines of mean length; computed contacts have the load and "
-    "the length of their position",
+    "teeth bend and hand the load over to the next pair gradually",
+    CONTACT_RATIO: "Z_eps stands for an even load on contact lines of mean length; at each position computed contacts "
+    "have the load and the length that they have there",
     HELIX_ANGLE: "Z_beta = 1/sqrt(cos(beta)) is fitted to tests of helical gears; computed contacts lie askew on their "
     "flanks",
     SINGLE_STIFFNESS: "c' is the largest stiffness of one tooth pair, measured on solid steel discs above 100 N/mm; "
     "computed teeth have the fillets, bores and load of these gears",
     MESH_STIFFNESS: "c_gamma_alpha is c' (0.75 eps_alpha + 0.25), without body torsion; the computed mesh stiffness "
     "depends on load and bores, and bodies of helical gears tilt",
-    TRANSVERSE_LOAD: "K_Halpha may lie outside 1 to its upper bound: it is over the mean length of all contact lines, "
-    "eps_alpha b/cos(beta_b), that of ISO 6336-1 over b/(Z_eps^2 cos(beta_b)), and the load along a line is uneven",
+    TRANSVERSE_LOAD: "the computed K_Halpha may lie outside the range from 1 to the upper bound: it refers to the mean "
+    "length of all contact lines, eps_alpha b/cos(beta_b), while K_Halpha of ISO 6336-1 refers to "
+    "b/(Z_eps^2 cos(beta_b)); besides, the load along a contact line is uneven",
 }
 """Key figure -> why the computed number beside it differs; that of Z_B holds for Z_D, too."""
-WHERE_REASONS_ARE = "ISO 6336: computed numbers differ from the standard's, loaded-tca check and the report say why"
+WHERE_REASONS_ARE = (
+    "ISO 6336: computed numbers differ from those of the standard; loaded-tca check and the report say why"
+)
 """The line of a summary that has numbers of the standard."""
 
 

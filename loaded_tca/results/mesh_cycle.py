@@ -347,9 +347,9 @@ class MeshCycle(CycleNumbers, AnalysisResult):
     def findings(self) -> tuple[str, ...]:
         """Return sentences on the largest pressures, if edges make them.
 
-        The largest pressure at an edge under each torque, of pairs that carry a thousandth of it and more: where, under
-        what load, how exact, and what would remove it. A peak pressure of slices at an edge in a pair that carries less
-        than a tenth, beside that of the others.
+        The largest pressure at an edge under each torque, of pairs that carry a thousandth of the torque and more:
+        where, under what load, how exact, and which relief takes the load off the edge. A peak pressure of slices at an
+        edge, on a pair that carries less than a tenth of the torque, beside the peak pressure of other pairs.
         """
         return findings_of(self)
 

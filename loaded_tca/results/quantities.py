@@ -21,7 +21,7 @@ QUANTITIES: dict[str, Part] = {
     "coupled_pitches": (
         (),
         "1",
-        "most pitches between two tooth pairs that the bending of the teeth couples; 0 where no teeth bend",
+        "largest number of pitches between two tooth pairs that tooth bending couples; 0 where no teeth bend",
     ),
     "max_pressure": ((), "MPa", "cap on the pressure; NaN: elastic"),
     "unloaded_transmission_error": Number(
@@ -30,24 +30,36 @@ QUANTITIES: dict[str, Part] = {
     "face_load_factor": (("torque",), "1", "face load factor K_Hbeta, from 30 strips of the face"),
     "transverse_load_factor": (("torque",), "1", "transverse load factor K_Halpha; NaN for bevel gears"),
     "transmission_error": Number(CYCLE, "rad", "loaded transmission error, absolute", at_base_circle=True),
-    "mesh_stiffness": (CYCLE, "N/(mm um)", "tangent of the force over the face width to the transmission error"),
-    "secant_stiffness": (CYCLE, "N/(mm um)", "force over the face width, over the transmission error it adds"),
+    "mesh_stiffness": (
+        CYCLE,
+        "N/(mm um)",
+        "derivative of the force over the face width with respect to the transmission error",
+    ),
+    "secant_stiffness": (
+        CYCLE,
+        "N/(mm um)",
+        "force over the face width, divided by the transmission error that the load adds",
+    ),
     "loaded_pairs": (CYCLE, "1", "number of tooth pairs under load"),
     "load_share": Number(PAIRS, "1", "share of the tooth pair in the torque", columns=("load_share_pair_{}",)),
     "normal_force": (PAIRS, "N", "normal force on the tooth pair"),
     "peak_pressure": (
         PAIRS,
         "MPa",
-        "peak contact pressure; where the contact reaches an edge or a relief start, the largest of its slices, or of "
-        "its cells in slices apart from there",
+        "peak contact pressure; where the contact reaches an edge or a relief start, the larger of two: the largest "
+        "pressure of its slices, and the largest pressure of cells in slices away from there",
     ),
     "edge_pressure": (
         PAIRS,
         "MPa",
-        "largest pressure at an edge; NaN where none is reached, and at rounded ones that cannot hold the largest of "
-        "their torque unless all are asked for",
+        "largest pressure at an edge; NaN where the contact reaches no edge, and at rounded edges that cannot have the "
+        "largest pressure under their torque unless all edges are asked for",
     ),
-    "edge_is_rounded": (PAIRS, "1", "whether that edge is rounded; the pressure at a sharp one is mesh-dependent"),
+    "edge_is_rounded": (
+        PAIRS,
+        "1",
+        "whether the edge of edge_pressure is rounded; the pressure at a sharp edge is mesh-dependent",
+    ),
     "edge_pressure_error": (PAIRS, "1", "estimated relative error of the pressure at a rounded edge by its columns"),
     "edge_radius": Number(
         PAIRS, "mm", "radius on the pinion of the edge pressure", column="edge_pinion_diameter_mm", times=2.0
@@ -58,7 +70,7 @@ QUANTITIES: dict[str, Part] = {
     "central_pressure": (
         PAIRS,
         "MPa",
-        "contact pressure beside the point that the grid grows from, mesh-dependent where that is on a sharp edge",
+        "contact pressure beside the point where the grid starts, mesh-dependent if this point is on a sharp edge",
     ),
     "peak_radius": Number(
         PAIRS, "mm", "radius on the pinion of the peak pressure", column="peak_pinion_diameter_mm", times=2.0
@@ -69,16 +81,24 @@ QUANTITIES: dict[str, Part] = {
     "hertz_pressure": (
         PAIRS,
         "MPa",
-        "peak pressure after Hertz at the contact point or of the line; NaN where Hertz does not hold",
+        "peak pressure after Hertz at the contact point or of the contact line; NaN where Hertz does not hold",
     ),
     "hertz_semi_minor": Number(
         PAIRS, "mm", "half width across the contact after Hertz", column="hertz_width_mm", times=2.0
     ),
     "hertz_semi_major": Number(
-        PAIRS, "mm", "half length of the Hertz ellipse, or of the loaded line", column="hertz_length_mm", times=2.0
+        PAIRS,
+        "mm",
+        "half length of the Hertz ellipse, or of the loaded contact line",
+        column="hertz_length_mm",
+        times=2.0,
     ),
     "contact_width": (PAIRS, "mm", "full width of the contact across, from the pressure map"),
-    "contact_length": (PAIRS, "mm", "full length of the contact, from the pressure map, but not beyond the face"),
+    "contact_length": (
+        PAIRS,
+        "mm",
+        "full length of the contact, from the pressure map, without any part beyond the face",
+    ),
     "line_load": (PAIRS, "N/mm", "largest force per length along the contact; at a face end mesh-dependent"),
     "line_load_ratio": (PAIRS, "1", "largest line load over the force spread evenly along the whole face"),
     "contact_deformation": Number(
@@ -94,8 +114,8 @@ QUANTITIES: dict[str, Part] = {
     "discretisation_error": (
         PAIRS,
         "1",
-        "estimated relative error of the peak pressure by the grid, from the two finest; NaN where cells are given, "
-        "and without load",
+        "estimated relative error of the peak pressure by the grid, from the two finest grids; NaN where cells are "
+        "given, and without load",
     ),
     "iterations": (PAIRS, "1", "iterations of the contact solver"),
     "residual": (PAIRS, "1", "residual of the contact solver"),
@@ -112,22 +132,30 @@ OF_THE_EDGE = frozenset({"edge_pressure", "edge_is_rounded", "edge_pressure_erro
 
 ROOT_QUANTITIES: dict[str, Part] = {
     "root_tension": (OVER_CYCLE, "MPa", "largest stress at the roots of all teeth of pinion and wheel, on both sides"),
-    "root_compression": (OVER_CYCLE, "MPa", "smallest stress there, negative in compression"),
-    "root_tension_angle": (OVER_CYCLE, "rad", "tangent of the fillet to the middle of the tooth, at the tension"),
-    "root_compression_angle": (OVER_CYCLE, "rad", "the same at the compression"),
-    "root_tension_axial": (OVER_CYCLE, "mm", "axial coordinate on the gear itself, at the tension"),
-    "root_compression_axial": (OVER_CYCLE, "mm", "the same at the compression"),
+    "root_compression": (OVER_CYCLE, "MPa", "smallest stress at the roots of all teeth, negative in compression"),
+    "root_tension_angle": (
+        OVER_CYCLE,
+        "rad",
+        "angle of the fillet tangent to the middle line of the tooth, at the largest tension",
+    ),
+    "root_compression_angle": (OVER_CYCLE, "rad", "angle of the fillet tangent, at the largest compression"),
+    "root_tension_axial": (OVER_CYCLE, "mm", "axial coordinate on the gear itself, at the largest tension"),
+    "root_compression_axial": (OVER_CYCLE, "mm", "axial coordinate on the gear, at the largest compression"),
     "root_tension_place": (
         (*OVER_CYCLE, "index"),
         "1",
-        "tooth, counted in the sense of +theta; side, 0 that in contact; station along the fillet; place along the "
+        "tooth, counted in the sense of +theta; side, 0 the one in contact; station along the fillet; place along the "
         "face; -1 where nothing is known",
     ),
-    "root_compression_place": ((*OVER_CYCLE, "index"), "1", "the same of the compression"),
+    "root_compression_place": (
+        (*OVER_CYCLE, "index"),
+        "1",
+        "indices of the largest compression, as of root_tension_place",
+    ),
     "root_stress_ratio": (
         ("torque", "gear"),
         "1",
-        "smallest over largest stress in a whole turn where a tooth has its largest tension",
+        "smallest over largest stress in a whole turn, at the place of the largest tension of a tooth",
     ),
 }
 """Numbers of both gears that a result has where its scene asks for root stress."""
@@ -135,7 +163,7 @@ PLACE = "tooth", "side", "station", "along"
 """What the axis ``index`` counts."""
 
 ON_FILLETS: dict[str, Part] = {
-    "root_angle": (("side", "station"), "rad", "tangent of the fillet to the middle of the tooth"),
+    "root_angle": (("side", "station"), "rad", "angle of the fillet tangent to the middle line of the tooth"),
     "root_point": (("side", "station"), "mm", "places in the frame of the tooth"),
     "root_stress_at_tension": (("torque", "side", "station"), "MPa", "stress of the tooth with the largest tension"),
     "root_stress_largest": (("torque", "side", "station"), "MPa", "largest stress of a tooth in a whole turn"),
@@ -157,7 +185,7 @@ SUPPORT_QUANTITIES: dict[str, Part] = {
         "mm, rad",
         "motion of the middle of the pinion's face on its axis: along x, y, z and about them, axes of the fixed frame",
     ),
-    "wheel_motion": (MOTION, "mm, rad", "the same of the wheel"),
+    "wheel_motion": (MOTION, "mm, rad", "motion of the middle of the wheel's face on its axis, as of pinion_motion"),
     "misalignment": (
         CYCLE,
         "um",
@@ -167,15 +195,19 @@ SUPPORT_QUANTITIES: dict[str, Part] = {
     "wind_up": (
         CYCLE,
         "rad",
-        "part of the transmission error by the rotation of both gears about their axes against their shafts' ends",
+        "part of the transmission error that comes from the rotation of both gears against the ends of their shafts",
     ),
-    "drive_stiffness": (CYCLE, "N/(mm um)", "drive stiffness: mesh stiffness with what the supports give way"),
+    "drive_stiffness": (
+        CYCLE,
+        "N/(mm um)",
+        "drive stiffness: mesh stiffness that includes the compliance of the supports",
+    ),
     **{
         f"{gear}_support_load": (
             ("torque", f"{gear}_support"),
             "N, N mm",
-            f"forces along x, y, z and moments about them, station by station, whose motions the {gear} is moved by "
-            f"before the contact is traced, axes of the {gear}'s own frame",
+            f"forces along x, y, z and moments about them at each station; the {gear} is moved by the motions that "
+            f"they cause before the contact is traced; axes of the {gear}'s own frame",
         )
         for gear in GEARS
     },
@@ -206,9 +238,15 @@ ROLLING_QUANTITIES: dict[str, Part] = {
             CYCLE,
             (),
             "N",
-            "largest force of a rolling element of the {}'s bearings; NaN of linear ones",
+            "largest force of a rolling element of the {}'s bearings; NaN for linear bearings",
         ),
-        ("{}_element_pressure", CYCLE, (), "MPa", "largest contact pressure there, at the inner ring"),
+        (
+            "{}_element_pressure",
+            CYCLE,
+            (),
+            "MPa",
+            "largest contact pressure of a rolling element at the inner ring of the {}'s bearings",
+        ),
         (
             "{}_bearing_life",
             ("torque",),
@@ -252,7 +290,7 @@ MAP_PARTS: dict[str, Part] = {
     "pressure": (
         ("across", "along"),
         "MPa",
-        "contact pressure, the mean over the whole cell where an edge cuts it",
+        "contact pressure; in cells that an edge cuts the mean over the whole cell",
     ),
     "gap": (
         ("across", "along"),

@@ -69,7 +69,7 @@ REVOLUTION_QUANTITIES: dict[str, Number] = {
     "root_tension_tooth": Number(
         OVER_CYCLE,
         "1",
-        "tooth of the pinion and of the wheel that has the tension, from 0",
+        "tooth of the pinion and of the wheel that has the largest tension, from 0",
         asked=CYCLE_NUMBERS["root_tension"].asked,
     ),
 }

@@ -44,7 +44,7 @@ STATES_AT_A_TIME = 32
 
 @dataclass(frozen=True, eq=False)
 class RootStressMap:
-    """Root stress of one gear over fillet and face, for both sides of a tooth: first that in contact, then its back.
+    """Root stress of one gear over fillet and face, for both sides of a tooth, the one in contact first.
 
     Attributes
     ----------

@@ -64,7 +64,7 @@ FEW = 200
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
-    """Derivatives of a result to keys of its scene; NaN where nothing is in contact or nothing is loaded.
+    """Derivatives of a result with respect to keys of its scene; NaN where nothing is in contact or nothing is loaded.
 
     Found when they are asked for: the transmission error costs one linear problem for each state, a torque and
     position under load; the others one more for each loaded tooth pair, however many keys there are.

@@ -27,14 +27,12 @@ MOST_TORQUES = 6
 NOTES = (
     ("line_positions", "the unloaded contact is a line"),
     ("edge_positions", "the contact reaches an edge of a flank"),
-    ("relief_start_positions", "the start of a linear relief lies in the contact: no Hertz there"),
+    ("relief_start_positions", "the start of a linear relief lies in the contact, for which Hertz gives no pressure"),
 )
 """Key figure that counts positions, and what holds at these."""
 ON_BACK = ("pinion_root_tension_on_back", "wheel_root_tension_on_back")
 """Key figures that say on which side of the tooth the root tension lies."""
-BESIDE_ISO = (
-    "no safety, K_A, K_V, life or material factors are in root stress, neither computed nor after ISO 6336-3:2006"
-)
+BESIDE_ISO = "root stress, computed or after ISO 6336-3:2006, has no safety, K_A, K_V, life or material factors in it"
 """What stands beside stress by the standard."""
 
 

@@ -74,7 +74,7 @@ def _usual(scene: Scene, key: str) -> float:
 
 
 def key_figure_slopes(sensitivities: Sensitivities) -> dict[str, Array]:
-    """Return derivatives of key figures to the keys, by the names of ``MeshCycle.key_figures``.
+    """Return derivatives of key figures with respect to the keys, by the names of ``MeshCycle.key_figures``.
 
     Parameters
     ----------

@@ -334,34 +334,38 @@ def _edge_finding(result: CycleNumbers, torque: int) -> str:
     at = torque, n, k
     edges = [name for name, one in zip(EDGES, _edges_of_pressure(result, *at), strict=True) if one]
     error, cap = float(result.edge_pressure_error[at]), float(result.max_pressure)
-    accuracy = "mesh-dependent: theory has an infinite one at a sharp edge"
+    accuracy = "mesh-dependent, since in theory the pressure at a sharp edge is infinite"
     if result.edge_is_rounded[at]:
-        known = f"by columns, with an estimated error of {error:.1%}"
+        known = f"solved on columns of cells, with an estimated error of {error:.1%}"
         accuracy = (
-            known if math.isfinite(error) else "without a limit: a sharp edge or a relief start meets the rounding"
+            known
+            if math.isfinite(error)
+            else "without a limit, since a sharp edge or a relief start meets the rounding"
         )
-    elastic = "elastic" if math.isnan(cap) else f"with the cap of {plain(cap, 6)} MPa"
+    elastic = "elastic" if math.isnan(cap) else f"capped at {plain(cap, 6)} MPa"
     remedies = [
         f"{relief} on the {' or '.join(dict.fromkeys(name.split()[0] for name in edges if where in name))}"
         for relief, where in (("end relief", "side"), ("tip relief", "tip"))
         if any(where in name for name in edges)
     ]
     deflection = 1e3 * float(np.nansum([result.contact_deformation[at], result.tooth_deflection[at]]))
-    amount = f"{plain(deflection, 2)} um, the deflection of the pair"
+    amount = f"{plain(deflection, 2)} um, the deflection of the tooth pair"
     if result.paths[k].edges[n].any():
-        amount = f"more than {amount} (the edge is the first place to touch already without load)"
-    remedy = f"load leaves the edge with {' or '.join(remedies) or 'a relief'} of {amount}"
+        amount = f"more than {amount}, since the pair first touches at this edge even without load"
+    remedy = f"to unload this edge, use {' or '.join(remedies) or 'a relief'} of {amount}"
     share = f"{plain(100.0 * result.load_share[at], 3)} % of the torque"
     largest = float(np.nanmax(result.edge_pressure[torque]))
     beyond = (
-        f"; the largest one, {plain(largest)} MPa, is that of a pair with less than {LEAST_SHARE:.1%} of the torque"
+        f"; the largest edge pressure, {plain(largest)} MPa, is on a pair with less than {LEAST_SHARE:.1%} of the "
+        "torque"
         if largest > result.edge_pressure[at]
         else ""
     )
     return (
         f"edge pressure {plain(result.edge_pressure[at])} MPa at {plain(1e-3 * result.torque[torque], 6)} N m on "
         f"{' + '.join(edges)} (pinion diameter {plain(2.0 * result.edge_radius[at])} mm, axial "
-        f"{plain(result.edge_axial[at])} mm), where the pair carries {share}; {elastic}, {accuracy}; {remedy}{beyond}"
+        f"{plain(result.edge_axial[at])} mm), where the pair carries {share}; this pressure is {elastic} and "
+        f"{accuracy}; {remedy}{beyond}"
     )
 
 
@@ -372,10 +376,12 @@ def _peak_finding(result: CycleNumbers, torque: int) -> str:
         return ""
     others = np.where(result.load_share[torque] >= SMALL_SHARE, result.peak_pressure[torque], math.nan)
     most = (
-        f"; of pairs that carry a tenth and more it is {plain(np.nanmax(others))} MPa" if (others > 0.0).any() else ""
+        f"; on pairs that carry a tenth of the torque or more the peak pressure is {plain(np.nanmax(others))} MPa"
+        if (others > 0.0).any()
+        else ""
     )
     pressure, applied = result.peak_pressure[torque][place], plain(1e-3 * result.torque[torque], 6)
     return (
-        f"the peak pressure {plain(pressure)} MPa at {applied} N m is that of slices at an edge, in a pair that "
+        f"the peak pressure {plain(pressure)} MPa at {applied} N m is that of slices at an edge, on a pair that "
         f"carries {plain(100.0 * result.load_share[torque][place], 3)} % of the torque{most}"
     )

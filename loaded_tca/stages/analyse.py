@@ -105,7 +105,7 @@ OF_BALANCE = frozenset(
 
 
 def rebalanced(result: StageResult, changes: Mapping[str, Any]) -> StageResult:
-    """The result of a stage with other pins, or another support of the sun: both meshes stay what they are.
+    """The result of a stage with other pins, or another support of the sun; both meshes stay as they are.
 
     For studies: a balance takes milliseconds a position, where the meshes take seconds. Its ``warnings`` are those of
     the loads up to its own largest share; none is given.

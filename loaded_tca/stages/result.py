@@ -47,7 +47,7 @@ STAGE_NUMBERS = numbers(
         "sun_base_radius": ((), "mm", "base radius of the sun"),
         "transmission_error": Number(CYCLE, "rad", "transmission error, counted at the sun", at_base_circle=True),
         "one_path_transmission_error": Number(
-            CYCLE, "rad", "the same of planet 0 alone under an even part of the torque", columns=()
+            CYCLE, "rad", "transmission error of planet 0 alone under an even share of the torque", columns=()
         ),
         "planet_share": Number(
             (*CYCLE, "planet"), "1", "part of the torque that a planet carries", columns=("planet_{}_share",)
@@ -61,7 +61,7 @@ STAGE_NUMBERS = numbers(
         "mesh_load_factor": Number(
             TORQUE,
             "1",
-            "mesh load factor K_gamma: the largest share of a planet over an even one",
+            "mesh load factor K_gamma: the largest share of a planet over an even share",
             label="mesh load factor K_gamma",
         ),
         **{
@@ -81,7 +81,7 @@ EDGES = numbers(
             TORQUE,
             "MPa",
             f"pressure at an edge in the {mesh}'s mesh under the largest share, mesh-dependent if sharp; "
-            "NaN: none reached",
+            "NaN: no edge is reached",
         )
         for mesh in MESH_NAMES
     },
@@ -240,13 +240,16 @@ class StageResult(JoinedResult):
         sentences = []
         for shares, torque in zip(self.planet_share, self.torque.tolist(), strict=True):
             idle = shares <= 0.0
-            for words, planets in (("all", idle.all(axis=0)), ("some", idle.any(axis=0) & ~idle.all(axis=0))):
+            for words, planets in (
+                ("any position", idle.all(axis=0)),
+                ("some positions", idle.any(axis=0) & ~idle.all(axis=0)),
+            ):
                 numbers = ", ".join(map(str, np.flatnonzero(planets).tolist()))
                 if numbers:
                     what = f"planet {numbers} carries" if planets.sum() == 1 else f"planets {numbers} carry"
                     sentences.append(
-                        f"under {shown_torque(torque)} {what} nothing at {words} positions: pins and phases are "
-                        "farther apart than the teeth give way"
+                        f"under {shown_torque(torque)} {what} no load at {words}: the gap that pins and phases "
+                        "leave there is larger than the deflection of the teeth"
                     )
         return tuple(sentences)
 

@@ -371,8 +371,8 @@ class Stage(InNotebooks, Section):
         if abs(first - second) > SAME_DISTANCE * self.geometry.normal_module_mm:
             raise GeometryError(
                 f"ring.teeth: without backlash sun and planet have the centre distance {first:.4f} mm, planet and ring "
-                f"{second:.4f} mm; numbers of teeth and profile shifts must give the same, or pair.centre_distance_mm "
-                "one that leaves both some backlash"
+                f"{second:.4f} mm; numbers of teeth and profile shifts must give both the same distance, or "
+                "pair.centre_distance_mm must leave both meshes some backlash"
             )
         return first
 

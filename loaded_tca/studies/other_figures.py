@@ -51,7 +51,7 @@ FIGURES = tuple(figures_of(NUMBERS))
 
 
 def tribology_figures(result: MeshCycle) -> dict[str, Array]:
-    """Figures of tribology of a result, of scenes with [operation] or [lubricant]; none of others.
+    """Figures of tribology of a result; none for scenes without [operation] and [lubricant].
 
     ``loaded_tca.studies.figures`` has them beside the key figures, so that rankings and pictures of studies know them:
     ``rank_variants(study, by="loss_factor")``, ``rank_variants(study, by="scuffing_safety")``, the largest first.

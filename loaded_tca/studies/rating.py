@@ -51,7 +51,7 @@ CLASS = "rating.tolerance_class"
 
 
 def rating_figures(result: MeshCycle) -> dict[str, Array]:
-    """Safeties and lives of a result, of both gears the less; none of scenes without strengths and [rating].
+    """Safeties and lives of a result, the smaller of both gears; none for scenes without strengths and [rating].
 
     ``loaded_tca.studies.figures`` has them beside the key figures, so that rankings and pictures of studies have them:
     ``rank_variants(study, by="S_H_local")``. The largest is best.
@@ -167,7 +167,7 @@ def _bounds(below: int, samples: int) -> tuple[float, float]:
 
 @checked
 def shortfall(study: xarray.Dataset, by: Sequence[str] | None = None) -> pandas.DataFrame:
-    """How probable it is that a safety is below that required, by the samples of a study.
+    """How probable it is that a safety is below the required one, by the samples of a study.
 
     Parameters
     ----------

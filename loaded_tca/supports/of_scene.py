@@ -38,7 +38,7 @@ ROLLING_KEYS = {
 
 
 def supports_of(scene: Scene) -> tuple[Support, Support]:
-    """Supports of pinion and wheel; that of a gear without a section is rigid.
+    """Supports of pinion and wheel; the support of a gear without a section is rigid.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def supports_of(scene: Scene) -> tuple[Support, Support]:
 
 
 def support_compliance(scene: Scene, pair: GearPair) -> SupportCompliance | None:
-    """What the supports give way under load; None where the scene has none.
+    """Compliance of the supports under load; None where the scene has no supports.
 
     Parameters
     ----------

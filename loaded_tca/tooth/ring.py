@@ -109,7 +109,7 @@ class _ImageOfRoot:
 @checked
 @dataclass(frozen=True)
 class RingFillet(Fillet):
-    """Arc, or what a pinion-type cutter cuts, at the root of a ring.
+    """Fillet at the root of a ring: an arc, or the curve that a pinion-type cutter cuts.
 
     Parameters
     ----------

@@ -393,7 +393,7 @@ def _friction(
     if isinstance(friction, str) and friction in FRICTIONS:
         if friction == MEAN and not cylindrical:
             problems.append(
-                f'friction: "{MEAN}" is the mean of cylindrical gears; allowed "{LOCAL}", "{XU_KAHRAMAN}" or a number, '
+                f'friction: "{MEAN}" is for cylindrical gears only; allowed "{LOCAL}", "{XU_KAHRAMAN}" or a number, '
                 "with bulk_temperature_C"
             )
         return friction

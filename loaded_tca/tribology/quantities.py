@@ -9,13 +9,13 @@ TORQUE = ("torque",)
 GEARS = (*PAIRS, "gear")
 
 NEEDS = {
-    "load_sharing": "of one tooth pair alone no mesh is known; set analysis.load_sharing = true and run the scene",
+    "load_sharing": "one tooth pair alone makes no mesh; set analysis.load_sharing = true and run the scene",
     "positions": "a mean over a pitch takes five positions or more; raise analysis.positions and run the scene",
     "speed": "needs pinion_speed_rpm, or operation.pinion_speed_rpm in the scene",
     "lubricant": "needs lubricant, or [lubricant] in the scene",
     "roughness": "needs roughness_um, or pinion.roughness_Ra_um and wheel.roughness_Ra_um in the scene",
-    "friction": 'needs friction: "local", "Xu-Kahraman" or a number; ISO/TS 6336-22 has one of cylindrical gears alone',
-    "bulk": "needs bulk_temperature_C: the standard computes it of cylindrical gears alone",
+    "friction": 'needs friction: "local", "Xu-Kahraman" or a number; ISO/TS 6336-22 has one for cylindrical gears only',
+    "bulk": "needs bulk_temperature_C: the standard computes it for cylindrical gears only",
     "load_stage": "needs scuffing_load_stage, or lubricant.scuffing_load_stage in the scene",
     "permissible": "needs permissible_film_ratio, or lubricant.permissible_film_ratio in the scene",
 }
@@ -55,7 +55,7 @@ QUANTITIES: dict[str, Number] = {
     "efficiency": Number(
         TORQUE,
         "1",
-        "1 less friction power over the power at the pinion",
+        "1 minus the friction power over the power at the pinion",
         OF_PITCH | FRICTION,
         label="efficiency of the mesh",
     ),
@@ -93,7 +93,7 @@ QUANTITIES: dict[str, Number] = {
     ),
     "friction_power": Number(CYCLE, "W", "friction power of all tooth pairs", FLASH | {"load_sharing"}),
     "sliding_velocity": Number(PAIRS, "m/s", "largest sliding velocity of the tooth pair", SPEED),
-    "sum_velocity": Number(PAIRS, "m/s", "sum of both rolling velocities there", SPEED),
+    "sum_velocity": Number(PAIRS, "m/s", "sum of both rolling velocities where the pair slides most", SPEED),
     "friction": Number(PAIRS, "1", "largest coefficient of friction", FRICTION),
     "flash_temperature": Number(PAIRS, "K", "largest flash temperature", FLASH),
     "contact_temperature": Number(PAIRS, "°C", "largest contact temperature", HOT),
@@ -136,11 +136,11 @@ COLUMNS: dict[str, tuple[str, str, frozenset[str]]] = {
     "pinion_axial": ("mm", "axial coordinate on the pinion", frozenset()),
     "wheel_radius": ("mm", "radius on the wheel", frozenset()),
     "wheel_axial": ("mm", "axial coordinate on the wheel", frozenset()),
-    "roll_length": ("mm", "from T1 along the common normal, in the transverse plane", frozenset()),
+    "roll_length": ("mm", "distance from T1 along the common normal, in the transverse plane", frozenset()),
     "line_load": ("N/mm", "line load", frozenset()),
     "pressure": ("MPa", "pressure of a line contact, without K_A and K_v", frozenset()),
     "half_width": ("mm", "half width of a line contact", frozenset()),
-    "relative_radius": ("mm", "radius of relative curvature across", frozenset()),
+    "relative_radius": ("mm", "radius of relative curvature across the contact", frozenset()),
     "on_edge": ("1", "whether the slice reaches the end of a flank", frozenset()),
     "pinion_specific_sliding": ("1", "specific sliding of the pinion", frozenset()),
     "wheel_specific_sliding": ("1", "specific sliding of the wheel", frozenset()),

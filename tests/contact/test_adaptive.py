@@ -111,7 +111,7 @@ def test_accuracy_warnings_are_given_unless_left_to_the_caller():
     sample, _ = paraboloid((0.1, 0.1), box=0.8)
     with pytest.warns(AccuracyWarning) as warned:
         solve_to_accuracy(sample, accuracy=1e-2)
-    assert any("reaches the box" in str(one.message) for one in warned)
+    assert any("reaches the border of" in str(one.message) for one in warned)
     assert solve_to_accuracy(sample, accuracy=1e-2, warn=False).reaches_border
 
 

@@ -62,7 +62,7 @@ def test_peak_of_a_capped_contact_is_the_cap():
 def test_accuracy_warnings_name_both_reasons():
     narrow = solve_contact(np.zeros((3, 30)), (0.1, 0.1), E_STAR, load=1.0, warn=False)
     assert len(narrow.accuracy_warnings) == 2
-    assert "reaches the box" in narrow.accuracy_warnings[0]
+    assert "reaches the border of" in narrow.accuracy_warnings[0]
     assert "3 cells across" in narrow.accuracy_warnings[1]
 
 

@@ -378,7 +378,7 @@ def test_unreachable_tolerance_ends():
 
 def test_contact_at_the_border_warns():
     contact, gap, spacing = hertz_problem()
-    with pytest.warns(AccuracyWarning, match="reaches the box"):
+    with pytest.warns(AccuracyWarning, match="reaches the border of"):
         solution = solve_contact(gap, spacing, E_STAR, load=10.0 * LOAD)
     assert solution.reaches_border
     assert solution.peak_pressure == solution.pressure.max()

@@ -171,8 +171,8 @@ def test_a_torque_in_a_list_has_the_numbers_that_it_has_alone(equal_halves, one_
         numbers = np.concatenate([getattr(result, name) for result in alone])
         assert_allclose(getattr(both, name), numbers, rtol=1e-9)  # places differ by rounding
     assert both.half_a.scene.mounting == alone[1].half_a.scene.mounting
-    assert next(note for note in both.notes() if "half_a and half_b are of" in note).startswith(
-        "under 160 N m the pinion stands -6.43 mm along its axis from where it stands under 1600 N m"
+    assert next(note for note in both.notes() if "half_a and half_b hold the mesh" in note).startswith(
+        "under 160 N m the pinion stands -6.43 mm along its axis from its place under 1600 N m, for "
     )
 
 
@@ -214,8 +214,8 @@ def test_halves_out_of_reach_of_each_other_are_told_and_analysed_under_what_they
     assert result.torque_share.tolist() == [[[1.0, 0.0]] * 2]
     assert min(asked[-1]) == asked[0][0] < equal_halves.torques[0] < max(asked[-1])
     assert result.notes() == (
-        "under 1600 N m half b carries nothing at all positions: its flanks stand farther apart than those of the "
-        "other half give way",
+        "under 1600 N m half b carries no load at any position: the gap between its flanks is larger than "
+        "the deflection of the other half",
     )
     assert_allclose(result.key_figures()[0]["share_factor"], 2.0)
     assert result.peak_pressure[0, 0, 1] == 0.0

@@ -83,6 +83,6 @@ test_refused = refusals(
 )
 test_refused_halves = refusals(
     lambda rate, stiffness: Halves((spring(1.0), spring(1.0)), (0.0, 0.0), rate, stiffness),
-    (0.0, 0.0, "axial_rate: found 0; allowed others where nothing holds the gear that floats"),
+    (0.0, 0.0, "axial_rate: found 0; allowed other values than 0 if nothing holds the floating"),
     (0.4, -1.0, "stiffness: found -1 N/mm; allowed from 0 on"),
 )

@@ -101,7 +101,7 @@ def test_worse_half_counts(held_rating):
     assert_array_equal(held_rating.life_hours, np.minimum(half_a.life_hours, half_b.life_hours))
     figures = held_rating.key_figures()[0]
     assert figures["pinion_root_safety"] == figures["half_a_pinion_root_safety"] < figures["half_b_pinion_root_safety"]
-    assert any(note.startswith("half b: after ISO 6336 what decides") for note in held_rating.notes())
+    assert any(note.startswith("half b: after ISO 6336 the critical failure") for note in held_rating.notes())
     assert "half a, under its share" in held_rating.summary()
 
 
@@ -124,7 +124,7 @@ def test_bins_are_shared_as_their_torques_are(under_bins):
 def test_summary_of_a_spectrum_has_both_halves_and_what_is_assumed(under_bins):
     text = under_bins.summary()
     assert text.count("half b, under its share") >= 2  # all bins together, and bin by bin
-    assert "reversed bins are shared as the same torques are the other way" in text
+    assert "the halves share reversed bins as they share the same torques" in text
 
 
 def test_command_and_report_rate_both_halves(tmp_path, monkeypatch, capsys, held, under_bins):

@@ -110,7 +110,7 @@ def test_derivatives_are_differences_of_whole_analyses(support):
     [
         (["pinion.modifications.lead_crown_um"], "pinion.modifications.lead_crown_um: unknown key"),
         ([APEX, APEX], "pair.apex_offset_mm: given twice"),
-        (["pair.gap_mm"], "pair.gap_mm: not of the derivatives of both halves together; allowed are load.pinion"),
+        (["pair.gap_mm"], "pair.gap_mm: there are no derivatives of both halves together; allowed are load.pinion"),
     ],
 )
 def test_refused(keys, words):

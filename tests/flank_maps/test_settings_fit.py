@@ -203,7 +203,8 @@ def test_settings_that_do_the_same_are_refused_by_their_names(scene, generated):
 
 def test_settings_that_hardly_change_the_flank_together_are_warned_of(scene, generated):
     names = [*[*ERRORS][:4], "machine.helical_motion", "machine.modified_roll_2c"]
-    with pytest.warns(AccuracyWarning, match="together these hardly change the flanks, by 0.0.* um where each"):
+    words = "together the following changes alter the flanks by only 0.0.* um, though each"
+    with pytest.warns(AccuracyWarning, match=words):
         fit = fit_settings(scene, [measured(generated, ("wheel", "concave"), {})], keys_of("wheel", names))
     assert fit.effect < 1e-4
     errors = {name: change / factor_of(key) for name, key, change in zip(names, fit.keys, fit.weakest, strict=True)}

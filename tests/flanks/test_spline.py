@@ -137,7 +137,9 @@ def test_fit_error_of_a_relief_start_warns():
     low, high = (2.0 * radius for radius in pair_of("spur").pinion.flank.nominal.radii)
     relief = FlankModifications(tip_relief=0.05, tip_relief_form="linear", tip_relief_start=0.4 * low + 0.6 * high)
     flank = pair_of("spur", relief).pinion.flank
-    with pytest.warns(AccuracyWarning, match=r"misses the flank by .* um at most.*between them.*relief start"):
+    with pytest.warns(
+        AccuracyWarning, match=r"misses the flank by .* um at most.*between the points.*start of a linear relief"
+    ):
         spline = fitted(flank)
     assert spline.relief_starts(*flank.grid(2, 2)) == ()
     assert 1e-4 < spline.check_error.largest < 0.005

@@ -215,7 +215,9 @@ def test_continuation_that_follows_the_noise_warns(coefficients, degree, rng):
     told = [str(one.message) for one in caught]
     if coefficients != (4, 4):
         (sentence,) = told
-        assert re.match(r"the points deviate by -1\d.* to .* um, the flank by -\d+.* um: its continuation", sentence)
+        assert re.match(
+            r"the points deviate by -1\d.* to .* um, the flank by -\d+.* um: the flank oscillates", sentence
+        )
     else:
         assert told == []
 

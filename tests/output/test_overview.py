@@ -264,8 +264,8 @@ def test_path_of_contact_that_lies_on_an_edge_has_nominal_points_alone():
             "pinion.modifications.lead_crowning_um: 0.005 um is less than 0.1 um, which nobody makes; is its unit",
         ),
         ({"mounting.misalignment_um": -0.012}, "mounting.misalignment_um: -0.012 um is less than 0.1 um"),
-        ({"load.pinion_torque_Nm": 130e3}, "load.pinion_torque_Nm: 130000 N m is a sigma_H0 of"),
-        ({"load.pinion_torque_Nm": 130e3}, "load.pinion_torque_Nm: 130000 N m is a sigma_F0 of"),
+        ({"load.pinion_torque_Nm": 130e3}, "load.pinion_torque_Nm: 130000 N m is a torque with a sigma_H0 of"),
+        ({"load.pinion_torque_Nm": 130e3}, "load.pinion_torque_Nm: 130000 N m is a torque with a sigma_F0 of"),
     ],
 )
 def test_numbers_of_another_unit_are_asked_about_before_any_contact(changes, told):

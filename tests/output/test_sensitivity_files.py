@@ -12,7 +12,9 @@ from loaded_tca.output import sensitivities_text, write_sensitivities
 from loaded_tca.results import key_figure_slopes
 from tests.samples.results import result
 
-pytestmark = pytest.mark.filterwarnings("ignore:an edge cuts the slices")  # contacts reach edges, and all is read
+pytestmark = pytest.mark.filterwarnings(  # contacts reach edges, and all is read
+    "ignore:an edge of a flank cuts the slices", "ignore:K_Hbeta follows the strip with"
+)
 TOLERANCES = {
     "pinion.modifications.lead_crowning_um": 2.0,
     "mounting.out_of_plane_deg": 0.02,

@@ -24,7 +24,9 @@ from tests.samples.pictures import told
 from tests.samples.results import result
 
 pytestmark = pytest.mark.filterwarnings(
-    "ignore:an edge cuts the slices", "ignore:derivatives of the transmission error depend"
+    "ignore:an edge of a flank cuts the slices",
+    "ignore:derivatives of the transmission error depend",
+    "ignore:K_Hbeta follows the strip with",
 )  # contacts reach edges, and all is read
 ROUNDING = 1e-12
 """Of numbers that are drawn, after one factor."""

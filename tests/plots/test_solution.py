@@ -50,7 +50,7 @@ def test_without_load_the_picture_says_so():
 
 def test_long_grids_say_how_much_larger_they_are_drawn():
     gap, spacing = point_contact_gap((10.0, np.inf), (0.1, 10.0), (64, 16))
-    with pytest.warns(UserWarning, match="reaches the box"):
+    with pytest.warns(UserWarning, match="reaches the border of"):
         area = plot_solution(solve_contact(gap, spacing, MODULUS, load=LOAD)).axes[0]
     assert f"drawn {area.get_aspect():g} times larger" in area.get_ylabel()
 

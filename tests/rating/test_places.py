@@ -74,7 +74,7 @@ def test_sentences_say_what_decides():
 def test_findings_of_flanks_alone():
     rated = solved(**{"analysis.root_stress": False, "rating.required_flank_safety": 50.0}).rating()
     standard, local, _ = findings(rated)
-    assert standard.startswith("after ISO 6336 what decides is pitting of the")
+    assert standard.startswith("after ISO 6336 the critical failure is pitting of the")
     assert "diameter" in local
 
 
@@ -141,7 +141,10 @@ REFUSED = "<li>lubricant: missing; the strength of flanks depends on viscosity_4
 
 @pytest.mark.parametrize(
     ("changes", "words"),
-    [({}, "after ISO 6336 what decides is"), pytest.param({"lubricant": None}, REFUSED, marks=pytest.mark.thorough)],
+    [
+        ({}, "after ISO 6336 the critical failure is"),
+        pytest.param({"lubricant": None}, REFUSED, marks=pytest.mark.thorough),
+    ],
 )
 def test_report_has_a_rating_or_says_why_not(tmp_path, monkeypatch, changes, words):
     for name in ("result_page.result_figures", "result_page.tribology_figures", "rating_page.rating_figures"):

@@ -189,7 +189,7 @@ def test_stress_above_the_static_strength_is_told():
 
 
 REFUSED = [
-    ({"pinion.strength": None}, "pinion.strength: missing; nothing is rated without allowable stresses"),
+    ({"pinion.strength": None}, "pinion.strength: missing; a rating needs allowable stresses"),
     ({"operation": None}, "operation: missing; strength, cycles and K_v depend on pinion_speed_rpm"),
     ({"lubricant": None}, "lubricant: missing"),
     ({"analysis.load_sharing": False}, "analysis.load_sharing: false"),

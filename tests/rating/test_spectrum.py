@@ -220,7 +220,7 @@ CAST = {"kind": "GG", "hardness_HBW": 200.0, "proof_stress_MPa": 250.0}
 test_spectra_refuse = refusals(
     lambda cases, changes: under(cases, **changes),
     (bins((300.0, 1.0)), {"analysis.torques_Nm": None}, "load.case: a bin has 300 N m; allowed up to 200"),
-    (bins((200.0, 1.0)), {"operation": None}, "operation: missing; .* K_v depend on pinion_speed_rpm; bin 0 has none"),
+    (bins((200.0, 1.0)), {"operation": None}, "operation: missing; .* K_v depend on pinion_speed_rpm, and bin 0 has"),
     (
         [*bins((100.0, 1.0)), *bins((200.0, 1.0), reversed=True)],
         {"wheel.strength": HARD | {"material": None} | CAST},
@@ -297,8 +297,8 @@ def test_sentences_and_report_say_which_bin_does_the_damage(monkeypatch):
     part = rated.damage[1, 0, 0] / rated.miner_sum[0, 0]
     content = rating_content(rated.result)
     assert content["findings"] == findings(rated)
-    assert content["findings"][0].startswith("after ISO 6336 what decides is")
-    assert f"; bin 2, 200 N m, does {100.0 * part:.0f} % of the damage" in content["findings"][0]
+    assert content["findings"][0].startswith("after ISO 6336 the critical failure is")
+    assert f"; bin 2 (200 N m) does {100.0 * part:.0f} % of the damage" in content["findings"][0]
     safeties = content["safeties"]
     assert safeties.head[0] == "all bins together"
     assert safeties.rows[0][2] == f"{rated.spectrum_safety[0, 0]:.4g}"

@@ -135,7 +135,7 @@ def test_dynamic_factor_by_grade_is_the_curve_of_agma():
         assert_allclose(factor, of_agma(16 - grade, 801.1), rtol=4e-3)  # 200 for 60/0.3048
         assert notes == ()
     (note,) = iso10300_1.dynamic_factor_by_grade([1.0, 60.0], 8).notes
-    assert note.startswith("K_v: a velocity above ")
+    assert note.startswith("K_v: the velocity is above ")
 
 
 def test_both_stiffnesses_fall_below_full_load():

@@ -121,9 +121,9 @@ def test_harder_through_hardened_pinion_hardens_the_wheel_alone():
 
 def test_values_beyond_the_standard_are_told():
     soft = flank_factors(HARD, replace(QUENCHED, hardness=120.0), **OF_TR, cycles=[1e8, 1e8])
-    assert soft.notes == ("Z_W: 120 HBW is not within 130 to 470 HBW, and counts as the nearer",)
+    assert soft.notes == ("Z_W: 120 HBW is not within 130 to 470 HBW, and the nearer limit is used",)
     steep = flank_factors(replace(QUENCHED, hardness=336.0), QUENCHED, **{**OF_TR, "gear_ratio": 25.0}, cycles=[1, 1])
-    assert steep.notes == ("Z_W: the gear ratio 25 counts as 20",)
+    assert steep.notes == ("Z_W: 20 is used for the gear ratio 25, which is larger",)
     gear = FlankStrength(650.0, "NV nitrocarburized", 1.0)
     thick = flank_factors(gear, gear, **{**OF_TR, "viscosity_40": 1000.0}, cycles=[1e3, 1e8])
     assert "Z_NT: the static strength of kind 'NV nitrocarburized'" in thick.notes[0]

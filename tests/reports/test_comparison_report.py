@@ -103,9 +103,12 @@ def test_command_writes_the_report_of_several_results(tmp_path, monkeypatch, cap
     for arguments, said in (
         (["old", "new"], "--out: missing; several results have no directory in common, give a file"),
         (["old", "new", "--out", "new/result.nc"], "--out: new/result.nc: would replace the input"),
-        (["old", "new", "--out", "a.html", "--rank-by", "x"], "--rank-by: of a study; a comparison has no ranking"),
+        (
+            ["old", "new", "--out", "a.html", "--rank-by", "x"],
+            "--rank-by: only for a study; a comparison has no ranking",
+        ),
         (["old", "new", "--out", "a.html", "--names", "b"], "--names b: 2 results need 2 different names"),
-        (["old", "--torque", "40"], "--names, --torque: of a comparison; give two results or more"),
+        (["old", "--torque", "40"], "--names, --torque: only for a comparison; give two results or more"),
     ):
         assert cli.main(["report", *arguments]) == 2
         assert said in capsys.readouterr().err

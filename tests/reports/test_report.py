@@ -213,7 +213,7 @@ def test_discretisation_error_is_that_of_the_result(written):
     (peak,) = page.rows(label_of("peak_pressure_MPa"))
     tops = np.nanargmax(found.peak_pressure[:, 0], axis=1)  # beside the peak stands the error of its own contact
     beside = ", ".join(f"{100.0 * found.discretisation_error[t, 0, k]:.2f}%" for t, k in enumerate(tops))
-    assert peak[-1].startswith(f"mesh-independent; error of the grid: {beside}; where an edge")
+    assert peak[-1].startswith(f"mesh-independent; error of the grid: {beside}; where contacts reach")
 
 
 def test_accuracy_of_figures_is_what_the_studies_show(page):
@@ -245,21 +245,29 @@ def test_accuracy_of_figures_is_what_the_studies_show(page):
         for name, difference in measured.items():
             assert difference <= said[name] < difference + 0.3, (kind, name)
     assert page.rows(label_of("transmission_error_mean_um"))[0][-1] == "of the flanks alone: the teeth do not bend"
-    assert page.rows(label_of("transmission_error_order_1_um"))[0][-1].startswith("of 5 positions: higher orders")
+    assert page.rows(label_of("transmission_error_order_1_um"))[0][-1].startswith("from 5 positions: higher orders")
     assert page.rows(label_of("transverse_load_factor"))[0][-1].startswith("the largest of 5 positions")
 
 
 @pytest.mark.quick_cases(
-    "mesh_cycle_bevel-changes1-no estimate: of teeth of bevel gears this figure was not compared",
-    "mesh_cycle_spur-changes3-spur teeth on a face of 33 modules or more: those compared are",
+    "mesh_cycle_bevel-changes1-no estimate: for teeth of bevel gears this figure was not compared",
+    "mesh_cycle_spur-changes3-spur teeth on a face of 33 modules or more: the gears that were compared are",
 )
 @pytest.mark.parametrize(
     ("name", "changes", "note"),
     [
-        ("mesh_cycle_helical", {}, "no estimate: of helical teeth this figure was not compared"),
-        ("mesh_cycle_bevel", {}, "no estimate: of teeth of bevel gears this figure was not compared"),
-        ("mesh_cycle_spur", {}, "spur teeth on a face below 33 modules: those compared are within {} % of finite"),
-        ("mesh_cycle_spur", {"face_width": 99.0}, "spur teeth on a face of 33 modules or more: those compared are"),
+        ("mesh_cycle_helical", {}, "no estimate: for helical teeth this figure was not compared"),
+        ("mesh_cycle_bevel", {}, "no estimate: for teeth of bevel gears this figure was not compared"),
+        (
+            "mesh_cycle_spur",
+            {},
+            "spur teeth on a face below 33 modules: the gears that were compared are within {} % of finite",
+        ),
+        (
+            "mesh_cycle_spur",
+            {"face_width": 99.0},
+            "spur teeth on a face of 33 modules or more: the gears that were compared are",
+        ),
     ],
 )
 def test_accuracy_of_teeth_that_bend_is_that_of_their_kind(written, name, changes, note):
@@ -483,12 +491,12 @@ def test_study_tells_what_failed_and_its_warnings(written):
     count = study.sizes["sample"]
     status, reason, warned = (np.array([word] * count, dtype=object) for word in ("ok", "", ""))
     status[1], reason[1] = "refused", "pinion: pointed <b>"
-    warned[0] = "the contact reaches the box of its grid (at 1 of 9 pressure maps; the first: a)"
-    warned[2] = "the contact reaches the box of its grid (at 3 of 9 pressure maps; the first: b)"
+    warned[0] = "the contact reaches the border of its grid (at 1 of 9 pressure maps; the first: a)"
+    warned[2] = "the contact reaches the border of its grid (at 3 of 9 pressure maps; the first: b)"
     named = {"status": status, "reason": reason, "warnings": warned}
     page = written(study.assign({name: ("sample", values) for name, values in named.items()}))
     assert "refused: pinion: pointed <b> (1)" in page.words
-    assert f"the contact reaches the box of its grid (2 of {count} variants)" in page.words
+    assert f"the contact reaches the border of its grid (2 of {count} variants)" in page.words
     assert "less torque, or a higher max_pressure_MPa" in page.words
 
 

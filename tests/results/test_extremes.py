@@ -49,7 +49,9 @@ def test_beyond_the_change_another_value_is_the_largest():
 def test_peak_to_peak_that_turns_within_the_tolerance_is_told():
     """3, 2.9 and 0 um: the second is the highest from +0.01 on, where the peak to peak rises instead of falling."""
     (sentence,) = told([3.0, 2.9, 0.0], [-9.0, 1.0, 0.0], 0.02)
-    assert sentence.startswith("peak to peak: its derivatives end within a tolerance: beyond a change by +0.01 mm ")
+    assert sentence.startswith(
+        "peak to peak: its derivatives do not hold over the whole tolerance: beyond a change by +0.01 mm "
+    )
     assert f"({KEY}; 1 of 1 keys)" in sentence
     assert ANOTHER_POSITION.words in sentence
 

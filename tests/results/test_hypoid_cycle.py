@@ -144,7 +144,7 @@ def test_gears_on_supports_give_way_as_their_forces_ask():
     """A pinion that gives way along its axis alone moves by the axial force of its teeth."""
     soft = [[0.0] * 6 for _ in range(6)]
     soft[2][2] = 1e-6  # mm/N
-    with pytest.warns(AccuracyWarning, match="turn it by"):  # one normal for the whole of a contact
+    with pytest.warns(AccuracyWarning, match="have a moment about its axis"):  # one normal for the whole of a contact
         found = analyse(scene().with_changes({"pinion.support.compliance": soft}))
     axial = np.zeros(3)
     for position, maps in enumerate(found.maps[0]):

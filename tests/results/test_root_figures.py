@@ -115,7 +115,7 @@ def test_summary_tells_root_stress_only_where_it_is_asked_for():
         "    its sigma_F0 of pinion | wheel [MPa], K_Fbeta",
         "    its Y_F | Y_S | Y_beta of the pinion",
         "    its Y_F | Y_S | Y_beta of the wheel",
-        "note: no safety, K_A, K_V, life or material factors are in root stress",
+        "note: root stress, computed or after ISO 6336-3:2006, has no safety, K_A, K_V, life or",
     ):
         assert sum(line.startswith(label) for line in lines) == 1
     (tension,) = (line for line in lines if line.startswith("root tension of"))

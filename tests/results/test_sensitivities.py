@@ -184,8 +184,8 @@ def test_tooth_pair_that_carries_all_has_sensitivities_too():
     assert_allclose(found.load_share, 0.0, atol=SOLVED)
 
 
-@pytest.mark.filterwarnings("ignore:an edge cuts the slices")
-@pytest.mark.filterwarnings("ignore:K_Hbeta follows the largest of its strips")
+@pytest.mark.filterwarnings("ignore:an edge of a flank cuts the slices")
+@pytest.mark.filterwarnings("ignore:K_Hbeta follows the strip with")
 def test_sensitivities_of_a_result_from_a_file_are_those_of_the_analysis(tmp_path):
     one = result("mesh_cycle_helical")
     one.save(tmp_path / "result.nc")
@@ -294,8 +294,8 @@ def test_maps_of_weights_take_the_same_off_the_transmission_error_as_even_remova
         )
 
 
-@pytest.mark.filterwarnings("ignore:an edge cuts the slices")
-@pytest.mark.filterwarnings("ignore:K_Hbeta follows the largest of its strips")
+@pytest.mark.filterwarnings("ignore:an edge of a flank cuts the slices")
+@pytest.mark.filterwarnings("ignore:K_Hbeta follows the strip with")
 def test_spread_adds_up_the_squares_of_independent_deviations():
     one = result("mesh_cycle_helical")
     found = one.sensitivities([CROWNING, SLOPE])

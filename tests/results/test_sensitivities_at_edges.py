@@ -105,8 +105,8 @@ def test_derivatives_at_cut_slices_are_warned_of_with_keys_that_change_the_gears
     result, _ = solved("helical", 16, 3, **FLANKS_ALONE, **{"analysis.accuracy": None})
     found, quiet = result.sensitivities([DISTANCE, CROWNING]), result.sensitivities([TORQUE])
     for marks, figure, reason in (
-        (found.on_cut_slices, "line_load", "an edge cuts the slices of the largest line load"),
-        (found.at_corners, "peak_pressure", "an edge cuts the slices of the peak pressure"),
+        (found.on_cut_slices, "line_load", "an edge of a flank cuts the slices with the largest line load"),
+        (found.at_corners, "peak_pressure", "an edge of a flank cuts the slices with the peak pressure"),
     ):
         assert marks.any()
         assert not marks[~(result.on_edge > 0)].any(), "no edge cuts what reaches none"
@@ -124,7 +124,7 @@ def test_starts_of_linear_reliefs_beside_the_point_are_warned_of_with_keys_that_
     with noted_accuracy_warnings() as sentences:
         held = result.sensitivities([RELIEF])
     assert sentences == []
-    with pytest.warns(AccuracyWarning, match="a linear relief starts in the contact beside its point"):
+    with pytest.warns(AccuracyWarning, match="a linear relief starts within the contact, beside"):
         moved = result.sensitivities([DISTANCE])
     assert moved.across_relief_starts.any()
     assert_array_equal(moved.across_relief_starts, held.across_relief_starts)
@@ -224,7 +224,7 @@ def test_a_strip_that_carries_as_much_is_a_kink_of_the_face_load_factor():
     strip, lacking = rival_strip(result.gear_pair, result.path, result.maps[0])
     assert strip in (STRIPS // 2 - 1, STRIPS // 2)
     assert lacking < 1e-6
-    with pytest.warns(AccuracyWarning, match="another strip of the face carries as much but for"):
+    with pytest.warns(AccuracyWarning, match="another strip of the face carries nearly the largest load"):
         (slope,) = result.sensitivities(["mounting.misalignment_um"]).face_load_factor[0]
     low, high = (
         solved("mesh_cycle_spur", 32, 3, **FLANKS_ALONE, **{"mounting.misalignment_um": by})[0] for by in (-4.0, 4.0)

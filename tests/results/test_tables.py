@@ -86,7 +86,7 @@ def test_text_of_a_workbook_is_no_formula_and_has_no_control_characters(workbook
 
 
 def test_warnings_of_a_workbook_say_what_they_mean_and_what_to_do(tmp_path):
-    sentence = "the contact reaches the box of its grid (at 1 of 9 pressure maps; the first: 40 N m)"
+    sentence = "the contact reaches the border of its grid (at 1 of 9 pressure maps; the first: 40 N m)"
     path = with_warning(result(), sentence).to_excel(tmp_path / "warned.xlsx")
     table = pandas.read_excel(path, sheet_name="warnings").set_index("kind").loc["warning"]
     assert table["sentence"] == sentence

@@ -68,8 +68,8 @@ def test_every_default_key_is_one_that_a_result_can_be_derived_by(name):
     assert np.isfinite(found.transmission_error).any(axis=(0, 1)).all()
 
 
-@pytest.mark.filterwarnings("ignore:an edge cuts the slices")
-@pytest.mark.filterwarnings("ignore:K_Hbeta follows the largest of its strips")
+@pytest.mark.filterwarnings("ignore:an edge of a flank cuts the slices")
+@pytest.mark.filterwarnings("ignore:K_Hbeta follows the strip with")
 def test_mean_transmission_error_follows_the_centre_distance_as_involutes_do():
     """The driven flank moves along the line of action by sin(alpha_wt) for each mm that the axes part."""
     cycle = result("mesh_cycle_helical", positions=5, torques=(40.0, 260.0))
@@ -80,7 +80,7 @@ def test_mean_transmission_error_follows_the_centre_distance_as_involutes_do():
     assert_allclose(1e-2 * slopes["transmission_error_span_um"], 0.0, atol=0.02)
 
 
-@pytest.mark.filterwarnings("ignore:an edge cuts the slices")
+@pytest.mark.filterwarnings("ignore:an edge of a flank cuts the slices")
 def test_both_ends_of_a_pitch_count_half_in_the_mean_slope():
     """They are one place of the mesh: the mean is the integral over the pitch, by the trapezoidal rule."""
     cycle = result("mesh_cycle_helical", positions=5, torques=(40.0, 260.0))

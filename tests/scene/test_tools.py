@@ -99,7 +99,7 @@ def test_form_factor_of_an_undercut_is_that_of_a_rack_so_much_wider():
 
 def test_notch_of_grinding_is_warned_of():
     own = scene(wheel__protuberance_um=20.0, wheel__grinding_stock_um=60.0, analysis__compliance="contact")
-    with pytest.warns(AccuracyWarning, match=r"grinding notch: wheel: the stock for grinding is 40 um above") as caught:
+    with pytest.warns(AccuracyWarning, match=r"wheel: the stock for grinding is 40 um larger") as caught:
         warn_of_gears(own, own.pair())
     assert len(caught) == 1
 

@@ -123,8 +123,8 @@ def test_planet_whose_pin_is_far_off_is_slack(result):
     slack = rebalanced(result, {"stage.pin_tangential_um": [500.0, 0.0, 0.0, 0.0], "stage.floating_sun": False})
     assert (slack.planet_share[..., 0] == 0.0).all()
     assert not slack.sun_motion.any()
-    assert slack.findings()[0].startswith("under 100 N m planet 0 carries nothing at all positions")
-    assert "note: under 300 N m planet 0 carries nothing" in slack.summary()
+    assert slack.findings()[0].startswith("under 100 N m planet 0 carries no load at any position")
+    assert "note: under 300 N m planet 0 carries no load" in slack.summary()
     assert result.findings() == ()
 
 

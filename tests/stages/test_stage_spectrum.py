@@ -196,7 +196,7 @@ test_bad_spectrum_is_refused = refused_calls(
     ),
     (
         lambda: under(bins((300.0, 1.0)), operation=None),
-        "operation: missing; strength, cycles and K_v depend on sun_speed_rpm; bin 0 has none of its own",
+        "operation: missing; strength, cycles and K_v depend on sun_speed_rpm, and bin 0 has no speed of its own",
     ),
     (
         lambda: under(BACK, **{"ring.strength": IRON}),
@@ -246,7 +246,7 @@ def test_report_tells_gears_and_both_meshes_in_their_words(monkeypatch):
     assert captions[:2] == ["Loads of sun, planets and ring", "Safeties; of planets the smaller one of both meshes"]
     assert captions.count("Planet and ring: Roots, ISO 6336-3") == 1  # in the two worst bins
     assert content["tables"][-1].head[1].endswith("N m, planet")
-    assert "by local stresses what decides is pitting of the sun" in content["findings"][1]
+    assert "by local stresses the critical failure is pitting of the sun" in content["findings"][1]
     assert stage_rating_content(solved()) is None
     lacking = replace(rating.result, stage=rating.stage.with_changes({"lubricant": None}))
     (refused,) = stage_rating_content(lacking)["refused"]

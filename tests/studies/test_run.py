@@ -99,7 +99,7 @@ def test_other_warnings_are_shown_as_always():
 
     with pytest.warns(DeprecationWarning, match="old"):
         found = run_study(study(1.0), figures=old)
-    assert "reaches the box" in found["warnings"].values[0]
+    assert "reaches the border of" in found["warnings"].values[0]
 
 
 def test_result_can_be_reopened(tmp_path):

@@ -263,7 +263,7 @@ def test_shaft_that_is_wound_up_is_no_soft_support() -> None:
 def test_forces_on_supports_that_do_not_balance_the_torque_are_warned_of() -> None:
     """Normals turn within the contact of a hypoid pair; forces have that of the contact point."""
     soft = np.diag([3e-6] * 3 + [1e-9] * 3)
-    with pytest.warns(AccuracyWarning, match=r"turn it by 1\.[0-9]% more or less than its torque"):
+    with pytest.warns(AccuracyWarning, match=r"moment about its axis that differs by 1\.[0-9]% from its torque"):
         analyse(on(scene_of("hypoid_13x42", **{"analysis.free_edges": False}), soft, None))
     spiral = analyse(on(scene_of("spiral_bevel", **{"analysis.torques_Nm": [0.8]}), soft, None))
     assert not any("more or less than its torque" in one for one in spiral.warnings)

@@ -204,7 +204,7 @@ def test_bevel_gears_need_a_friction_and_a_bulk_temperature():
         _ = known(result, friction=None).efficiency
     with pytest.raises(NotAskedError, match="needs bulk_temperature_C"):
         _ = known(result, bulk_temperature_C=None).contact_temperature
-    with pytest.raises(InputError, match="mean of cylindrical gears"):
+    with pytest.raises(InputError, match="is for cylindrical gears only"):
         known(result, friction="ISO/TS 6336-22")
 
 
@@ -216,9 +216,9 @@ def test_one_tooth_pair_and_one_position_have_no_mean():
     alone = shared("mesh_cycle_spur", analysis__load_sharing=False)
     with pytest.raises(NotAskedError, match=r"analysis\.load_sharing"):
         _ = alone.tribology().loss_factor
-    with pytest.raises(NotAskedError, match=r"friction_power: of one tooth pair alone no mesh is known"):
+    with pytest.raises(NotAskedError, match=r"friction_power: one tooth pair alone makes no mesh"):
         _ = known(alone, bulk_temperature_C=90.0, friction=0.05).friction_power
-    with pytest.raises(NotAskedError, match=r"friction_power: of one tooth pair alone no mesh is known"):
+    with pytest.raises(NotAskedError, match=r"friction_power: one tooth pair alone makes no mesh"):
         known(alone, bulk_temperature_C=90.0, friction=0.05).over_flank("friction_power")
     assert np.isfinite(known(alone, bulk_temperature_C=90.0, friction=0.05).contact_temperature).any()
 
@@ -270,7 +270,7 @@ def test_a_loss_factor_of_few_positions_is_doubted():
     flanks = {"pinion__modifications": None, "wheel__modifications": None}
     with pytest.warns(AccuracyWarning) as caught:
         shared("mesh_cycle_spur", positions=5, **flanks).tribology()
-    assert any("with every second position the loss factor is another one by" in str(one.message) for one in caught)
+    assert any("from every second position alone the loss factor differs by" in str(one.message) for one in caught)
 
 
 @pytest.mark.thorough
@@ -430,7 +430,7 @@ def test_wear_of_both_gears_is_as_their_ways():
 
 
 WARNINGS = [
-    ({"bulk_temperature_C": 60.0}, "the bulk temperature, 60 °C, is below that of the oil, 80 °C"),
+    ({"bulk_temperature_C": 60.0}, "the bulk temperature, 60 °C, is below the temperature of the oil, 80 °C"),
     ({"pinion_speed_rpm": 10.0}, "the pitch line velocity, 0.0534 m/s, is outside 1 to 60 m/s"),
 ]
 
@@ -447,7 +447,7 @@ def test_extremes_at_edges_and_between_positions_are_warned_of():
     with pytest.warns(AccuracyWarning) as caught:
         shared("fzg_c14").tribology(1500.0, OIL, ROUGHNESS)
     told = " ".join(str(one.message) for one in caught)
-    assert "with every second position the largest flash temperature is another one by" in told
+    assert "from every second position alone the largest flash temperature differs by" in told
     with pytest.warns(AccuracyWarning) as caught:
         shared("mesh_cycle_helical").tribology(1500.0, OIL, ROUGHNESS)
     assert any("the least film thickness lies at an edge of a flank" in str(one.message) for one in caught)
