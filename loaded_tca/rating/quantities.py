@@ -132,7 +132,7 @@ NUMBERS: dict[str, Number] = {
         OF_GEARS,
         "mm",
         {
-            "local_flank_radius": "local: radius of the place of this pressure, of a rack the height above the reference line",
+            "local_flank_radius": "local: radius of this place, of a rack its height above the reference line",
             "local_flank_axial": "local: axial coordinate of this place",
         },
     ),
