@@ -393,7 +393,7 @@ def test_failure_while_drawing_leaves_the_numbers_without_old_pictures(run, monk
     assert run("run", scene("earlier", **changes), "--out", "out")[0] == 0
     earlier = Path("out", "result.nc").read_bytes()
 
-    def fail_at_the_third(picture):
+    def fail_at_the_third(picture, **_):
         drawn.append(picture)
         if len(drawn) == 3:
             raise failure

@@ -177,9 +177,9 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
     rank_by : str, optional
         As for :func:`loaded_tca.studies.rank_variants`.
     """
+    tables = study_tables(study, rank_by)  # which reads the scene, and refuses one that names files
     figures = plot_study(study, rank_by=rank_by if main_figures(study) else None)
     figures.pop("study_ranking")  # a table of the page
-    tables = study_tables(study, rank_by)
     return {**tables, "pictures": pictures_of(figures, STUDY_CAPTIONS, tables["title"])}
 
 

@@ -252,7 +252,7 @@ def test_command_writes_files_and_tells_the_largest(run, directory):
     code, out, errors = run("subsurface", directory)
     assert (code, errors) == (0, [])
     assert {path.name for path in directory.iterdir()} == {"result.nc", *FILES}
-    assert out.startswith(stress_below(shared()).summary())
+    assert " ".join(out.split()).startswith(" ".join(stress_below(shared()).summary().split()))  # long lines are broken
     assert all(name in out for name in FILES)
 
 

@@ -26,6 +26,7 @@
 - ``moving_edges``: derivatives by mounting errors where contacts end at edges, beside differences of analyses;
 - ``random_sensitivities``: derivatives of random scenes of all families to every key, beside the same, in minutes;
 - ``random_scenes``: random scenes with every feature against invariances and laws of mechanics, in minutes;
+- ``random_errors``: errors of the default grids on such scenes, by figure and family, in minutes; a page;
 - ``sensitivities``: against slopes through whole analyses, closed forms, Monte Carlo studies; their cost; a page;
 - ``rounded_edges``: pressure at rounded edges over columns, grids and radii; its time, in minutes; a page;
 - ``user_scenes``: time told and taken of scenes by defaults alone; a page;
