@@ -3217,6 +3217,13 @@ FAULTS = (
         "np.rint(values / step)",
         "reports/test_interactive_report.py::test_scaled_numbers_keep_the_smallest_and_what_is_missing",
     ),
+    Fault(
+        "meshes of a stage do without the hours of its load cases",
+        "stages/rating.py",
+        'RatingSection(**values | {"life_hours": cases.life_hours})',
+        "RatingSection(**values)",
+        "stages/test_stage_spectrum.py::test_hours_of_bins_are_the_life_that_is_required",
+    ),
 )
 
 
