@@ -3224,6 +3224,27 @@ FAULTS = (
         "RatingSection(**values)",
         "stages/test_stage_spectrum.py::test_hours_of_bins_are_the_life_that_is_required",
     ),
+    Fault(
+        "double helical: K_Hbeta of the whole gear is that of a half, whatever it carries",
+        "double_helical/rating.py",
+        "np.zeros(len(shares)) if rating is None else share * np",
+        "np.zeros(len(shares)) if rating is None else shares.max(axis=1) * np",
+        "double_helical/test_rating.py::test_whole_gear_takes_of_a_half_what_it_carries",
+    ),
+    Fault(
+        "double helical: the whole gear is read off half a, which may carry little",
+        "double_helical/rating.py",
+        "result.halves[more]",
+        "result.half_a",
+        "double_helical/test_rating.py::test_half_without_load_under_all_torques_is_not_rated",
+    ),
+    Fault(
+        "double helical: a half without load is rated",
+        "double_helical/rating.py",
+        "_under(scene, cycle, of_half) if of_half.any() else None",
+        "_under(scene, cycle, of_half)",
+        "double_helical/test_rating.py::test_half_without_load_under_all_torques_is_not_rated",
+    ),
 )
 
 
