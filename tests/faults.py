@@ -3245,6 +3245,27 @@ FAULTS = (
         "_under(scene, cycle, of_half)",
         "double_helical/test_rating.py::test_half_without_load_under_all_torques_is_not_rated",
     ),
+    Fault(
+        "sentences on the meshes of a stage have torques that are none of the sun's",
+        "rating/inputs.py",
+        "apart([1e-3 * ratio * torque for",
+        "apart([1e-3 * torque for",
+        "stages/test_stage_rating.py::test_sentences_name_the_torque_of_the_sun",
+    ),
+    Fault(
+        "torques of sentences have four digits where tables have six",
+        "rating/findings.py",
+        "plain(1e-3 * float(rating.torque[case]), 6)",
+        "plain(1e-3 * float(rating.torque[case]))",
+        "stages/test_stage_spectrum.py::test_sentences_name_torques_of_the_sun_with_six_digits",
+    ),
+    Fault(
+        "a bin and the largest torque that is allowed read alike",
+        "scene/load.py",
+        "apart([load.largest_Nm, max(torques)])",
+        "[plain(each, 6) for each in (load.largest_Nm, max(torques))]",
+        "stages/test_stage_spectrum.py::test_bad_spectrum_is_refused",
+    ),
 )
 
 

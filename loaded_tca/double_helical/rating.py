@@ -97,7 +97,8 @@ class DoubleHelicalRating(OfCases):
 
     def __repr__(self) -> str:
         flank, root = self.flank_safety.min(), self.root_safety.min()
-        return f"{type(self).__name__}({len(self.torque)} torques, least S_H {flank:.3g}, least S_F {root:.3g})"
+        name = type(self).__name__
+        return f"{name}({len(self.torque)} torques, least S_H {plain(flank, 3)}, least S_F {plain(root, 3)})"
 
     @property
     def scene(self) -> DoubleHelicalScene:

@@ -279,9 +279,10 @@ def _of_meshes(result: StageResult, cases: Cases, factor: Array) -> tuple[Rating
         for share, (scene, strengths), of_mesh in zip(shares, scenes, own, strict=True)
     ]
     at_sun, at_ring = _computed_ratios(*cycles) if stage.analysis.root_stress else (None, None)
+    of_sun, of_ring = (("sun", 1.0 / share.of(np.ones(1)).item()) for share in shares)
     duties = (
-        Duty(factor, (planets, 1), False, (None, mean), (None, at_sun), own[0]),
-        Duty(factor, (1, planets), True, (mean, None), (at_ring, None), own[1]),
+        Duty(factor, (planets, 1), False, (None, mean), (None, at_sun), own[0], of_sun),
+        Duty(factor, (1, planets), True, (mean, None), (at_ring, None), own[1], of_ring),
     )
     ratings = []
     for gears, cycle, duty in zip(MESHES.values(), cycles, duties, strict=True):

@@ -175,6 +175,13 @@ def test_many_bins_solve_no_more_torques_than_a_dozen():
     assert parse_stage(stage.to_toml()) == stage
 
 
+@pytest.mark.filterwarnings("ignore:rating. the damage of the spectrum may be wrong:loaded_tca.AccuracyWarning")
+def test_sentences_name_torques_of_the_sun_with_six_digits():
+    notes = under(bins((299.913, 1.0), (20.0, 1.0)), **{"rating.life_hours": 12345.6}).notes()
+    assert " in 12345.6 h, required 1.3; bin 1, 299.913 N m, does 100 % of the damage" in notes[0] + notes[1]
+    assert sum("1 bin lies below 45 N m at the sun, the smallest torque solved" in note for note in notes) == 1
+
+
 def test_numbers_of_a_spectrum_stand_in_summary_and_files(tmp_path):
     rating = under(bins((300.0, 1.0), (480.0, 1.0)), title="Two bins")
     text = rating.summary()
@@ -196,7 +203,7 @@ IRON |= {"flank_Rz_um": 4.8, "root_Rz_um": 20.0}
 BACK = [*bins((300.0, 1.0)), *bins((300.0, 1.0), reversed=True)]
 
 test_bad_spectrum_is_refused = refused_calls(
-    (lambda: under(bins((480.1, 1.0))), "load: a bin has 480.1 N m; allowed up to 480, the largest of analysis"),
+    (lambda: under(bins((480.0001, 1.0))), "load: a bin has 480.0001 N m; allowed up to 480, the largest of analysis"),
     (
         lambda: under(bins((600.0, 1.0)), **{"analysis.torques_Nm": None}),
         "load.case: a bin has 600 N m; allowed up to 480, the largest that was solved",
