@@ -263,14 +263,25 @@ def read_spectrum(file: str, case: type[Bin] = LoadCase) -> tuple[Bin, ...]:
     InputError
         If the file cannot be read, or with the problems of its columns and lines.
     """
-    text = read_table(file, LARGEST_FILE, "file of a load spectrum")
+    table = _table_of(file)
     with named(file):
-        table = table_in(text)
         require(*((False, problem) for problem in _column_problems(table.names, case)))
         require_decimal_points(table)
         count = len(table.rows)
         require((0 < count <= MOST_BINS, f"{count} lines of bins; allowed 1 to {MOST_BINS}"))
         return _bins(table, case)
+
+
+def _table_of(file: str) -> Table:
+    """The table of a CSV file of a load spectrum."""
+    text = read_table(file, LARGEST_FILE, "file of a load spectrum")
+    with named(file):
+        return table_in(text)
+
+
+def spectrum_columns(file: str) -> tuple[str, ...]:
+    """Names of the columns of a CSV file of a load spectrum, as it writes them."""
+    return tuple(_table_of(file).names)
 
 
 def _column_problems(names: Sequence[str], case: type[Bin]) -> list[str]:
