@@ -3266,6 +3266,13 @@ FAULTS = (
         "[plain(each, 6) for each in (load.largest_Nm, max(torques))]",
         "stages/test_stage_spectrum.py::test_bad_spectrum_is_refused",
     ),
+    Fault(
+        "check lists no torques of load cases in other units",
+        "cli/inputs.py",
+        "if name not in keys and (writing := writing_of(name, keys, {})):",
+        "if name in keys and (writing := writing_of(name, keys, {})):",
+        "test_cli_units.py::test_check_lists_torques_of_bins_that_are_in_inches",
+    ),
 )
 
 

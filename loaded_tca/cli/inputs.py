@@ -81,7 +81,7 @@ def _bins_otherwise(load: AnyLoad, table: Mapping[str, Any]) -> Iterator[tuple[s
     names = spectrum_columns(file) if file else [name for each in table.get("case", ()) for name in each]
     for name in dict.fromkeys(names):
         if name not in keys and (writing := writing_of(name, keys, {})):
-            numbers = tuple(getattr(each, writing.key) for each in load.case or ())
+            numbers = tuple(float(plain(getattr(each, writing.key), 9)) for each in load.case or ())
             yield f"load.case.{name}", f"load.case.{writing.key} = {shown(numbers)}"
 
 
