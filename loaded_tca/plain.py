@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 import string
+from collections.abc import Sequence
 from typing import Any
 
 LEAST, MOST = 1e-6, 1e9
 """Sizes between which no number has an exponent."""
+EXACT = 17
+"""Digits that tell any two numbers apart."""
 
 
 def plain(value: float, digits: int = 4, sign: str = "") -> str:
@@ -33,6 +36,21 @@ def plain(value: float, digits: int = 4, sign: str = "") -> str:
         return text.rstrip("0").rstrip(".") if places else text
     mantissa, exponent, power = f"{rounded:{sign}.{digits}g}".partition("e")
     return f"{mantissa}e{int(power)}" if exponent else mantissa
+
+
+def apart(values: Sequence[float], digits: int = 6) -> list[str]:
+    """Numbers of one sentence with some significant digits, or as many as tell different ones apart.
+
+    Examples
+    --------
+    >>> apart([1000.0001, 1000.0]), apart([1.5, 1.5])
+    (['1000.0001', '1000'], ['1.5', '1.5'])
+    """
+    for count in range(digits, EXACT):
+        texts = [plain(value, count) for value in values]
+        if len({*texts}) == len({*values}):
+            return texts
+    return [plain(value, EXACT) for value in values]
 
 
 LONGEST_LIFE = 1e6

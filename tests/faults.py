@@ -3273,6 +3273,62 @@ FAULTS = (
         "",
         "scene/test_rack_scene.py::test_rating_of_a_rack_is_that_of_a_wheel_without_end",
     ),
+    Fault(
+        "meshes of a stage do without the hours of its load cases",
+        "stages/rating.py",
+        'RatingSection(**values | {"life_hours": cases.life_hours})',
+        "RatingSection(**values)",
+        "stages/test_stage_spectrum.py::test_hours_of_bins_are_the_life_that_is_required",
+    ),
+    Fault(
+        "double helical: K_Hbeta of the whole gear is that of a half, whatever it carries",
+        "double_helical/rating.py",
+        "np.zeros(len(shares)) if rating is None else share * np",
+        "np.zeros(len(shares)) if rating is None else shares.max(axis=1) * np",
+        "double_helical/test_rating.py::test_whole_gear_takes_of_a_half_what_it_carries",
+    ),
+    Fault(
+        "double helical: the whole gear is read off half a, which may carry little",
+        "double_helical/rating.py",
+        "result.halves[more]",
+        "result.half_a",
+        "double_helical/test_rating.py::test_half_without_load_under_all_torques_is_not_rated",
+    ),
+    Fault(
+        "double helical: a half without load is rated",
+        "double_helical/rating.py",
+        "_under(scene, cycle, of_half) if of_half.any() else None",
+        "_under(scene, cycle, of_half)",
+        "double_helical/test_rating.py::test_half_without_load_under_all_torques_is_not_rated",
+    ),
+    Fault(
+        "sentences on the meshes of a stage have torques that are none of the sun's",
+        "rating/inputs.py",
+        "apart([1e-3 * ratio * torque for",
+        "apart([1e-3 * torque for",
+        "stages/test_stage_rating.py::test_sentences_name_the_torque_of_the_sun",
+    ),
+    Fault(
+        "torques of sentences have four digits where tables have six",
+        "rating/findings.py",
+        "plain(1e-3 * float(rating.torque[case]), 6)",
+        "plain(1e-3 * float(rating.torque[case]))",
+        "stages/test_stage_spectrum.py::test_sentences_name_torques_of_the_sun_with_six_digits",
+    ),
+    Fault(
+        "a bin and the largest torque that is allowed read alike",
+        "scene/load.py",
+        "apart([load.largest_Nm, max(torques)])",
+        "[plain(each, 6) for each in (load.largest_Nm, max(torques))]",
+        "stages/test_stage_spectrum.py::test_bad_spectrum_is_refused",
+    ),
+    Fault(
+        "check lists no torques of load cases in other units",
+        "cli/inputs.py",
+        "if name not in keys and (writing := writing_of(name, keys, {})):",
+        "if name in keys and (writing := writing_of(name, keys, {})):",
+        "test_cli_units.py::test_check_lists_torques_of_bins_that_are_in_inches",
+    ),
 )
 
 

@@ -43,6 +43,24 @@ def test_check_lists_what_the_file_writes_otherwise(capsys, monkeypatch):
     assert len(read) == 14
 
 
+@pytest.mark.parametrize("file", [False, True])
+def test_check_lists_torques_of_bins_that_are_in_inches(tmp_path, capsys, monkeypatch, file):
+    monkeypatch.setattr(overview, "overview_of_scene", title_of)
+    cases = (
+        "[[load.case]]\npinion_torque_lbf_in = 2400\nhours = 1\n[[load.case]]\npinion_torque_lbf_in = 12\nhours = 2\n"
+    )
+    (tmp_path / "bins.csv").write_text("pinion_torque_lbf_in,hours\n2400,1\n12,2\n", encoding="utf-8")
+    load = '[load]\nspectrum = "bins.csv"\n' if file else cases
+    text = INCHES.read_text(encoding="utf-8").replace("pinion_torque_lbf_in = 2400", "").replace("[load]\n", load)
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    code, printed = check(capsys, tmp_path / "scene.toml")
+    assert code == 0
+    read = dict(line.split(maxsplit=1) for line in printed.out.splitlines() if line.startswith("  "))
+    # 1 lbf in is 0.45359237 kg times 9.80665 m/s^2 times 0.0254 m
+    torques = ", ".join(f"{lbf_in * 0.45359237 * 9.80665 * 0.0254:.9g}" for lbf_in in (2400.0, 12.0))
+    assert read["load.case.pinion_torque_lbf_in"] == f"load.case.pinion_torque_Nm = [{torques}]"
+
+
 @pytest.mark.parametrize(
     ("changes", "told"),
     [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from loaded_tca.results.comparison import Comparison
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
+    from loaded_tca.scene.load import AnyLoad
     from loaded_tca.scene.written import Writing
     from loaded_tca.stages import Stage, StageResult
     from loaded_tca.studies import DesignResult
@@ -48,39 +49,56 @@ def stage_of(options: argparse.Namespace) -> Stage:
     return stage.with_changes(changes) if changes else stage
 
 
-def written_otherwise(path: str | os.PathLike[str]) -> tuple[dict[str, Writing], dict[str, Any]]:
-    """How a scene or stage file writes keys that it does not have by their names, and values by paths of keys.
+def written_otherwise(path: str | os.PathLike[str]) -> tuple[dict[str, Writing], dict[str, Any], dict[str, Any]]:
+    """How a scene or stage file writes keys that it does not have by their names, values by paths of keys, its tables.
 
     Raises
     ------
     InputError
         If the file cannot be read, or describes neither.
     """
-    from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, scenes_of, toml_table
+    from loaded_tca.scene.parse import LARGEST_FILE, is_table_of_stage, scenes_of, toml_table, with_files_from
     from loaded_tca.scene.section import check
 
-    table = toml_table(read_text(path, LARGEST_FILE), os.fspath(path))
+    table = with_files_from(Path(path).parent, toml_table(read_text(path, LARGEST_FILE), os.fspath(path)))
     if is_table_of_stage(table):
         from loaded_tca.stages import Stage
 
         values, _, writings = check(Stage, table)
     else:
         values, _, writings = check(scenes_of(table), table)
-    return {key: writing for key, writing in writings.items() if writing.given}, values
+    return {key: writing for key, writing in writings.items() if writing.given}, values, table
+
+
+def _bins_otherwise(load: AnyLoad, table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Keys that the bins of a load spectrum, or columns of its file, write otherwise, and the values of all bins."""
+    from loaded_tca.scene.keys import shown
+    from loaded_tca.scene.load import spectrum_columns
+    from loaded_tca.scene.section import keys_of
+    from loaded_tca.scene.written import writing_of
+
+    keys, file = keys_of(load.CASE), table.get("spectrum")
+    names = spectrum_columns(file) if file else [name for each in table.get("case", ()) for name in each]
+    for name in dict.fromkeys(names):
+        if name not in keys and (writing := writing_of(name, keys, {})):
+            numbers = tuple(float(plain(getattr(each, writing.key), 9)) for each in load.case or ())
+            yield f"load.case.{name}", f"load.case.{writing.key} = {shown(numbers)}"
 
 
 def read_otherwise(path: str | os.PathLike[str]) -> Iterator[str]:
     """Lines on the keys that a file writes otherwise, with the values that were read; none where there are none."""
     from loaded_tca.scene.keys import shown
 
-    writings, values = written_otherwise(path)
-    if writings:
+    writings, values, table = written_otherwise(path)
+    lines = []
+    for key, writing in writings.items():
+        value = values[key]
+        lines.append((writing.path(key), f"{key} = {shown(value) if isinstance(value, tuple) else plain(value, 9)}"))
+    lines += _bins_otherwise(values["load"], table["load"]) if "case" in values["load"].alternatives else ()
+    if lines:
         yield "written otherwise in the file, and read as"
-        width = max(len(writing.path(key)) for key, writing in writings.items())
-        for key, writing in writings.items():
-            value = values[key]
-            read = shown(value) if isinstance(value, tuple) else plain(value, 9)
-            yield f"  {writing.path(key):<{width}}  {key} = {read}"
+        width = max(len(name) for name, _ in lines)
+        yield from (f"  {name:<{width}}  {read}" for name, read in lines)
 
 
 @contextmanager
@@ -90,7 +108,7 @@ def as_files_write(options: argparse.Namespace) -> Iterator[None]:
         yield
     except (InputError, GeometryError) as error:
         try:
-            writings, _ = written_otherwise(options.scene)
+            writings, *_ = written_otherwise(options.scene)
         except (AttributeError, InputError):
             raise error from None
         from loaded_tca.scene.written import answered, as_written

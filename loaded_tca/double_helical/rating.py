@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.double_helical.laws import balance_of
-from loaded_tca.errors import InputError, give_accuracy_warning, named, require
+from loaded_tca.errors import InputError, give_accuracy_warning, named
 from loaded_tca.plain import plain
 from loaded_tca.rating import Rating, rating_of
 from loaded_tca.rating.cases import cases_of, problems_of_cases
@@ -40,7 +40,12 @@ _OF_CASES = {
         "largest share of a half over an even share",
         label="K_gamma: largest share of a half over an even share",
     ),
-    "K_Hbeta": Number(CASE, "1", "K_Hbeta of the worse half", label="K_Hbeta of the worse half"),
+    "K_Hbeta": Number(
+        CASE,
+        "1",
+        "K_Hbeta: largest line load of both halves over the mean one under the larger share",
+        label="K_Hbeta: largest line load of both halves over the mean one under the larger share",
+    ),
     "whole_flank_safety": Number(OF_GEARS, "1", "whole gear, b = 2 b_B: safety against pitting S_H"),
     "whole_root_safety": Number(OF_GEARS, "1", "whole gear, b = 2 b_B: safety against tooth breakage S_F"),
     **{name: NUMBERS[name].changed(text=f"smaller of both halves: {NUMBERS[name].text}") for name in _SAFETIES},
@@ -72,11 +77,13 @@ class DoubleHelicalRating(OfCases):
     Attributes
     ----------
     result : DoubleHelicalResult
-    half_a, half_b : Rating
-        Each half under its own torque, the largest of its shares over the pitch, with every factor.
+    half_a, half_b : Rating or None
+        Each half under its own torque, the largest of its shares over the pitch, with every factor; None: it carries
+        nothing under any torque.
     whole : Rating
         The whole gear as ISO 6336 has it: half the torque on the face of a half, which is the torque on b = 2 b_B, with
-        K_gamma of the larger share and K_Hbeta of the worse half. Its local stresses are those of half a.
+        K_gamma of the larger share, and K_Hbeta by which K_gamma K_Hbeta is the largest line load of both halves over
+        the mean one of the gear. Its local stresses are those of the half that carries more.
     dataset : xarray.Dataset
         Numbers with their units, over ``case``, each of a ``torque`` of both halves, ``gear`` and ``mode``.
     """
@@ -86,8 +93,8 @@ class DoubleHelicalRating(OfCases):
     FIGURES: ClassVar = all_figures(PAIR_RATING_NUMBERS)
 
     result: DoubleHelicalResult
-    half_a: Rating
-    half_b: Rating
+    half_a: Rating | None
+    half_b: Rating | None
     whole: Rating
     dataset: xarray.Dataset
 
@@ -104,41 +111,47 @@ class DoubleHelicalRating(OfCases):
         return self.result.scene
 
     @property
-    def halves(self) -> tuple[Rating, Rating]:
-        """Ratings of half a and half b."""
-        return self.half_a, self.half_b
+    def of_halves(self) -> dict[str, Rating]:
+        """Ratings of the halves that carry load, by the names of these."""
+        ratings = zip(HALVES, (self.half_a, self.half_b), strict=True)
+        return {name: rating for name, rating in ratings if rating is not None}
+
+    @property
+    def halves(self) -> tuple[Rating, ...]:
+        """Ratings of half a and half b, or of that which carries load."""
+        return tuple(self.of_halves.values())
 
     @property
     def modes(self) -> tuple[str, ...]:
         """Kinds of failure that are rated."""
-        return self.half_a.modes
+        return self.whole.modes
 
     @property
     def required(self) -> RatingSection:
         """What the scene requires."""
-        return self.half_a.required
+        return self.whole.required
 
     @property
     def life_required(self) -> float:
         """The life that is required [h]."""
-        return self.half_a.life_required
+        return self.whole.life_required
 
     @property
     def scope(self) -> str:
         """Speed, hours and what is required, in words."""
-        return f"two halves, {self.half_a.scope}"
+        return f"two halves, {self.whole.scope}"
 
     def figure_arrays(self) -> dict[str, Array]:
         """Return the figures (case,) of the pair, and of its halves, which begin with their names."""
         columns = super().figure_arrays()
-        for name, rating in zip(HALVES, self.halves, strict=True):
+        for name, rating in self.of_halves.items():
             columns |= {_of_half(name, figure): values for figure, values in rating.figure_arrays().items()}
         return columns
 
     def rows(self, figures: Sequence[Figures]) -> list[tuple[str, ...]]:
         """Lines of the summary: of the pair, then of both halves with all factors."""
         rows = rows_of(self, GEARS, self.modes, figures)
-        for name, rating in zip(HALVES, self.halves, strict=True):
+        for name, rating in self.of_halves.items():
             start = _of_half(name, "")
             of_half = [
                 {key.removeprefix(start): value for key, value in row.items() if key.startswith(start)}
@@ -152,7 +165,7 @@ class DoubleHelicalRating(OfCases):
         """What decides in each half, what lies outside the ranges of the standard, which safeties are too small."""
         sentences = [
             f"half {name}: {note}"
-            for name, rating in zip(HALVES, self.halves, strict=True)
+            for name, rating in self.of_halves.items()
             for note in rating.notes()
             if note != NOT_COUNTED
         ]
@@ -172,7 +185,7 @@ class DoubleHelicalSpectrumRating(OfSpectrum, DoubleHelicalRating):
     def spectrum_rows(self) -> list[tuple[str, ...]]:
         """Lines on all bins together: of the worse half, then of each."""
         rows = super().spectrum_rows()
-        for name, rating in zip(HALVES, self.halves, strict=True):
+        for name, rating in self.of_halves.items():
             assert isinstance(rating, OfSpectrum)
             rows += [(f"half {name}, under its share", *("" for _ in GEARS))]
             rows += [(f"  {label}", *cells) for label, *cells in rating.spectrum_rows()[1:]]
@@ -205,26 +218,25 @@ def double_helical_rating_of(result: DoubleHelicalResult, *, warn: bool = True) 
     bins = scene.load.case
     torques = np.asarray(result.torque if bins is None else [1e3 * case.pinion_torque_Nm for case in bins])
     shares = _largest_shares(result, torques)
-    ratings = []
-    for half, (name, cycle) in enumerate(zip(HALVES, result.halves, strict=True)):
+    of_halves = torques * shares.T
+    ratings: list[Rating | None] = []
+    for name, cycle, of_half in zip(HALVES, result.halves, of_halves, strict=True):
         with named(f"half {name}"):
-            ratings.append(_under(scene, cycle, torques * shares[:, half]))
-    half_a, half_b = ratings
-    face = np.fmax(np.fmax(half_a.K_Hbeta, half_b.K_Hbeta), 1.0)  # NaN of idle bins
-    whole = _under(scene, result.half_a, 0.5 * torques, 2.0 * shares.max(axis=1), face)
+            ratings.append(_under(scene, cycle, of_half) if of_half.any() else None)
+    face = _face_load_factor(shares, ratings)
+    more = int(of_halves.max(axis=1).argmax())  # its mesh cycle goes up to the even share and more
+    whole = _under(scene, result.halves[more], 0.5 * torques, 2.0 * shares.max(axis=1), face)
     kind = DoubleHelicalRating if bins is None else DoubleHelicalSpectrumRating
-    arrays = {name: _worse(name, *ratings) for name in kind.NUMBERS if half_a.has(name)}
+    loaded = {name: rating for name, rating in zip(HALVES, ratings, strict=True) if rating is not None}
+    arrays = {name: _worse(name, loaded.values()) for name in kind.NUMBERS if whole.has(name)}
     arrays |= {"torque": torques, "K_gamma": whole.K_gamma, "K_Hbeta": face}
     arrays |= {"whole_flank_safety": whole.flank_safety, "whole_root_safety": whole.root_safety}
-    sentences = [
-        f"half {name}: {sentence}"
-        for name, rating in zip(HALVES, ratings, strict=True)
-        for sentence in rating.warnings or ()
-    ]
+    sentences = [f"half {name}: {sentence}" for name, rating in loaded.items() for sentence in rating.warnings or ()]
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
-    about: dict[str, Any] = {"version": half_a.version, "warnings": "\n".join(sentences)}
-    dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*GEARS], mode=[*half_a.modes])
+    about: dict[str, Any] = {"version": whole.version, "warnings": "\n".join(sentences)}
+    dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*GEARS], mode=[*whole.modes])
+    half_a, half_b = ratings
     return kind(result, half_a, half_b, whole, dataset)
 
 
@@ -235,6 +247,18 @@ def _largest_shares(result: DoubleHelicalResult, torques: Array) -> Array:
     force = balance_of(result.scene, result.halves, torques[loaded]).force
     shares[loaded] = (force / force.sum(axis=-1, keepdims=True)).max(axis=1)
     return shares
+
+
+def _face_load_factor(shares: Array, ratings: Sequence[Rating | None]) -> Array:
+    """K_Hbeta (c,) of the whole gear: the largest line load of both halves over the mean one under the larger share.
+
+    So a half counts as much as it carries, whatever its own K_Hbeta is; 1 of idle bins.
+    """
+    loads = [
+        np.zeros(len(shares)) if rating is None else share * np.nan_to_num(rating.K_Hbeta)  # NaN without load
+        for rating, share in zip(ratings, shares.T, strict=True)
+    ]
+    return np.fmax(np.max(loads, axis=0) / shares.max(axis=1), 1.0)
 
 
 def _under(
@@ -248,7 +272,6 @@ def _under(
 
     What a share exceeds the largest torque that was solved by, a thousandth at most, multiplies loads as K_gamma.
     """
-    require((bool(torques.any()), "carries nothing under any torque: there is nothing to rate; rate the other half"))
     largest = float(cycle.torque.max())
     within = np.minimum(torques, largest)
     more = load_factor * np.divide(torques, within, out=np.ones_like(torques), where=within > 0.0)
@@ -269,15 +292,18 @@ def _under(
     return rating_of(replace(cycle, scene=rated, states=None), duty=duty, warn=False)
 
 
-def _worse(name: str, half_a: Rating, half_b: Rating) -> Array:
+def _worse(name: str, ratings: Iterable[Rating]) -> Array:
     """A number of the half that is worse."""
-    worse: Callable[[Array, Array], Array] = np.maximum if name in LARGEST else np.minimum
-    return worse(half_a.values(name), half_b.values(name))
+    worse: np.ufunc = np.maximum if name in LARGEST else np.minimum
+    return np.asarray(worse.reduce([rating.values(name) for rating in ratings]))
 
 
 def _of_pair(rating: DoubleHelicalRating) -> Iterator[str]:
     """Sentences on how the halves share the torque in a rating."""
     scene, result = rating.scene, rating.result
+    for name in HALVES:
+        if name not in rating.of_halves:
+            yield f"half {name} carries nothing under any torque: the rating is that of the other half"
     if not scene.floats_freely:
         yield "each half is rated under the largest of its shares over the pitch"
     shares = result.torque_share

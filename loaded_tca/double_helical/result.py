@@ -246,13 +246,14 @@ class DoubleHelicalResult(JoinedResult):
         Returns
         -------
         loaded_tca.double_helical.DoubleHelicalRating
-            ``half_a``, ``half_b`` and ``whole`` with every factor; ``flank_safety`` and its sisters over case and gear,
-            ``damage`` and ``life_hours`` over kinds of failure, too.
+            ``half_a``, ``half_b`` and ``whole`` with every factor, None of a half that carries nothing under any
+            torque; ``flank_safety`` and its sisters over case and gear, ``damage`` and ``life_hours`` over kinds of
+            failure, too.
 
         Raises
         ------
         InputError
-            If a section that it needs is missing, as of :meth:`loaded_tca.MeshCycle.rating`, or a half carries nothing.
+            If a section that it needs is missing, as of :meth:`loaded_tca.MeshCycle.rating`.
 
         Warns
         -----

@@ -70,7 +70,7 @@ HALVES_REVOLUTION_FIGURES: dict[str, Figure] = {
     "axial_motion_span_um": replace(FIGURES["axial_motion_span_um"], label="  over the revolution, peak to peak"),
     **{
         f"axial_motion_{kind.replace(' ', '_')}_um": Figure(
-            of=partial(_order, kind), label=f"  amplitude of order {kind}"
+            of=partial(_order, kind), label=f"axial motion: amplitude of order {kind}"
         )
         for kind in ("pinion 1", "wheel 1", "mesh 1")
     },

@@ -172,12 +172,12 @@ def spectrum_figures(rating: OfSpectrum) -> dict[str, Any]:
         for gear in rating.MEMBERS
         for mode in rating.modes
     }
-    halves = zip(("half_a", "half_b"), getattr(rating, "halves", ()), strict=False)
+    halves: Mapping[str, OfSpectrum] = getattr(rating, "of_halves", {})
     return {
         "required_life_h": rating.life_required,
         "bins": len(rating.torque),
         **together,
-        **{name: spectrum_figures(half) for name, half in halves},
+        **{f"half_{name}": spectrum_figures(half) for name, half in halves.items()},
     }
 
 

@@ -21,7 +21,6 @@ from loaded_tca.rating.lives import Endurances, lives_of
 from loaded_tca.rating.rating import WORDS, Rating
 from loaded_tca.rating.solved import solved_loads
 from loaded_tca.rating.spectrum import SpectrumRating, of_spectrum
-from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.spiral import SpiralScene
 
 if TYPE_CHECKING:
@@ -90,7 +89,7 @@ def _above_static(inputs: CommonInputs, endurances: Endurances) -> Iterator[str]
                     where=f"{WORDS[mode]}, {gear}",
                     stress=stress,
                     strength=stress / float(over[worst]),
-                    torque=f"{shown_torque(inputs.torque[worst])} at the pinion",
+                    torque=inputs.torque_in_words(float(inputs.torque[worst]), gear=True),
                 )
 
 

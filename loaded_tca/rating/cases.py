@@ -10,7 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.errors import InputError
-from loaded_tca.plain import plain
+from loaded_tca.plain import apart
 from loaded_tca.reference.iso6336_3_strength import mean_stress_sensitivities
 
 if TYPE_CHECKING:
@@ -146,7 +146,5 @@ def problems_of_cases(
             yield f"load.case: reversed bins; the standard has no Y_M of kind {kind!r} ({name})"
     highest = load.largest_Nm
     if 1e3 * highest > largest * (1.0 + 1e-9):
-        yield (
-            f"load.case: a bin has {plain(highest, 6)} N m; allowed up to {plain(1e-3 * largest, 6)}, the "
-            "largest that was solved"
-        )
+        found, most = apart([highest, 1e-3 * largest])
+        yield f"load.case: a bin has {found} N m; allowed up to {most}, the largest that was solved"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from loaded_tca.arrays import GEARS
-from loaded_tca.plain import plain
+from loaded_tca.plain import apart, plain
 from loaded_tca.rating.lives import COAST, FLANK, ROOT
 
 if TYPE_CHECKING:
@@ -32,9 +32,10 @@ class Worst(NamedTuple):
         """Gear, failure, torque, and how far the safety is from that required."""
         part = self.safety / self.required - 1.0
         distance = f"{abs(part):.1%} {'above' if part >= 0.0 else 'below'}".replace("%", " %")
-        torque = plain(1e-3 * float(rating.torque[self.case]))
-        failure = f"{FAILURES[self.kind]} of the {GEARS[self.gear]} under {torque} N m"
-        return f"{failure}: safety {plain(self.safety)}, {distance} the required {plain(self.required)}"
+        torque = rating.inputs.torque_in_words(float(rating.torque[self.case]))
+        failure = f"{FAILURES[self.kind]} of the {GEARS[self.gear]} under {torque}"
+        safety, _ = apart([self.safety, self.required], 4)
+        return f"{failure}: safety {safety}, {distance} the required {plain(self.required, 6)}"
 
 
 def worst_of(rating: Rating, prefix: str = "") -> Worst:
@@ -76,13 +77,14 @@ def of_all_bins(rating: OfCases) -> Iterator[str]:
         gear, place = (int(n) for n in np.unravel_index(np.nanargmin(part), part.shape))
         n = of[place]
         damage = rating.values("damage")[:, gear, n]
+        safety, _ = apart([float(safeties[gear, n]), float(required[n])], 4)
         sentence = (
             f"{words} the critical failure is {ALL_FAILURES[_kind(rating.modes[n])]} of the {rating.MEMBERS[gear]}: "
-            f"safety {plain(safeties[gear, n])} in {plain(rating.life_required)} h, required {plain(required[n])}"
+            f"safety {safety} in {plain(rating.life_required, 6)} h, required {plain(required[n], 6)}"
         )
         if np.isfinite(damage).all() and damage.sum() > 0.0:
             case = int(damage.argmax())
-            torque, most = plain(1e-3 * float(rating.torque[case])), damage[case] / damage.sum()
+            torque, most = plain(1e-3 * float(rating.torque[case]), 6), damage[case] / damage.sum()
             sentence += f"; bin {case + 1} ({torque} N m) does {100.0 * most:.0f} % of the damage"
         yield sentence
 

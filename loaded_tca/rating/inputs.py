@@ -14,6 +14,7 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalMesh, InternalMesh
+from loaded_tca.plain import apart
 from loaded_tca.rating.cases import Cases, cases_of, problems_of_cases
 from loaded_tca.rating.solved import SolvedLoads, solved_factors
 from loaded_tca.scene.cylindrical import CylindricalScene
@@ -55,6 +56,8 @@ class Duty:
         Smallest over largest computed root stress of a turn under these, where other mates add to those of the mesh.
     cases : Cases or None
         Those of the mesh; None: those of its scene.
+    torque_of : (str, float)
+        The gear whose torque sentences name, and that torque over the one of the pinion.
     case_mesh_load_factor, case_face_load_factor : array (c,), optional
         K_gamma and K_Hbeta under the cases; default: as the torques of the result have them, and as the scene asks.
     """
@@ -65,6 +68,7 @@ class Duty:
     mean_stress_factors: tuple[float | None, float | None] = (None, None)
     stress_ratios: tuple[Array | None, Array | None] = (None, None)
     cases: Cases | None = None
+    torque_of: tuple[str, float] = ("pinion", 1.0)
     case_mesh_load_factor: Array | None = None
     case_face_load_factor: Array | None = None
 
@@ -113,6 +117,12 @@ class CommonInputs(ABC):
     def torque(self) -> Array:
         """Pinion torques (c,) [N mm]."""
         return self.cases.torque
+
+    def torque_in_words(self, *torques: float, gear: bool = False) -> str:
+        """Pinion torques [N mm] in words, as those of the gear whose they are; named where it is not the pinion."""
+        name, ratio = self.duty.torque_of
+        texts = apart([1e-3 * ratio * torque for torque in torques])
+        return f"{', '.join(texts)} N m" + (f" at the {name}" if gear or name != "pinion" else "")
 
     @property
     @abstractmethod

@@ -296,10 +296,10 @@ class Rating(OfCases):
             name, least = f"{mode}_safety", self.required.required_safety(mode)
             for place, gear in enumerate(GEARS if self.has(name) else ()):
                 short = self.values(name)[:, place] < least
-                torques = ", ".join(f"{plain(1e-3 * torque, 6)}" for torque in self.torque[short])
-                if torques:
+                if short.any():
+                    torques = self.inputs.torque_in_words(*self.torque[short].tolist())
                     words = self.NUMBERS[name].text.replace(":", "")
-                    sentences.append(f"{gear}: {words} below the required {plain(least, 6)} under {torques} N m")
+                    sentences.append(f"{gear}: {words} below the required {plain(least, 6)} under {torques}")
         return sentences
 
     def sensitivities(self, keys: Sequence[str]) -> xarray.Dataset:

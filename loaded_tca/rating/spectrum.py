@@ -11,7 +11,7 @@ import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
-from loaded_tca.plain import plain
+from loaded_tca.plain import apart, plain
 from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS, UNDER_LOAD
 from loaded_tca.rating.rating import WORDS, OfCases, Rating, all_figures
 from loaded_tca.rating.roots import REVERSED
@@ -74,8 +74,8 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
         parts = arrays["damage"][below].sum(axis=0)[sums > 0.0] / sums[sums > 0.0]
         largest = float(parts[np.isfinite(parts)].max(initial=0.0))
         part = f"they do up to {plain(100.0 * largest, 1)} % of the damage"
-        least = f"{plain(1e-3 * solved.torque[0])} N m, the smallest torque that was solved"
-        yield f"{below.sum()} bins lie below {least}; {part}"
+        bins = "1 bin lies" if below.sum() == 1 else f"{below.sum()} bins lie"
+        yield f"{bins} below {inputs.torque_in_words(float(solved.torque[0]))}, the smallest torque that was solved; {part}"
     if cases.reversed.any():
         bins = f"reversed bins ({cases.reversed.sum()} of {len(between)})"
         if of_both_sides:
@@ -137,8 +137,9 @@ class OfSpectrum(OfCases):
                         f"static strength; has a safety of {plain(safety, 3)} in {plain(self.life_required, 6)} h"
                     )
                 elif life < self.life_required:
+                    lasts, _ = apart([life, self.life_required], 4)
                     sentences.append(
-                        f"{gear}: {WORDS[mode]}: life {plain(life)} h of {plain(self.life_required, 6)} h at the "
+                        f"{gear}: {WORDS[mode]}: life {lasts} h of {plain(self.life_required, 6)} h at the "
                         f"required safety {plain(least, 6)}; has a safety of {plain(safety, 3)} in these"
                     )
         return sentences

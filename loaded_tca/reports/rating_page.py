@@ -20,7 +20,6 @@ from loaded_tca.rating.spectrum import OfSpectrum
 from loaded_tca.reports.page import Table, parts_of, pictures_of
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.summary import shown
-from loaded_tca.scene.double_helical import HALVES
 from loaded_tca.scene.rating import is_rated
 from loaded_tca.stages.rating import MEMBERS, MESHES, StageRating, stage_rating_of
 from loaded_tca.stages.sections import words_of
@@ -122,7 +121,7 @@ def _of_halves(rating: DoubleHelicalRating) -> dict[str, Any]:
     torques = [f"{plain(1e-3 * float(rating.torque[case]))} N m" for case in cases]
     rows = rows_of(rating, GEARS, rating.modes, figures)[1:]
     tables = []
-    for name, half in zip(HALVES, rating.halves, strict=True):
+    for name, half in rating.of_halves.items():
         of_half = [replace(safeties_table(half), caption="safeties and lives"), *_all_tables(half, cases)]
         tables += [replace(table, caption=f"Half {name}: {table.caption}") for table in of_half]
     return {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from loaded_tca.plain import lasting, plain
+from loaded_tca.plain import apart, lasting, plain
 from loaded_tca.results.figures import FIGURES, SUMMARY
 from loaded_tca.results.key_figures import WHERE_REASONS_ARE, reasons_beside
 from loaded_tca.units import without_unit
@@ -154,8 +154,8 @@ def shown_torque(torque: float) -> str:
 
 def limits_of(figures: Sequence[Figures]) -> Iterator[str]:
     """Yield sentences on what limits the figures; none for an ordinary point contact."""
-    apart = [entry["positions"] - entry["positions_in_contact"] for entry in figures]
-    yield from _counted(figures, apart, "no tooth pair is in contact")
+    without = [entry["positions"] - entry["positions_in_contact"] for entry in figures]
+    yield from _counted(figures, without, "no tooth pair is in contact")
     higher = [
         bool(entry.get("edge_is_rounded", False)) and entry["edge_pressure_MPa"] > entry["peak_pressure_MPa"]
         for entry in figures
@@ -193,7 +193,7 @@ def _for_torques(figures: Sequence[Figures], holds: Sequence[bool]) -> str:
         return ""
     if all(holds):
         return " (all torques)"
-    torques = [plain(entry["pinion_torque_Nm"]) for entry, one in zip(figures, holds, strict=True) if one]
+    torques = apart([entry["pinion_torque_Nm"] for entry, one in zip(figures, holds, strict=True) if one])
     if len(torques) > MOST_TORQUES:
         return f" ({len(torques)} torques, {torques[0]} to {torques[-1]} N m)"
     return f" ({', '.join(torques)} N m)"

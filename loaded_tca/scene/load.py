@@ -12,7 +12,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.input_files import Table, number_in, read_table, require_decimal_points, table_in
-from loaded_tca.plain import plain
+from loaded_tca.plain import apart, plain
 from loaded_tca.scene.keys import Choice, Line, Number, above_zero, did_you_mean, key, nearest, shown
 from loaded_tca.scene.section import Rule, Section, Tables, check, keys_of, made
 from loaded_tca.scene.written import writing_of
@@ -251,8 +251,8 @@ def within_solved(load: AnyLoad | None, torques: Sequence[float] | None) -> str 
         return None
     if load.largest_Nm <= max(torques):
         return None
-    found = plain(load.largest_Nm, 6)
-    return f"a bin has {found} N m; allowed up to {plain(max(torques), 6)}, the largest of analysis.torques_Nm"
+    found, most = apart([load.largest_Nm, max(torques)])
+    return f"a bin has {found} N m; allowed up to {most}, the largest of analysis.torques_Nm"
 
 
 def read_spectrum(file: str, case: type[Bin] = LoadCase) -> tuple[Bin, ...]:
@@ -263,14 +263,25 @@ def read_spectrum(file: str, case: type[Bin] = LoadCase) -> tuple[Bin, ...]:
     InputError
         If the file cannot be read, or with the problems of its columns and lines.
     """
-    text = read_table(file, LARGEST_FILE, "file of a load spectrum")
+    table = _table_of(file)
     with named(file):
-        table = table_in(text)
         require(*((False, problem) for problem in _column_problems(table.names, case)))
         require_decimal_points(table)
         count = len(table.rows)
         require((0 < count <= MOST_BINS, f"{count} lines of bins; allowed 1 to {MOST_BINS}"))
         return _bins(table, case)
+
+
+def _table_of(file: str) -> Table:
+    """The table of a CSV file of a load spectrum."""
+    text = read_table(file, LARGEST_FILE, "file of a load spectrum")
+    with named(file):
+        return table_in(text)
+
+
+def spectrum_columns(file: str) -> tuple[str, ...]:
+    """Names of the columns of a CSV file of a load spectrum, as it writes them."""
+    return tuple(_table_of(file).names)
 
 
 def _column_problems(names: Sequence[str], case: type[Bin]) -> list[str]:

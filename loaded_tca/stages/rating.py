@@ -275,13 +275,14 @@ def _of_meshes(result: StageResult, cases: Cases, factor: Array) -> tuple[Rating
         for share, turns in zip(shares, (ratio, ratio * sun / planet), strict=True)
     ]
     cycles = [
-        share.under(np.asarray(result.torque), _rated_scene(stage, scene, strengths, float(of_mesh.speed.max())))
+        share.under(np.asarray(result.torque), _rated_scene(stage, scene, strengths, of_mesh))
         for share, (scene, strengths), of_mesh in zip(shares, scenes, own, strict=True)
     ]
     at_sun, at_ring = _computed_ratios(*cycles) if stage.analysis.root_stress else (None, None)
+    of_sun, of_ring = (("sun", 1.0 / share.of(np.ones(1)).item()) for share in shares)
     duties = (
-        Duty(factor, (planets, 1), False, (None, mean), (None, at_sun), own[0]),
-        Duty(factor, (1, planets), True, (mean, None), (at_ring, None), own[1]),
+        Duty(factor, (planets, 1), False, (None, mean), (None, at_sun), own[0], of_sun),
+        Duty(factor, (1, planets), True, (mean, None), (at_ring, None), own[1], of_ring),
     )
     ratings = []
     for gears, cycle, duty in zip(MESHES.values(), cycles, duties, strict=True):
@@ -344,12 +345,12 @@ def _rated_scene(
     stage: Stage,
     scene: CylindricalScene,
     strengths: tuple[StrengthSection | None, StrengthSection | None],
-    speed: float,
+    cases: Cases,
 ) -> CylindricalScene:
-    """Scene of a mesh that says what its rating needs; ``speed`` is the largest of its pinion [rpm]."""
+    """Scene of a mesh that says what its rating needs under its load cases, whose bins it does not have."""
     assert stage.rating is not None
     values = {name: value for name, value in contents(stage.rating).items() if name != "mesh_load_factor"}
-    operation = Operation(pinion_speed_rpm=speed)
+    operation = Operation(pinion_speed_rpm=float(cases.speed.max()))
     if stage.operation is not None:
         factors = {name: getattr(stage.operation, name) for name in ("application_factor", "dynamic_factor")}
         operation = replace(operation, **factors)
@@ -359,7 +360,7 @@ def _rated_scene(
         wheel=replace(scene.wheel, strength=strengths[1]),
         operation=operation,
         lubricant=stage.lubricant,
-        rating=RatingSection(**values),
+        rating=RatingSection(**values | {"life_hours": cases.life_hours}),
     )
 
 

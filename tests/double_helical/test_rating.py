@@ -77,9 +77,42 @@ def test_whole_gear_has_the_torque_on_both_widths(held_rating):
     assert_allclose(rating.sigma_H0, rating.Z_H * rating.Z_E * rating.Z_eps * rating.Z_beta * nominal, rtol=1e-9)
     factors = (rating.Y_F * rating.Y_S * rating.Y_beta * rating.Y_B * rating.Y_DT)[0]
     assert_allclose(rating.sigma_F0[0], force / (width * 4.0) * factors, rtol=1e-9)
-    assert_array_equal(rating.K_Hbeta, np.maximum(held_rating.half_a.K_Hbeta, held_rating.half_b.K_Hbeta))
-    both = np.minimum(held_rating.half_a.flank_safety, held_rating.half_b.flank_safety)
-    assert (held_rating.whole_flank_safety <= both * (1.0 + ROUNDING)).all()  # the worse share and the worse K_Hbeta
+    line_loads = [half.torque * half.K_gamma * half.K_Hbeta for half in held_rating.halves]
+    assert line_loads[0] > line_loads[1]  # but half b has the larger K_Hbeta
+    assert_allclose(0.5 * 1.6e6 * rating.K_gamma * rating.K_Hbeta, line_loads[0], rtol=ROUNDING)
+    assert_allclose(held_rating.whole_flank_safety, held_rating.half_a.flank_safety, rtol=ROUNDING)
+
+
+@pytest.mark.parametrize("apex", [0.02, -0.02])
+def test_whole_gear_takes_of_a_half_what_it_carries(apex):
+    """Next to no load on a half, K_Hbeta 14 there, is next to nothing in the whole gear, whose safety has no dip."""
+    torques = np.linspace(500.0, 800.0, 7)
+    cases = [{"pinion_torque_Nm": torque, "hours": 1.0} for torque in torques.tolist()]
+    rating = result_of(**{**HELD, "pair.apex_offset_mm": apex}, load={"case": cases}).rating()
+    more, less = rating.halves if apex > 0.0 else rating.halves[::-1]
+    begins = int(np.flatnonzero(less.torque)[0])
+    assert 1 < begins < 6
+    assert less.K_Hbeta[begins] > 2.0 * more.K_Hbeta[begins]
+    assert_allclose(rating.K_Hbeta, more.K_Hbeta, rtol=ROUNDING)
+    assert_allclose(rating.K_gamma, 2.0 * more.torque * more.K_gamma / (1e3 * torques), rtol=ROUNDING)
+    assert (np.diff(rating.whole_flank_safety, axis=0) < 0.0).all()
+
+
+@pytest.mark.parametrize(("apex", "name", "more"), [(1.0, "b", {}), (-1.0, "a", {"load": {"case": BINS}})])
+def test_half_without_load_under_all_torques_is_not_rated(apex, name, more):
+    result, half = result_of(**{**HELD, "pair.apex_offset_mm": apex}, **more), f"half_{name}"
+    cycle = getattr(result, half)
+    little = replace(cycle, dataset=cycle.dataset.isel(torque=[0]), maps=cycle.maps[:1], states=None)
+    rating = replace(result, **{half: little}).rating()
+    assert getattr(rating, half) is None
+    assert_array_equal(rating.K_gamma[rating.torque > 0.0], 2.0)
+    (other,) = rating.halves
+    assert_array_equal(rating.damage, other.damage)
+    assert_allclose(other.torque * np.nan_to_num(other.K_gamma), rating.torque, rtol=ROUNDING)
+    assert rating.notes()[0] == (f"half {name} carries nothing under any torque: the rating is that of the other half")
+    assert f"half {name}, under its share" not in rating.summary()
+    captions = [table.caption for table in halves_rating_content(rating.result)["tables"]]
+    assert {caption[:6] for caption in captions} == {f"Half {'ab'.replace(name, '')}"}
 
 
 def test_load_factor_of_held_halves_is_that_of_the_axial_force_that_is_left(held, held_rating):
@@ -148,16 +181,9 @@ def test_command_and_report_rate_both_halves(tmp_path, monkeypatch, capsys, held
     assert halves_rating_content(result_of(**{"pinion.strength": None})) is None
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"lubricant": None}, "lubricant: missing; the strength of flanks"),
-        ({**HELD, "pair.apex_offset_mm": 1.0}, "half b: carries nothing under any torque"),
-    ],
-)
-def test_refused(changes, words):
-    with pytest.raises(InputError, match=words):
-        result_of(**changes).rating()
+def test_rating_without_a_lubricant_is_refused():
+    with pytest.raises(InputError, match="lubricant: missing; the strength of flanks"):
+        result_of(lubricant=None).rating()
 
 
 def test_bins_above_the_torques_that_were_solved_are_refused(held):

@@ -80,7 +80,9 @@ def test_command_writes_both_halves_with_orders_of_the_shuttling(wobbling, tmp_p
     monkeypatch.setattr("loaded_tca.plots.png_of", lambda _: b"")
     (tmp_path / "scene.toml").write_text(wobbling.scene.to_toml())
     assert main(["revolution", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out")]) == 0
-    assert "axial motion towards half a, mean" in capsys.readouterr().out
+    summary = capsys.readouterr().out
+    assert "axial motion towards half a, mean" in summary
+    assert "axial motion: amplitude of order pinion 1 [um]" in summary
     again = DoubleHelicalRevolution.load(tmp_path / "out")
     assert again.dataset.identical(wobbling.dataset)
     assert again.half_b.dataset.identical(wobbling.half_b.dataset)

@@ -66,6 +66,21 @@ def test_meshes_are_rated_under_even_shares():
     assert_allclose(rating.ring_mesh.torque, share * planet / sun, rtol=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:rating.*static strength:loaded_tca.AccuracyWarning")
+def test_sentences_name_the_torque_of_the_sun():
+    rating = rated(**{"operation.application_factor": 9.0})
+    under = f"under {rating.torque[0] / 1e3:g} N m at the sun"
+    static = [sentence for sentence in rating.warnings if "static strength" in sentence]
+    assert {gear for gear in ("sun", "planet", "ring") for sentence in static if f", {gear}:" in sentence} >= {
+        "sun",
+        "ring",
+    }
+    assert all(under in sentence for sentence in static)
+    notes = [note for note in rating.notes() if "below the required" in note or "what decides" in note]
+    assert {note.partition(":")[0] for note in notes} == {"sun and planet", "planet and ring"}
+    assert all(under in note for note in notes)
+
+
 def test_planets_bend_to_and_fro():
     """Annex B of ISO 6336-3:2006: R = -1.2, the loads for each mm of both flanks being in the ratio of the widths."""
     rating = rated()

@@ -75,6 +75,13 @@ def test_damage_of_bins_adds_up_by_hours_and_halves_are_one_bin():
     assert_allclose(under(shares).life_hours, parts.life_hours, rtol=ROUNDING)
 
 
+def test_hours_of_bins_are_the_life_that_is_required():
+    rows = bins((300.0, 4.0), (480.0, 2.0))
+    asked, hours = under(rows, **{"rating.life_hours": 6.0}), under(rows, **{"rating.life_hours": None})
+    assert_array_equal(hours.miner_sum, asked.miner_sum)
+    assert hours.life_required == hours.sun_mesh.life_required == 6.0
+
+
 def test_stage_of_equal_planets_is_its_single_meshes_with_cycles_by_hand():
     """K_gamma 1: pairs under even shares; a tooth of sun and ring meets all planets in a turn against the carrier."""
     rows = ((300.0, 3.0), (480.0, 1.0))
@@ -168,6 +175,13 @@ def test_many_bins_solve_no_more_torques_than_a_dozen():
     assert parse_stage(stage.to_toml()) == stage
 
 
+@pytest.mark.filterwarnings("ignore:rating. the damage of the spectrum may be wrong:loaded_tca.AccuracyWarning")
+def test_sentences_name_torques_of_the_sun_with_six_digits():
+    notes = under(bins((299.913, 1.0), (20.0, 1.0)), **{"rating.life_hours": 12345.6}).notes()
+    assert " in 12345.6 h, required 2.4; bin 1, 299.913 N m, does 100 % of the damage" in notes[0]
+    assert sum("1 bin lies below 45 N m at the sun, the smallest torque solved" in note for note in notes) == 1
+
+
 def test_numbers_of_a_spectrum_stand_in_summary_and_files(tmp_path):
     rating = under(bins((300.0, 1.0), (480.0, 1.0)), title="Two bins")
     text = rating.summary()
@@ -189,7 +203,7 @@ IRON |= {"flank_Rz_um": 4.8, "root_Rz_um": 20.0}
 BACK = [*bins((300.0, 1.0)), *bins((300.0, 1.0), reversed=True)]
 
 test_bad_spectrum_is_refused = refused_calls(
-    (lambda: under(bins((480.1, 1.0))), "load: a bin has 480.1 N m; allowed up to 480, the largest of analysis"),
+    (lambda: under(bins((480.0001, 1.0))), "load: a bin has 480.0001 N m; allowed up to 480, the largest of analysis"),
     (
         lambda: under(bins((600.0, 1.0)), **{"analysis.torques_Nm": None}),
         "load.case: a bin has 600 N m; allowed up to 480, the largest that was solved",
@@ -274,12 +288,13 @@ def test_pictures_have_a_bar_and_a_curve_of_each_gear():
 def test_command_rates_a_stage_again_under_a_spectrum(run, tmp_path, monkeypatch):
     monkeypatch.setattr("loaded_tca.plots.rating_figures", lambda _: {})
     result, _ = analysed()
-    replace(result, stage=result.stage.with_changes(SECTIONS | REQUIRED)).save(tmp_path)
+    hours = {"load.case": bins((300.0, 1.0)), "rating.life_hours": None}
+    replace(result, stage=result.stage.with_changes(SECTIONS | REQUIRED | hours)).save(tmp_path)
     (tmp_path / "bins.csv").write_text("sun_torque_Nm,hours,reversed\n300,3,\n300,1,true\n", encoding="utf-8")
     (tmp_path / "root_safety.png").touch()  # of another rating
     code, text, _ = run("rating", str(tmp_path), "--set", f"load.spectrum={tmp_path / 'bins.csv'}")
     assert code == 0
-    expected = under(bins((300.0, 3.0)) + bins((300.0, 1.0), reversed=True))
+    expected = under(bins((300.0, 3.0)) + bins((300.0, 1.0), reversed=True), **{"rating.life_hours": None})
     assert all(line in text for line in expected.summary().splitlines() if line.startswith("root: "))
     assert not (tmp_path / "root_safety.png").exists()
     stored = json.loads((tmp_path / "rating.json").read_text(encoding="utf-8"))
