@@ -3217,6 +3217,20 @@ FAULTS = (
         "np.rint(values / step)",
         "reports/test_interactive_report.py::test_scaled_numbers_keep_the_smallest_and_what_is_missing",
     ),
+    Fault(
+        "rating of both sides: loads of the coast side do not press the fillets of the drive side",
+        "rating/cases.py",
+        "tops = [self.torque[side].max(initial=0.0) for side in (self.reversed, ~self.reversed)]",
+        "tops = [0.0, self.torque.max()]",
+        "rating/test_both_sides.py::test_rating_does_not_depend_on_which_side_is_called_drive",
+    ),
+    Fault(
+        "rating of both sides: the largest root tension does not count where the other side presses all places",
+        "rating/evaluate.py",
+        "(inputs.cases.press_on_back > 0.0) & (uses[1] >= uses[0])",
+        "inputs.cases.reversed & (uses[1] >= uses[0])",
+        "rating/test_both_sides.py::test_rating_does_not_depend_on_which_side_is_called_drive",
+    ),
 )
 
 

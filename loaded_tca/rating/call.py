@@ -52,6 +52,7 @@ def rating_of(
     at_edge = inputs.loads.at_edge.any()
     if coast is not None:
         beside = _solved_inputs(as_coast_side(coast, result), duty)
+        inputs = replace(inputs, cases=inputs.cases.of_both_sides())
         at_edge |= beside.loads.at_edge.any()
         (arrays, endurances, notes), error = evaluated_together(inputs, beside, _evaluated)
     else:

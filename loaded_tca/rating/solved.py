@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.arrays import GEARS, Array, Indices, Mask
-from loaded_tca.rating.roots import deciding_places
+from loaded_tca.rating.roots import deciding_places, largest_places
 from loaded_tca.results.key_figures import mean_over_a_pitch, span_of
 from loaded_tca.scene.spiral import SpiralScene
 from loaded_tca.tribology.contact_slices import largest_pressures
@@ -22,7 +22,7 @@ OF_ROOT = 1.0
 OF_FLANK = 0.5
 """Powers of the torque that root tension and pressure of a line contact grow with: what is left is interpolated."""
 FACTORS = "face_load_factor", "transverse_load_factor", "mesh_load_factor"
-OVER_GEARS = "places", "root_places"
+OVER_GEARS = "places", "root_places", "largest_root_places"
 """Arrays whose torques are the second axis."""
 
 
@@ -50,8 +50,8 @@ class SolvedLoads:
         Largest tension of a turn [MPa] where the roots of both gears decide, smallest over largest stress there.
     largest_root_tension : (c, 2) array, or None
         Of all places [MPa]: what decides where stress is reversed everywhere alike.
-    root_places : (2, c, 2) array, or None
-        Tangent angle [rad] and axial coordinate [mm] of the place that decides, of both gears; that of the nearest.
+    root_places, largest_root_places : (2, c, 2) array, or None
+        Tangent angle [rad] and axial coordinate [mm] of these places, of both gears; those of the nearest.
     mate_stress_ratios : (c, 2) array, or None
         Smallest over largest root stress of a turn of both gears, where other mates add to those of the mesh; NaN:
         none do.
@@ -72,6 +72,7 @@ class SolvedLoads:
     root_stress_ratio: Array | None = None
     largest_root_tension: Array | None = None
     root_places: Array | None = None
+    largest_root_places: Array | None = None
     mate_stress_ratios: Array | None = None
     root_nodes: Indices | None = None
     excitation: dict[str, Array] = field(default_factory=dict)
@@ -191,6 +192,9 @@ def solved_loads(inputs: CommonInputs) -> SolvedLoads:
             largest_root_tension=np.nanmax(result.root_tension, axis=1),
             root_places=np.array([[pinion.tangent_angle, wheel.tangent_angle], [pinion.axial, wheel.axial]]).swapaxes(
                 1, 2
+            ),
+            largest_root_places=np.array([largest_places(alone, gear) for gear in range(len(GEARS))]).transpose(
+                1, 2, 0
             ),
             root_nodes=np.stack([pinion.node, wheel.node], axis=1),
         )

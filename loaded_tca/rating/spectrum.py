@@ -79,10 +79,17 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
         bins = f"reversed bins ({cases.reversed.sum()} of {len(between)})"
         if of_both_sides:
             yield f"{bins} load the flanks of the coast side, and stress roots, as its analysis has them"
+            yield (
+                f"roots under loads on both flanks have Y_M of R = {plain(REVERSED, 6)} times the largest torque on "
+                "the other flank over that of the bin, at most 1, where root_stress_ratio is not less"
+            )
         else:
             yield f"{bins} load the other flanks, which are not analysed: no damage of these is counted"
             yield f"{bins} stress roots as the same torques do the other way"
-        yield f"{bins} have Y_M of R = {plain(REVERSED, 6)}; the others have Y_M by root_stress_ratio"
+            yield (
+                f"{bins} have Y_M of R = {plain(REVERSED, 6)}; the others have Y_M by root_stress_ratio: safeties of "
+                "roots depend on which side is that of the result; a rating with the coast side's does not"
+            )
     if abs(cases.repeated - 1.0) > ROUNDING:
         together = f"{plain(cases.life_hours / cases.repeated, 6)} h"
         yield f"the hours of the bins, {together}, follow each other {plain(cases.repeated)} times"
