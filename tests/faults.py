@@ -3231,6 +3231,27 @@ FAULTS = (
         "inputs.cases.reversed & (uses[1] >= uses[0])",
         "rating/test_both_sides.py::test_rating_does_not_depend_on_which_side_is_called_drive",
     ),
+    Fault(
+        "local safety of flanks: the arc of a rounded edge counts as flank",
+        "tribology/contact_slices.py",
+        "slices.elastic_pressure(slices.curvatures(rounded=False))",
+        "slices.elastic_pressure(slices.curvatures())",
+        "rating/test_edges.py::test_rounded_tips_have_the_local_safety_of_sharp_ones",
+    ),
+    Fault(
+        "map of the local safety of flanks: the arc of a rounded edge counts as flank",
+        "tribology/slices.py",
+        "contacts.elastic_pressure(contacts.curvatures(rounded=False))",
+        "contacts.elastic_pressure(contacts.curvatures())",
+        "rating/test_edges.py::test_rounded_tips_have_the_local_safety_of_sharp_ones",
+    ),
+    Fault(
+        "rating: an edge pressure below the peak pressure is warned of",
+        "results/warnings.py",
+        "if np.nanmax(pressures, initial=-math.inf) > np.nanmax(result.peak_pressure[torque], initial=0.0):",
+        "if np.nanmax(pressures, initial=-math.inf) > 0.0:",
+        "rating/test_rating.py::test_edge_pressure_that_local_safeties_leave_out_is_told",
+    ),
 )
 
 

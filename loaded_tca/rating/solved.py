@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loaded_tca.arrays import GEARS, Array, Indices, Mask
+from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.rating.roots import deciding_places, largest_places
 from loaded_tca.results.key_figures import mean_over_a_pitch, span_of
 from loaded_tca.scene.spiral import SpiralScene
@@ -40,12 +40,10 @@ class SolvedLoads:
     mesh_load_factor : (c,) array
         K_gamma.
     pressure : (c,) array [MPa]
-        Largest pressure of an elastic line contact over all slices of all contacts, whatever the cap: strengths of
-        flanks are such pressures.
+        Largest pressure of an elastic line contact over all slices of all contacts, whatever the cap, edges left out:
+        strengths of flanks are such pressures.
     places : (2, c, 2) array [mm]
         Radius and axial coordinate of its place, on pinion and wheel; between torques that of the nearest.
-    at_edge : (c,) array of bool
-        Whether that slice lies at an edge of a flank; likewise.
     root_tension, root_stress_ratio : (c, 2) array, or None
         Largest tension of a turn [MPa] where the roots of both gears decide, smallest over largest stress there.
     largest_root_tension : (c, 2) array, or None
@@ -67,7 +65,6 @@ class SolvedLoads:
     mesh_load_factor: Array
     pressure: Array
     places: Array
-    at_edge: Mask
     root_tension: Array | None = None
     root_stress_ratio: Array | None = None
     largest_root_tension: Array | None = None
@@ -82,10 +79,8 @@ class SolvedLoads:
         cls, torque: Array, face_load_factor: Array, transverse_load_factor: Array, mesh_load_factor: Array
     ) -> SolvedLoads:
         """Load factors alone, with stresses that are not known."""
-        unknown, nowhere = np.full(len(torque), nan), np.zeros(len(torque), dtype=bool)
-        places = np.full((2, len(torque), 2), nan)
-        factors = face_load_factor, transverse_load_factor, mesh_load_factor
-        return cls(torque, *factors, unknown, places, nowhere)
+        unknown, places = np.full(len(torque), nan), np.full((2, len(torque), 2), nan)
+        return cls(torque, face_load_factor, transverse_load_factor, mesh_load_factor, unknown, places)
 
     def at(self, torques: Array) -> SolvedLoads:
         """The same under other torques, none above the largest: as solved, or interpolated.
@@ -179,7 +174,6 @@ def solved_loads(inputs: CommonInputs) -> SolvedLoads:
         inputs.solved,
         pressure=largest.pressure,
         places=np.stack([largest.radius.T, largest.axial.T]),
-        at_edge=largest.at_edge,
         excitation=_excitation(result),
     )
     if inputs.scene.analysis.root_stress:
