@@ -3252,6 +3252,20 @@ FAULTS = (
         "if np.nanmax(pressures, initial=-math.inf) > 0.0:",
         "rating/test_rating.py::test_edge_pressure_that_local_safeties_leave_out_is_told",
     ),
+    Fault(
+        "maps of safeties: of a spectrum the bin of the smallest safety, which may do no damage",
+        "rating/places.py",
+        "if (damage[shown] > 0.0).any():",
+        "if (damage[shown] > np.inf).any():",
+        "rating/test_spectrum.py::test_maps_are_those_of_the_bin_of_the_largest_damage",
+    ),
+    Fault(
+        "map of the root safety: tops between the places are left out",
+        "rating/places.py",
+        "load = above * rating.K_A[case]",
+        "load = rating.K_A[case]",
+        "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
+    ),
 )
 
 
