@@ -3266,6 +3266,13 @@ FAULTS = (
         "load = rating.K_A[case]",
         "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
     ),
+    Fault(
+        "run --coast: the command of the joint rating is shown without reversed bins",
+        "cli/commands.py",
+        "if is_rated(scene) and any(case.reversed for case in scene.load.case or ()):",
+        "if is_rated(scene) and scene.load.case:",
+        "test_cli_rating.py::test_command_that_rates_both_sides_is_shown_where_bins_are_reversed",
+    ),
 )
 
 

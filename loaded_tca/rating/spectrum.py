@@ -84,7 +84,10 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
                 "the other flank over that of the bin, at most 1, where root_stress_ratio is not less"
             )
         else:
-            yield f"{bins} load the other flanks, which are not analysed: no damage of these is counted"
+            yield (
+                f"{bins} load the other flanks, which are not analysed: no damage of these is counted; with the result "
+                "of the coast side 'loaded-tca rating DIR --coast OTHER' rates both"
+            )
             yield f"{bins} stress roots as the same torques do the other way"
             yield (
                 f"{bins} have Y_M of R = {plain(REVERSED, 6)}; the others have Y_M by root_stress_ratio: safeties of "
