@@ -397,11 +397,13 @@ PITCH_VELOCITY = Kind(
     "the coefficients of friction of the standards were fitted within this range",
     "give `friction` as a number from a test",
 )
-RATED_AT_EDGE = Kind(
-    "rating: the largest pressure, from which the local safety of flanks follows, lies at an edge of a flank",
-    "it is the pressure of a line contact with the mean load over a quarter module, and rises towards a sharp edge: "
-    "it is indicative only",
-    "tip or end relief, or an edge with a radius; safeties after ISO 6336 do not depend on this pressure",
+EDGES_NOT_RATED = Kind(
+    "rating: local safeties of flanks leave edges out, whose pressure is {pressure:.0f} MPa under {torque} beside a "
+    "peak pressure of {peak:.0f} MPa, {accuracy}",
+    "they follow from slices of the flanks without their edges, as `peak_pressure` does: a sharp edge has no finite "
+    "pressure, and allowable stresses are not those of an edge; what an edge adds to pitting is not rated",
+    "tip or end relief that takes the load from the edge, as the finding of the summary says; a radius makes "
+    "`edge_pressure` finite, and local safeties stay the same; safeties after the standard have no edges",
 )
 ABOVE_STATIC_STRENGTH = Kind(
     "rating: {where}: the stress {stress:.0f} MPa is above the static strength {strength:.0f} MPa under {torque}, "

@@ -3329,6 +3329,62 @@ FAULTS = (
         "if name in keys and (writing := writing_of(name, keys, {})):",
         "test_cli_units.py::test_check_lists_torques_of_bins_that_are_in_inches",
     ),
+    Fault(
+        "rating of both sides: loads of the coast side do not press the fillets of the drive side",
+        "rating/cases.py",
+        "tops = [self.torque[side].max(initial=0.0) for side in (self.reversed, ~self.reversed)]",
+        "tops = [0.0, self.torque.max()]",
+        "rating/test_both_sides.py::test_rating_does_not_depend_on_which_side_is_called_drive",
+    ),
+    Fault(
+        "rating of both sides: the largest root tension does not count where the other side presses all places",
+        "rating/evaluate.py",
+        "(inputs.cases.press_on_back > 0.0) & (uses[1] >= uses[0])",
+        "inputs.cases.reversed & (uses[1] >= uses[0])",
+        "rating/test_both_sides.py::test_rating_does_not_depend_on_which_side_is_called_drive",
+    ),
+    Fault(
+        "local safety of flanks: the arc of a rounded edge counts as flank",
+        "tribology/contact_slices.py",
+        "slices.elastic_pressure(slices.curvatures(rounded=False))",
+        "slices.elastic_pressure(slices.curvatures())",
+        "rating/test_edges.py::test_rounded_tips_have_the_local_safety_of_sharp_ones",
+    ),
+    Fault(
+        "map of the local safety of flanks: the arc of a rounded edge counts as flank",
+        "tribology/slices.py",
+        "contacts.elastic_pressure(contacts.curvatures(rounded=False))",
+        "contacts.elastic_pressure(contacts.curvatures())",
+        "rating/test_edges.py::test_rounded_tips_have_the_local_safety_of_sharp_ones",
+    ),
+    Fault(
+        "rating: an edge pressure below the peak pressure is warned of",
+        "results/warnings.py",
+        "if np.nanmax(pressures, initial=-math.inf) > np.nanmax(result.peak_pressure[torque], initial=0.0):",
+        "if np.nanmax(pressures, initial=-math.inf) > 0.0:",
+        "rating/test_rating.py::test_edge_pressure_that_local_safeties_leave_out_is_told",
+    ),
+    Fault(
+        "maps of safeties: of a spectrum the bin of the smallest safety, which may do no damage",
+        "rating/places.py",
+        "if (damage[shown] > 0.0).any():",
+        "if (damage[shown] > np.inf).any():",
+        "rating/test_spectrum.py::test_maps_are_those_of_the_bin_of_the_largest_damage",
+    ),
+    Fault(
+        "map of the root safety: tops between the places are left out",
+        "rating/places.py",
+        "load = above * rating.K_A[case]",
+        "load = rating.K_A[case]",
+        "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
+    ),
+    Fault(
+        "run --coast: the command of the joint rating is shown without reversed bins",
+        "cli/commands.py",
+        "if is_rated(scene) and any(case.reversed for case in scene.load.case or ()):",
+        "if is_rated(scene) and scene.load.case:",
+        "test_cli_rating.py::test_command_that_rates_both_sides_is_shown_where_bins_are_reversed",
+    ),
 )
 
 

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from loaded_tca.cli.commands import _rated
+from loaded_tca.cli.commands import _rated, _show_rating_of_both
 from loaded_tca.plots import plot_safeties
 from tests.rating.test_both_sides import FLANKS, coast_result, reversed_first
+from tests.rating.test_spectrum import bins
 from tests.samples.rating import solved
 from tests.samples.stages import analysed
 from tests.stages.test_stage_rating import SECTIONS
@@ -143,3 +144,15 @@ def test_stage_is_rated_as_it_is_analysed(run, tmp_path, monkeypatch):
     assert "sun | planet | ring" in said["rated"]
     assert "no rating: lubricant: missing; the strength of flanks depends on" in said["unfit"]
     assert "rating" not in said["bare"]
+
+
+@pytest.mark.parametrize(("of_bins", "is_shown"), [(reversed_first, True), (bins, False)])
+def test_command_that_rates_both_sides_is_shown_where_bins_are_reversed(capsys, of_bins, is_shown):
+    spectrum = {"analysis.torques_Nm": (100.0, 200.0), "load.case": of_bins((200.0, 10.0), (100.0, 30.0))}
+    rated = solved(**FLANKS, **spectrum)
+    _show_rating_of_both(rated.scene, Path("both"))
+    command = f"'loaded-tca rating {Path('both/drive')} --coast {Path('both/coast')}'"
+    assert (command in capsys.readouterr().out) == is_shown
+    assert (
+        any("'loaded-tca rating DIR --coast OTHER' rates both" in note for note in rated.rating().notes()) == is_shown
+    )

@@ -99,6 +99,17 @@ def run(options: argparse.Namespace) -> None:
     for name, side in scenes.items():
         _run_scene(side, directory / name)
     _compare(scenes, [directory / name for name in scenes], directory)
+    if options.coast:
+        _show_rating_of_both(scene, directory)
+
+
+def _show_rating_of_both(scene: Scene, directory: Path) -> None:
+    """Show the command that rates both sides of a scene together, where its bins load both."""
+    from loaded_tca.scene.rating import is_rated
+
+    if is_rated(scene) and any(case.reversed for case in scene.load.case or ()):
+        both = f"{directory / 'drive'} --coast {directory / 'coast'}"
+        show(f"\nNext: 'loaded-tca rating {both}' rates both sides, reversed bins by the coast side")
 
 
 def _run_scene(scene: Scene, directory: Path) -> None:

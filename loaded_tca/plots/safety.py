@@ -52,7 +52,8 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
     ----------
     rating : Rating
     case : int, optional
-        Index of the case; default: that of the smallest local safety among torques that were solved.
+        Index of the case; default: among torques that were solved that of the smallest local safety, of a load
+        spectrum the bin of the largest damage.
 
     Returns
     -------
@@ -63,7 +64,7 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
     InputError
         If the rating has no such case, or the case no places.
     """
-    case = worst_case(rating, "local_flank_safety") if case is None else case
+    case, why = worst_case(rating, "local_flank_safety") if case is None else (case, "")
     places, required = flank_safeties(rating, case), rating.required.required_safety(FLANK)
     scale, colours = _scale(places.safety, required)
     gears = iter(range(len(GEARS)))  # panels come in this order
@@ -81,7 +82,7 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
         figure,
         rating.result,
         f"local safety of the flanks, {_load(rating, case)}",
-        *_about(required),
+        *_about(required, why),
     )
     return figure
 
@@ -94,7 +95,8 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
     rating : Rating
         Of a result with root stress.
     case : int, optional
-        Index of the case; default: that of the smallest local safety among torques that were solved.
+        Index of the case; default: among torques that were solved that of the smallest local safety, of a load
+        spectrum the bin of the largest damage.
 
     Returns
     -------
@@ -107,7 +109,7 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
     NotAskedError
         If the scene does not ask for root stress.
     """
-    case = worst_case(rating, "local_root_safety") if case is None else case
+    case, why = worst_case(rating, "local_root_safety") if case is None else (case, "")
     both = [root_safeties(rating, case, gear) for gear in range(len(GEARS))]
     required = rating.required.required_safety(ROOT)
     scale, colours = _scale(np.concatenate([one.safety.ravel() for one in both]), required)
@@ -132,7 +134,7 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
         figure,
         rating.result,
         f"local safety of the roots, {_load(rating, case)}",
-        *_about(required),
+        *_about(required, why),
     )
     return figure
 
@@ -194,8 +196,10 @@ def _load(rating: Rating, case: int) -> str:
     return f"{torque_label(rating.result, torque)} (bin {case + 1} of {len(cases.torque)})"
 
 
-def _about(required: float) -> tuple[str, ...]:
+def _about(required: float, why: str) -> tuple[str, ...]:
+    """Lines on what is drawn, and why of that case."""
     return (
+        *filter(None, [why]),
         f"required {plain(required)}, below it orange; the smallest of all positions",
         "cross: where it is smallest",
     )
@@ -294,14 +298,14 @@ SAFETY_PICTURES = {
         plot_safeties,
     ),
     "flank_safety": RatingPicture(
-        "local safety against pitting over both flanks, in the worst case",
+        "local safety against pitting over both flanks, in the case that decides",
         "The smallest safety that each place of the flanks has over the mesh cycle.",
         "local_flank_safety",
         plot_flank_safety,
         of_places=True,
     ),
     "root_safety": RatingPicture(
-        "local safety against breakage over fillet and face of both gears, in the worst case",
+        "local safety against breakage over fillet and face of both gears, in the case that decides",
         "Safety with the extreme stresses of a whole turn at each place; below, its smallest value over the face.",
         "local_root_safety",
         plot_root_safety,

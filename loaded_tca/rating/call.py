@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,8 @@ from loaded_tca.rating.lives import Endurances, lives_of
 from loaded_tca.rating.rating import WORDS, Rating
 from loaded_tca.rating.solved import solved_loads
 from loaded_tca.rating.spectrum import SpectrumRating, of_spectrum
+from loaded_tca.results.summary import shown_torque
+from loaded_tca.results.warnings import accuracy_of_edge, highest_edges
 from loaded_tca.scene.spiral import SpiralScene
 
 if TYPE_CHECKING:
@@ -48,18 +50,16 @@ def rating_of(
     Rating
     """
     inputs, error = _solved_inputs(result, duty), np.zeros(0)
-    at_edge = inputs.loads.at_edge.any()
     if coast is not None:
         beside = _solved_inputs(as_coast_side(coast, result), duty)
-        at_edge |= beside.loads.at_edge.any()
+        inputs = replace(inputs, cases=inputs.cases.of_both_sides())
         (arrays, endurances, notes), error = evaluated_together(inputs, beside, _evaluated)
     else:
         arrays, endurances, notes = _evaluated(inputs)
         if inputs.cases.is_spectrum:
             error = interpolation_error(inputs, endurances, _evaluated)
     arrays |= lives_of(inputs.cases, endurances, inputs.cycles_per_hour)
-    sentences = [kinds.RATED_AT_EDGE.sentence()] if at_edge else []
-    sentences += _above_static(inputs, endurances)
+    sentences = [*_edges_left_out([result] if coast is None else [result, coast]), *_above_static(inputs, endurances)]
     kind: type[Rating] = Rating
     if inputs.cases.is_spectrum:
         kind = SpectrumRating
@@ -76,6 +76,19 @@ def _solved_inputs(result: CycleNumbers, duty: Duty) -> CommonInputs:
     """What a rating takes of a result, with its solved loads."""
     with_factors = bevel_inputs_of(result) if isinstance(result.scene, SpiralScene) else inputs_of(result, duty)
     return replace(with_factors, solved=solved_loads(with_factors))
+
+
+def _edges_left_out(results: Sequence[CycleNumbers]) -> Iterator[str]:
+    """Sentence of the largest pressure at an edge of results, where it is above the peak pressure of its torque."""
+    every = [(result, (torque, *place)) for result in results for torque, place in highest_edges(result).items()]
+    if every:
+        result, at = max(every, key=lambda one: float(one[0].edge_pressure[one[1]]))
+        yield kinds.EDGES_NOT_RATED.sentence(
+            pressure=float(result.edge_pressure[at]),
+            torque=f"{shown_torque(result.torque[at[0]])} at the pinion",
+            accuracy=accuracy_of_edge(result, at),
+            peak=float(np.nanmax(result.peak_pressure[at[0]])),
+        )
 
 
 def _above_static(inputs: CommonInputs, endurances: Endurances) -> Iterator[str]:

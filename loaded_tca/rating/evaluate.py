@@ -220,18 +220,26 @@ def _endurance_of_root(inputs: CommonInputs, place: int, factors: iso6336_3.Root
 def _local_root(inputs: CommonInputs, loads: Arrays, place: int) -> tuple[Arrays, Endurance, tuple[str, ...]]:
     """Safety of the root of one gear at the place that decides (c,), what its damage follows from, and notes.
 
-    Where a case is reversed, every place has the same stress ratio, and that of the largest tension decides.
+    That is where the mesh alone has the smallest, or, where loads of the other flanks press all places more than the
+    mesh does, that of the largest tension.
     """
-    solved, cases = inputs.loads, inputs.cases
+    solved = inputs.loads
     assert solved.root_tension is not None  # asked before
     assert solved.largest_root_tension is not None
     assert solved.root_stress_ratio is not None
     assert solved.root_places is not None
-    tension = np.where(cases.reversed, solved.largest_root_tension[:, place], solved.root_tension[:, place])
+    assert solved.largest_root_places is not None
+    every, ratios = np.arange(len(inputs.torque)), solved.root_stress_ratio[:, place]
+    tensions = np.stack([solved.root_tension[:, place], solved.largest_root_tension[:, place]])
+    uses = [
+        tension / local_root_factors(inputs, place, ratio, every)[1].strength
+        for tension, ratio in zip(tensions, (ratios, np.zeros(len(every))), strict=True)
+    ]
+    by_others = (inputs.cases.press_on_back > 0.0) & (uses[1] >= uses[0])
+    ratio, factors, notes = local_root_factors(inputs, place, np.where(by_others, 0.0, ratios), every)
+    tension = np.where(by_others, tensions[1], tensions[0])
     tension = np.where(inputs.torque > 0.0, tension, 0.0) * loads["K_A"] * loads["K_gamma"] * loads["K_v"]
-    every = np.arange(len(tension))
-    ratio, factors, notes = local_root_factors(inputs, place, solved.root_stress_ratio[:, place], every)
-    angle, axial = solved.root_places[..., place]
+    angle, axial = np.where(by_others, solved.largest_root_places[..., place], solved.root_places[..., place])
     return (
         {
             "local_root_stress": tension,

@@ -54,8 +54,9 @@ class RootSafeties:
     Attributes
     ----------
     safety : (2, stations, p) array
-        sigma_FG over the largest stress of a turn times K_A K_gamma K_v, with Y_M of the extremes of each place; inf
-        where no tension is. First the side in contact, then the back.
+        sigma_FG over the largest stress of a turn times K_A K_gamma K_v, with Y_M of the extremes of each place, and
+        with what the parabola through the largest tension exceeds the places; inf where no tension is. First the side
+        in contact, then the back.
     tangent_angle : (2, stations, p) array [rad]
         Of the fillet to the middle of the tooth.
     axial : (2, stations, p) array [mm]
@@ -127,8 +128,7 @@ def root_safeties(rating: Rating, case: int, gear: int) -> RootSafeties:
     Returns
     -------
     RootSafeties
-        Its smallest is ``rating.local_root_safety``, which is lower by what the parabola through the largest tension
-        exceeds the places: up to a few tenths of a percent.
+        Its smallest is ``rating.local_root_safety``.
 
     Raises
     ------
@@ -141,10 +141,12 @@ def root_safeties(rating: Rating, case: int, gear: int) -> RootSafeties:
     torque, stress = torque_of(rating, case), rating.result.root_stress[gear]
     largest, smallest = stress.largest[torque], stress.smallest[torque]
     tense = largest > 0.0
+    above = np.nanmax(rating.result.root_tension[torque, :, gear]) / np.nanmax(largest)
+    load = above * rating.K_A[case] * rating.K_gamma[case] * rating.K_v[case]
     _, factors, _ = local_root_factors(rating.inputs, gear, stress_ratio(largest, smallest), case)
     strength = np.broadcast_to(factors.strength, largest.shape)
     safety = np.full(largest.shape, np.inf)
-    np.divide(strength, largest * rating.K_A[case] * rating.K_gamma[case] * rating.K_v[case], out=safety, where=tense)
+    np.divide(strength, largest * load, out=safety, where=tense)
     return RootSafeties(np.where(np.isnan(largest), np.nan, safety), stress.tangent_angle, stress.point[..., 2])
 
 
@@ -154,10 +156,20 @@ def is_shown(rating: Rating) -> Mask:
     return np.asarray(solved & ~rating.inputs.cases.reversed)
 
 
-def worst_case(rating: Rating, name: str) -> int:
-    """Index of the case of the smallest safety of a name among those that have places."""
-    safety = np.where(is_shown(rating), rating.values(name).min(axis=1), np.inf)
-    return int(safety.argmin())
+def worst_case(rating: Rating, name: str) -> tuple[int, str]:
+    """Index of the case that decides by a safety, among those that have places, and why that one, in words.
+
+    That is the bin of the largest damage, or where none does any, and without a spectrum, that of the smallest safety.
+    """
+    shown = is_shown(rating)
+    safety = np.where(shown, rating.values(name).min(axis=1), np.inf)
+    if not rating.inputs.cases.is_spectrum:
+        return int(safety.argmin()), ""
+    among = "of the drive side, whose torque was solved" if rating.inputs.cases.reversed.any() else "solved"
+    damage = np.nan_to_num(rating.damage[..., rating.modes.index(name.removesuffix("_safety"))]).max(axis=1)
+    if (damage[shown] > 0.0).any():
+        return int(np.where(shown, damage, -1.0).argmax()), f"bin of the largest damage among those {among}"
+    return int(safety.argmin()), f"bin of the smallest safety among those {among}; none of them does damage"
 
 
 def torque_of(rating: Rating, case: int) -> int:

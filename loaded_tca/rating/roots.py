@@ -56,8 +56,17 @@ def local_root_factors(
 
 
 def asked_ratio(inputs: CommonInputs, place: int) -> Array:
-    """Stress ratio R of the root of a gear that the scene asks for (c,): of reversed bins that of both flanks."""
-    return np.where(inputs.cases.reversed, REVERSED, inputs.strengths[place].root_stress_ratio)
+    """Stress ratio R of the root of a gear that the scene asks for (c,), and that of loads on both flanks if less."""
+    asked, part = inputs.strengths[place].root_stress_ratio, inputs.cases.press_on_back
+    return np.where(part > 0.0, np.minimum(REVERSED * part, asked), asked)
+
+
+def largest_places(inputs: CommonInputs, gear: int) -> tuple[Array, Array]:
+    """Tangent angle [rad] and axial coordinate [mm] of the largest root tension of a gear under each torque (t,)."""
+    stress = inputs.result.root_stress[gear]
+    tension = np.nan_to_num(stress.largest, nan=-np.inf)  # NaN: not evaluated
+    place = np.unravel_index(tension.reshape(len(tension), -1).argmax(axis=1), tension.shape[1:])
+    return stress.tangent_angle[place], stress.point[(*place, 2)]
 
 
 LEAST_MEAN_STRESS_FACTOR = 0.45

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loaded_tca.arrays import GEARS, Array, Indices, Mask
-from loaded_tca.rating.roots import deciding_places
+from loaded_tca.arrays import GEARS, Array, Indices
+from loaded_tca.rating.roots import deciding_places, largest_places
 from loaded_tca.results.key_figures import mean_over_a_pitch, span_of
 from loaded_tca.scene.spiral import SpiralScene
 from loaded_tca.tribology.contact_slices import largest_pressures
@@ -22,7 +22,7 @@ OF_ROOT = 1.0
 OF_FLANK = 0.5
 """Powers of the torque that root tension and pressure of a line contact grow with: what is left is interpolated."""
 FACTORS = "face_load_factor", "transverse_load_factor", "mesh_load_factor"
-OVER_GEARS = "places", "root_places"
+OVER_GEARS = "places", "root_places", "largest_root_places"
 """Arrays whose torques are the second axis."""
 
 
@@ -40,18 +40,16 @@ class SolvedLoads:
     mesh_load_factor : (c,) array
         K_gamma.
     pressure : (c,) array [MPa]
-        Largest pressure of an elastic line contact over all slices of all contacts, whatever the cap: strengths of
-        flanks are such pressures.
+        Largest pressure of an elastic line contact over all slices of all contacts, whatever the cap, edges left out:
+        strengths of flanks are such pressures.
     places : (2, c, 2) array [mm]
         Radius and axial coordinate of its place, on pinion and wheel; between torques that of the nearest.
-    at_edge : (c,) array of bool
-        Whether that slice lies at an edge of a flank; likewise.
     root_tension, root_stress_ratio : (c, 2) array, or None
         Largest tension of a turn [MPa] where the roots of both gears decide, smallest over largest stress there.
     largest_root_tension : (c, 2) array, or None
         Of all places [MPa]: what decides where stress is reversed everywhere alike.
-    root_places : (2, c, 2) array, or None
-        Tangent angle [rad] and axial coordinate [mm] of the place that decides, of both gears; that of the nearest.
+    root_places, largest_root_places : (2, c, 2) array, or None
+        Tangent angle [rad] and axial coordinate [mm] of these places, of both gears; those of the nearest.
     mate_stress_ratios : (c, 2) array, or None
         Smallest over largest root stress of a turn of both gears, where other mates add to those of the mesh; NaN:
         none do.
@@ -67,11 +65,11 @@ class SolvedLoads:
     mesh_load_factor: Array
     pressure: Array
     places: Array
-    at_edge: Mask
     root_tension: Array | None = None
     root_stress_ratio: Array | None = None
     largest_root_tension: Array | None = None
     root_places: Array | None = None
+    largest_root_places: Array | None = None
     mate_stress_ratios: Array | None = None
     root_nodes: Indices | None = None
     excitation: dict[str, Array] = field(default_factory=dict)
@@ -81,10 +79,8 @@ class SolvedLoads:
         cls, torque: Array, face_load_factor: Array, transverse_load_factor: Array, mesh_load_factor: Array
     ) -> SolvedLoads:
         """Load factors alone, with stresses that are not known."""
-        unknown, nowhere = np.full(len(torque), nan), np.zeros(len(torque), dtype=bool)
-        places = np.full((2, len(torque), 2), nan)
-        factors = face_load_factor, transverse_load_factor, mesh_load_factor
-        return cls(torque, *factors, unknown, places, nowhere)
+        unknown, places = np.full(len(torque), nan), np.full((2, len(torque), 2), nan)
+        return cls(torque, face_load_factor, transverse_load_factor, mesh_load_factor, unknown, places)
 
     def at(self, torques: Array) -> SolvedLoads:
         """The same under other torques, none above the largest: as solved, or interpolated.
@@ -178,7 +174,6 @@ def solved_loads(inputs: CommonInputs) -> SolvedLoads:
         inputs.solved,
         pressure=largest.pressure,
         places=np.stack([largest.radius.T, largest.axial.T]),
-        at_edge=largest.at_edge,
         excitation=_excitation(result),
     )
     if inputs.scene.analysis.root_stress:
@@ -191,6 +186,9 @@ def solved_loads(inputs: CommonInputs) -> SolvedLoads:
             largest_root_tension=np.nanmax(result.root_tension, axis=1),
             root_places=np.array([[pinion.tangent_angle, wheel.tangent_angle], [pinion.axial, wheel.axial]]).swapaxes(
                 1, 2
+            ),
+            largest_root_places=np.array([largest_places(alone, gear) for gear in range(len(GEARS))]).transpose(
+                1, 2, 0
             ),
             root_nodes=np.stack([pinion.node, wheel.node], axis=1),
         )

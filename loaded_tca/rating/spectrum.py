@@ -75,15 +75,26 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
         largest = float(parts[np.isfinite(parts)].max(initial=0.0))
         part = f"they do up to {plain(100.0 * largest, 1)} % of the damage"
         bins = "1 bin lies" if below.sum() == 1 else f"{below.sum()} bins lie"
-        yield f"{bins} below {inputs.torque_in_words(float(solved.torque[0]))}, the smallest torque that was solved; {part}"
+        least = inputs.torque_in_words(float(solved.torque[0]))
+        yield f"{bins} below {least}, the smallest torque that was solved; {part}"
     if cases.reversed.any():
         bins = f"reversed bins ({cases.reversed.sum()} of {len(between)})"
         if of_both_sides:
             yield f"{bins} load the flanks of the coast side and the roots as the analysis of the coast side has it"
+            yield (
+                f"roots under loads on both flanks have Y_M of R = {plain(REVERSED, 6)} times the largest torque on "
+                "the other flank over that of the bin, at most 1, where root_stress_ratio is not less"
+            )
         else:
-            yield f"{bins} load the other flanks, which are not analysed: damage of the other flanks is not counted"
+            yield (
+                f"{bins} load the other flanks, which are not analysed: damage of the other flanks is not counted; "
+                "with the result of the coast side 'loaded-tca rating DIR --coast OTHER' rates both"
+            )
             yield f"{bins} stress the roots as much as the same torques that are not reversed"
-        yield f"{bins} have Y_M of the stress ratio R = {plain(REVERSED, 6)}; other bins have Y_M by root_stress_ratio"
+            yield (
+                f"{bins} have Y_M of R = {plain(REVERSED, 6)}; other bins have Y_M by root_stress_ratio: safeties of "
+                "roots depend on which side is analysed; a rating with the result of the coast side does not"
+            )
     if abs(cases.repeated - 1.0) > ROUNDING:
         together = f"{plain(cases.life_hours / cases.repeated, 6)} h"
         yield f"the bins, together {together}, follow each other {plain(cases.repeated)} times"

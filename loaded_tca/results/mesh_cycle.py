@@ -234,8 +234,8 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         Warns
         -----
         AccuracyWarning
-            Where the largest pressure lies at an edge of a flank, or stresses between the torques that were solved may
-            make the damage of a spectrum wrong by more than 1 %.
+            Where an edge of a flank, which local safeties leave out, has more than the peak pressure, or stresses
+            between the torques that were solved may make the damage of a spectrum wrong by more than 1 %.
 
         Examples
         --------

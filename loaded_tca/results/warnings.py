@@ -321,27 +321,41 @@ def _edges_of_pressure(result: CycleNumbers, torque: int, position: int, column:
     return np.asarray(reached & (distances <= distances[reached].min() + 2.0 * max(one.spacing)))
 
 
+def highest_edges(result: CycleNumbers) -> dict[int, tuple[int, int]]:
+    """Where edges have their largest pressure, of pairs that carry a thousandth of the torque: position and tooth pair.
+
+    By torques under which it is above the peak pressure, which leaves edges out.
+    """
+    places = {}
+    for torque, (shares, edges) in enumerate(zip(result.load_share, result.edge_pressure, strict=True)):
+        pressures = np.where(shares >= LEAST_SHARE, edges, math.nan)
+        if np.nanmax(pressures, initial=-math.inf) > np.nanmax(result.peak_pressure[torque], initial=0.0):
+            position, column = np.unravel_index(int(np.nanargmax(pressures)), pressures.shape)
+            places[torque] = int(position), int(column)
+    return places
+
+
+def accuracy_of_edge(result: CycleNumbers, at: tuple[int, int, int]) -> str:
+    """How far to trust an edge pressure, in words."""
+    if not result.edge_is_rounded[at]:
+        return "mesh-dependent, since in theory the pressure at a sharp edge is infinite"
+    error = float(result.edge_pressure_error[at])
+    if not math.isfinite(error):
+        return "without a limit, since a sharp edge or a relief start meets the rounding"
+    return f"solved on columns of cells, with an estimated error of {error:.1%}"
+
+
 def _edge_finding(result: CycleNumbers, torque: int) -> str:
     """The largest pressure at an edge of pairs that carry a thousandth of the torque: where, and what would remove it.
 
     An edge carries no load where the flank lacks as much there as the pair deflects: its contact deformation and the
     deflection of its teeth along the normal. An edge pressure that the peak pressure exceeds is none.
     """
-    pressures = np.where(result.load_share[torque] >= LEAST_SHARE, result.edge_pressure[torque], math.nan)
-    if not np.nanmax(pressures, initial=-math.inf) > np.nanmax(result.peak_pressure[torque], initial=0.0):
+    if torque not in (places := highest_edges(result)):
         return ""
-    n, k = (int(index) for index in np.unravel_index(int(np.nanargmax(pressures)), pressures.shape))
-    at = torque, n, k
+    at = torque, n, k = torque, *places[torque]
     edges = [name for name, one in zip(EDGES, _edges_of_pressure(result, *at), strict=True) if one]
-    error, cap = float(result.edge_pressure_error[at]), float(result.max_pressure)
-    accuracy = "mesh-dependent, since in theory the pressure at a sharp edge is infinite"
-    if result.edge_is_rounded[at]:
-        known = f"solved on columns of cells, with an estimated error of {error:.1%}"
-        accuracy = (
-            known
-            if math.isfinite(error)
-            else "without a limit, since a sharp edge or a relief start meets the rounding"
-        )
+    cap, accuracy = float(result.max_pressure), accuracy_of_edge(result, at)
     elastic = "elastic" if math.isnan(cap) else f"capped at {plain(cap, 6)} MPa"
     remedies = [
         f"{relief} on the {' or '.join(dict.fromkeys(name.split()[0] for name in edges if where in name))}"

@@ -105,12 +105,15 @@ class ContactSlices:
     def _reaches_edge(self) -> Mask:
         return np.asarray(self.result.on_edge.astype(bool)[tuple(self.places.T)])
 
-    def curvatures(self) -> Array:
-        """Relative curvature across the middles of all slices (n,) [1/mm], on the flanks with their rounded edges."""
+    def curvatures(self, *, rounded: bool = True) -> Array:
+        """Relative curvature across the middles of all slices (n,) [1/mm], on the flanks with their rounded edges.
+
+        Without them, ``rounded`` is false, the flanks go on to where these would be sharp.
+        """
         curvatures = np.zeros(self.y.size)
         along = np.arange(self.counts.max(initial=1))
         for pair, some, angles in self._gaps(max(1, TOGETHER // along.size)):
-            gap = NormalGap.at_angles(pair, self.origins[some], angles, self.axes[some])
+            gap = NormalGap.at_angles(pair if rounded else pair.sharp, self.origins[some], angles, self.axes[some])
             slices = self.starts[some, None] + np.minimum(along, self.counts[some, None] - 1)
             curvatures[slices] = gap.curvature_across(self.x[slices], self.y[slices])
         return curvatures
@@ -182,12 +185,12 @@ def _averaged(force: Array, step: Array, module: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class LargestPressures:
-    """Slices with the largest elastic pressure under each torque (t,) of a result.
+    """Slices with the largest elastic pressure under each torque (t,) of a result, whose edges are left out.
 
     Attributes
     ----------
     pressure : (t,) array [MPa]
-        Of an elastic line contact, whatever the cap.
+        Of an elastic line contact of flanks without rounded edges, whatever the cap.
     position, column : (2, t) array of int
         Indices of position and tooth pair of that contact, and of the other contact that comes next; the same one twice
         where no other is loaded.
@@ -195,8 +198,6 @@ class LargestPressures:
         Part of the pressure by which the next contact has less; 1 without one.
     radius, axial : (2, t) array [mm]
         Middles of these slices on pinion and wheel.
-    at_edge : (t,) array of bool
-        Whether they hold loaded cells beside the end of a flank.
     """
 
     pressure: Array
@@ -205,7 +206,6 @@ class LargestPressures:
     lacking: Array
     radius: Array
     axial: Array
-    at_edge: Mask
 
 
 _LARGEST: WeakKeyDictionary[CycleNumbers, LargestPressures] = WeakKeyDictionary()
@@ -230,7 +230,7 @@ def largest_pressures(result: CycleNumbers) -> LargestPressures:
 
 
 def _largest(slices: ContactSlices) -> LargestPressures:
-    pressure, torque = slices.elastic_pressure(slices.curvatures()), slices.places[slices.owner, 0]
+    pressure, torque = slices.elastic_pressure(slices.curvatures(rounded=False)), slices.places[slices.owner, 0]
     by_torque = [
         np.flatnonzero((torque == number) & np.isfinite(pressure)) for number in range(len(slices.result.torque))
     ]
@@ -249,5 +249,4 @@ def _largest(slices: ContactSlices) -> LargestPressures:
         lacking=np.where(both[1] == worst, 1.0, 1.0 - pressure[both[1]] / pressure[worst]),
         radius=np.stack([np.hypot(points[:, 0], points[:, 1]), wheel_radius]),
         axial=np.stack([points[:, 2], wheel_axial]),
-        at_edge=np.array([slices.on_edge(m)[n - slices.starts[m]] for m, n in zip(owner, worst, strict=True)]),
     )

@@ -46,7 +46,7 @@ class Slices:
     pressure, half_width : (n,) array [MPa], [mm]
         Of a line contact; the pressure up to the cap.
     elastic_pressure : (n,) array [MPa]
-        The same without a cap: what an elastic surface has under that line load.
+        What an elastic surface without rounded edges has under that line load, whatever the cap.
     rolling : (2, n) array [mm]
         Velocities of both surfaces across the contact, over the angular velocity of the pinion; positive as both roll.
     sliding : (n,) array [mm]
@@ -148,6 +148,7 @@ def _swept(result: CycleNumbers) -> Slices:
     wheel_radius, _, wheel_axial = pair.to_wheel(points)
     curvature = contacts.curvatures()
     curved, pressure = np.where(curvature > 0.0, curvature, math.nan), contacts.elastic_pressure(curvature)
+    elastic = pressure if pair.sharp is pair else contacts.elastic_pressure(contacts.curvatures(rounded=False))
     cap = math.inf if pair.max_pressure is None else pair.max_pressure
     normal = axes[:, 2]
     torque, position, column = contacts.places[contacts.owner].T
@@ -167,7 +168,7 @@ def _swept(result: CycleNumbers) -> Slices:
         line_load=contacts.line_load,
         relative_radius=1.0 / curved,
         pressure=np.minimum(pressure, cap),
-        elastic_pressure=pressure,
+        elastic_pressure=elastic,
         half_width=np.sqrt(4.0 * contacts.line_load / (math.pi * pair.contact_modulus * curved)),
         rolling=rolling * np.where(rolling.sum(axis=0) < 0.0, -1.0, 1.0),
         sliding=flat["sliding"],

@@ -20,6 +20,8 @@ from tests.samples.results import SCENES
 from tests.samples.root_stress import result as with_roots
 from validation.rating.iso_tr_10300_30 import BEVEL, FOUR_DIGITS, HYPOID
 
+pytestmark = pytest.mark.filterwarnings("ignore:rating.*leave edges out:loaded_tca.AccuracyWarning")
+
 ROUNDING = 1e-12  # of a few products and roots, with room for any order of them
 
 

@@ -8,9 +8,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import InputError
 from loaded_tca.plots import plot_safeties, plot_sn_curves
+from loaded_tca.rating import root_safeties
+from loaded_tca.tribology.contact_slices import largest_pressures
 from tests.rating.test_spectrum import GIVEN, SLOPES, bins
 from tests.refusals import refusals
-from tests.samples.rating import solved
+from tests.samples.rating import RATED, solved
 from tests.samples.root_stress import analysed
 from tests.samples.root_stress import result as with_roots
 from tests.samples.shared import made_once
@@ -60,15 +62,54 @@ def test_flanks_of_a_side_have_the_damage_of_the_bins_that_load_them():
 def test_roots_carry_the_bins_of_both_sides():
     alone, rated = both_sides(reversed_first(*ROWS))
     # K_Hbeta is given, so that reversed bins stress roots after the standard as the same torque does the other way
-    assert_allclose(rated.dataset.miner_sum.sel(mode="root"), alone.dataset.miner_sum.sel(mode="root"), rtol=MIRRORED)
-    assert_allclose(rated.Y_M, alone.Y_M)
+    assert_allclose(rated.sigma_F, alone.sigma_F, rtol=MIRRORED)
+    assert (rated.dataset.damage.sel(mode="root") > 0.0).all()
+    # annex B of ISO 6336-3:2006, case-hardened: R = -1.2 times the smaller load over the larger one, not below -1.2
+    sensitivity, ratio = 0.8 - 0.15 * rated.Y_S, np.array([[-1.2 * 100.0 / 200.0], [-1.2]])
+    assert_allclose(rated.Y_M, 1.0 / (1.0 - ratio * (1.0 - sensitivity) / (1.0 + sensitivity)), rtol=1e-9)
+
+
+def test_rating_does_not_depend_on_which_side_is_called_drive(monkeypatch):
+    numbers = (
+        "Y_M",
+        "sigma_F",
+        "root_safety",
+        "local_Y_M",
+        "local_root_stress",
+        "local_root_safety",
+        "local_root_angle",
+    )
+    other, whole, rated = with_roots().scene.coast_side(), with_roots(), []
+    # a spur pair is its own mirror image: one result stands for both sides
+    largest = largest_pressures(whole)
+    monkeypatch.setattr("loaded_tca.rating.solved.largest_pressures", lambda _: largest)
+    for scenes, flipped in (((whole.scene, other), False), ((other, whole.scene), True)):
+        cases = [each | {"reversed": each["pinion_torque_Nm"] < 150.0} for each in bins(*ROWS, (100.0, 5.0))]
+        cases[2]["reversed"] = False
+        if flipped:
+            cases = [each | {"reversed": not each["reversed"]} for each in cases]
+        spectrum = {"analysis.torques_Nm": (100.0, 200.0), "load.case": cases}
+        scene = scenes[0].with_changes(RATED).with_changes(GIVEN | SLOPES | spectrum)
+        rated.append(replace(whole, scene=scene).rating(coast=replace(whole, scene=scenes[1])))
+    for name in numbers:
+        assert_allclose(rated[1].values(name), rated[0].values(name), rtol=1e-9, err_msg=name)
+    for mode in ("root", "local_root"):
+        assert_allclose(*(each.dataset.miner_sum.sel(mode=mode) for each in rated), rtol=1e-9)
+    assert_allclose(rated[0].local_stress_ratio[1:], -1.2)  # bins of the smaller torque, of both sides
+    assert (rated[0].local_stress_ratio[0] <= -0.6).all()
+    assert_allclose(root_safeties(rated[0], 0, 1).safety.min(), rated[0].local_root_safety[0, 1], rtol=1e-9)
+    assert not any("depend on which side" in note for note in rated[0].notes())
+    assert any("depend on which side" in note for note in replace(whole, scene=scene).rating().notes())
 
 
 @pytest.mark.thorough
 def test_local_roots_of_reversed_bins_have_the_tension_of_the_coast_side():
     alone, rated = both_sides(reversed_first(*ROWS), {})
-    assert_allclose(rated.local_root_stress, alone.local_root_stress, rtol=1e-3)  # meshes of both sides of a tooth
-    assert_allclose(rated.local_stress_ratio[0], -1.2)
+    assert_allclose(
+        rated.local_root_stress[0], alone.local_root_stress[0], rtol=1e-3
+    )  # meshes of both sides of a tooth
+    assert (rated.local_root_stress[1] > alone.local_root_stress[1]).all()  # pressed alike, the largest tension decides
+    assert_allclose(rated.local_stress_ratio[1], -1.2)
 
 
 def test_face_load_factor_of_a_reversed_bin_is_that_of_its_side():

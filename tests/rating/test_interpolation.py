@@ -35,7 +35,7 @@ class Inputs:
 def loads(torque, pressure):
     places = np.zeros((2, len(torque), 2))
     ones = np.ones(len(torque))
-    return SolvedLoads(torque, ones, ones, ones, pressure, places, ones < 0.0)
+    return SolvedLoads(torque, ones, ones, ones, pressure, places)
 
 
 def by(curve):

@@ -34,9 +34,7 @@ def test_root_that_decides_has_the_least_safety_of_all_places():
     for gear in range(2):
         places, stress = root_safeties(rated, 1, gear), rated.result.root_stress[gear]
         at = places.deciding()
-        # tops of parabolas exceed the nodes of 5 deg and a face by little
-        assert_allclose(rated.local_root_safety[1, gear], places.safety[at], rtol=0.01)
-        assert rated.local_root_safety[1, gear] <= places.safety[at] * (1.0 + ROUNDING)
+        assert_allclose(rated.local_root_safety[1, gear], places.safety[at], rtol=ROUNDING)
         ratio = stress.smallest[1][at] / stress.largest[1][at]
         assert_allclose(rated.local_stress_ratio[1, gear], min(ratio, 0.0), rtol=ROUNDING)
         assert_allclose(rated.local_root_angle[1, gear], stress.tangent_angle[at], rtol=ROUNDING)
@@ -46,7 +44,10 @@ def test_root_that_decides_has_the_least_safety_of_all_places():
         tense = stress.largest[1] > 0.0
         reversal = np.clip(stress.smallest[1][tense] / stress.largest[1][tense], -1.2, 0.0)
         mean = 1.0 / (1.0 - reversal * (1.0 - sensitivity) / (1.0 + sensitivity))
-        expected = rated.local_sigma_FG[1, gear] / rated.local_Y_M[1, gear] * mean / stress.largest[1][tense]
+        # tops of parabolas exceed the nodes of 5 deg and a face by little
+        above = np.nanmax(rated.result.root_tension[1, :, gear]) / np.nanmax(stress.largest[1])
+        assert 1.0 <= above < 1.01
+        expected = rated.local_sigma_FG[1, gear] / rated.local_Y_M[1, gear] * mean / (above * stress.largest[1][tense])
         assert_allclose(places.safety[tense], expected, rtol=ROUNDING)
 
 

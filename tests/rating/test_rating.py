@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError, noted_accuracy_warnings
+from loaded_tca.errors import InputError, NotAskedError, noted_accuracy_warnings
 from loaded_tca.rating.inputs import inputs_of
-from loaded_tca.tribology.contact_slices import largest_pressures
 from loaded_tca.tribology.slices import slices_of
 from tests.samples.rating import HARD, RATED, solved
 
@@ -164,12 +163,30 @@ def test_summary_and_figures_have_both_gears():
     assert "required S_H 1, S_F 1.4" in rated.summary()
 
 
-def test_pressure_at_an_edge_is_told(monkeypatch):
-    largest = largest_pressures(solved())
-    at_edge = replace(largest, at_edge=np.ones_like(largest.at_edge))
-    monkeypatch.setattr("loaded_tca.rating.solved.largest_pressures", lambda _: at_edge)
-    with pytest.warns(AccuracyWarning, match="rating: the largest pressure"):
-        solved().rating()
+def with_edges(result, pressure, error):
+    """A result whose edges have a pressure in all contacts, rounded with an error, or sharp."""
+    edges = result.dataset.edge_pressure.copy(data=np.full_like(result.edge_pressure, pressure))
+    rounded = result.dataset.edge_is_rounded.copy(data=np.full_like(result.edge_is_rounded, np.isfinite(error)))
+    errors = edges.copy(data=np.full_like(result.edge_pressure, error))
+    changes = {"edge_pressure": edges, "edge_is_rounded": rounded, "edge_pressure_error": errors}
+    return replace(result, dataset=result.dataset.assign(changes))
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [(np.nan, "mesh-dependent: theory has an infinite one"), (0.025, "by columns, with an estimated error of 2.5%")],
+)
+def test_edge_pressure_that_local_safeties_leave_out_is_told(error, words):
+    plain = solved().rating()
+    with noted_accuracy_warnings(given=False) as told:
+        rated = with_edges(solved(), 4312.0, error).rating()
+    assert told == [*rated.warnings]
+    (sentence,) = told
+    assert "local safeties of flanks leave edges out, whose pressure is 4312 MPa under 100 N m" in sentence
+    assert words in sentence
+    assert_array_equal(rated.local_flank_safety, plain.local_flank_safety)
+    lower = 0.9 * np.nan_to_num(solved().peak_pressure).max(axis=(1, 2)).min()
+    assert with_edges(solved(), lower, error).rating().warnings == (), "below the peak pressures"
 
 
 def test_stress_above_the_static_strength_is_told():

@@ -27,7 +27,7 @@ SECTIONS = {
 }
 ROUNDING = 1e-12  # of a few products and roots
 
-pytestmark = pytest.mark.filterwarnings("ignore:rating.*at an edge:loaded_tca.AccuracyWarning")
+pytestmark = pytest.mark.filterwarnings("ignore:rating.*leave edges out:loaded_tca.AccuracyWarning")
 
 
 def rated(**changes):
