@@ -3217,6 +3217,27 @@ FAULTS = (
         "np.rint(values / step)",
         "reports/test_interactive_report.py::test_scaled_numbers_keep_the_smallest_and_what_is_missing",
     ),
+    Fault(
+        "findings: a relief takes the load off an edge from the deflection of the mesh on, not of the pair that begins",
+        "results/warnings.py",
+        "float(deflections.max())",
+        "float(deflections[k])",
+        "results/test_reached_edges.py::test_finding_at_a_root_edge_has_the_gear_and_what_the_mesh_deflects_not_a_pair_that_just_begins_to_carry",
+    ),
+    Fault(
+        "comparisons: differences in % are of sizes, the sign is a direction",
+        "results/comparison.py",
+        "difference * np.sign(first))",
+        "difference)",
+        "results/test_comparison.py::test_relative_difference_of_a_negative_figure_is_that_of_its_size",
+    ),
+    Fault(
+        "comparisons: no difference in % where the signs differ",
+        "results/comparison.py",
+        " | (value * np.sign(first) < 0.0)",
+        "",
+        "results/test_comparison.py::test_relative_difference_of_a_negative_figure_is_that_of_its_size",
+    ),
 )
 
 
