@@ -3238,6 +3238,20 @@ FAULTS = (
         "",
         "results/test_comparison.py::test_relative_difference_of_a_negative_figure_is_that_of_its_size",
     ),
+    Fault(
+        "ranking: of fewer than 20 samples the quantile has no standard error",
+        "studies/ranking.py",
+        "FEWEST_SAMPLES = 20",
+        "FEWEST_SAMPLES = 2",
+        "studies/test_ranking.py::test_quantile_that_is_the_largest_sample_has_no_standard_error",
+    ),
+    Fault(
+        "ranking: a study of distributions alone is one design, not its samples",
+        "studies/ranking.py",
+        "rank = rank_combinations if is_sampled(study) else rank_variants",
+        "rank = rank_combinations if design_keys(study) else rank_variants",
+        "studies/test_ranking.py::test_study_of_distributions_alone_is_one_design",
+    ),
 )
 
 
