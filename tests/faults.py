@@ -3252,6 +3252,20 @@ FAULTS = (
         "rank = rank_combinations if design_keys(study) else rank_variants",
         "studies/test_ranking.py::test_study_of_distributions_alone_is_one_design",
     ),
+    Fault(
+        "scenes: what is written of a rack has no line on keys that racks refuse",
+        "scene/parse.py",
+        "if name in refused:",
+        "if name in ():",
+        "scene/test_rack_scene.py::test_written_rack_has_no_line_on_keys_that_it_refuses",
+    ),
+    Fault(
+        "reports: every table scrolls in its own box",
+        "reports/templates/parts.html.j2",
+        '<div class="box"><table',
+        "<div><table",
+        "reports/test_report.py::test_every_table_scrolls_in_its_own_box",
+    ),
 )
 
 

@@ -63,7 +63,9 @@ FILE of --out is the scene with these modifications on a flank by its equations.
 CHECK = """files in DIR:
   first_look.png            teeth in mesh at the pitch point with the path of contact, or both blanks of bevel pairs;
                             modifications along profile and face; the path of contact without load on both flanks
-and of stages first_look_sun.png and first_look_ring.png."""
+and of stages first_look_sun.png and first_look_ring.png.
+
+--quiet alone only checks: it prints warnings and errors to standard error; beside --json it prints the JSON."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
 touch. Axes are those of each gear's own frame, which does not turn with it: z the axis of the gear, x to the pitch
 point, turns right-handed.

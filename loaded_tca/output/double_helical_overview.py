@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from loaded_tca.double_helical.analyse import expected_double_helical_effort
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.output.overview import scene_sections, torques_with_columns
+from loaded_tca.output.overview import scene_sections, spectrum_rows, torques_with_columns
 from loaded_tca.output.overview_text import Overview
 from loaded_tca.plain import plain
 from loaded_tca.results.gear_warnings import warn_of_gears
@@ -79,5 +79,6 @@ def pair_rows(scene: DoubleHelicalScene) -> list[Row]:
         ("apex of the wheel towards half a [mm]", f"{geometry.apex_offset_mm:z.4f}"),
         *([("apex runout, peak to peak [um]", *(plain(runout, 6) for runout in runouts))] if any(runouts) else []),
         ("pinion torque of both halves [N m]", *(f"{plain(1e-3 * torque, 6)}" for torque in shown)),
+        *spectrum_rows(scene.load),
         ("axial force of a half, even shares [N]", *(f"{force:z.1f}" for force in axial)),
     ]

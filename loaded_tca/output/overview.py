@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from loaded_tca.loaded.shaft_lines import ShaftLine
     from loaded_tca.pairs.gear_pair import GearPair
     from loaded_tca.scene import Scene
+    from loaded_tca.scene.load import AnyLoad
     from loaded_tca.scene.model import Row
 
 MOST_TORQUES = 4
@@ -101,6 +102,7 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     torques, wanted, count = torques_with_columns(scene.torques), scene.analysis, len(scene.torques)
     label = "pinion torque [N m]" if len(torques) == count else f"{count} pinion torques from, to [N m]"
     yield label, *(f"{plain(1e-3 * torque, 6)}" for torque in torques)
+    yield from spectrum_rows(scene.load)
     yield from scene.force_rows(torques)
     if pair.max_pressure is not None:
         yield "cap on the pressure [MPa]", f"{plain(pair.max_pressure, 6)}"
@@ -113,6 +115,17 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
         yield "root stress", "on"
     if wanted.without_bodies:
         yield scene.held_row(pair)
+
+
+def spectrum_rows(load: AnyLoad) -> Iterator[Row]:
+    """Bins of a load spectrum, which of them are reversed (from 1 on), and their time."""
+    if load.case is None:
+        return
+    other_way = ", ".join(str(number) for number, case in enumerate(load.case, start=1) if case.reversed)
+    yield "bins of the load spectrum", f"{len(load.case)}"
+    yield "bins that are reversed", other_way or "none"
+    if load.hours is not None:
+        yield "hours of all bins [h]", plain(load.hours, 9)
 
 
 def _bearing_rows(scene: Scene) -> Iterator[Row]:

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.output.overview import scene_sections, torques_with_columns
+from loaded_tca.output.overview import scene_sections, spectrum_rows, torques_with_columns
 from loaded_tca.output.overview_text import Overview
 from loaded_tca.plain import plain
 from loaded_tca.results.gear_warnings import warn_of_gears
@@ -108,6 +108,7 @@ def _torque_rows(stage: Stage) -> list[Row]:
     base = stage.meshes[0].pinion.base_radius
     return [
         ("sun torque [N m]", *(f"{plain(1e-3 * torque, 6)}" for torque in shown)),
+        *spectrum_rows(stage.load),
         ("carrier torque [N m]", *(f"{plain(1e-3 * torque * (1.0 + z_r / z_s), 6)}" for torque in shown)),
         ("ring torque [N m]", *(f"{plain(1e-3 * torque * z_r / z_s, 6)}" for torque in shown)),
         (

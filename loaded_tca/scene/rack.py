@@ -23,7 +23,7 @@ from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, Scene
 from loaded_tca.scene.parse import variant
 from loaded_tca.scene.pitch import REVOLUTION_RULES
-from loaded_tca.scene.section import Rule, rule, subsection
+from loaded_tca.scene.section import Rule, refusal, rule, subsection
 from loaded_tca.scene.sections import SLOPE_um
 from loaded_tca.scene.thickness import as_measured
 
@@ -32,7 +32,7 @@ LENGTH_mm = above_zero(100000.0)
 
 def _none(key_name: str, why: str) -> Rule:
     """Rule: a key that a rack has no use for is not given."""
-    return rule((key_name,), lambda value: value is None or value == (), f"found; a rack has none: {why}")
+    return refusal(key_name, f"found; a rack has none: {why}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,9 +48,8 @@ class RackGeometry(Geometry):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *Geometry.rules,
-        rule(
-            ("centre_distance_mm",),
-            lambda distance: distance is None,
+        refusal(
+            "centre_distance_mm",
             "found {0:g}; a rack has no axis: give distance_mm, of the pinion's axis from the reference line",
         ),
     )

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from loaded_tca.output.overview import spectrum_rows
 from loaded_tca.output.overview_text import Overview, as_name
-from loaded_tca.scene import read_scene
+from loaded_tca.scene import Load, read_scene
+from loaded_tca.scene.load import LoadCase
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SPUR = EXAMPLES / "scenes" / "spur.toml"
@@ -81,3 +83,10 @@ def test_warnings_of_a_scene_are_in_its_json(run):
 
 def test_units_of_labels_end_names():
     assert as_name("misalignment F_beta, [um]") == "misalignment_F_beta_um"
+
+
+def test_spectrum_shows_its_bins_those_that_are_reversed_and_their_hours():
+    case, other = (LoadCase(pinion_torque_Nm=50.0, hours=hours, reversed=hours > 2.0) for hours in (1.5, 4.0))
+    rows = dict(spectrum_rows(Load(case=(case, other, case, other))))
+    assert [*rows.values()] == ["4", "2, 4", "11"]
+    assert not [*spectrum_rows(Load(pinion_torque_Nm=50.0))]

@@ -135,6 +135,11 @@ def test_report_has_its_sections_in_order(page):
     assert page.headings == [cycle().scene.title, *sections, "Appendix: scene file"]
 
 
+def test_every_table_scrolls_in_its_own_box(page):
+    """On a telephone a table is wider than the page, whose other parts shall not move with it."""
+    assert page.attributes.count(("div", "class", "box")) == len(page.tables) > 5
+
+
 def test_every_figure_of_the_summary_is_there_with_its_unit(page):
     figures = cycle().key_figures()
     names = [name for _, names in known_rows(figures) for name in names if name != "pinion_torque_Nm"]

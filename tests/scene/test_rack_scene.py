@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from loaded_tca import MeshCycle, Scene, analyse, analyse_revolution, read_scene
+from loaded_tca import MeshCycle, Scene, analyse, analyse_revolution, parse_scene, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
 
 EXAMPLE = read_scene(Path(__file__).parents[2] / "examples" / "scenes" / "rack_and_pinion.toml")
@@ -138,3 +138,11 @@ def test_example_is_the_rack_that_its_text_says() -> None:
     """Its transverse pitch is 10 mm, and overview and file have it back."""
     assert pi * 3.0 / cos(radians(EXAMPLE.geometry.helix_angle_deg)) == pytest.approx(10.0, abs=1e-4)
     assert any("force along the rack" in row[0] for row in EXAMPLE.force_rows([1.0]))
+
+
+def test_written_rack_has_no_line_on_keys_that_it_refuses():
+    """A line of them would say that they could be given."""
+    wheel = EXAMPLE.to_toml().partition("[wheel]")[2].partition("[mounting]")[0]
+    assert not [name for name in ("bore_diameter_mm", "profile_shift", "tooth is", "wheel.shaft") if name in wheel]
+    assert "centre_distance_mm" not in EXAMPLE.to_toml()
+    assert parse_scene(EXAMPLE.to_toml()) == EXAMPLE
