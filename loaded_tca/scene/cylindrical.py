@@ -285,6 +285,11 @@ class CylindricalScene(BlankScene):
         mesh = self.mesh()
         return mesh.pinion_active_profile.start_roll_length, mesh.wheel_active_profile.start_roll_length
 
+    def active_ends(self) -> tuple[float, float]:
+        """Return the roll lengths at which the active profiles end [mm]: at the tip, or where an undercut ends them."""
+        path = self.mesh().path_of_contact
+        return path.E, path.T2 - path.A
+
     @property
     def tip_clearances(self) -> tuple[float, float]:
         """Clearances c of both roots and the mating gear's tip, the error of the centre distance included."""
@@ -501,16 +506,18 @@ def _diameter_rows(mesh: CylindricalMesh) -> list[Row]:
         "working diameter d_w [mm]": [mesh.pinion_working_radius, mesh.wheel_working_radius],
         "tip diameter d_a [mm]": [gear.tip_radius for gear in gears],
     }
+    path = mesh.path_of_contact
     if 1.0 <= mesh.transverse_contact_ratio < 2.0:  # elsewhere always two tooth pairs touch, or none
-        path = mesh.path_of_contact
         at_b, at_d = (
             [mesh.pinion.radius_at_roll_length(point), mesh.wheel.radius_at_roll_length(path.T2 - point)]
             for point in (path.B, path.D)
         )
         radii["highest single tooth contact (D | B) [mm]"] = [at_d[0], at_b[1]]
         radii["lowest single tooth contact (B | D) [mm]"] = [at_b[0], at_d[1]]
+    ends = mesh.pinion.radius_at_roll_length(path.E), mesh.wheel.radius_at_roll_length(path.T2 - path.A)
     radii |= {
         "start of active profile d_Nf [mm]": [profile.start_radius for profile in active],
+        "end of active profile d_Na [mm]": [*ends],
         "root form diameter d_Ff [mm]": [gear.form_radius for gear in gears],
         "root diameter d_f [mm]": [gear.root_radius for gear in gears],
     }

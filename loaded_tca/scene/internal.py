@@ -209,6 +209,11 @@ class InternalScene(CylindricalScene):
         mesh = self.mesh()
         return mesh.pinion_active_profile.start_roll_length, -mesh.wheel_active_profile.start_roll_length
 
+    def active_ends(self) -> tuple[float, float]:
+        """Return where the active profiles end [mm], as ``active_starts``: at the tip, or where an undercut ends it."""
+        path = self.mesh().path_of_contact
+        return path.E, path.T2 - path.A
+
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios, diameters, and the three interferences with their room."""
         mesh = self.mesh()
@@ -302,6 +307,10 @@ def _diameter_rows(mesh: InternalMesh) -> list[Row]:
         radii["lowest single tooth contact (B | D) [mm]"] = first[0], second[1]
     radii |= {
         "start of active profile d_Nf [mm]": (active[0].start_radius, active[1].start_radius),
+        "end of active profile d_Na [mm]": (
+            pinion.radius_at_roll_length(path.E),
+            ring.radius_at_roll_length(path.A - path.T2),
+        ),
         "root form diameter d_Ff [mm]": (pinion.form_radius, ring.form_radius),
         "root diameter d_f [mm]": (pinion.root_radius, ring.root_radius),
     }

@@ -386,6 +386,10 @@ class Scene(InNotebooks, WithStandards, ABC):
     def active_starts(self) -> tuple[float, float]:
         """Return where the active profiles of pinion and wheel start, as ``Flank.profile_coordinate`` counts."""
 
+    def active_ends(self) -> tuple[float, float]:
+        """Return where the active profiles end, as ``active_starts``; infinite: at the tip."""
+        return math.inf, math.inf
+
     @abstractmethod
     def geometry_rows(self) -> Sequence[Row]:
         """Return the rows of the geometry table: of the mesh, then of pinion and wheel."""

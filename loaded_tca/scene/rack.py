@@ -239,6 +239,7 @@ class RackScene(CylindricalScene):
             "base diameter d_b [mm]": pinion.base_radius,
             "tip diameter d_a [mm]": pinion.tip_radius,
             "start of active profile d_Nf [mm]": mesh.pinion_active_profile.start_radius,
+            "end of active profile d_Na [mm]": pinion.radius_at_roll_length(path.E),
             "root form diameter d_Ff [mm]": pinion.form_radius,
             "root diameter d_f [mm]": pinion.root_radius,
         }
