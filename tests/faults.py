@@ -2354,8 +2354,8 @@ FAULTS = (
     Fault(
         "spectra: roots under reversed bins have the tension of the place that decides without reversal",
         "rating/evaluate.py",
-        "np.where(cases.reversed, solved.largest_root_tension[:, place], solved.root_tension[:, place])",
-        "solved.root_tension[:, place]",
+        "np.stack([solved.root_tension[:, place], solved.largest_root_tension[:, place]])",
+        "np.stack([solved.root_tension[:, place], solved.root_tension[:, place]])",
         "rating/test_spectrum.py::test_roots_under_reversed_bins_have_the_largest_tension",
     ),
     Fault(
@@ -2996,8 +2996,8 @@ FAULTS = (
     Fault(
         "double helical pairs: the whole gear is rated with the whole torque on the face of a half",
         "double_helical/rating.py",
-        "_under(scene, result.half_a, 0.5 * torques,",
-        "_under(scene, result.half_a, torques,",
+        "_under(scene, result.halves[more], 0.5 * torques,",
+        "_under(scene, result.halves[more], torques,",
         "double_helical/test_rating.py::test_whole_gear_has_the_torque_on_both_widths",
     ),
     Fault(
@@ -3178,8 +3178,8 @@ FAULTS = (
     Fault(
         "overview as JSON: a line below another one loses its name",
         "output/overview_text.py",
-        'name = as_name(f"{above} {label}" if above else label)',
-        "name = as_name(label)",
+        'else as_name(f"{above} {label}" if above else label)',
+        "else as_name(label)",
         "output/test_overview_text.py::test_indented_lines_have_the_name_of_the_line_above",
     ),
     Fault(
@@ -3384,6 +3384,62 @@ FAULTS = (
         "if is_rated(scene) and any(case.reversed for case in scene.load.case or ()):",
         "if is_rated(scene) and scene.load.case:",
         "test_cli_rating.py::test_command_that_rates_both_sides_is_shown_where_bins_are_reversed",
+    ),
+    Fault(
+        "findings: a relief takes the load off an edge from the deflection of the mesh on, not of the pair that begins",
+        "results/warnings.py",
+        "float(deflections.max())",
+        "float(deflections[k])",
+        "results/test_reached_edges.py::test_finding_at_a_root_edge_has_the_gear_and_what_the_mesh_deflects_not_a_pair_that_just_begins_to_carry",
+    ),
+    Fault(
+        "comparisons: differences in % are of sizes, the sign is a direction",
+        "results/comparison.py",
+        "difference * np.sign(first))",
+        "difference)",
+        "results/test_comparison.py::test_relative_difference_of_a_negative_figure_is_that_of_its_size",
+    ),
+    Fault(
+        "comparisons: no difference in % where the signs differ",
+        "results/comparison.py",
+        " | (value * np.sign(first) < 0.0)",
+        "",
+        "results/test_comparison.py::test_relative_difference_of_a_negative_figure_is_that_of_its_size",
+    ),
+    Fault(
+        "ranking: of fewer than 20 samples the quantile has no standard error",
+        "studies/ranking.py",
+        "FEWEST_SAMPLES = 20",
+        "FEWEST_SAMPLES = 2",
+        "studies/test_ranking.py::test_quantile_that_is_the_largest_sample_has_no_standard_error",
+    ),
+    Fault(
+        "ranking: a study of distributions alone is one design, not its samples",
+        "studies/ranking.py",
+        "rank = rank_combinations if is_sampled(study) else rank_variants",
+        "rank = rank_combinations if design_keys(study) else rank_variants",
+        "studies/test_ranking.py::test_study_of_distributions_alone_is_one_design",
+    ),
+    Fault(
+        "scenes: what is written of a rack has no line on keys that racks refuse",
+        "scene/parse.py",
+        "if name in refused:",
+        "if name in ():",
+        "scene/test_rack_scene.py::test_written_rack_has_no_line_on_keys_that_it_refuses",
+    ),
+    Fault(
+        "reports: every table scrolls in its own box",
+        "reports/templates/parts.html.j2",
+        '<div class="box"><table',
+        "<div><table",
+        "reports/test_report.py::test_every_table_scrolls_in_its_own_box",
+    ),
+    Fault(
+        "cylindrical pairs: an undercut pinion ends the active profile of the wheel below its tip",
+        "scene/cylindrical.py",
+        "return path.E, path.T2 - path.A",
+        "return path.E, math.inf",
+        "plots/test_first_look.py::test_active_part_of_an_undercut_pair_is_that_of_the_path_as_analysed",
     ),
 )
 

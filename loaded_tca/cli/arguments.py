@@ -66,7 +66,9 @@ instead of the measured flank."""
 CHECK = """files in DIR:
   first_look.png            teeth in mesh at the pitch point with the path of contact, or both blanks of bevel pairs;
                             modifications along profile and face; the path of contact without load on both flanks
-and for stages first_look_sun.png and first_look_ring.png."""
+and for stages first_look_sun.png and first_look_ring.png.
+
+--quiet alone only checks: it prints warnings and errors to standard error; with --json it prints the JSON."""
 SHAFT = """SCENE has a section [pinion.shaft] or [wheel.shaft]. The whole normal force acts where the unloaded flanks
 touch. Axes are those of each gear's own frame, which does not turn with the gear: z is the axis of the gear, x points
 to the pitch point, and rotations are right-handed.

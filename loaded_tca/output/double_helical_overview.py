@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING
 
 from loaded_tca.double_helical.analyse import expected_double_helical_effort
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.output.overview import scene_sections, torques_with_columns
+from loaded_tca.output.overview import scene_sections, spectrum_rows, torques_with_columns
 from loaded_tca.output.overview_text import Overview
 from loaded_tca.plain import plain
 from loaded_tca.results.gear_warnings import warn_of_gears
 from loaded_tca.scene.double_helical import HALVES
+from loaded_tca.scene.rows import fixed
 
 if TYPE_CHECKING:
     from loaded_tca.scene.double_helical import DoubleHelicalScene
@@ -71,13 +72,14 @@ def pair_rows(scene: DoubleHelicalScene) -> list[Row]:
     floats = f"{geometry.floating}, on {plain(held)} N/um" if held else geometry.floating
     return [
         ("", "pinion", "wheel"),
-        ("overall face width, with the groove [mm]", *(f"{gear.face_width_mm:z.4f}" for gear in gears)),
-        ("face width of a half [mm]", *(f"{scene.half_width(gear):z.4f}" for gear in gears)),
+        ("overall face width, with the groove [mm]", *(fixed(gear.face_width_mm, 4) for gear in gears)),
+        ("face width of a half [mm]", *(fixed(scene.half_width(gear), 4) for gear in gears)),
         ("hand of half a, at z > 0", *scene.hands),
-        ("groove [mm]", f"{geometry.gap_mm:z.4f}"),
+        ("groove [mm]", fixed(geometry.gap_mm, 4)),
         ("floating along its axis", floats),
-        ("apex of the wheel towards half a [mm]", f"{geometry.apex_offset_mm:z.4f}"),
+        ("apex of the wheel towards half a [mm]", fixed(geometry.apex_offset_mm, 4)),
         *([("apex runout, peak to peak [um]", *(plain(runout, 6) for runout in runouts))] if any(runouts) else []),
         ("pinion torque of both halves [N m]", *(f"{plain(1e-3 * torque, 6)}" for torque in shown)),
-        ("axial force of a half, even shares [N]", *(f"{force:z.1f}" for force in axial)),
+        *spectrum_rows(scene.load),
+        ("axial force of a half, even shares [N]", *(fixed(force, 1) for force in axial)),
     ]

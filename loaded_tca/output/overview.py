@@ -17,6 +17,7 @@ from loaded_tca.results.gear_warnings import questions, warn_of_gears
 from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
 from loaded_tca.results.root_stress import RIM_LABEL, rim_factor
 from loaded_tca.results.summary import shown
+from loaded_tca.scene.rows import Cell, Label, fixed
 from loaded_tca.scene.section import Section, contents
 from loaded_tca.unloaded.path import contact_span, roll_lengths_of_flanks
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from loaded_tca.loaded.shaft_lines import ShaftLine
     from loaded_tca.pairs.gear_pair import GearPair
     from loaded_tca.scene import Scene
+    from loaded_tca.scene.load import AnyLoad
     from loaded_tca.scene.model import Row
 
 MOST_TORQUES = 4
@@ -76,7 +78,8 @@ def scene_sections(scene: Scene) -> dict[str, list[Row]]:
         "path of contact": [*_path_rows(scene, pair)],
         "load and analysis": [*_asked_rows(scene, pair)],
         "bearings": [*_bearing_rows(scene)],
-        "ISO 6336": [*_standard_rows(scene, pair), *_strength_rows(scene)],
+        "ISO 6336": [*_standard_rows(scene, pair)],
+        "strength and rating": [*_strength_rows(scene)],
         "mounting errors, edges and modifications": [*_departures(scene)],
         "flanks described by points": [*_spline_rows(scene, pair)],
     }
@@ -93,26 +96,41 @@ def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
             if letter in points:
                 length = points[letter]
                 roll, diameter = length / pair.base_radii[0], 2.0 * math.hypot(length, pair.base_radii[0])
-                yield f"  {letter}, {whose}", f"{length:z.4f}", f"{math.degrees(roll):z.4f}", f"{diameter:z.4f}"
+                yield f"  {letter}, {whose}", fixed(length, 4), fixed(math.degrees(roll), 4), fixed(diameter, 4)
 
 
 def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """The load, what the analysis is asked to do, and the bores or journals that it holds where teeth bend."""
     torques, wanted, count = torques_with_columns(scene.torques), scene.analysis, len(scene.torques)
-    label = "pinion torque [N m]" if len(torques) == count else f"{count} pinion torques from, to [N m]"
+    label = "pinion torque [N m]"
+    if len(torques) != count:
+        label = Label(f"{count} pinion torques from, to [N m]", "pinion_torques_N_m", "least", "largest")
     yield label, *(f"{plain(1e-3 * torque, 6)}" for torque in torques)
+    yield from spectrum_rows(scene.load)
     yield from scene.force_rows(torques)
     if pair.max_pressure is not None:
         yield "cap on the pressure [MPa]", f"{plain(pair.max_pressure, 6)}"
     switches = ("on" if switch else "off" for switch in (wanted.load_sharing, wanted.free_edges))
-    yield "load sharing, free edges, compliance", *switches, wanted.compliance
+    names = "load_sharing", "free_edges", "compliance"
+    yield Label("load sharing, free edges, compliance", "model", *names), *switches, wanted.compliance
     if any(gear.tip_rounding_mm or gear.side_rounding_mm for gear in (scene.pinion, scene.wheel)):
         yield "pressures at rounded edges", wanted.edge_pressures
-    yield "positions, torques", f"{wanted.positions}", f"{len(scene.torques)}"
+    yield Label("positions, torques", "count", "positions", "torques"), f"{wanted.positions}", f"{len(scene.torques)}"
     if wanted.root_stress:
         yield "root stress", "on"
     if wanted.without_bodies:
         yield scene.held_row(pair)
+
+
+def spectrum_rows(load: AnyLoad) -> Iterator[Row]:
+    """Bins of a load spectrum, which of them are reversed (from 1 on), and their time."""
+    if load.case is None:
+        return
+    other_way = ", ".join(str(number) for number, case in enumerate(load.case, start=1) if case.reversed)
+    yield "bins of the load spectrum", f"{len(load.case)}"
+    yield "bins that are reversed", other_way or "none"
+    if load.hours is not None:
+        yield "hours of all bins [h]", plain(load.hours, 9)
 
 
 def _bearing_rows(scene: Scene) -> Iterator[Row]:
@@ -130,10 +148,10 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
     for gear, lines in by_gear.items():
         for n, bearing in enumerate(lines[0].shaft.bearings if lines else ()):
             forces = (float(np.linalg.norm(line.bearing_forces[n, :3])) for line in lines)
-            yield f"{gear}, bearing {n} at {plain(bearing.at, 6)} mm: force [N]", *(f"{force:z.1f}" for force in forces)
+            yield f"{gear}, bearing {n} at {plain(bearing.at, 6)} mm: force [N]", *(fixed(force, 1) for force in forces)
             inside = [rolling_figures(line, n) for line in lines]
             if any(inside):
-                yield "  largest element force [N]", *(f"{one['element_force_N']:z.1f}" for one in inside)
+                yield "  largest element force [N]", *(fixed(one["element_force_N"], 1) for one in inside)
                 yield "  life [million revolutions]", *(lasting(one["life_Mrev"]) for one in inside)
 
 
@@ -150,7 +168,7 @@ def _standard_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
         by_torque = figures if names == (STRESS,) else figures[:1]
         values = [(entry[name], name) for entry in by_torque for name in names]
         if any(math.isfinite(value) for value, _ in values):
-            yield label.strip(), *(shown(value, name) for value, name in values)
+            yield label.strip(), *(Cell(shown(value, name), value) for value, name in values)
     if not scene.analysis.root_stress:
         return
     for name, nominal in zip(GEARS, scene.nominal_root_stress, strict=True):
@@ -165,12 +183,16 @@ def _strength_rows(scene: Scene) -> Iterator[Row]:
     for name, gear in zip(GEARS, (scene.pinion, scene.wheel), strict=True):
         if gear.strength is not None:
             limits = gear.strength.limits
-            yield f"{name}.strength: sigma_H_lim, sigma_F_lim [MPa]", *(plain(limit) for limit in limits)
+            label = f"{name}.strength: sigma_H_lim, sigma_F_lim [MPa]"
+            yield (
+                Label(label, f"{name}_strength_MPa", "sigma_H_lim", "sigma_F_lim"),
+                *(plain(limit) for limit in limits),
+            )
     wanted = scene.rating
     if wanted is not None:
         required = wanted.required_flank_safety, wanted.required_root_safety
         yield (
-            "rating: required S_H, S_F, life [h]",
+            Label("rating: required S_H, S_F, life [h]", "required", "S_H", "S_F", "life_h"),
             *(plain(one) for one in required),
             plain(wanted.life_hours or scene.load.hours or 0.0, 9),
         )
@@ -198,8 +220,8 @@ def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
             excess = 1e3 * flank.distance_to(flank.nominal, rho, z)
             yield f"{name}: measured points", " x ".join(map(str, gear.flank.measurement.shape))
             at_points = 1e3 * flank.distance_to(flank.nominal, *gear.flank.measurement.places)
-            yield f"{name}: deviations at points, from, to [um]", f"{at_points.min():z.2f}", f"{at_points.max():z.2f}"
-            yield f"{name}: deviations of flank, from, to [um]", f"{excess.min():z.2f}", f"{excess.max():z.2f}"
+            yield f"{name}: deviations at points, from, to [um]", fixed(at_points.min(), 2), fixed(at_points.max(), 2)
+            yield f"{name}: deviations of flank, from, to [um]", fixed(excess.min(), 2), fixed(excess.max(), 2)
             yield from _measured_rows(scene, name)
         errors = {"at points": flank.fit_error, "between them": flank.check_error}
         for where, error in errors.items():
@@ -217,7 +239,7 @@ def _measured_rows(scene: Scene, name: str) -> Iterator[Row]:
     except InputError:  # of few points
         return
     for key, design, value in zip(made.keys, made.design, made.measured, strict=True):
-        yield f"{name}: {key.removesuffix('_um')}, of the scene, measured [um]", f"{design:z.2f}", f"{value:z.2f}"
+        yield f"{name}: {key.removesuffix('_um')}, of the scene, measured [um]", fixed(design, 2), fixed(value, 2)
 
 
 def _changed(section: Section, place: str) -> list[Row]:

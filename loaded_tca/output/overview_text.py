@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
+from loaded_tca.scene.rows import Cell, Label
 from loaded_tca.units import as_ending
 
 if TYPE_CHECKING:
@@ -113,8 +114,9 @@ def _object(rows: Iterable[Row], is_headed: bool) -> dict[str, Any]:
             continue
         if not label.startswith(" "):
             above = ""
-        name = as_name(f"{above} {label}" if above else label)
-        values[name] = _of_cells([_value(cell) for cell in cells], columns)
+        name = label.name if isinstance(label, Label) else as_name(f"{above} {label}" if above else label)
+        parts = label.parts if isinstance(label, Label) else ()
+        values[name] = _of_cells([_value(cell) for cell in cells], parts or columns)
         if not label.startswith(" ") and not is_headed:
             above = UNIT.sub(r"\1", label)
     return values
@@ -129,8 +131,10 @@ def _of_cells(values: list[Any], columns: Sequence[str]) -> Any:
     return values[0] if len(values) == 1 else values
 
 
-def _value(cell: str) -> float | int | str | None:
-    """The number of a cell; text that is none stays text, a dash is nothing."""
+def _value(cell: str) -> Any:
+    """The value of a cell; text that is no number stays text, a dash is nothing."""
+    if isinstance(cell, Cell):
+        return cell.value
     if cell == "-":
         return None
     try:

@@ -6,10 +6,11 @@ import math
 from typing import TYPE_CHECKING
 
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.output.overview import scene_sections, torques_with_columns
+from loaded_tca.output.overview import scene_sections, spectrum_rows, torques_with_columns
 from loaded_tca.output.overview_text import Overview
 from loaded_tca.plain import plain
 from loaded_tca.results.gear_warnings import warn_of_gears
+from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.stages.analyse import expected_stage_effort
 from loaded_tca.stages.kinematics import mesh_phases, neighbours_apart, neutralised
 from loaded_tca.stages.result import MOST_ORDERS
@@ -76,16 +77,16 @@ def _stage_rows(stage: Stage) -> list[Row]:
     planet = stage.meshes[0].wheel
     pins = ("tangentially", asked.pin_tangential_um), ("outwards", asked.pin_radial_um)
     rows: list[Row] = [
-        ("teeth of sun, planet and ring", f"{z_s}", f"{z_p}", f"{z_r}"),
-        ("ratio of sun to carrier, the ring held", f"{1.0 + z_r / z_s:z.4f}"),
+        (Label("teeth of sun, planet and ring", "teeth", "sun", "planet", "ring"), f"{z_s}", f"{z_p}", f"{z_r}"),
+        ("ratio of sun to carrier, the ring held", fixed(1.0 + z_r / z_s, 4)),
         ("driving", asked.driving),
-        ("planets at [deg]", *(f"{math.degrees(angle):z.4f}" for angle in asked.angles)),
-        ("they can be put in every [deg]", f"{360.0 / (z_s + z_r):z.4f}"),
-        ("centre distance of both meshes [mm]", f"{stage.centre_distance:z.4f}"),
+        ("planets at [deg]", *(fixed(math.degrees(angle), 4) for angle in asked.angles)),
+        ("they can be put in every [deg]", fixed(360.0 / (z_s + z_r), 4)),
+        ("centre distance of both meshes [mm]", fixed(stage.centre_distance, 4)),
     ]
     if len(asked.angles) > 1:
         room = neighbours_apart(asked.angles, stage.centre_distance) - 2.0 * planet.tip_radius
-        rows.append(("neighbouring planets apart [mm]", f"{room:z.4f}"))
+        rows.append(("neighbouring planets apart [mm]", fixed(room, 4)))
     rows.append(("support of the sun", _support(stage)))
     rows += [(f"pins displaced {how} [um]", *(f"{plain(pin, 6)}" for pin in given)) for how, given in pins if given]
     return rows
@@ -108,11 +109,12 @@ def _torque_rows(stage: Stage) -> list[Row]:
     base = stage.meshes[0].pinion.base_radius
     return [
         ("sun torque [N m]", *(f"{plain(1e-3 * torque, 6)}" for torque in shown)),
+        *spectrum_rows(stage.load),
         ("carrier torque [N m]", *(f"{plain(1e-3 * torque * (1.0 + z_r / z_s), 6)}" for torque in shown)),
         ("ring torque [N m]", *(f"{plain(1e-3 * torque * z_r / z_s, 6)}" for torque in shown)),
         (
             "force of an even share at the base circles [N]",
-            *(f"{_even(stage, torque) / base:z.1f}" for torque in shown),
+            *(fixed(_even(stage, torque) / base, 1) for torque in shown),
         ),
     ]
 
@@ -130,7 +132,7 @@ def phase_rows(stage: Stage) -> list[Row]:
     return [
         ("phases of the meshes, in mesh cycles", "sun's", "ring's"),
         *(
-            (f"  planet {planet}", f"{sun:z.4f}", f"{ring:z.4f}")
+            (f"  planet {planet}", fixed(sun, 4), fixed(ring, 4))
             for planet, (sun, ring) in enumerate(zip(*(one.tolist() for one in phases), strict=True))
         ),
         ("orders of the mesh that equal planets cancel", f"rotation: {orders[0]}", f"forces on the sun: {orders[1]}"),

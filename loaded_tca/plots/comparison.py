@@ -48,7 +48,8 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
     """Curves of two or more results over each other, under one torque.
 
     Transmission error at the wheel's base circle, absolute and about its mean; its harmonics; mesh stiffness; peak
-    pressure and load share of every tooth pair at the angle of its own teeth. Angles are in degrees, of pinions with
+    pressure and load share of every tooth pair at the angle of its own teeth. Where means have different signs, as of
+    drive and coast side, the absolute one is drawn in the direction of its mean. Angles are in degrees, of pinions with
     different numbers of teeth in pitches. A result without load sharing has no harmonics.
 
     Parameters
@@ -74,14 +75,15 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
     figure = Figure(figsize=(11.0, 12.5), layout="constrained")
     (absolute, about_mean), (harmonics, stiffness), (pressure, share) = figure.subplots(3, 2)
     bars = []
-    for (name, result), k, (colour, marker, width), scale in zip(
-        named.items(), comparison.indices[shared], styles_of(len(named)), scales, strict=True
+    directions = _directions(comparison, shared)
+    for (name, result), k, (colour, marker, width), scale, direction in zip(
+        named.items(), comparison.indices[shared], styles_of(len(named)), scales, directions, strict=True
     ):
         drawn = {"color": colour, "marker": marker, "linewidth": width, "markersize": 4.0}
         angle = scale * result.pinion_angle
         length = 1e3 * result.wheel_base_radius
         error = length * result.transmission_error[k]
-        absolute.plot(angle, error, label=label_of_result(name), **drawn)
+        absolute.plot(angle, direction * error, label=label_of_result(name), **drawn)
         about_mean.plot(angle, error - mean_over_a_pitch(error), **drawn)
         stiffness.plot(angle, result.mesh_stiffness[k], **drawn)
         bars.append((name, colour, length * result.harmonics(MOST_ORDERS)[k]))
@@ -92,7 +94,7 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
     draw_orders(harmonics, bars)
     harmonics.set_ylabel("amplitude [µm]")
     for axes, over, label in (
-        (absolute, "pinion angle", "transmission error [µm]"),
+        (absolute, "pinion angle", f"{'size of the ' * (min(directions) < 0.0)}transmission error [µm]"),
         (about_mean, "pinion angle", "transmission error less its mean [µm]"),
         (stiffness, "pinion angle", "mesh stiffness [N/(mm µm)]"),
         (pressure, OVER_THE_PATH, "peak pressure [MPa]"),
@@ -109,6 +111,14 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
         figure, title_of(named), f"comparison, {under_torque(comparison, shared)}", "lengths at the wheel's base circle"
     )
     return figure
+
+
+def _directions(comparison: Comparison, shared: int) -> list[float]:
+    """Signs of the mean transmission errors of all results where they differ, else one for each."""
+    at = zip(comparison.results.values(), comparison.indices[shared], strict=True)
+    means = np.array([mean_over_a_pitch(result.transmission_error[k]) for result, k in at])
+    differ = bool((means < 0.0).any() and (means > 0.0).any())
+    return np.where((means < 0.0) & differ, -1.0, 1.0).tolist()
 
 
 def plot_compared_maps(results: Results, torque: float | None = None, position: int | None = None) -> Figure:

@@ -85,6 +85,9 @@ def plot_first_look(scene: Scene) -> Figure:
     for k, (_, panels) in enumerate(rows):
         for n, draw in enumerate(panels):
             draw(figure.add_subplot(grid[k, :] if len(panels) == 1 else grid[k, n]))
+    if isinstance(scene, CylindricalScene):
+        of_teeth = figure.axes[0].get_legend_handles_labels()
+        figure.legend(*of_teeth, loc="outside lower center", ncols=4, fontsize="x-small")  # within no place is free
     what = f"geometry before any contact, flanks of half {HALVES[0]}" if halves else "geometry before any contact"
     write_title(figure, scene.title, what, *numbers)
     return figure
@@ -101,7 +104,6 @@ def _numbers_of_blanks(scene: Scene) -> list[str]:
 def _draw_teeth(axes: Axes, scene: CylindricalScene) -> None:
     draw_teeth_in_mesh(axes, scene)
     axes.set_title("teeth in mesh at the pitch point, transverse section", fontsize="small")
-    axes.legend(loc="upper left", fontsize="x-small", ncols=2, framealpha=0.9).set_zorder(8.0)
 
 
 def _blank_of(gear: BevelGear | FaceMilledGear, member: int) -> Callable[[Axes], None]:
@@ -207,10 +209,11 @@ def _flanks(scene: Scene, pair: GearPair) -> list[Callable[[Axes], None]]:
         def draw(axes: Axes) -> None:
             gear = GEARS[member]
             flank = getattr(pair, gear).flank
-            draw_flank(axes, scene.flank_names[member], flank, scene.active_starts()[member])
+            active = scene.active_starts()[member], scene.active_ends()[member]
+            draw_flank(axes, scene.flank_names[member], flank, active)
             place = ToPicture(pair, gear)(points)
             axes.plot(*place.T, ".-", color=ACCENT, markersize=4.0, label="contact points without load")
-            axes.legend(fontsize="x-small", loc="lower center")
+            axes.legend(fontsize="x-small", loc="best")
 
         return draw
 

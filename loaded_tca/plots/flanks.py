@@ -109,8 +109,9 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     handles: list[Artist] = [Line2D([], [], color=ACCENT, marker=".", linestyle="", label=CONTACT_POINTS)]
     flanks = pair.pinion.flank, pair.wheel.flank
     heights = [flank.profile_coordinate(*flank.grid(*FINENESS)).value for flank in flanks]
-    below = [start - float(height.min()) for start, height in zip(scene.active_starts(), heights, strict=True)]
-    if any(part > LEAST_SEEN * float(np.ptp(height)) for part, height in zip(below, heights, strict=True)):
+    actives = zip(scene.active_starts(), scene.active_ends(), heights, strict=True)
+    apart = [max(start - float(one.min()), float(one.max()) - end) for start, end, one in actives]
+    if any(part > LEAST_SEEN * float(np.ptp(height)) for part, height in zip(apart, heights, strict=True)):
         not_reached = "flank that the mating gear does not reach"
         handles.append(Patch(facecolor=NOT_REACHED, edgecolor="black", label=not_reached))
     if pair.sharp is not pair:
@@ -281,10 +282,11 @@ def both_flanks(
     panels = figure.subplots(len(draw), 2, squeeze=False, sharex="col", sharey="col")
 
     sides = ((pair.pinion.flank, ToPicture(pair, "pinion")), (pair.wheel.flank, ToPicture(pair, "wheel")))
-    described = zip(panels.T, scene.flank_names, scene.active_starts(), sides, strict=True)
-    for column, name, start, (flank, to_picture) in described:
+    actives = zip(scene.active_starts(), scene.active_ends(), strict=True)
+    described = zip(panels.T, scene.flank_names, actives, sides, strict=True)
+    for column, name, active, (flank, to_picture) in described:
         for axes, draw_on in zip(column, draw, strict=True):
-            _draw_on_flank(axes, draw_on, to_picture, name, flank, start)
+            _draw_on_flank(axes, draw_on, to_picture, name, flank, active)
         for above, below in pairwise(column):
             above.set_xlabel("")
             below.set_title("")
@@ -294,7 +296,7 @@ def both_flanks(
 def draw_on_pinion(axes: Axes, result: CycleNumbers, draw: Callable[[Axes, ToPicture], Sequence[Artist]]) -> None:
     """The pinion's flank alone, with what is drawn on it; see :func:`both_flanks`."""
     pair, scene = result.gear_pair, result.scene
-    about = scene.flank_names[0], pair.pinion.flank, scene.active_starts()[0]
+    about = scene.flank_names[0], pair.pinion.flank, (scene.active_starts()[0], scene.active_ends()[0])
     _draw_on_flank(axes, draw, ToPicture(pair, "pinion"), *about)
 
 
@@ -304,16 +306,16 @@ def _draw_on_flank(
     to_picture: ToPicture,
     name: str,
     flank: Flank,
-    start: float,
+    active: Point,
 ) -> None:
-    outline = draw_flank(axes, name, flank, start)
+    outline = draw_flank(axes, name, flank, active)
     for drawn in draw(axes, to_picture):
         drawn.set_clip_path(outline)
 
 
-def draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
-    """The flank from root to tip, with the part from profile coordinate ``start`` on in white; returns its outline."""
-    outlines, ends = flank_outlines(flank, start)
+def draw_flank(axes: Axes, name: str, flank: Flank, active: Point) -> Polygon:
+    """The flank from root to tip, its part between the profile coordinates ``active`` in white; returns its outline."""
+    outlines, ends = flank_outlines(flank, active)
     regions = [
         Polygon(corners, facecolor=colour, edgecolor="black")
         for corners, colour in zip(outlines, (NOT_REACHED, "white"), strict=True)
@@ -330,21 +332,25 @@ def draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
     return regions[0]
 
 
-def flank_outlines(flank: Flank, start: float) -> tuple[tuple[Array, Array], tuple[Point, Point]]:
-    """Outlines (n, 2) in its picture of a flank, and of the part from profile coordinate ``start`` on.
+def flank_outlines(flank: Flank, active: Point) -> tuple[tuple[Array, Array], tuple[Point, Point]]:
+    """Outlines (n, 2) in its picture of a flank, and of the part between the profile coordinates ``active``.
 
     The ends (rho, z) of the profile of that part in the middle of the face come after them.
     """
     rho, z = flank.grid(*FINENESS)
     along = flank.profile_coordinate(rho, z).value
-    active = [np.array([np.interp(start, along[:, k], part[:, k]) for k in range(along.shape[1])]) for part in (rho, z)]
+    columns = range(along.shape[1])
+    begin, end = (
+        [np.array([np.interp(place, along[:, k], part[:, k]) for k in columns]) for part in (rho, z)]
+        for place in active
+    )
     outlines = []
-    for bottom in ((rho[0], z[0]), active):
-        around = (np.concatenate([first, last[-1, ::-1]]) for first, last in zip(bottom, (rho, z), strict=True))
+    for bottom, top in (((rho[0], z[0]), (rho[-1], z[-1])), (begin, end)):
+        around = (np.concatenate([first, last[::-1]]) for first, last in zip(bottom, top, strict=True))
         outlines.append(np.stack(flank.frame.to_picture(*around), axis=-1))
     middle = FINENESS[1] // 2
-    begin, end = ((float(radius[middle]), float(axial[middle])) for radius, axial in (active, (rho[-1], z[-1])))
-    return (outlines[0], outlines[1]), (begin, end)
+    first, last = ((float(radius[middle]), float(axial[middle])) for radius, axial in (begin, end))
+    return (outlines[0], outlines[1]), (first, last)
 
 
 def limits_of_flank(outline: Array) -> tuple[Array, Array]:

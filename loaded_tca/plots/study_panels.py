@@ -28,9 +28,9 @@ from loaded_tca.plots.style import ACCENT, COLOURS, MARKERS, MOST_LABELS, NOT_RE
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.parse import parse_scene, toml_table
 from loaded_tca.studies.ranking import (
-    design_keys,
     figure_values,
     is_largest_best,
+    is_sampled,
     main_figures,
     quantile_of,
     rank_variants,
@@ -247,7 +247,7 @@ def plot_study_ranking(
     """
     order_of = ranking(study, by, torque, largest_is_best)
     ranked = order_of[order_of["rank"].notna()]
-    columns = [name for name in order_of.columns if name not in ("status", "reason")]
+    columns = [name for name in order_of.columns if name not in ("status", "reason", "note")]
     cells = [[_cell(value) for value in row] for row in ranked[columns].head(MOST_ROWS).to_numpy().tolist()]
     heads = [wrapped_label_of(name) for name in columns]
     highest = max(head.count("\n") for head in heads) + 1
@@ -268,14 +268,16 @@ def plot_study_ranking(
         set_study_title(drawing, study, None, "no figures", *_why_unranked(rank_variants(study)))
         return drawing
     values = figure_values(study, by or main_figures(study)[0])
-    kind = "designs" if design_keys(study) else "variants"
+    sampled = is_sampled(study)
+    kind = "designs" if sampled else "variants"
     what = f"{len(cells)} best of {len(ranked)} {kind}" if len(cells) < len(ranked) else kind
     largest_first = is_largest_best(by or main_figures(study)[0], largest_is_best)
     lucky = 100.0 * quantile_of(by or main_figures(study)[0], largest_is_best)
     apart = largest_is_best is None and any(is_largest_best(name) != largest_first for name in columns if name in study)
     worst = "worst" if apart else "least" if largest_first else "largest"
     but = f" (of those that are best the other way the {100.0 - lucky:z.0f} % quantile)" if apart else ""
-    quantile = [f"of each figure the {lucky:z.0f} % quantile over the samples{but}"] if design_keys(study) else []
+    quantile = [f"of each figure the {lucky:z.0f} % quantile over the samples{but}"] if sampled else []
+    quantile += sorted({*ranked["note"]} - {""}) if sampled else []
     of = [f"of each figure the {worst} over the torques"] if torque is None and values.shape[1] > 1 else []
     order = "largest" if largest_first else "least"
     what = f"{what}, {order} {without_unit(label_of(by or main_figures(study)[0]))} first"

@@ -13,7 +13,7 @@ from loaded_tca.plots.comparison import title_of
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of
 from loaded_tca.reports.result_page import explained
-from loaded_tca.results.comparison import signed_change, written_value
+from loaded_tca.results.comparison import SIZES, signed_change, written_value
 from loaded_tca.results.figure import in_percent
 from loaded_tca.results.figures import declared
 from loaded_tca.results.summary import shown, shown_torque
@@ -54,6 +54,7 @@ def comparison_content(comparison: Comparison, torque: float | None = None) -> d
         "differing": differing_table(comparison),
         "key_figures": [table for k in torques for table in key_figure_tables(comparison, k)],
         "all_torques": len(torques) == len(comparison.torque),
+        "sizes": SIZES,
         "beyond": BEYOND,
         "within": WITHIN,
         "errors": _errors(comparison, at),

@@ -161,7 +161,7 @@ def _place(
 def _flank(result: MeshCycle, gear: int, block: Block) -> dict[str, Any]:
     """A flank: name, axes, outlines, fields of its picture, largest pressure over the mesh under each torque."""
     flank = (result.gear_pair.pinion.flank, result.gear_pair.wheel.flank)[gear]
-    outlines, _ = flank_outlines(flank, result.scene.active_starts()[gear])
+    outlines, _ = flank_outlines(flank, (result.scene.active_starts()[gear], result.scene.active_ends()[gear]))
     low, high = limits_of_flank(outlines[0])
     to_picture = ToPicture(result.gear_pair, GEARS[gear])
     envelopes = [pressure_seen(result, torque, to_picture, low, high)[1] for torque in range(len(result.torque))]

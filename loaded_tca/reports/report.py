@@ -38,6 +38,7 @@ from loaded_tca.studies.design_figures import FIGURES
 from loaded_tca.studies.ranking import (
     MAIN,
     PERCENTILES,
+    design_keys,
     figure_values,
     is_largest_best,
     is_sampled,
@@ -187,7 +188,7 @@ def study_tables(study: xarray.Dataset, rank_by: str | None = None) -> dict[str,
     """Return what a page says of a study in words and tables; as :func:`study_content`, without pictures."""
     by = rank_by if main_figures(study) else None  # where all variants were refused there is nothing to rank by
     sampled = is_sampled(study)
-    combinations = rank_combinations(study, by) if sampled else None
+    combinations = rank_combinations(study, by) if design_keys(study) else None
     grouped = combinations is not None and bool(combinations["rank"].notna().any())
     subject = subject_of(study)
     lines = Counter(line for warned in study["warnings"].values.tolist() for line in warned.splitlines())
@@ -212,6 +213,7 @@ def study_tables(study: xarray.Dataset, rank_by: str | None = None) -> dict[str,
         "sampled": sampled,
         "grouped": grouped,
         "quantile": _quantiles(study, by),
+        "few": sorted({*combinations["note"]} - {""}) if combinations is not None else [],
         "ranked_by": label_of(ranks := by or next(iter(main_figures(study)), "")),
         "best": "largest" if is_largest_best(ranks) else "least",
         "shortfall": _shortfall(study) if sampled or CLASS in varied_keys(study) else None,
@@ -236,10 +238,14 @@ def _geometry_of(subject: Scene | Stage) -> dict[str, Any]:
 
 
 def _quantiles(study: xarray.Dataset, by: str | None) -> str:
-    """Quantile over the samples that stands for a figure, in words: another one of figures whose largest is best."""
+    """Number over samples and torques that stands for a figure, in words: another one where the largest is best."""
     figures = dict.fromkeys([*([by] if by else []), *main_figures(study)])
     usual, *others = dict.fromkeys(f"{100.0 * quantile_of(name):.0f} %" for name in figures) or [""]
-    return usual + "".join(f" ({other} of those that are best the other way)" for other in others)
+    least = any(is_largest_best(name) for name in figures)
+    worst = "worst" if others else "least" if least else "largest"
+    over = f" of its {worst} value over the torques" if study.sizes.get("torque", 1) > 1 else ""
+    apart = "".join(f" ({other} of those that are best the other way)" for other in others)
+    return f"{usual} quantile{apart} over the samples{over}"
 
 
 def _shortfall(study: xarray.Dataset) -> Table | None:
@@ -310,7 +316,7 @@ def _best_and_worst(study: xarray.Dataset, by: str | None, combinations: pandas.
     nominal = nominal_variant(study) if combinations is None else None
     if nominal is not None:
         columns["as the scene"] = ranking[ranking["sample"] == nominal].iloc[0]
-    names = _columns(study, by) if combinations is None else [*combinations.columns[1:]]
+    names = _columns(study, by) if combinations is None else [*combinations.columns[1:].drop("note")]
     rows = [
         (head, *(_cell(one[name]) for one in columns.values())) for name, head in zip(names, _heads(names), strict=True)
     ]
@@ -321,7 +327,9 @@ def _ranking(study: xarray.Dataset, by: str | None, combinations: pandas.DataFra
     """The variants, or the combinations where these are given, the best first."""
     ranking = rank_variants(study, by) if combinations is None else combinations
     ranked = ranking[ranking["rank"].notna()].head(MOST_ROWS)
-    columns = [*combinations.columns] if combinations is not None else ["rank", *_columns(study, by), "warnings"]
+    columns = (
+        ["rank", *_columns(study, by), "warnings"] if combinations is None else [*combinations.columns.drop("note")]
+    )
     rows = [tuple(_cell(value) for value in row) for row in ranked[columns].to_numpy().tolist()]
     return Table(tuple(rows), tuple(_heads(columns))) if rows else None
 

@@ -32,6 +32,8 @@ NOT_COMPARED = "title", "load.pinion_torque_Nm", "analysis.torques_Nm"
 """Keys of the scenes that a comparison does not name."""
 DIGITS = ".6g"
 """Of torques [N m] that are the same."""
+SIZES = "in % sizes without their signs, none where the signs differ"
+"""What differences in % are of."""
 MARK = "*"
 """Beside a difference that exceeds the errors of both results."""
 MOST_KEYS = 12
@@ -57,9 +59,10 @@ class Comparison(InNotebooks):
     def figures(self) -> xarray.Dataset:
         """Key figures as ``value``, ``difference`` and ``relative_difference`` to the first (torque, figure, result).
 
-        NaN: not known. A relative difference is that over the magnitude of the first, and NaN where that is zero and
-        for angles and axial positions, whose zero has no meaning. ``difference_error`` is the sum of the errors that
-        both results state of the figure, by the grid, by the positions or against finite elements.
+        NaN: not known. A relative difference is that of the magnitudes over that of the first, since the sign of a
+        figure is a direction; NaN where the first is zero, where the signs differ, and for angles and axial positions,
+        whose zero has no meaning. ``difference_error`` is the sum of the errors that both results state of the figure,
+        by the grid, by the positions or against finite elements.
         """
         import xarray
 
@@ -78,9 +81,11 @@ class Comparison(InNotebooks):
         with np.errstate(invalid="ignore"):  # errors without a limit in both
             difference = value - first
         is_place = np.array([any(part in name for part in PLACES) for name in names])
-        base = np.where((first == 0.0) | is_place[:, None], math.nan, np.abs(first))
+        is_apart = (first == 0.0) | (value * np.sign(first) < 0.0) | is_place[:, None]
+        growth = np.where(is_apart, math.nan, difference * np.sign(first))
         with np.errstate(invalid="ignore"):
-            parts = {"value": value, "difference": difference, "relative_difference": difference / base}
+            base = np.where(first == 0.0, math.nan, np.abs(first))
+            parts = {"value": value, "difference": difference, "relative_difference": growth / base}
             error = np.abs(value) * self._stated_errors(names)
             parts["difference_error"] = error + error[..., :1]
         dimensions = ("torque", "figure", "result")
@@ -211,7 +216,7 @@ class Comparison(InNotebooks):
         if left := [f"{name} {', '.join(torques)}" for name, torques in self.left_out.items()]:
             shared = ", ".join(map(_told, self.torque))
             notes.append(f"all have the torques {shared} N m; left out: {'; '.join(left)} N m")
-        head = f"Compared with {names[0]}, pinion torque {_told(self.torque[at])} N m"
+        head = f"Compared with {names[0]}, pinion torque {_told(self.torque[at])} N m; {SIZES}"
         return "\n".join([head, *(line.rstrip() for line in lines), *(f"note: {note}" for note in notes)])
 
 

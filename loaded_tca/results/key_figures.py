@@ -15,6 +15,7 @@ import numpy as np
 from loaded_tca.results.declared import Row
 from loaded_tca.results.load_factors import face_load_factor_by_positions, face_load_factor_error
 from loaded_tca.results.root_stress import root_figures
+from loaded_tca.scene.rows import Label
 from loaded_tca.units import UNITS
 
 if TYPE_CHECKING:
@@ -30,11 +31,20 @@ CONTACT_RATIO, HELIX_ANGLE = "contact_ratio_factor_iso_6336", "contact_helix_ang
 SINGLE_STIFFNESS, MESH_STIFFNESS = "single_stiffness_iso_6336_N_per_mm_um", "mesh_stiffness_iso_6336_N_per_mm_um"
 TRANSVERSE_LOAD = "largest_transverse_load_factor_iso_6336"
 
+FACTORS = Label(
+    "  Z_B | Z_D, not in sigma_H0; Z_eps | Z_beta, in sigma_H0", "contact_factors", "Z_B", "Z_D", "Z_eps", "Z_beta"
+)
+STIFFNESSES = Label(
+    "  ISO 6336-1 above 100 N/mm: c' | c_gamma_alpha [N/(mm um)]",
+    "stiffness_N_per_mm_um",
+    "c_prime",
+    "c_gamma_alpha",
+)
 STRESS_ROWS = (
     ("ISO 6336-2: sigma_H0 at the pitch point [MPa]", (STRESS,)),
-    ("  Z_B | Z_D, not in sigma_H0; Z_eps | Z_beta, in sigma_H0", (*SINGLE_CONTACT, CONTACT_RATIO, HELIX_ANGLE)),
+    (FACTORS, (*SINGLE_CONTACT, CONTACT_RATIO, HELIX_ANGLE)),
 )
-STIFFNESS_ROW = "  ISO 6336-1 above 100 N/mm: c' | c_gamma_alpha [N/(mm um)]", (SINGLE_STIFFNESS, MESH_STIFFNESS)
+STIFFNESS_ROW = STIFFNESSES, (SINGLE_STIFFNESS, MESH_STIFFNESS)
 LOAD_ROW = "  upper bound of K_Halpha in ISO 6336-1, the lower one is 1", (TRANSVERSE_LOAD,)
 """Labels of lines of a summary, and their key figures."""
 

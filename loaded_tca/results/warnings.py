@@ -348,8 +348,9 @@ def accuracy_of_edge(result: CycleNumbers, at: tuple[int, int, int]) -> str:
 def _edge_finding(result: CycleNumbers, torque: int) -> str:
     """The largest pressure at an edge of pairs that carry a thousandth of the torque: where, and what would remove it.
 
-    An edge carries no load where the flank lacks as much there as the pair deflects: its contact deformation and the
-    deflection of its teeth along the normal. An edge pressure that the peak pressure exceeds is none.
+    An edge carries no load where the flank lacks as much there as the pair deflects that carries most beside it: its
+    contact deformation and the deflection of its teeth along the normal. A pair that just begins to carry deflects by
+    less, but would touch there at another position. An edge pressure that the peak pressure exceeds is none.
     """
     if torque not in (places := highest_edges(result)):
         return ""
@@ -359,11 +360,11 @@ def _edge_finding(result: CycleNumbers, torque: int) -> str:
     elastic = "elastic" if math.isnan(cap) else f"capped at {plain(cap, 6)} MPa"
     remedies = [
         f"{relief} on the {' or '.join(dict.fromkeys(name.split()[0] for name in edges if where in name))}"
-        for relief, where in (("end relief", "side"), ("tip relief", "tip"))
+        for relief, where in (("end relief", "side"), ("tip relief", "tip"), ("root relief", "root"))
         if any(where in name for name in edges)
     ]
-    deflection = 1e3 * float(np.nansum([result.contact_deformation[at], result.tooth_deflection[at]]))
-    amount = f"{plain(deflection, 2)} um, the deflection of the tooth pair"
+    deflections = np.nansum([result.contact_deformation[torque, n], result.tooth_deflection[torque, n]], axis=0)
+    amount = f"{plain(1e3 * float(deflections.max()), 2)} um, the deflection of the mesh there"
     if result.paths[k].edges[n].any():
         amount = f"more than {amount}, since the pair first touches at this edge even without load"
     remedy = f"to unload this edge, use {' or '.join(remedies) or 'a relief'} of {amount}"

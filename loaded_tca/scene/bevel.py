@@ -27,6 +27,7 @@ from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.machine_settings import METHODS, Method, Settings
 from loaded_tca.scene.model import Row, Scene
 from loaded_tca.scene.parse import family, scene_from_table
+from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, as_table, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, ERROR_mm, Pair
 from loaded_tca.scene.spiral import MountingErrors, SpiralScene
@@ -402,18 +403,27 @@ class BevelScene(SpiralScene, BlankScene):
         pressures = (gear.pressure_angle, atan(tan(gear.pressure_angle) * cos(gear.spiral_angle)))
         widths = (gear.face_width,) if blanks is None or not blanks.has_own_faces else blanks.face_widths
         return [
-            ("shaft angle Sigma [deg]", f"{degrees(mesh.shaft_angle):z.4f}"),
-            ("cone distances R_e, R_m, R_i [mm]", *(f"{distance:z.4f}" for distance in distances)),
-            ("transverse modules m_et, m_mt [mm]", *(f"{module:z.4f}" for module in modules)),
-            ("mean normal module m_mn [mm]", f"{gear.mean_normal_module:z.4f}"),
-            ("mean spiral angle beta_m [deg]", f"{degrees(abs(gear.spiral_angle)):z.4f}"),
-            ("pressure angles alpha_t, alpha_n [deg]", *(f"{degrees(angle):z.4f}" for angle in pressures)),
+            ("shaft angle Sigma [deg]", fixed(degrees(mesh.shaft_angle), 4)),
+            (
+                Label("cone distances R_e, R_m, R_i [mm]", "cone_distance_mm", "R_e", "R_m", "R_i"),
+                *(fixed(distance, 4) for distance in distances),
+            ),
+            (
+                Label("transverse modules m_et, m_mt [mm]", "transverse_module_mm", "m_et", "m_mt"),
+                *(fixed(module, 4) for module in modules),
+            ),
+            ("mean normal module m_mn [mm]", fixed(gear.mean_normal_module, 4)),
+            ("mean spiral angle beta_m [deg]", fixed(degrees(abs(gear.spiral_angle)), 4)),
+            (
+                Label("pressure angles alpha_t, alpha_n [deg]", "pressure_angle_deg", "alpha_t", "alpha_n"),
+                *(fixed(degrees(angle), 4) for angle in pressures),
+            ),
             ("pressure angle that the scene states", "transverse" if stated is None else "normal"),
-            ("backlash j_mt at the mean pitch circles [mm]", f"{round(mesh.backlash, 4):z.4f}"),
-            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:z.4f}"),
-            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:z.4f}"),
-            ("total contact ratio eps_gamma", f"{mesh.transverse_contact_ratio + mesh.overlap_ratio:z.4f}"),
-            ("face width b [mm]", *(f"{width:z.4f}" for width in widths)),
+            ("backlash j_mt at the mean pitch circles [mm]", fixed(round(mesh.backlash, 4), 4)),
+            ("transverse contact ratio eps_alpha", fixed(mesh.transverse_contact_ratio, 4)),
+            ("overlap ratio eps_beta", fixed(mesh.overlap_ratio, 4)),
+            ("total contact ratio eps_gamma", fixed(mesh.transverse_contact_ratio + mesh.overlap_ratio, 4)),
+            ("face width b [mm]", *(fixed(width, 4) for width in widths)),
             *(() if blanks is None else common_blank_rows(blanks, self.geometry.blank, self.data_type)),
             ("", "pinion", "wheel"),
             ("teeth z", str(mesh.pinion.teeth), str(mesh.wheel.teeth)),

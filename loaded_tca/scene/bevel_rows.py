@@ -7,6 +7,7 @@ from dataclasses import replace
 from math import cos, degrees, isnan, nan, pi, sin, tan
 from typing import Any
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank, generated_flank, tooth_angle_at
 from loaded_tca.gears.bevel import BevelGear
 from loaded_tca.gears.bevel_blank import BevelBlank
@@ -18,11 +19,13 @@ from loaded_tca.gears.hypoid import HypoidMesh
 from loaded_tca.gears.pitch_cones import limit_pressure_angle
 from loaded_tca.plain import plain
 from loaded_tca.scene.model import Row
+from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.spiral import Point, Side, pitch_point
 
 ROUNDING = 1e-9
 """Cone angles closer than this [rad] are the same."""
 Sides = tuple[Side, Side]
+CONES = "R_e", "R_m", "R_i"
 ONE_FLANK = "one flank"
 """In place of what both flanks of a tooth tell together, where the cutter has one blade."""
 MEAN_DEPTHS = ("mean addendum h_am, to the face cone [mm]", "mean dedendum h_fm, to the root cone [mm]")
@@ -62,9 +65,15 @@ def _pair_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFlan
     misses = (abs(pinion.spiral) - abs(wheel.spiral), pinion.pressure - wheel.pressure)
     return [
         ("shaft angle Sigma [deg]", _deg(mesh.shaft_angle)),
-        ("cone distances R_e, R_m, R_i [mm]", *(f"{part:z.4f}" for part in (heel, blank.mean_cone_distance, toe))),
-        ("face width b [mm]", f"{blank.face_width:z.4f}"),
-        ("pinion less wheel: spiral, pressure [deg]", *(_deg(miss) for miss in misses)),
+        (
+            Label("cone distances R_e, R_m, R_i [mm]", "cone_distance_mm", *CONES),
+            *(fixed(part, 4) for part in (heel, blank.mean_cone_distance, toe)),
+        ),
+        ("face width b [mm]", fixed(blank.face_width, 4)),
+        (
+            Label("pinion less wheel: spiral, pressure [deg]", "pinion_less_wheel_deg", "spiral", "pressure"),
+            *(_deg(miss) for miss in misses),
+        ),
     ]
 
 
@@ -77,27 +86,51 @@ def _hypoid_rows(mesh: HypoidMesh, pinion: FlankAngles, wheel: FlankAngles) -> l
     ends = [(blank.outer_cone_distance, blank.mean_cone_distance, blank.cone_distances[0]) for blank in blanks]
     return [
         ("shaft angle Sigma [deg]", _deg(mesh.shaft_angle)),
-        ("hypoid offset a [mm]", f"{mesh.offset:z.4f}"),
-        ("offset angles zeta_m, zeta_mp [deg]", _deg(cones.axial_offset_angle), _deg(cones.offset_angle)),
+        ("hypoid offset a [mm]", fixed(mesh.offset, 4)),
+        (
+            Label("offset angles zeta_m, zeta_mp [deg]", "offset_angle_deg", "zeta_m", "zeta_mp"),
+            _deg(cones.axial_offset_angle),
+            _deg(cones.offset_angle),
+        ),
         ("limit pressure angle alpha_lim [deg]", _deg(limit)),
-        ("spiral angles that roll on each other [deg]", *(_deg(angle) for angle in spirals)),
-        ("crossing point to P, t_zm [mm]", *(f"{part:z.4f}" for part in cones.crossing_distances)),
-        ("pitch apex beyond crossing point, t_z [mm]", *(f"{part:z.4f}" for part in cones.apexes)),
-        ("pinion: R_e, R_m, R_i [mm]", *(f"{part:z.4f}" for part in ends[0])),
-        ("wheel: R_e, R_m, R_i [mm]", *(f"{part:z.4f}" for part in ends[1])),
-        ("face widths b [mm]", *(f"{blank.face_width:z.4f}" for blank in blanks)),
-        ("smallest clearance at the roots [mm]", *(f"{part:z.4f}" for part in mesh.tip_clearances)),
-        ("pinion less wheel: spiral - zeta_mp, pressure", *(_deg(miss) for miss in misses)),
+        (
+            Label("spiral angles that roll on each other [deg]", "spiral_angles_that_roll_on_each_other_deg", *GEARS),
+            *(_deg(angle) for angle in spirals),
+        ),
+        (
+            Label("crossing point to P, t_zm [mm]", "crossing_point_to_P_t_zm_mm", *GEARS),
+            *(fixed(part, 4) for part in cones.crossing_distances),
+        ),
+        (
+            Label("pitch apex beyond crossing point, t_z [mm]", "pitch_apex_beyond_crossing_point_t_z_mm", *GEARS),
+            *(fixed(part, 4) for part in cones.apexes),
+        ),
+        (Label("pinion: R_e, R_m, R_i [mm]", "pinion_cone_distance_mm", *CONES), *(fixed(part, 4) for part in ends[0])),
+        (Label("wheel: R_e, R_m, R_i [mm]", "wheel_cone_distance_mm", *CONES), *(fixed(part, 4) for part in ends[1])),
+        (Label("face widths b [mm]", "face_width_b_mm", *GEARS), *(fixed(blank.face_width, 4) for blank in blanks)),
+        (
+            Label("smallest clearance at the roots [mm]", "smallest_clearance_at_the_roots_mm", *GEARS),
+            *(fixed(part, 4) for part in mesh.tip_clearances),
+        ),
+        (
+            Label(
+                "pinion less wheel: spiral - zeta_mp, pressure",
+                "pinion_less_wheel_deg",
+                "spiral_less_zeta_mp",
+                "pressure",
+            ),
+            *(_deg(miss) for miss in misses),
+        ),
     ]
 
 
 def _blank_rows(mesh: FaceMilledMesh, points: tuple[Point, Point]) -> list[Row]:
     def both(value: Callable[[FaceMilledGear], float]) -> tuple[str, ...]:
-        return tuple(f"{value(gear):z.4f}" for gear in mesh.gears)
+        return tuple(fixed(value(gear), 4) for gear in mesh.gears)
 
     def shown(beyond: Iterable[float]) -> tuple[str, ...]:
         """Apexes from the crossing points of the axes."""
-        return tuple(f"{part + apex:z.4f}" for part, apex in zip(beyond, _pitch_apexes(mesh), strict=True))
+        return tuple(fixed(part + apex, 4) for part, apex in zip(beyond, _pitch_apexes(mesh), strict=True))
 
     return [
         ("pitch angle delta [deg]", *both(lambda gear: degrees(gear.blank.pitch_angle))),
@@ -109,8 +142,8 @@ def _blank_rows(mesh: FaceMilledMesh, points: tuple[Point, Point]) -> list[Row]:
         ("outer transverse module m_et [mm]", *both(lambda gear: _outer_diameter(gear) / gear.teeth)),
         (MEAN_DEPTHS[0], *both(lambda gear: gear.blank.tip_height(gear.blank.mean_cone_distance))),
         (MEAN_DEPTHS[1], *both(lambda gear: -gear.blank.root_height(gear.blank.mean_cone_distance))),
-        ("mean point, radius rho [mm]", *(f"{rho:z.4f}" for rho, _ in points)),
-        ("mean point, from the apex z [mm]", *(f"{z:z.4f}" for _, z in points)),
+        ("mean point, radius rho [mm]", *(fixed(rho, 4) for rho, _ in points)),
+        ("mean point, from the apex z [mm]", *(fixed(z, 4) for _, z in points)),
     ]
 
 
@@ -132,7 +165,7 @@ def _flank_rows(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
     return [
         ("spiral angle beta_m of this flank [deg]", *(_deg(abs(flank.angles.spiral)) for flank in flanks)),
         ("pressure angle alpha_n of this flank [deg]", *(_deg(flank.angles.pressure) for flank in flanks)),
-        ("flank below the pitch cone, mid-face [mm]", *(f"{depth:z.4f}" for depth in depths)),
+        ("flank below the pitch cone, mid-face [mm]", *(fixed(depth, 4) for depth in depths)),
         ("normal tooth thickness s_mn as cut [mm]", *(_shown(mean_thickness(flank.gear)) for flank in flanks)),
         ("normal pitch at R_m less both s_mn [mm]", _shown(mean_backlash(flanks))),
     ]
@@ -171,7 +204,7 @@ def _normal_arc(gear: FaceMilledGear, angle: float) -> float:
 
 
 def _shown(length: float) -> str:
-    return ONE_FLANK if isnan(length) else f"{length:z.4f}"
+    return ONE_FLANK if isnan(length) else fixed(length, 4)
 
 
 def _machine_rows(mesh: FaceMilledMesh) -> list[Row]:
@@ -193,7 +226,7 @@ def _machine_rows(mesh: FaceMilledMesh) -> list[Row]:
         ("modified roll 6D", first.modified_roll_6d, second.modified_roll_6d),
         ("helical motion [mm/rad]", first.helical_motion, second.helical_motion),
     )
-    shown = [(label, *(f"{value:z.6f}" for value in values)) for label, *values in settings if any(values)]
+    shown = [(label, *(fixed(value, 6) for value in values)) for label, *values in settings if any(values)]
     return [("generation", first.generation, second.generation), *shown]
 
 
@@ -202,18 +235,18 @@ def _blade_rows(mesh: FaceMilledMesh, sides: Sides) -> list[Row]:
     blades = [gear.cutter.blade(side) for gear, side in zip(mesh.gears, sides, strict=True)]
     return [
         ("cutter number", *(f"{plain(gear.cutter.number, 6)}" for gear in mesh.gears)),
-        ("point radius r_p [mm]", *(f"{blade.point_radius:z.6f}" for blade in blades)),
+        ("point radius r_p [mm]", *(fixed(blade.point_radius, 6) for blade in blades)),
         ("blade angle [deg]", *(_deg(blade.blade_angle) for blade in blades)),
         (
             "radius of a hollow blade [mm]",
             *("straight" if blade.blade_radius is None else f"{plain(blade.blade_radius, 6)}" for blade in blades),
         ),
-        ("edge radius [mm]", *(f"{blade.edge_radius:z.4f}" for blade in blades)),
+        ("edge radius [mm]", *(fixed(blade.edge_radius, 4) for blade in blades)),
     ]
 
 
 def _deg(angle: float) -> str:
-    return f"{round(degrees(angle), 4):z.4f}"
+    return fixed(degrees(angle), 4)
 
 
 def common_blank_rows(blanks: BevelBlank, section: Any, data_type: str) -> list[Row]:
@@ -225,19 +258,34 @@ def common_blank_rows(blanks: BevelBlank, section: Any, data_type: str) -> list[
     )
     taper = "given angles" if section.wheel_addendum_angle_deg is not None else blanks.taper
     return [
-        ("blank after ISO 23509: data type, taper", data_type, taper),
+        (Label("blank after ISO 23509: data type, taper", "blank", "data_type", "taper"), data_type, taper),
         ("slots along the face", "constant" if blanks.has_constant_slots else "as the pitch"),
-        ("mean working depth h_mw, whole depth h_m [mm]", *_numbers(blanks.working_depth, blanks.whole_depth)),
-        ("clearance c, normal to the cones [mm]", *_numbers(blanks.clearance)),
-        ("cutter radius r_c0 [mm]", f"{blanks.cutter_radius:z.4f}" if blanks.cutter_radius else "none"),
-        ("flanks along the face", section.lengthwise_curve.replace("_", " ") if blanks.spiral_angle else "straight"),
-        ("cutter's spiral angle at heel, mean, toe [deg]", *_numbers(*map(degrees, spirals[::-1]))),
         (
-            "backlash j_en, j_et2 at the heel [mm]",
+            Label("mean working depth h_mw, whole depth h_m [mm]", "mean_depth_mm", "working_h_mw", "whole_h_m"),
+            *_numbers(blanks.working_depth, blanks.whole_depth),
+        ),
+        ("clearance c, normal to the cones [mm]", *_numbers(blanks.clearance)),
+        ("cutter radius r_c0 [mm]", fixed(blanks.cutter_radius, 4) if blanks.cutter_radius else "none"),
+        ("flanks along the face", section.lengthwise_curve.replace("_", " ") if blanks.spiral_angle else "straight"),
+        (
+            Label(
+                "cutter's spiral angle at heel, mean, toe [deg]",
+                "spiral_angle_of_the_cutter_deg",
+                "heel",
+                "mean",
+                "toe",
+            ),
+            *_numbers(*map(degrees, spirals[::-1])),
+        ),
+        (
+            Label("backlash j_en, j_et2 at the heel [mm]", "outer_backlash_mm", "j_en", "j_et2"),
             *_numbers(*outer),
         ),
-        ("backlash j_mn, j_mt2 at R_m [mm]", *_numbers(*mean)),
-        ("contact ratios eps_va, eps_vb by 0.85 b", *_numbers(*blanks.virtual_contact_ratios)),
+        (Label("backlash j_mn, j_mt2 at R_m [mm]", "mean_backlash_mm", "j_mn", "j_mt2"), *_numbers(*mean)),
+        (
+            Label("contact ratios eps_va, eps_vb by 0.85 b", "virtual_contact_ratio", "eps_va", "eps_vb"),
+            *_numbers(*blanks.virtual_contact_ratios),
+        ),
     ]
 
 
@@ -292,7 +340,7 @@ LARGEST_SHOWN = 1e6
 
 
 def _numbers(*values: float) -> tuple[str, ...]:
-    return tuple(f"{value:z.4f}" if abs(value) < LARGEST_SHOWN else "none" for value in values)
+    return tuple(fixed(value, 4) if abs(value) < LARGEST_SHOWN else "none" for value in values)
 
 
 def cone_rows(mesh: BevelMesh, *, seen: bool) -> list[Row]:
@@ -326,8 +374,8 @@ def cone_rows(mesh: BevelMesh, *, seen: bool) -> list[Row]:
     )
     interference = [start - gear.form_angle < ROUNDING for start, gear in zip(starts, gears, strict=True)]
     return [
-        *((label, *(f"{degrees(value):z.4f}" for value in values)) for label, values in angles),
-        *((label, *(f"{value:z.4f}" for value in values)) for label, values in lengths),
+        *((label, *(fixed(degrees(value), 4) for value in values)) for label, values in angles),
+        *((label, *(fixed(value, 4) for value in values)) for label, values in lengths),
         ("mating tip reaches below the form cone", *("yes" if below else "no" for below in interference)),
     ]
 
@@ -336,7 +384,7 @@ def depth_rows(mesh: BevelMesh) -> list[Row]:
     """Depth of teeth without a blank beside that of ISO 23509, 2 m_mn."""
     depth = _height(mesh.pinion, mesh.pinion.tip_angle) + _height(mesh.wheel, mesh.wheel.tip_angle)
     standard = 2.0 * mesh.pinion.mean_normal_module
-    return [("working depth at mid-face h_mw; after ISO 23509 [mm]", f"{depth:z.4f}", f"{standard:z.4f}")]
+    return [("working depth at mid-face h_mw; after ISO 23509 [mm]", fixed(depth, 4), fixed(standard, 4))]
 
 
 def _height(gear: BevelGear, cone_angle: float) -> float:

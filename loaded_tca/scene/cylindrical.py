@@ -26,6 +26,7 @@ from loaded_tca.scene.equivalents import OF_HELICAL
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.parse import family
+from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, AMOUNT_um, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
@@ -292,6 +293,11 @@ class CylindricalScene(BlankScene):
         mesh = self.mesh()
         return mesh.pinion_active_profile.start_roll_length, mesh.wheel_active_profile.start_roll_length
 
+    def active_ends(self) -> tuple[float, float]:
+        """Return the roll lengths at which the active profiles end [mm]: at the tip, or where an undercut ends them."""
+        path = self.mesh().path_of_contact
+        return path.E, path.T2 - path.A
+
     @property
     def tip_clearances(self) -> tuple[float, float]:
         """Clearances c of both roots and the mating gear's tip, the error of the centre distance included."""
@@ -386,33 +392,40 @@ class CylindricalScene(BlankScene):
         mesh = self.mesh()
         path = mesh.path_of_contact
         return [
-            ("working centre distance a_w [mm]", f"{mesh.working_centre_distance:z.4f}"),
-            ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):z.4f}"),
-            ("base helix angle beta_b [deg]", f"{abs(math.degrees(mesh.pinion.base_helix_angle)):z.4f}"),
-            ("profile shift sum: given, without backlash", *(f"{value:z.4f}" for value in _profile_shift_sums(mesh))),
+            ("working centre distance a_w [mm]", fixed(mesh.working_centre_distance, 4)),
+            ("working pressure angle alpha_wt [deg]", fixed(math.degrees(mesh.working_pressure_angle), 4)),
+            ("base helix angle beta_b [deg]", fixed(abs(math.degrees(mesh.pinion.base_helix_angle)), 4)),
+            (
+                Label("profile shift sum: given, without backlash", "profile_shift_sum", "given", "without_backlash"),
+                *(fixed(value, 4) for value in _profile_shift_sums(mesh)),
+            ),
             *backlash_rows(mesh),
-            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:z.4f}"),
-            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:z.4f}"),
-            ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:z.4f}"),
-            ("path of contact: length AE, approach AC [mm]", f"{path.AE:z.4f}", f"{path.AC:z.4f}"),
-            ("common face width b [mm]", f"{mesh.common_face_width:z.4f}"),
+            ("transverse contact ratio eps_alpha", fixed(mesh.transverse_contact_ratio, 4)),
+            ("overlap ratio eps_beta", fixed(mesh.overlap_ratio, 4)),
+            ("total contact ratio eps_gamma", fixed(mesh.total_contact_ratio, 4)),
+            (
+                Label("path of contact: length AE, approach AC [mm]", "path_of_contact_mm", "length_AE", "approach_AC"),
+                fixed(path.AE, 4),
+                fixed(path.AC, 4),
+            ),
+            ("common face width b [mm]", fixed(mesh.common_face_width, 4)),
             ("", "pinion", "wheel"),
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
-            ("profile shift x", f"{mesh.pinion.profile_shift:z.4f}", f"{mesh.wheel.profile_shift:z.4f}"),
+            ("profile shift x", fixed(mesh.pinion.profile_shift, 4), fixed(mesh.wheel.profile_shift, 4)),
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
             *rack_rows(mesh),
             *_diameter_rows(mesh),
             *chamfer_rows(mesh),
             *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
-            ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),
+            ("tip clearance of the mating gear c [mm]", *(fixed(clearance, 4) for clearance in mesh.tip_clearances)),
         ]
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""
         mesh = self.mesh()
         return [
-            ("base tangential force F_bt [N]", *(f"{mesh.base_tangential_force(torque):z.1f}" for torque in torques)),
-            ("normal force F_bn [N]", *(f"{mesh.normal_force(torque):z.1f}" for torque in torques)),
+            ("base tangential force F_bt [N]", *(fixed(mesh.base_tangential_force(torque), 1) for torque in torques)),
+            ("normal force F_bn [N]", *(fixed(mesh.normal_force(torque), 1) for torque in torques)),
         ]
 
     def interferences(self) -> Sequence[str]:
@@ -487,15 +500,15 @@ def backlash_rows(mesh: InvoluteMesh) -> tuple[Row, Row]:
     rounding = abs(mesh.backlash) <= 1e-9 * mesh.pinion.normal_module
     along, normal = (0.0, 0.0) if rounding else (mesh.backlash, mesh.normal_backlash)
     return (
-        ("backlash j_wt at the working circles [mm]", f"{along:z.4f}"),
-        ("normal backlash j_bn [mm]", f"{normal:z.4f}"),
+        ("backlash j_wt at the working circles [mm]", fixed(along, 4)),
+        ("normal backlash j_bn [mm]", fixed(normal, 4)),
     )
 
 
 def _profile_shift_sums(mesh: CylindricalMesh) -> tuple[float, float]:
-    """x1 + x2 as given, and what the centre distance needs for no backlash; no minus before a zero."""
+    """x1 + x2 as given, and what the centre distance needs for no backlash."""
     given = mesh.pinion.profile_shift + mesh.wheel.profile_shift
-    return round(given, 4) + 0.0, round(mesh.profile_shift_sum_without_backlash, 4) + 0.0
+    return given, mesh.profile_shift_sum_without_backlash
 
 
 def _diameter_rows(mesh: CylindricalMesh) -> list[Row]:
@@ -508,19 +521,21 @@ def _diameter_rows(mesh: CylindricalMesh) -> list[Row]:
         "working diameter d_w [mm]": [mesh.pinion_working_radius, mesh.wheel_working_radius],
         "tip diameter d_a [mm]": [gear.tip_radius for gear in gears],
     }
+    path = mesh.path_of_contact
     if 1.0 <= mesh.transverse_contact_ratio < 2.0:  # elsewhere always two tooth pairs touch, or none
-        path = mesh.path_of_contact
         at_b, at_d = (
             [mesh.pinion.radius_at_roll_length(point), mesh.wheel.radius_at_roll_length(path.T2 - point)]
             for point in (path.B, path.D)
         )
         radii["highest single tooth contact (D | B) [mm]"] = [at_d[0], at_b[1]]
         radii["lowest single tooth contact (B | D) [mm]"] = [at_b[0], at_d[1]]
+    ends = mesh.pinion.radius_at_roll_length(path.E), mesh.wheel.radius_at_roll_length(path.T2 - path.A)
     radii |= {
         "start of active profile d_Nf [mm]": [profile.start_radius for profile in active],
+        "end of active profile d_Na [mm]": [*ends],
         "root form diameter d_Ff [mm]": [gear.form_radius for gear in gears],
         "root diameter d_f [mm]": [gear.root_radius for gear in gears],
     }
     interference = ("yes" if profile.fillet_interference else "no" for profile in active)
-    rows = [(label, *(f"{2.0 * radius:z.4f}" for radius in both)) for label, both in radii.items()]
+    rows = [(label, *(fixed(2.0 * radius, 4) for radius in both)) for label, both in radii.items()]
     return [*rows, ("mating tip reaches below d_Ff", *interference)]

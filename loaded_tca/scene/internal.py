@@ -21,6 +21,7 @@ from loaded_tca.scene.cylindrical import CylindricalScene, GearSection, Geometry
 from loaded_tca.scene.keys import Choice, Number, Whole, key
 from loaded_tca.scene.model import Hand, Row, Scene
 from loaded_tca.scene.parse import variant
+from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.sections import DIAMETER_mm, below
 from loaded_tca.scene.thickness import as_measured, thickness_rows
@@ -203,12 +204,17 @@ class InternalScene(CylindricalScene):
 
     def held_row(self, pair: GearPair) -> Row:
         """Return what is held rigid where teeth bend."""
-        return "bore and outside of the ring held rigid [mm]", *(f"{bore:z.4f}" for bore in pair.rigid_bores)
+        return "bore and outside of the ring held rigid [mm]", *(fixed(bore, 4) for bore in pair.rigid_bores)
 
     def active_starts(self) -> tuple[float, float]:
         """Return where the active profiles start [mm]: roll lengths, that of the ring with a minus."""
         mesh = self.mesh()
         return mesh.pinion_active_profile.start_roll_length, -mesh.wheel_active_profile.start_roll_length
+
+    def active_ends(self) -> tuple[float, float]:
+        """Return where the active profiles end [mm], as ``active_starts``: at the tip, or where an undercut ends it."""
+        path = self.mesh().path_of_contact
+        return path.E, path.T2 - path.A
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios, diameters, and the three interferences with their room."""
@@ -217,28 +223,35 @@ class InternalScene(CylindricalScene):
         ring_tip = ring.roll_length(ring.tip_form_radius) - (path.T1 - path.T2)
         shifts = pinion.profile_shift + ring.profile_shift, mesh.profile_shift_sum_without_backlash
         return [
-            ("working centre distance |a_w| [mm]", f"{mesh.working_centre_distance:z.4f}"),
-            ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):z.4f}"),
-            ("base helix angle beta_b [deg]", f"{abs(math.degrees(pinion.base_helix_angle)):z.4f}"),
-            ("profile shift sum: given, without backlash", *(f"{value:z.4f}" for value in shifts)),
+            ("working centre distance |a_w| [mm]", fixed(mesh.working_centre_distance, 4)),
+            ("working pressure angle alpha_wt [deg]", fixed(math.degrees(mesh.working_pressure_angle), 4)),
+            ("base helix angle beta_b [deg]", fixed(abs(math.degrees(pinion.base_helix_angle)), 4)),
+            (
+                Label("profile shift sum: given, without backlash", "profile_shift_sum", "given", "without_backlash"),
+                *(fixed(value, 4) for value in shifts),
+            ),
             *backlash_rows(mesh),
-            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:z.4f}"),
-            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:z.4f}"),
-            ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:z.4f}"),
-            ("path of contact: length AE, approach AC [mm]", f"{path.AE:z.4f}", f"{path.AC:z.4f}"),
-            ("common face width b [mm]", f"{mesh.common_face_width:z.4f}"),
+            ("transverse contact ratio eps_alpha", fixed(mesh.transverse_contact_ratio, 4)),
+            ("overlap ratio eps_beta", fixed(mesh.overlap_ratio, 4)),
+            ("total contact ratio eps_gamma", fixed(mesh.total_contact_ratio, 4)),
+            (
+                Label("path of contact: length AE, approach AC [mm]", "path_of_contact_mm", "length_AE", "approach_AC"),
+                fixed(path.AE, 4),
+                fixed(path.AC, 4),
+            ),
+            ("common face width b [mm]", fixed(mesh.common_face_width, 4)),
             ("involute interference: ring's tip to T1 [mm]", f"{ring_tip:z.4f} free"),
             ("overlap interference at the tips [mm]", _room_cell(mesh.overlap_clearance)),
             ("radial assembly [mm]", _assembly_cell(mesh)),
             ("", "pinion", "wheel (ring)"),
             ("teeth z", f"{pinion.teeth}", f"{ring.teeth}"),
-            ("profile shift x", f"{pinion.profile_shift:z.4f}", f"{ring.profile_shift:z.4f}"),
+            ("profile shift x", fixed(pinion.profile_shift, 4), fixed(ring.profile_shift, 4)),
             ("hand of the helix", *(self.hands if pinion.helix_angle else ("none", "none"))),
             *rack_rows(mesh),
             *_diameter_rows(mesh),
             *chamfer_rows(mesh),
             *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
-            ("tip clearance of the mating gear c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),
+            ("tip clearance of the mating gear c [mm]", *(fixed(clearance, 4) for clearance in mesh.tip_clearances)),
         ]
 
     def interferences(self) -> Sequence[str]:
@@ -303,13 +316,17 @@ def _diameter_rows(mesh: InternalMesh) -> list[Row]:
         radii["lowest single tooth contact (B | D) [mm]"] = first[0], second[1]
     radii |= {
         "start of active profile d_Nf [mm]": (active[0].start_radius, active[1].start_radius),
+        "end of active profile d_Na [mm]": (
+            pinion.radius_at_roll_length(path.E),
+            ring.radius_at_roll_length(path.A - path.T2),
+        ),
         "root form diameter d_Ff [mm]": (pinion.form_radius, ring.form_radius),
         "root diameter d_f [mm]": (pinion.root_radius, ring.root_radius),
     }
     interference = ("yes" if profile.fillet_interference else "no" for profile in active)
-    rows = [(label, *(f"{2.0 * radius:z.4f}" for radius in both)) for label, both in radii.items()]
+    rows = [(label, *(fixed(2.0 * radius, 4) for radius in both)) for label, both in radii.items()]
     return [
         *rows,
-        ("outer diameter of the ring [mm]", "", f"{2.0 * ring.outer_radius:z.4f}"),
+        ("outer diameter of the ring [mm]", "", fixed(2.0 * ring.outer_radius, 4)),
         ("mating tip reaches beyond d_Ff", *interference),
     ]

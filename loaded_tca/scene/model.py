@@ -30,6 +30,7 @@ from loaded_tca.scene.load import Load, life_is_given, within_solved
 from loaded_tca.scene.parse import scene_from_table, toml_lines
 from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.rating import RatingSection
+from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import (
     Rule,
     Section,
@@ -372,7 +373,9 @@ class Scene(InNotebooks, WithStandards, ABC):
 
     def held_row(self, pair: GearPair) -> Row:
         """Return what is held rigid where teeth bend."""
-        return "bores or journals held rigid", *(f"{bore:z.4f}" for bore in pair.rigid_bores)
+        return Label("bores or journals held rigid", "bores_or_journals_held_rigid_mm", *GEARS), *(
+            fixed(bore, 4) for bore in pair.rigid_bores
+        )
 
     @property
     def rack_radius(self) -> float | None:
@@ -390,6 +393,10 @@ class Scene(InNotebooks, WithStandards, ABC):
     @abstractmethod
     def active_starts(self) -> tuple[float, float]:
         """Return where the active profiles of pinion and wheel start, as ``Flank.profile_coordinate`` counts."""
+
+    def active_ends(self) -> tuple[float, float]:
+        """Return where the active profiles end, as ``active_starts``; infinite: at the tip."""
+        return math.inf, math.inf
 
     @abstractmethod
     def geometry_rows(self) -> Sequence[Row]:

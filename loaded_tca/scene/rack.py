@@ -23,7 +23,8 @@ from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, Scene
 from loaded_tca.scene.parse import variant
 from loaded_tca.scene.pitch import REVOLUTION_RULES
-from loaded_tca.scene.section import Rule, rule, subsection
+from loaded_tca.scene.rows import Label, fixed
+from loaded_tca.scene.section import Rule, refusal, rule, subsection
 from loaded_tca.scene.sections import SLOPE_um
 from loaded_tca.scene.thickness import as_measured
 
@@ -32,7 +33,7 @@ LENGTH_mm = above_zero(100000.0)
 
 def _none(key_name: str, why: str) -> Rule:
     """Rule: a key that a rack has no use for is not given."""
-    return rule((key_name,), lambda value: value is None or value == (), f"found; a rack has none: {why}")
+    return refusal(key_name, f"found; a rack has none: {why}")
 
 
 def _needs_length(length: float | None, rating: object) -> str | None:
@@ -55,9 +56,8 @@ class RackGeometry(Geometry):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *Geometry.rules,
-        rule(
-            ("centre_distance_mm",),
-            lambda distance: distance is None,
+        refusal(
+            "centre_distance_mm",
             "found {0:g}; a rack has no axis: give distance_mm, of the pinion's axis from the reference line",
         ),
     )
@@ -249,8 +249,13 @@ class RackScene(CylindricalScene):
 
     def held_row(self, pair: GearPair) -> Row:
         """Return what is held rigid where teeth bend."""
-        held = f"{pair.rigid_bores[0]:z.4f}", f"{self.rack.bed_depth:z.4f}"
-        return "bore of the pinion, bed below the rack's root line [mm]", *held
+        held = fixed(pair.rigid_bores[0], 4), fixed(self.rack.bed_depth, 4)
+        return Label(
+            "bore of the pinion, bed below the rack's root line [mm]",
+            "held_rigid_mm",
+            "bore_of_the_pinion",
+            "bed_below_the_root_line_of_the_rack",
+        ), *held
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return distance, contact ratios, diameters of the pinion, heights of the rack."""
@@ -261,6 +266,7 @@ class RackScene(CylindricalScene):
             "base diameter d_b [mm]": pinion.base_radius,
             "tip diameter d_a [mm]": pinion.tip_radius,
             "start of active profile d_Nf [mm]": mesh.pinion_active_profile.start_radius,
+            "end of active profile d_Na [mm]": pinion.radius_at_roll_length(path.E),
             "root form diameter d_Ff [mm]": pinion.form_radius,
             "root diameter d_f [mm]": pinion.root_radius,
         }
@@ -270,35 +276,39 @@ class RackScene(CylindricalScene):
             "root form line": rack.gear.form_radius,
             "root line": rack.gear.root_radius,
         }
-        length = () if rack.length is None else (("length of the rack [pitches]", f"{rack.length / rack.pitch:z.4f}"),)
+        length = () if rack.length is None else (("length of the rack [pitches]", fixed(rack.length / rack.pitch, 4)),)
         return [
-            ("distance of pinion's axis and reference line [mm]", f"{self.distance:z.4f}"),
-            ("transverse pressure angle alpha_t [deg]", f"{math.degrees(mesh.working_pressure_angle):z.4f}"),
-            ("base helix angle beta_b [deg]", f"{abs(math.degrees(pinion.base_helix_angle)):z.4f}"),
+            ("distance of pinion's axis and reference line [mm]", fixed(self.distance, 4)),
+            ("transverse pressure angle alpha_t [deg]", fixed(math.degrees(mesh.working_pressure_angle), 4)),
+            ("base helix angle beta_b [deg]", fixed(abs(math.degrees(pinion.base_helix_angle)), 4)),
             *backlash_rows(mesh),
-            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:z.4f}"),
-            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:z.4f}"),
-            ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:z.4f}"),
-            ("path of contact: length AE, approach AC [mm]", f"{path.AE:z.4f}", f"{path.AC:z.4f}"),
-            ("common face width b [mm]", f"{mesh.common_face_width:z.4f}"),
-            ("travel of the rack per turn of the pinion [mm]", f"{pinion.teeth * rack.pitch:z.4f}"),
-            ("transverse pitch of the rack [mm]", f"{rack.pitch:z.4f}"),
+            ("transverse contact ratio eps_alpha", fixed(mesh.transverse_contact_ratio, 4)),
+            ("overlap ratio eps_beta", fixed(mesh.overlap_ratio, 4)),
+            ("total contact ratio eps_gamma", fixed(mesh.total_contact_ratio, 4)),
+            (
+                Label("path of contact: length AE, approach AC [mm]", "path_of_contact_mm", "length_AE", "approach_AC"),
+                fixed(path.AE, 4),
+                fixed(path.AC, 4),
+            ),
+            ("common face width b [mm]", fixed(mesh.common_face_width, 4)),
+            ("travel of the rack per turn of the pinion [mm]", fixed(pinion.teeth * rack.pitch, 4)),
+            ("transverse pitch of the rack [mm]", fixed(rack.pitch, 4)),
             *length,
             ("", "pinion"),
             ("teeth z", f"{pinion.teeth}"),
-            ("profile shift x", f"{pinion.profile_shift:z.4f}"),
+            ("profile shift x", fixed(pinion.profile_shift, 4)),
             ("hand of the helix: pinion, rack", *(self.hands if pinion.helix_angle else ("none", "none"))),
-            *((label, f"{2.0 * radius:z.4f}") for label, radius in diameters.items()),
+            *((label, fixed(2.0 * radius, 4)) for label, radius in diameters.items()),
             ("", "above the rack's reference line [mm]"),
-            *((label, f"{radius - rack.radius:z.4f}") for label, radius in heights.items()),
+            *((label, fixed(radius - rack.radius, 4)) for label, radius in heights.items()),
             ("", "pinion", "rack"),
-            ("tip clearance of the mating teeth c [mm]", *(f"{clearance:z.4f}" for clearance in mesh.tip_clearances)),
+            ("tip clearance of the mating teeth c [mm]", *(fixed(clearance, 4) for clearance in mesh.tip_clearances)),
         ]
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""
         radius = self.mesh().pinion.reference_radius
-        forces = (f"{torque / radius:z.1f}" for torque in torques)
+        forces = (fixed(torque / radius, 1) for torque in torques)
         return [*super().force_rows(torques), ("force along the rack, without friction [N]", *forces)]
 
     def interferences(self) -> Sequence[str]:

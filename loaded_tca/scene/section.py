@@ -103,6 +103,16 @@ class Rule:
     complain: Callable[..., str | None]
 
 
+@dataclass(frozen=True)
+class Refusal(Rule):
+    """That a key, which a section has from its base, is not given; written sections leave it out."""
+
+
+def refusal(name: str, problem: str) -> Refusal:
+    """Return the rule that a key is not given; ``problem`` is a format of its value."""
+    return Refusal((name,), lambda value: None if value is None or value == () else Sentence().format(problem, value))
+
+
 def rule(keys: tuple[str, ...], holds: Callable[..., bool], problem: str) -> Rule:
     """Return the rule that values fulfil where ``holds``; ``problem`` is a format of them, ``{0}`` the first."""
     return Rule(keys, lambda *values: None if holds(*values) else Sentence().format(problem, *values))

@@ -17,6 +17,7 @@ from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.pairs.gear_pair import Driving, Sense, signs_of
 from loaded_tca.scene.keys import Choice, Number, key
 from loaded_tca.scene.model import Row, Scene
+from loaded_tca.scene.rows import fixed
 from loaded_tca.scene.section import Section, rule
 from loaded_tca.scene.sections import ERROR_deg, ERROR_mm
 
@@ -149,4 +150,4 @@ def force_rows(flanks: tuple[Flank, Flank], points: tuple[Point, Point], torques
         ("radial force on the wheel, to its axis [N]", wheel[0]),
     )
     normal_forces = [torque / (points[0][0] * tangential) for torque in torques]
-    return [(label, *(f"{part * force:z.1f}" for force in normal_forces)) for label, part in rows]
+    return [(label, *(fixed(part * force, 1) for force in normal_forces)) for label, part in rows]

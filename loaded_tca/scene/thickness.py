@@ -12,6 +12,7 @@ from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_spa
 from loaded_tca.plain import plain
 from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.keys import Whole, key
+from loaded_tca.scene.rows import Cell, Label, fixed
 from loaded_tca.scene.section import Rule
 from loaded_tca.scene.sections import DIAMETER_mm, SLOPE_um
 
@@ -99,17 +100,17 @@ def thickness_rows(mesh: CylindricalMesh | InternalMesh, balls: Sequence[float |
     internal = isinstance(mesh, InternalMesh)
     alterations = (round(gear.tip_alteration / gear.normal_module, 4) for gear in gears)
     rows = [
-        ("tip alteration coefficient k", *(f"{one:z.4f}" for one in alterations)),
-        ("tooth thickness s_n [mm]", *(f"{gear.normal_tooth_thickness:z.4f}" for gear in gears)),
-        (f"span W_k over k teeth{' (spaces)' if internal else ''} [mm]", *map(_span, gears)),
+        ("tip alteration coefficient k", *(fixed(one, 4) for one in alterations)),
+        ("tooth thickness s_n [mm]", *(fixed(gear.normal_tooth_thickness, 4) for gear in gears)),
+        (Label(f"span W_k over k teeth{' (spaces)' if internal else ''} [mm]", "span"), *map(_span, gears)),
     ]
     if any(gear.thickness_allowance for gear in gears):
         rows[1:1] = [
-            ("thickness allowance A_sn [um]", *(f"{1e3 * gear.thickness_allowance:z.1f}" for gear in gears)),
-            ("generating profile shift x_E", *(f"{gear.generating_profile_shift:z.4f}" for gear in gears)),
+            ("thickness allowance A_sn [um]", *(fixed(1e3 * gear.thickness_allowance, 1) for gear in gears)),
+            ("generating profile shift x_E", *(fixed(gear.generating_profile_shift, 4) for gear in gears)),
         ]
     if any(balls):
-        measures = (f"{g.ball_measurement(size):z.4f}" if size else "-" for g, size in zip(gears, balls, strict=True))
+        measures = (fixed(g.ball_measurement(size), 4) if size else "-" for g, size in zip(gears, balls, strict=True))
         rows.append((f"measure over {'(between) ' if internal else ''}balls M_dK [mm]", *measures))
     return rows
 
@@ -118,6 +119,7 @@ def _span(gear: CylindricalGear | RingGear) -> str:
     """Span over the usual number of teeth, and that number."""
     teeth = gear.span_teeth
     try:
-        return f"{gear.span_measurement(teeth):z.4f} ({teeth})"
+        span = gear.span_measurement(teeth)
+        return Cell(f"{span:z.4f} ({teeth})", {"W_k_mm": span, "k": teeth})
     except InputError:
         return "-"

@@ -13,6 +13,7 @@ from loaded_tca.gears.tips import computed_tip_alteration
 from loaded_tca.plain import plain
 from loaded_tca.scene.build import parameters_of
 from loaded_tca.scene.keys import Choice, Either, Number, above_zero, key
+from loaded_tca.scene.rows import fixed
 from loaded_tca.scene.section import Rule
 from loaded_tca.scene.sections import DIAMETER_mm
 from loaded_tca.scene.thickness import MeasuredSection
@@ -198,9 +199,9 @@ def chamfer_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
     gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
     if not any(gear.tip_chamfer for gear in gears):
         return []
-    lands = (f"{chamfered_land(gear):z.4f}" if gear.tip_chamfer else "-" for gear in gears)
+    lands = (fixed(chamfered_land(gear), 4) if gear.tip_chamfer else "-" for gear in gears)
     return [
-        ("tip form diameter d_Fa [mm]", *(f"{2.0 * gear.tip_form_radius:z.4f}" for gear in gears)),
+        ("tip form diameter d_Fa [mm]", *(fixed(2.0 * gear.tip_form_radius, 4) for gear in gears)),
         ("tip land between chamfers [mm]", *lands),
     ]
 

@@ -28,7 +28,7 @@ from loaded_tca.studies.rating import FIGURES as SAFETIES
 from loaded_tca.studies.rating import MAIN_FIGURES as MAIN_SAFETIES
 from loaded_tca.studies.rating import REQUIRED, rating_figures, shortfall_text
 from loaded_tca.studies.stage import TORQUES, nominal_of, subject_of, torque_name
-from loaded_tca.units import without_unit
+from loaded_tca.units import ending_of, without_unit
 
 if TYPE_CHECKING:
     import pandas
@@ -44,8 +44,10 @@ LARGEST_IS_BEST = frozenset((*SAFETIES, *OF_OIL))
 """Figures of which the largest is best; of all others the least."""
 QUANTILE = 0.95
 """Of a figure over the samples of a combination."""
-FEWEST_SAMPLES = 2
-"""Of one sample nothing is known of its scatter."""
+FEWEST_SAMPLES = 20
+"""From which on the sample at the quantile is not the outermost one: ceil(0.95 n) < n. The weights of Maritz and
+Jarrett lie on the samples about it; beyond the outermost one there are none, and the error comes out too small."""
+TOO_FEW = f"no standard error: of fewer than {FEWEST_SAMPLES} samples the quantile rests on the outermost one"
 
 
 def varied_keys(study: xarray.Dataset) -> list[str]:
@@ -109,7 +111,7 @@ def ranking(
     study: xarray.Dataset, by: str | None = None, torque: int | None = None, largest_is_best: bool | None = None
 ) -> pandas.DataFrame:
     """Designs of a study, the best first: :func:`rank_combinations` of one with distributions, else its variants."""
-    rank = rank_combinations if design_keys(study) else rank_variants
+    rank = rank_combinations if is_sampled(study) else rank_variants
     return rank(study, by, torque, largest_is_best)
 
 
@@ -132,9 +134,10 @@ def rank_combinations(
     pandas.DataFrame
         One row per combination: ``rank`` from 1, ``samples`` (how many are ok), the keys of factors and table, and of
         each figure, its worst value over the torques, the 95 % quantile over the samples (the 5 % quantile where the
-        largest is best), and ``warnings`` (of all samples). ``standard_error``: how far other samples of that number
-        would scatter the quantile of the figure that ranks, in its unit (Maritz and Jarrett 1978; NaN for a single
-        one). A combination without the figure has no rank. No rows where every key has a distribution.
+        largest is best), and ``warnings`` (of all samples). ``standard_error``, with the unit of the figure that ranks
+        at its end (``standard_error_um``): how far other samples of that number would scatter the quantile of this
+        figure (Maritz and Jarrett 1978); NaN for fewer than 20 samples, as ``note`` says then. A combination without
+        the figure has no rank. Where every key has a distribution there is one row; without distributions none.
 
     Raises
     ------
@@ -156,18 +159,23 @@ def rank_combinations(
     variants = rank_variants(study, by, torque, largest_is_best)
     keys = design_keys(study)
     figures = list(dict.fromkeys([*([by] if by else []), *main_figures(study)]))
-    if not (keys and figures):
-        return pandas.DataFrame(columns=["rank", "samples", *keys, *figures, "standard_error", "warnings"])
-    groups = variants.groupby(keys, sort=False)
+    error = "_".join(filter(None, ("standard_error", ending_of(figures[0]) if figures else "")))
+    columns_of = ["rank", "samples", *keys, *figures, error, "warnings", "note"]
+    if not (is_sampled(study) and figures):
+        return pandas.DataFrame(columns=columns_of)
+    groups = variants.groupby(keys or np.zeros(len(variants)), sort=False)
     columns = [groups[name].quantile(quantile_of(name, largest_is_best)) for name in figures]
     ranked, largest_first = pandas.concat(columns, axis=1), is_largest_best(figures[0], largest_is_best)
     ranked.insert(0, "samples", groups["status"].agg(lambda status: int((status == "ok").sum())))
-    ranked.insert(1, "standard_error", groups[figures[0]].agg(lambda values: _standard_error(values, largest_first)))
+    ranked.insert(1, error, groups[figures[0]].agg(lambda values: _standard_error(values, largest_first)))
     ranked["warnings"] = groups["warnings"].sum()
-    ranked = ranked.reset_index().sort_values(figures[0], kind="stable", ignore_index=True, ascending=not largest_first)
+    ranked["note"] = np.where(groups[figures[0]].count() < FEWEST_SAMPLES, TOO_FEW, "")
+    ranked = ranked.reset_index(drop=not keys).sort_values(
+        figures[0], kind="stable", ignore_index=True, ascending=not largest_first
+    )
     ranked.insert(0, "rank", pandas.array(ranked.index + 1, dtype="Int64"))
     ranked.loc[ranked[figures[0]].isna(), "rank"] = pandas.NA
-    return ranked[["rank", "samples", *keys, *figures, "standard_error", "warnings"]]
+    return ranked[columns_of]
 
 
 def quantile_of(figure: str, asked: bool | None = None) -> float:

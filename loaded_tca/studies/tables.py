@@ -55,7 +55,8 @@ def to_excel(study: xarray.Dataset, path: FilePath) -> Path:
     """Write a study into a workbook of Excel, whole or not at all, with the units in the heads.
 
     Its sheets: ``variants``, as :func:`to_pandas` has them, ``ranking``, the variants in the order of the default
-    figure, and ``warnings`` with the number of variants that each concerns.
+    figure, with distributions the designs (:func:`loaded_tca.studies.rank_combinations`), and ``warnings`` with the
+    number of variants that each concerns.
 
     Parameters
     ----------

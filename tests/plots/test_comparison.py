@@ -49,6 +49,16 @@ def test_curves_are_those_of_each_result_under_the_shared_torque():
     assert "[deg]" in drawn["error"].get_xlabel()
 
 
+def test_transmission_errors_of_different_signs_are_drawn_in_their_own_directions():
+    """Of drive and coast side, which lie on both sides of zero, so that both can be read on one axis."""
+    other = changed(helical(), transmission_error=-helical().transmission_error)
+    axes = panels(plot_comparison([helical(), other]))["error"]
+    first, second = (line.get_ydata() for line in axes.get_lines())
+    assert_array_equal(first, second)  # exact: one sign
+    assert (first > 0.0).all()
+    assert axes.get_ylabel() == "size of the transmission error [µm]"
+
+
 def test_every_tooth_pair_has_its_share_at_the_angle_of_its_own_teeth():
     """Half a pitch before and behind the pitch point a spur pair carries the whole torque together with the next."""
     line = panels(plot_comparison([spur(), spur()]))["share"].get_lines()[0]

@@ -83,6 +83,27 @@ def test_path_of_contact_goes_from_the_beginning_to_the_end_of_a_tooth():
     assert_allclose(path[:, 0], 0.0, atol=1e-3)  # in the middle of a crowned face
 
 
+def test_active_part_of_an_undercut_pair_is_that_of_the_path_as_analysed():
+    """The wheel's tip is not reached: its flank ends at A, so far from T2 on the line of action."""
+    scene, figure = drawn("undercut_10x40")
+    mesh = scene.mesh()
+    line = np.sqrt(mesh.working_centre_distance**2 - (mesh.pinion.base_radius + mesh.wheel.base_radius) ** 2)
+    begin = np.sqrt(mesh.pinion.form_radius**2 - mesh.pinion.base_radius**2)
+    end = 2.0 * np.hypot(line - begin, mesh.wheel.base_radius)
+    axes = next(one for one in figure.axes if f" to {end:.2f} mm" in one.get_title())
+    grey, active = (patch.get_xy()[:, 1] for patch in axes.patches[:2])
+    assert_allclose(active.max(), end, rtol=1e-5)  # interpolated between points along the profile
+    assert_allclose(grey.max(), 2.0 * mesh.wheel.tip_radius, rtol=ROUNDING)
+    rows = {label: cells for label, *cells in scene.geometry_rows()}
+    assert rows["end of active profile d_Na [mm]"][1] == f"{end:.4f}"
+
+
+def test_legend_of_the_teeth_does_not_hide_the_line_of_action():
+    figure = drawn("undercut_10x40")[1]
+    figure.canvas.draw()
+    assert figure.legends[0].get_window_extent().y1 <= min(axes.get_window_extent().y0 for axes in figure.axes)
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", ["rack_and_pinion", "hypoid_13x42", "double_helical", "planet_ring", "measured_flank"])
 def test_every_family_has_its_panels(name):

@@ -465,6 +465,7 @@ def test_legend_of_the_flanks_names_a_grey_area_only_where_it_is_seen(part, told
     heights = [flank.profile_coordinate(*flank.grid(129, 33)).value for flank in (pair.pinion.flank, pair.wheel.flank)]
     starts = tuple(float(height.min() + part * np.ptp(height)) for height in heights)
     monkeypatch.setattr(type(scene), "active_starts", lambda _: starts)
+    monkeypatch.setattr(type(scene), "active_ends", lambda _: (np.inf, np.inf))
     names = [text.get_text() for text in plot_contact_path(result()).legends[0].get_texts()]
     assert ("flank that the mating gear does not reach" in names) is told
 

@@ -174,7 +174,10 @@ def with_edges(result, pressure, error):
 
 @pytest.mark.parametrize(
     ("error", "words"),
-    [(np.nan, "mesh-dependent: theory has an infinite one"), (0.025, "by columns, with an estimated error of 2.5%")],
+    [
+        (np.nan, "mesh-dependent, since in theory"),
+        (0.025, "solved on columns of cells, with an estimated error of 2.5%"),
+    ],
 )
 def test_edge_pressure_that_local_safeties_leave_out_is_told(error, words):
     plain = solved().rating()

@@ -24,6 +24,7 @@ from loaded_tca.reports import page as report_page
 from loaded_tca.reports import report as report_module
 from loaded_tca.reports import result_page, write_html_report
 from loaded_tca.reports.page import Table, parts_of, tables_of
+from loaded_tca.reports.report import study_tables
 from loaded_tca.results.figure import COMPARED
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.summary import known_rows, shown
@@ -132,6 +133,11 @@ def written(tmp_path, with_one_picture):  # noqa: ARG001
 def test_report_has_its_sections_in_order(page):
     sections = ["Load cases", "What was asked", "Geometry", "Key figures", "Accuracy", "Accuracy warnings", "Pictures"]
     assert page.headings == [cycle().scene.title, *sections, "Appendix: scene file"]
+
+
+def test_every_table_scrolls_in_its_own_box(page):
+    """On a telephone a table is wider than the page, whose other parts shall not move with it."""
+    assert page.attributes.count(("div", "class", "box")) == len(page.tables) > 5
 
 
 def test_every_figure_of_the_summary_is_there_with_its_unit(page):
@@ -552,6 +558,12 @@ def test_report_ranks_combinations_where_others_scatter(written):
     assert "Best and worst combination" in page.headings
     assert "95 % quantile over the samples" in page.words
     assert "those of all combinations together" in page.words
+
+
+def test_quantiles_of_several_torques_are_those_of_the_largest_value_over_them():
+    told = "95 % quantile over the samples"
+    assert study_tables(sampled(21))["quantile"] == f"{told} of its largest value over the torques"
+    assert study_tables(sampled(21, (80.0,)))["quantile"] == told
 
 
 def test_report_tells_distributions_and_the_seed(written):

@@ -30,13 +30,20 @@ def test_differences_are_those_to_the_first():
     assert not others.difference.fillna(0.0).any()
 
 
-def test_relative_difference_of_a_negative_figure_has_the_sign_of_the_difference():
-    """A transmission error of -9 um is less than one of -8 um: -1/8."""
+def test_relative_difference_of_a_negative_figure_is_that_of_its_size():
+    """The sign is a direction: a transmission error of -9 um is by 1/8 larger than one of -8 um, and +8 um no part."""
     first = two_torques()
     behind = changed(first, transmission_error=1.125 * first.transmission_error)
-    mean = compare_results([first, behind]).figures.sel(figure="transmission_error_mean_um", result="result 2")
-    assert (mean.value < 0.0).all()
-    assert_allclose(mean.relative_difference, -0.125, rtol=1e-12)  # one difference over one number: 1e-15 seen
+    ahead = changed(first, transmission_error=-first.transmission_error)
+    comparison = compare_results([first, behind, ahead])
+    mean = comparison.figures.sel(figure="transmission_error_mean_um")
+    assert (mean.value.sel(result="result 2") < 0.0).all()
+    relative = mean.relative_difference.transpose("result", "torque")
+    assert_allclose(relative[1], 0.125, rtol=1e-12)  # one difference over one number: 1e-15 seen
+    assert np.isnan(relative[2]).all()
+    row = next(line for line in comparison.summary().splitlines() if line.startswith("transmission error, mean"))
+    assert "(+12.5 %)" in row
+    assert row.count("%") == 1
 
 
 @pytest.mark.parametrize("name", ["pinion_angle_at_peak_deg", "pinion_axial_at_peak_mm"])
@@ -119,7 +126,7 @@ def test_summary_has_values_and_both_differences():
     first = two_torques()
     lines = compare_results({"a": first, "b": changed(first, peak_pressure=2.0 * first.peak_pressure)}).summary(20e3)
     head, names, row = lines.splitlines()[:3]
-    assert head == "Compared with a, pinion torque 20 N m"
+    assert head.startswith("Compared with a, pinion torque 20 N m; in % sizes without their signs")
     assert names.split() == ["a", "b"]
     peak = np.nanmax(first.peak_pressure[0])
     assert row.split()[-5:] == [f"{peak:.4g}", f"{2.0 * peak:.4g}", f"+{peak:.4g}", "(+100.0", "%)"]

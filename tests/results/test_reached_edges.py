@@ -30,9 +30,23 @@ def test_finding_names_the_edges_of_the_largest_edge_pressure_and_the_relief_tha
     assert " + ".join(reached) in sentences[0]
     assert "end relief on the pinion or wheel of more than" in sentences[0]
     assert f"finding: {sentences[0]}" in cycle.summary()
-    deflection = 1e3 * cycle.contact_deformation[at]  # of flanks alone
-    words = f"{deflection:.2g} um, the deflection of the tooth pair, since the pair first touches at this edge"
-    assert words in sentences[0]
+    deflection = 1e3 * cycle.contact_deformation[at]  # of flanks alone, and one pair
+    assert (
+        f"{deflection:.2g} um, the deflection of the mesh there, since the pair first touches at this edge"
+        in sentences[0]
+    )
+
+
+def test_finding_at_a_root_edge_has_the_gear_and_what_the_mesh_deflects_not_a_pair_that_just_begins_to_carry():
+    """All pairs turn the wheel by one angle: from where the leading one touches without load to where it is loaded."""
+    none = {f"pinion.modifications.root_relief_{end}": None for end in ("um", "start_mm", "form")}
+    coarse = {"analysis.positions": 3, "analysis.accuracy": None, "analysis.cells": (16, 16)}
+    cycle = analysed(read_scene(SCENES / "undercut_10x40.toml").with_changes(none | coarse | FLANKS_ALONE))
+    (sentence,) = (one for one in cycle.findings() if "pinion root" in one)
+    turned = np.abs(cycle.transmission_error[0, 0] - cycle.unloaded_transmission_error[0])
+    mesh = 1e3 * turned * cycle.wheel_base_radius
+    assert f"with root relief on the pinion of more than {mesh:.2g} um, the deflection of the mesh" in sentence
+    assert np.nanmin(cycle.contact_deformation[0, 0]) < 0.7e-3 * mesh  # of the pair at the edge
 
 
 @pytest.mark.parametrize(("end", "side"), [(-1.0, "lower side"), (1.0, "upper side")])

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from loaded_tca import MeshCycle, Scene, analyse, analyse_revolution, read_scene
+from loaded_tca import MeshCycle, Scene, analyse, analyse_revolution, parse_scene, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
 
 EXAMPLE = read_scene(Path(__file__).parents[2] / "examples" / "scenes" / "rack_and_pinion.toml")
@@ -182,3 +182,11 @@ def test_root_factors_of_wheels_come_to_those_of_the_rack() -> None:
     coarse, fine = (np.array(nominal.with_changes(with_wheel(z)).root_factors[1]) for z in (4000, 8000))
     # the critical section of the gear that stands for the rack is rounded by 3e-5 modules, 1e-11 of its diameter
     assert nominal.root_factors[1] == pytest.approx(2.0 * fine - coarse, abs=1e-4)
+
+
+def test_written_rack_has_no_line_on_keys_that_it_refuses():
+    """A line of them would say that they could be given."""
+    wheel = EXAMPLE.to_toml().partition("[wheel]")[2].partition("[mounting]")[0]
+    assert not [name for name in ("bore_diameter_mm", "profile_shift", "tooth is", "wheel.shaft") if name in wheel]
+    assert "centre_distance_mm" not in EXAMPLE.to_toml()
+    assert parse_scene(EXAMPLE.to_toml()) == EXAMPLE

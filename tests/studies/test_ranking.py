@@ -7,8 +7,8 @@ from numpy.testing import assert_array_equal
 
 from loaded_tca.errors import InputError
 from loaded_tca.studies import rank_combinations, rank_variants, study_summary
-from loaded_tca.studies.ranking import figure_values, main_figures, nominal_variant, varied_keys
-from tests.samples.study_datasets import LEAD, SCENE, TIP, dataset, grid
+from loaded_tca.studies.ranking import figure_values, main_figures, nominal_variant, ranking, varied_keys
+from tests.samples.study_datasets import LEAD, SCENE, TIP, dataset, grid, sampled
 
 TWO_FAIL = ["ok", "refused", "ok", "ok", "not converged", "ok"]
 
@@ -90,10 +90,22 @@ def test_standard_error_of_a_rank_is_the_scatter_of_quantiles_of_other_samples(s
     assert ranked["standard_error"].mean() == pytest.approx(scatter, rel=0.3)
 
 
-def test_one_sample_has_no_standard_error():
-    study = dataset({LEAD: [0.0, 3.0], TIP: [1.0, 2.0]}, {"face_load_factor": [[1.0], [2.0]]})
+@pytest.mark.parametrize(("samples", "is_known"), [(1, False), (19, False), (20, True)])
+def test_quantile_that_is_the_largest_sample_has_no_standard_error(samples, is_known):
+    """The 19th of 20 is the first below the largest; the name of the column has the unit of the figure that ranks."""
+    values = {"transmission_error_span_um": np.arange(samples, dtype=float)}
+    study = dataset({LEAD: [3.0] * samples, TIP: [1.0] * samples}, values)
     study[TIP].attrs["sampling"] = "distribution"
-    assert rank_combinations(study)["standard_error"].isna().all()
+    ranked = rank_combinations(study).iloc[0]
+    assert (np.isfinite(ranked["standard_error_um"]), ranked["note"] == "") == (is_known, is_known)
+
+
+def test_study_of_distributions_alone_is_one_design():
+    study = sampled(21, (80.0,))
+    (row,) = rank_combinations(study).to_dict("records")
+    assert (row["rank"], row["samples"], [*row][2]) == (1, 21, "transmission_error_span_um")
+    assert row["transmission_error_span_um"] == pytest.approx(95.0, rel=1e-12)  # of even steps from 0 to 100
+    assert ranking(study).equals(rank_combinations(study))
 
 
 def test_a_summary_of_several_designs_says_that_it_has_them_together():
