@@ -15,7 +15,9 @@ WAY_OUT = r'; or set analysis\.compliance = "contact"$'
 @pytest.mark.parametrize("amount", [1.5, 3.0])
 def test_tooth_that_modifications_make_pointed_bends_as_the_one_without_them(amount):
     changes = {"pinion.modifications.polynomial_mm": [amount, 0.0, 0.0, 0.0, 0.0, 0.0]}
-    with pytest.warns(AccuracyWarning, match=r"^pinion, with its modifications: pointed tooth: .*without them$"):
+    with pytest.warns(
+        AccuracyWarning, match=r"^pinion, with its modifications: pointed tooth: .*without modifications$"
+    ):
         require_teeth(SPUR.with_changes(changes).pair())
 
 

@@ -45,7 +45,7 @@ def test_finding_at_a_root_edge_has_the_gear_and_what_the_mesh_deflects_not_a_pa
     (sentence,) = (one for one in cycle.findings() if "pinion root" in one)
     turned = np.abs(cycle.transmission_error[0, 0] - cycle.unloaded_transmission_error[0])
     mesh = 1e3 * turned * cycle.wheel_base_radius
-    assert f"with root relief on the pinion of more than {mesh:.2g} um, the deflection of the mesh" in sentence
+    assert f"use root relief on the pinion of more than {mesh:.2g} um, the deflection of the mesh" in sentence
     assert np.nanmin(cycle.contact_deformation[0, 0]) < 0.7e-3 * mesh  # of the pair at the edge
 
 

@@ -120,7 +120,9 @@ def test_thick_layers_across_a_wide_face_are_told(monkeypatch):
     one = scene(**{"wheel.face_width_mm": 36.0})
     with coarsely():
         monkeypatch.setattr("loaded_tca.analysis.THICKEST_LAYER", 1.2)
-        with pytest.warns(AccuracyWarning, match=r"root stress of the wheel: .* elements are 2 modules wide"):
+        with pytest.warns(
+            AccuracyWarning, match=r"root stress of the wheel: .* elements along its face are 2 modules wide"
+        ):
             roots_of(one, one.pair())
 
 

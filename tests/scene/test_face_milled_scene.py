@@ -516,7 +516,7 @@ def test_tooth_and_space_fill_the_pitch(scene):
 def test_teeth_that_would_jam_are_warned_of(scene):
     tight = scene.with_changes({"pinion.cutter.convex.point_radius_mm": 92.1})
     (note,) = tight.interferences()
-    assert "thicker than the spaces" in note
+    assert "thicker than the tooth spaces" in note
     assert note in describe_scene(tight)
     assert scene.interferences() == []
 

@@ -179,8 +179,8 @@ def test_many_bins_solve_no_more_torques_than_a_dozen():
 @pytest.mark.filterwarnings("ignore:rating. the damage of the spectrum may be wrong:loaded_tca.AccuracyWarning")
 def test_sentences_name_torques_of_the_sun_with_six_digits():
     notes = under(bins((299.913, 1.0), (20.0, 1.0)), **{"rating.life_hours": 12345.6}).notes()
-    assert " in 12345.6 h, required 2.4; bin 1, 299.913 N m, does 100 % of the damage" in notes[0]
-    assert sum("1 bin lies below 45 N m at the sun, the smallest torque solved" in note for note in notes) == 1
+    assert " in 12345.6 h, required 2.4; bin 1 (299.913 N m) does 100 % of the damage" in notes[0]
+    assert sum("1 bin lies below 45 N m at the sun, the smallest torque that was solved" in note for note in notes) == 1
 
 
 def test_numbers_of_a_spectrum_stand_in_summary_and_files(tmp_path):

@@ -171,7 +171,7 @@ def test_shafts_that_cannot_be_are_refused_as_they_are_read(
 
 @pytest.mark.parametrize("known", [BODY_TWIST, THIN_RIM], ids=["body twist", "thin rim"])
 def test_bores_that_a_warning_advises_are_those_that_a_scene_takes(scene: Scene, known: Kind) -> None:
-    assert "`bore_diameter_mm = 0`, or none beside a `[pinion.shaft]`" in known.advice
+    assert "`bore_diameter_mm = 0`; beside a `[pinion.shaft]`" in known.advice
     bending = scene.with_changes({"analysis.compliance": "contact+tooth", "pinion.bore_diameter_mm": None})
     assert bending.with_changes({"pinion.shaft": None, "pinion.bore_diameter_mm": 0.0}).pinion.bore_diameter_mm == 0.0
 
