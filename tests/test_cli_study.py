@@ -70,7 +70,7 @@ def test_long_study_says_beforehand_what_its_variants_take(study, capsys, monkey
     (line,) = [line for line in capsys.readouterr().err.splitlines() if "variants" in line]
     sentence = r"loaded-tca: 2 variants, roughly (\S+) s each on idle cores, (\S+) s together"
     each, whole = map(float, re.fullmatch(sentence, line).groups())
-    assert whole == pytest.approx(2.0 * each, rel=0.05)  # two digits each
+    assert whole == pytest.approx(2.0 * each, rel=0.1)  # two digits each: 1.0 is anything from 0.95 to 1.05
 
 
 @pytest.mark.thorough
