@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -30,17 +30,25 @@ from loaded_tca.results.supports import warn_of_supports
 from loaded_tca.results.warnings import warn_of_accuracy
 from loaded_tca.scene import Scene
 from loaded_tca.scene.build import arguments_by_keys
+from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread, side_by_side, with_jobs
 from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
+
+if TYPE_CHECKING:
+    from loaded_tca.double_helical.result import DoubleHelicalResult
 
 THICKEST_LAYER = 1.2
 """Of elements across a face, over the module: from there on root stress under a short contact is 2 % too low and more
 (a load of 2.7 modules: 2.5 % on 1.3 modules, 9 % on 1.9, 16 % on 2.6)."""
 
 
+@overload
+def analyse(scene: DoubleHelicalScene, progress: Progress | None = None) -> DoubleHelicalResult: ...  # type: ignore[overload-overlap]
+@overload
+def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle: ...
 @checked
-def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
+def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle | DoubleHelicalResult:
     """Analyse a scene: at every position of a pitch one tooth pair carries the load, or all pairs in contact share it.
 
     Parameters
@@ -52,6 +60,8 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     Returns
     -------
     MeshCycle
+        Of a double helical pair :class:`loaded_tca.double_helical.DoubleHelicalResult`, as
+        :func:`loaded_tca.double_helical.analyse_double_helical` makes it: the mesh cycles of both halves.
 
     Raises
     ------
@@ -67,6 +77,10 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         If whole gears jam, a tooth is pointed, a rim is thin, the contact reaches an edge of a flank, or the model is
         at another limit.
     """
+    if isinstance(scene, DoubleHelicalScene):
+        from loaded_tca.double_helical.analyse import analyse_double_helical
+
+        return analyse_double_helical(scene, progress)
     # products of small matrices: on several threads of BLAS they take longer, and on some processors round otherwise
     with one_blas_thread(), noted_accuracy_warnings() as warned:
         pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)

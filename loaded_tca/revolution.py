@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
 from importlib.metadata import version
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
@@ -34,10 +35,14 @@ from loaded_tca.results.root_stress import root_stress_of_gear
 from loaded_tca.results.supports import support_arrays, warn_of_supports
 from loaded_tca.results.warnings import at_places, place_of, reasons_of, rotation_reasons
 from loaded_tca.scene import Scene
+from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 from loaded_tca.supports import support_compliance
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded.revolution import RevolutionPath, trace_revolution
+
+if TYPE_CHECKING:
+    from loaded_tca.double_helical.revolution import DoubleHelicalRevolution
 
 KEPT = "normal_force", "peak_pressure", "on_edge"
 """Numbers of single contacts that a revolution keeps."""
@@ -59,8 +64,16 @@ def expected_revolution_effort(scene: Scene) -> Effort:
     return replace(part, contacts=2 * states * torques, states=first.states + of_state * (states - 1))
 
 
+@overload
+def analyse_revolution(  # type: ignore[overload-overlap]
+    scene: DoubleHelicalScene, progress: Progress | None = None
+) -> DoubleHelicalRevolution: ...
+@overload
+def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: Sequence[int] = ()) -> Revolution: ...
 @checked
-def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: Sequence[int] = ()) -> Revolution:
+def analyse_revolution(
+    scene: Scene, progress: Progress | None = None, *, maps: Sequence[int] = ()
+) -> Revolution | DoubleHelicalRevolution:
     """Analyse a whole revolution: at every position of every pitch all tooth pairs in contact share the load.
 
     Index deviations and runout of ``[pinion.pitch]`` and ``[wheel.pitch]`` separate the tooth pairs before the load
@@ -72,11 +85,13 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
     progress : callable, optional
         Called as ``progress(done, total)`` with the states, torques times positions.
     maps : sequence of int
-        Positions whose pressure maps the result keeps, as indices.
+        Positions whose pressure maps the result keeps, as indices; not of a double helical pair.
 
     Returns
     -------
     Revolution
+        Of a double helical pair :class:`loaded_tca.double_helical.DoubleHelicalRevolution`, as
+        :func:`loaded_tca.double_helical.analyse_double_helical_revolution` makes it.
 
     Raises
     ------
@@ -103,6 +118,11 @@ def analyse_revolution(scene: Scene, progress: Progress | None = None, *, maps: 
     >>> revolution.dataset["transmission_error"].shape
     (1, 2)
     """
+    if isinstance(scene, DoubleHelicalScene):
+        from loaded_tca.double_helical.revolution import analyse_double_helical_revolution
+
+        require((not len(maps), f"maps: found {[*maps]}; allowed (): no maps are kept of a double helical pair"))
+        return analyse_double_helical_revolution(scene, progress)
     with one_blas_thread():
         with noted_accuracy_warnings() as warned:
             pair, wanted, asked = scene.pair(), scene.analysis, _asked(scene)

@@ -77,7 +77,10 @@ def test_check_describes_both_halves(capsys):
 @pytest.mark.parametrize("command", ["vh", "ease-off", "measured"])
 def test_commands_that_take_one_pair_refuse_two_halves(command, tmp_path, capsys):
     assert main([command, str(SCENE), "--out", str(tmp_path)]) == 2
-    assert "pair.double_helical: found true; of both halves together" in capsys.readouterr().err
+    assert (
+        "pair.double_helical: found true; allowed false here, where one pair of flanks is needed"
+        in capsys.readouterr().err
+    )
 
 
 def test_sides_and_supports_are_not_compared(tmp_path, capsys):

@@ -37,9 +37,9 @@ HALVES = "a", "b"
 SIGNS = 1.0, -1.0
 """Of z of the pair, along the z of each half, which runs outwards."""
 ONE_BY_ONE = (
-    "found true; of both halves together 'loaded-tca run', 'revolution' and 'check' tell, in Python "
-    "loaded_tca.double_helical.analyse_double_helical and analyse_double_helical_revolution; each half is a pair by "
-    "itself: half_a.nc and half_b.nc of a result, scene.halves, and as a scene, with its measured flanks, "
+    "found true; allowed false here, where one pair of flanks is needed. Both halves together are analysed by "
+    "'loaded-tca run' and 'revolution', in Python by analyse and analyse_revolution. Each half is a pair by itself: "
+    "half_a.nc and half_b.nc of a result, scene.halves, and as a scene, with its measured flanks, "
     "scene.half_scenes(0.0)"
 )
 SHARED = "found a torque of 0; allowed above 0: the halves share a torque"

@@ -22,7 +22,9 @@ from loaded_tca.results.figure import labelled
 from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
+from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.scene.keys import did_you_mean, nearest
+from loaded_tca.studies.double_helical import halves_figures
 from loaded_tca.studies.other_figures import tribology_figures
 from loaded_tca.studies.rating import FIGURES as SAFETIES
 from loaded_tca.studies.rating import MAIN_FIGURES as MAIN_SAFETIES
@@ -277,7 +279,7 @@ def figures(scene: Scene) -> dict[str, Array]:
     dict of str to (torques,) array
         By the names of :meth:`MeshCycle.key_figures`, which end in their unit; NaN: not known. Scenes with [operation]
         or [lubricant] have those of :func:`tribology_figures`, too, those with strengths and [rating] those of
-        :func:`rating_figures`.
+        :func:`rating_figures`. Of a double helical pair those of :func:`halves_figures`.
 
     Raises
     ------
@@ -293,7 +295,7 @@ def figures(scene: Scene) -> dict[str, Array]:
     >>> figures(scene)["pinion_torque_Nm"]
     array([80.])
     """
-    return figures_of(analyse(scene))
+    return halves_figures(scene) if isinstance(scene, DoubleHelicalScene) else figures_of(analyse(scene))
 
 
 def figures_of(result: MeshCycle) -> dict[str, Array]:

@@ -51,7 +51,7 @@ def unlike_and_held(unlike_halves):
 @pytest.mark.parametrize("floating", ["pinion", "none"])
 def test_equal_halves_are_one_half_under_half_the_torque(equal_halves, one_half, floating, monkeypatch):
     monkeypatch.setattr(analyses, "analyse", lambda *_: one_half)
-    result = analyse_double_helical(equal_halves.with_changes({"pair.floating": floating}))
+    result = analyse(equal_halves.with_changes({"pair.floating": floating}))
     assert one_half.torque.tolist() == [0.5 * torque for torque in equal_halves.torques]
     for number, of_half in (
         (result.transmission_error, one_half.transmission_error),

@@ -13,6 +13,7 @@ from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helica
 from loaded_tca.double_helical import analyse as analyses
 from loaded_tca.reports.rating_page import halves_rating_content
 from loaded_tca.studies import double_helical as studies
+from loaded_tca.studies import figures as all_figures
 from tests.samples import double_helical as samples
 from tests.samples.rating import RATED
 
@@ -209,6 +210,7 @@ def test_studies_have_the_safeties_of_the_worse_half(held, held_rating, without_
         assert_array_equal(figures[name], np.min([getattr(half, number).min(axis=1) for half in halves], axis=0))
     lives = [half.life_hours[..., [half.modes.index(mode) for mode in ("flank", "root")]] for half in halves]
     assert_array_equal(figures["life_h"], np.min([life.min(axis=(1, 2)) for life in lives], axis=0))
+    assert all_figures(held.scene).keys() == figures.keys()
     unrated = studies.halves_figures(held.scene.with_changes({"rating": None}))
     assert unrated.keys() == figures.keys() - {"S_H", "S_F", "S_H_local", "S_F_local", "life_h", "life_local_h"}
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca import InputError
+from loaded_tca import InputError, analyse_revolution
 from loaded_tca.cli import main
 from loaded_tca.double_helical import DoubleHelicalRevolution, analyse_double_helical_revolution
 from loaded_tca.results import load_result
@@ -35,7 +35,12 @@ def scene_with(**changes):
 @pytest.fixture(scope="module")
 def wobbling():
     """A wheel whose halves are eccentric to opposite sides."""
-    return analyse_double_helical_revolution(scene_with(**OPPOSED))
+    return analyse_revolution(scene_with(**OPPOSED))
+
+
+def test_no_maps_are_kept_of_two_halves():
+    with pytest.raises(InputError, match=r"maps: found \[0\]; allowed \(\): no maps are kept of a double helical"):
+        analyse_revolution(scene_with(**OPPOSED), maps=[0])
 
 
 @pytest.mark.parametrize(("floating", "sign"), [("pinion", 1.0), ("wheel", -1.0)])

@@ -134,5 +134,6 @@ test_refused = refusals(
     ),
 )
 test_one_pair_of_two_halves_is_refused = refusals(
-    lambda scene: scene.pair(), ("pair.double_helical: found true; of both halves together 'loaded-tca run'",)
+    lambda scene: scene.pair(),
+    ("pair.double_helical: found true; allowed false here, where one pair of flanks is needed",),
 )
