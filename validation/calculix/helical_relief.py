@@ -26,6 +26,7 @@ from loaded_tca.compliance import tooth_compliance
 from loaded_tca.loaded.cycle import OnePairsCycle, solve_cycles
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.plots.style import DISTINCT_COLOURS
 from loaded_tca.unloaded import trace_contact
 from validation.calculix.helical_contact import FILE, LINES_FILE, POSITIONS, TOUCHING, UNDER_LOAD, pinion_angle
 from validation.calculix.tables import read_table
@@ -43,6 +44,7 @@ BEFORE, BEHIND = 123, 124
 """Positions on both sides of the former step."""
 FORMER = (-43.0997, -43.6208, -43.9028, -44.5812, -45.1919)
 """Transmission error of revision 66bc52a by this scene's defaults [um]: forces of slices on the axis of curvatures."""
+COLOUR, FORMER_COLOUR = DISTINCT_COLOURS[:2]
 ERROR, STEP, LINE_LOAD, PLACE = 0.005, 0.025, 0.02, 0.03
 """Relative; [um]; over the largest; [mm] of the roll length, on a contact 0.7 mm of it wide."""
 CARRIES = 0.1
@@ -238,7 +240,7 @@ def page() -> Page:
         "finite elements": reference.transmission_error,
         "here": ours.transmission_error,
         "here, forces in the middle of the cells": held.transmission_error,
-        "revision 66bc52a": np.array(FORMER),
+        "here, forces of slices on the axis of curvatures (revision 66bc52a)": np.array(FORMER),
     }
     errors = table(
         ["position", *columns],
@@ -295,16 +297,16 @@ def picture(reference: Loaded, ours: Loaded) -> Figure:
 
     figure = Figure(figsize=(11.0, 3.6), layout="constrained")
     error, load, place = figure.subplots(1, 3)
-    error.plot(POSITIONS, FORMER, "--", color="tab:red", label="revision 66bc52a")
-    error.plot(POSITIONS, ours.transmission_error, color="tab:blue", label="here")
+    error.plot(POSITIONS, FORMER, "--", color=FORMER_COLOUR, label="forces of slices on one axis")
+    error.plot(POSITIONS, ours.transmission_error, color=COLOUR, label="loaded_tca")
     error.plot(POSITIONS, reference.transmission_error, "ko", label="finite elements")
     error.set(xlabel="position", ylabel="transmission error [µm]")
-    error.legend()
+    error.legend(loc="upper right", fontsize=9)
     low, high, loads, rolls = reference.lines[BEHIND]
     height, carries = 0.5 * (low + high), loads > CARRIES * loads.max()
     for axes, k, values, label in ((load, 2, loads, "line load [N/mm]"), (place, 3, rolls, "roll length [mm]")):
         chosen = carries if k == 3 else np.ones_like(carries)
-        axes.plot(height[chosen], ours.lines[BEHIND][k][chosen], color="tab:blue")
+        axes.plot(height[chosen], ours.lines[BEHIND][k][chosen], color=COLOUR)
         axes.plot(height[chosen], values[chosen], "ko")
         axes.set(xlabel="z [mm]", ylabel=label)
     for axes in (error, load, place):

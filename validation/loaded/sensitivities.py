@@ -23,6 +23,7 @@ from matplotlib.figure import Figure
 
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.arrays import Array
+from loaded_tca.plots.style import DISTINCT_COLOURS
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.studies import Study, process_pool, run_study
@@ -590,6 +591,7 @@ def picture_of_studies(scenes: Mapping[float, Scattered]) -> Figure:
     figure = Figure(figsize=(9.0, 3.8), layout="constrained")
     panels = figure.subplots(1, len(scenes), sharey=True)
     for axes, (out_of_line, one) in zip(panels, scenes.items(), strict=True):
+        axes.set_prop_cycle(color=DISTINCT_COLOURS)
         for name, marker in zip(OF_STUDIES, "osD^", strict=True):
             ratios = [one.ratio(scale, name) for scale in SCALES]
             axes.plot(SCALES, ratios, marker=marker, label=OF_STUDIES[name].partition(" [")[0])
@@ -616,10 +618,10 @@ def picture_of_analyses() -> Figure:
         np.nanargmax(np.where(middle.on_edge[0] > 0, middle.edge_pressure[0], np.nan)), middle.on_edge[0].shape
     )
     panels = [
-        ("loaded TE, third position [um]", "transmission_error", (0, 2), length),
-        ("peak-to-peak TE [um]", "peak_to_peak", (0,), length),
+        ("transmission error, third position [µm]", "transmission_error", (0, 2), length),
+        ("peak-to-peak transmission error [µm]", "peak_to_peak", (0,), length),
         ("line load of a corner contact [N/mm]", "line_load", (0, *corner), 1.0),
-        ("K_Hbeta", "face_load_factor", (0,), 1.0),
+        ("face load factor K_Hβ", "face_load_factor", (0,), 1.0),
     ]
     figure = Figure(figsize=(9.0, 6.0), layout="constrained")
     for axes, (words, quantity, place, unit) in zip(figure.subplots(2, 2).flat, panels, strict=True):
@@ -628,9 +630,10 @@ def picture_of_analyses() -> Figure:
         else:
             found = np.array([getattr(one, quantity)[place] for one in cycles])
         slope = float(getattr(derivatives, quantity)[(*place, 0)])
+        axes.set_prop_cycle(color=DISTINCT_COLOURS)
         axes.plot(values, unit * found, "o", label="analyses")
         axes.plot(values, unit * (found[4] + slope * (values - values[4])), label="derivative in the middle")
-        axes.set(xlabel=short(key), ylabel=words)
+        axes.set(xlabel="misalignment [µm]", ylabel=words)
         axes.ticklabel_format(useOffset=False)
     figure.axes[0].legend()
     figure.suptitle(f"{PAIRS[name]}, {setting}, {cells} x {cells} cells")

@@ -37,7 +37,7 @@ TICKS = (-1e5, -1e3, 0.0, 1e3, 1e5)
 SCIPY_STARTS = 200
 """SciPy solves one start after the other."""
 DOTS_PER_INCH = 80
-COLOURS = {"converged": "#0072b2", "not": "#d55e00", "answer": "#000000"}
+COLOURS = {"converged": "#0072b2", "not converged": "#d55e00", "answer": "#000000"}
 """Okabe and Ito 2008: told apart by colour-blind readers; the markers differ, too."""
 
 
@@ -234,7 +234,8 @@ def picture(case: Case, outcomes: list[Outcome]) -> Figure:
     panels[0, 0].set_ylabel(f"domain: {across} - contact [mm]")
     panels[1, 0].set_ylabel(f"range: {across} - contact [mm]")
     figure.legend(*panels[0, -1].get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    figure.suptitle(f"{case.name}: {SHOWN} starts on the pinion flank, and where they end")
+    starts = f"{SHOWN} starts" if case.starts == SHOWN else f"the first {SHOWN} of {case.starts} starts"
+    figure.suptitle(f"{case.name}: {starts} on the pinion flank, and where they end")
     return figure
 
 
@@ -246,7 +247,7 @@ def _from_contact(case: Case, points: Array) -> tuple[Array, Array]:
 
 
 def _scatter(panel: Axes, x: Array, y: Array, good: NDArray[np.bool_]) -> None:
-    for mask, marker, label in ((~good, "x", "not"), (good, "o", "converged")):
+    for mask, marker, label in ((~good, "x", "not converged"), (good, "o", "converged")):
         rows = np.flatnonzero(mask[:SHOWN])
         where = [np.clip(part[rows], -FAR, FAR) for part in (x, y)]
         panel.plot(*where, marker, ms=3, color=COLOURS[label], alpha=0.7, label=label)
