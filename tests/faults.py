@@ -3441,6 +3441,27 @@ FAULTS = (
         "return path.E, math.inf",
         "plots/test_first_look.py::test_active_part_of_an_undercut_pair_is_that_of_the_path_as_analysed",
     ),
+    Fault(
+        "halves on one shaft: the mirror image of half b keeps the sense of axial forces and tilting moments",
+        "scene/half_shafts.py",
+        "        return HalfLoads(-self.places - 2.0 * lever, self.loads * MIRRORED)",
+        "        return HalfLoads(-self.places - 2.0 * lever, self.loads)",
+        "double_helical/test_shafts.py::test_shafts_of_both_halves_are_one_shaft_under_all_loads",
+    ),
+    Fault(
+        "halves on one shaft: flanks do not give way under the force on the other half",
+        "double_helical/balance.py",
+        "        deflection + part + coupling * other",
+        "        deflection + part",
+        "double_helical/test_balance.py::test_springs_on_one_shaft_are_the_solution_of_their_matrix",
+    ),
+    Fault(
+        "halves on one shaft: half b parts by its own mean load, not by that of half a",
+        "double_helical/shafts.py",
+        "            moved[1] -= of_b @ (mean_a @ shaft.across)",
+        "            moved[1] -= of_b @ (mean_b @ shaft.across)",
+        "double_helical/test_shafts.py::test_halves_couple_by_the_shaft_between_them",
+    ),
 )
 
 
