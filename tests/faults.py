@@ -3441,6 +3441,41 @@ FAULTS = (
         "return path.E, math.inf",
         "plots/test_first_look.py::test_active_part_of_an_undercut_pair_is_that_of_the_path_as_analysed",
     ),
+    Fault(
+        "halves on one shaft: the mirror image of half b keeps the sense of axial forces and tilting moments",
+        "scene/half_shafts.py",
+        "        return HalfLoads(-self.places - 2.0 * lever, self.loads * MIRRORED)",
+        "        return HalfLoads(-self.places - 2.0 * lever, self.loads)",
+        "double_helical/test_shafts.py::test_shafts_of_both_halves_are_one_shaft_under_all_loads",
+    ),
+    Fault(
+        "halves on one shaft: flanks do not give way under the force on the other half",
+        "double_helical/balance.py",
+        "        deflection + part + coupling * other",
+        "        deflection + part",
+        "double_helical/test_balance.py::test_springs_on_one_shaft_are_the_solution_of_their_matrix",
+    ),
+    Fault(
+        "halves on one shaft: half b parts by its own mean load, not by that of half a",
+        "double_helical/shafts.py",
+        "            moved[1] -= of_b @ (mean_a @ shaft.across)",
+        "            moved[1] -= of_b @ (mean_b @ shaft.across)",
+        "double_helical/test_shafts.py::test_halves_couple_by_the_shaft_between_them",
+    ),
+    Fault(
+        "idle pairs on supports: the motion that the mean load gives the gears closes their gaps a second time",
+        "results/idle_pairs.py",
+        "            opening[n] += np.interp(0.0, line.y, result.displacement(line))",
+        "            opening[n] -= np.interp(0.0, line.y, result.displacement(line))",
+        "results/test_idle_pairs.py::test_supports_move_idle_pairs_with_those_under_load",
+    ),
+    Fault(
+        "sensitivities of halves: the usual keys leave the modifications of half b out",
+        "results/tolerances.py",
+        '        for place, holder in (("", section), ("half_b.", getattr(section, "half_b", None))):',
+        '        for place, holder in (("", section),):',
+        "test_cli_double_helical.py::test_usual_keys_of_double_helical_pairs_have_half_b_and_the_apex",
+    ),
 )
 
 

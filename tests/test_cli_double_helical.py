@@ -6,11 +6,12 @@ import math
 
 import pytest
 
-from loaded_tca import InputError
+from loaded_tca import InputError, read_scene
 from loaded_tca.cli import main
 from loaded_tca.double_helical import DoubleHelicalResult
 from loaded_tca.plots import DOUBLE_HELICAL_PICTURES
 from loaded_tca.reports import write_html_report
+from loaded_tca.results.tolerances import default_tolerances
 from loaded_tca.studies import Study, rank_variants, run_study
 from tests.samples.double_helical import FEW, SCENE, analysed, unlike_halves
 
@@ -99,3 +100,34 @@ def test_study_keeps_the_figures_of_both_halves_and_has_a_report(tmp_path, monke
     assert "Half b, z from the groove outwards" in report.read_text()
     with pytest.raises(InputError, match="keep_maps: not of a study of double helical pairs"):
         run_study(study, out=tmp_path / "study.nc", keep_maps=[0])
+
+
+def test_sensitivities_of_both_halves_are_written_for_keys_and_tolerances(tmp_path, capsys):
+    analysed()[0].save(tmp_path)
+    keys = "pair.apex_offset_mm=0.02", "load.pinion_torque_Nm=16"
+    assert main(["sensitivities", str(tmp_path), "--keys", *keys]) == 0
+    text = capsys.readouterr().out
+    assert "pair.apex_offset_mm = 0.02" in text
+    assert "pressure b" in text
+    with (tmp_path / "sensitivities.csv").open(newline="") as file:
+        apex, torque = csv.DictReader(file)
+    # the pinion floats after the wheel's apex: um per mm, um for 0.02 mm; the halves keep their shares
+    assert float(apex["axial_motion_mean_um_per_unit"]) == pytest.approx(1000.0)
+    assert float(apex["axial_motion_mean_um_per_tolerance"]) == pytest.approx(20.0)
+    assert float(apex["half_a_torque_share_per_unit"]) == pytest.approx(0.0, abs=1e-12)  # rounding
+    # line loads of a contact whose edges hold it grow in proportion to the force, and less where it spreads
+    load = analysed()[0].line_load[0, :, 0].max()
+    assert 0.3 * load < 100.0 * float(torque["half_a_line_load_N_per_mm_per_tolerance"]) < 1.1 * load
+    assert main(["sensitivities", str(tmp_path), "--torque", "7"]) == 2
+    assert "--torque 7: the result has 1600 N m" in capsys.readouterr().err
+
+
+def test_usual_keys_of_double_helical_pairs_have_half_b_and_the_apex():
+    keys = [*default_tolerances(read_scene(SCENE))]
+    assert "pinion.half_b.modifications.helix_slope_um" in keys
+    assert "pair.apex_offset_mm" in keys
+    assert "mounting.half_b" not in keys
+    assert [key for key in keys if key.startswith("mounting.")] == [
+        f"mounting.{name}"
+        for name in ("in_plane_deg", "out_of_plane_deg", "centre_distance_error_mm", "axial_offset_mm")
+    ]

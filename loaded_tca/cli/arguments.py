@@ -125,6 +125,8 @@ files in DIR:
   sensitivity_curves.png    what each tolerance changes in the transmission error over the positions
   transmission_error_band.png  transmission error with the standard deviation by all tolerances, all torques
   removal_weights.png       where on the flanks removed material changes the transmission error
+Of a double helical pair sensitivities.csv alone, of both halves together; its default keys have the modifications of
+half b and the apex offset, too.
 All numbers are to first order; docs/guide/tolerances.md says more."""
 DYNAMICS = """files:
   FILE                      over the pitch: transmission error in m and rad, mesh stiffness in N/m and N m/rad, tooth

@@ -422,6 +422,7 @@ def _compare(
 
 def sensitivities(options: argparse.Namespace) -> None:
     """Find what keys and their tolerances change in a result, and write tables and pictures of it."""
+    from loaded_tca.double_helical.result import PAIR_FILE
     from loaded_tca.output.tables import sensitivities_text, write_sensitivities
     from loaded_tca.plots import png_of
     from loaded_tca.plots.sensitivities import sensitivity_pictures
@@ -429,6 +430,9 @@ def sensitivities(options: argparse.Namespace) -> None:
     from loaded_tca.results.idle_pairs import warn_of_pairs
     from loaded_tca.results.numbers import index_or_largest
 
+    if result_file(options.result).name == PAIR_FILE:
+        _sensitivities_of_halves(options)
+        return
     result, directory, torque, _ = result_of(options)
     torque = index_or_largest(result.torque, torque)
     tolerances = tolerances_of(options, result.scene)
@@ -446,6 +450,26 @@ def sensitivities(options: argparse.Namespace) -> None:
         slopes, tolerances, directory, {f"{name}.png": png_of(figure) for name, figure in pictures.items()}
     )
     print_summary(text, written)
+
+
+def _sensitivities_of_halves(options: argparse.Namespace) -> None:
+    """The same of a double helical pair, of both halves together."""
+    from loaded_tca.double_helical import DoubleHelicalResult
+    from loaded_tca.output.double_helical_sensitivities import (
+        sensitivities_of_halves_text,
+        write_sensitivities_of_halves,
+    )
+    from loaded_tca.results.numbers import index_or_largest
+
+    path = result_file(options.result)
+    result = DoubleHelicalResult.load(path)
+    torque = index_or_largest(result.torque, index_of_torque(options.torque, result))
+    directory = options.out or path.parent / ("" if options.torque is None else f"torque_{options.torque:g}_Nm")
+    check_place(directory)
+    tolerances = tolerances_of(options, result.scene)
+    slopes = result.sensitivities([*tolerances])
+    text = sensitivities_of_halves_text(slopes, tolerances, torque)
+    print_summary(text, write_sensitivities_of_halves(slopes, tolerances, directory))
 
 
 def dynamics(options: argparse.Namespace) -> None:

@@ -242,7 +242,7 @@ def subject_of_report(path: Path) -> MeshCycle | StageResult | DoubleHelicalResu
     return load_design(path) if kind == DESIGN else MeshCycle.load(path)
 
 
-def index_of_torque(given: float | None, result: MeshCycle) -> int | None:
+def index_of_torque(given: float | None, result: MeshCycle | DoubleHelicalResult) -> int | None:
     """Index of a torque [N m] of a result, as the command line gives it; None: not given."""
     if given is None:
         return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -18,6 +18,7 @@ from loaded_tca.arrays import Array, Indices
 from loaded_tca.double_helical.balance import Shares
 from loaded_tca.double_helical.laws import balance_of, between_torques, gears_of
 from loaded_tca.double_helical.result import FACES, DoubleHelicalResult
+from loaded_tca.double_helical.shafts import OnShafts, loads_at_first
 from loaded_tca.effort import Effort, expected_effort
 from loaded_tca.errors import (
     ConvergenceError,
@@ -50,6 +51,10 @@ LEAST = 0.05
 """Of an even share: the least torque that is analysed."""
 MOST_ROUNDS = 6
 """Of analyses of both halves; two are the rule where shares differ, one where they do not."""
+MOST_ON_SHAFTS = 12
+"""The same of halves on shafts, under the mean loads of each other."""
+USUAL_ON_SHAFTS = 3
+"""Of them, as a rule."""
 Progress = Callable[[int, int], None]
 
 
@@ -76,11 +81,15 @@ class _Half(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Both halves where the floating gear stands under the torques of a scene, and their balance there."""
+    """Both halves where the floating gear stands under the torques of a scene, and their balance there.
+
+    Beside them forces on the bearings of shafts, (position, bearing, 6) by gear.
+    """
 
     scene: DoubleHelicalScene
     halves: tuple[_Half, _Half]
     state: Shares
+    bearing_forces: Mapping[str, Array] = {}
 
     @property
     def cycles(self) -> list[Any]:
@@ -137,7 +146,14 @@ def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None 
 
 
 def settled(scene: DoubleHelicalScene, axial: float, shown: StatesDone, way: HalfAnalysis) -> list[Place]:
-    """Analyses of both halves where the floating gear stands [mm]: one for all torques, or more where it moves far."""
+    """Analyses of both halves where the floating gear stands [mm]: one for all torques, or more where it moves far.
+
+    Shafts take other loads under each torque, which is analysed by itself.
+    """
+    if scene.is_supported:
+        rows = np.arange(len(scene.torques))[:, None]
+        alone = [_under(scene, row) for row in rows] if len(rows) > 1 else [scene]
+        return [_settled_on_shafts(one, axial, shown, way) for one in alone]
     torques = _even_torques(scene)
     for _ in range(MOST_ROUNDS):
         scenes = scene.half_scenes(axial, [[1e-3 * torque for torque in of_half] for of_half in torques])
@@ -154,25 +170,51 @@ def settled(scene: DoubleHelicalScene, axial: float, shown: StatesDone, way: Hal
             break
         axial, torques = axial if stands else moved, wanted
     if not stands:
-        raise ConvergenceError(
-            f"pair.floating: the place of the {scene.geometry.floating} along its axis, {plain(moved)} mm, is not "
-            f"settled in {MOST_ROUNDS} steps"
-        )
+        raise _not_settled(scene, moved, MOST_ROUNDS)
     return [Place(scene, analysed, state)]
+
+
+def _not_settled(scene: DoubleHelicalScene, place: float, rounds: int) -> ConvergenceError:
+    """Error of a floating gear whose place [mm] changes from one analysis of both halves to the next."""
+    return ConvergenceError(
+        f"pair.floating: the place of the {scene.geometry.floating} along its axis, {plain(place)} mm, is not "
+        f"settled in {rounds} steps"
+    )
+
+
+def _settled_on_shafts(scene: DoubleHelicalScene, axial: float, shown: StatesDone, way: HalfAnalysis) -> Place:
+    """Analysis of both halves under one torque, each on shafts that the other one loads, too."""
+    torques, loads = _even_torques(scene), loads_at_first(scene, axial)
+    for _ in range(MOST_ON_SHAFTS):
+        scenes = scene.half_scenes(axial, [[1e-3 * torque for torque in of_half] for of_half in torques], loads)
+        analysed = _analysed(scenes, shown, way)
+        cycles = [half.cycle for half in analysed if isinstance(half.cycle, MeshCycle)]  # both
+        on_shafts = OnShafts(scene, scenes, cycles, loads)
+        state, further = on_shafts.balance()
+        wanted, moved = _wanted(scene, state, torques), float(_places(scene, state)[0])
+        stands = abs(moved - axial) <= FACES * scene.narrow_half
+        if stands and wanted == torques and on_shafts.is_settled(further):
+            return Place(scene, analysed, state, on_shafts.bearing_forces(further))
+        axial, torques, loads = axial if stands else moved, wanted, on_shafts.next_loads(further)
+    if not stands:
+        raise _not_settled(scene, moved, MOST_ON_SHAFTS)
+    raise ConvergenceError(
+        f"shafts: the loads of both halves under {plain(1e-3 * scene.torques[0], 6)} N m are not settled in "
+        f"{MOST_ON_SHAFTS} steps: the shafts are too soft for these gears"
+    )
 
 
 def expected_double_helical_effort(scene: DoubleHelicalScene) -> Effort:
     """Estimate of what an analysis takes where halves share evenly, as of :func:`loaded_tca.effort.expected_effort`."""
     first, second = scene.half_scenes(scene.mounting.axial_offset_mm)
-    effort = expected_effort(first)
-    if _are_alike(first, second):
-        return effort
+    effort, halves = expected_effort(first), 1 if _are_alike(first, second) else len(HALVES)
+    times = halves * (USUAL_ON_SHAFTS if scene.is_supported else 1)
     return replace(
         effort,
-        contacts=2 * effort.contacts,
-        states=2.0 * effort.states,
-        teeth=2 * effort.teeth,
-        roots=2 * effort.roots,
+        contacts=times * effort.contacts,
+        states=times * effort.states,
+        teeth=times * effort.teeth,
+        roots=times * effort.roots,
     )
 
 
@@ -350,6 +392,7 @@ def balance_arrays(place: Place) -> dict[str, Array]:
         "axial_force_left": axial.sum(axis=-1),
         "share_error": state.error,
         "share_factor": 2.0 * share.max(axis=(1, 2)),
+        **{f"{gear}_bearing_force": forces[None] for gear, forces in place.bearing_forces.items()},
     }
 
 

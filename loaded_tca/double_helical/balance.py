@@ -10,6 +10,10 @@ axis parts the flanks of one half by as much as it brings those of the other tog
 with e_h by which the flanks stand apart, kappa = +-tan(beta_b), and K of the axial support of the gear that floats:
 r = 0 where none does, F_a = F_b where nothing holds it. A half that is not reached carries nothing. With r left out F_a
 is the root of one rising function.
+
+Shafts that both halves load couple them: the flanks of each give way by c more under a unit force on the other,
+
+.. math:: x = D_a(F_a) + c F_b + e_a + \kappa r = D_b(F_b) + c F_a + e_b - \kappa r
 """
 
 from __future__ import annotations
@@ -113,18 +117,21 @@ class Halves:
     Attributes
     ----------
     laws : (HalfLaw, HalfLaw)
-    parted : (float, float) [mm]
+    parted : (float, float), or two arrays (n,) [mm]
         e_a, e_b: how far their flanks stand apart along the line of action beside what the laws have.
     axial_rate : float
         kappa: by how much flanks of half a part where the wheel moves towards it.
     stiffness : float [N/mm]
         K of the axial support of the gear that floats; 0: nothing holds it, inf: none floats.
+    coupling : float, or (n,) array [mm/N]
+        c: how far the flanks of each half give way under a unit force on the other, by shafts.
     """
 
     laws: tuple[HalfLaw, HalfLaw]
-    parted: tuple[float, float]
+    parted: tuple[float | Array, float | Array]
     axial_rate: float
     stiffness: float
+    coupling: float | Array = 0.0
 
     def __post_init__(self) -> None:
         require((self.stiffness >= 0.0, f"stiffness: found {plain(self.stiffness, 6)} N/mm; allowed from 0 on"))
@@ -186,13 +193,15 @@ def shared(halves: Halves, total: Array) -> Shares:
     whole = np.repeat(np.asarray(total, dtype=float), count)
     position = np.tile(np.arange(count), len(total))
     rate, stiffness = halves.axial_rate, halves.stiffness
-    apart = halves.parted[0] - halves.parted[1]
-    yields = 2.0 * rate**2 / stiffness if stiffness > 0.0 else 0.0  # 0 where none floats
+    parted = [np.broadcast_to(part, count)[position] for part in halves.parted]
+    coupling = np.broadcast_to(halves.coupling, count)[position]
+    apart = parted[0] - parted[1]
+    yields = (2.0 * rate**2 / stiffness if stiffness > 0.0 else 0.0) - coupling  # the first part 0 where none floats
 
     def difference(force: Array, rows: Indices) -> Array:
         first = halves.laws[0].at(force, position[rows])[0]
         second = halves.laws[1].at(whole[rows] - force, position[rows])[0]
-        return first - second + apart + yields * (2.0 * force - whole[rows])
+        return first - second + apart[rows] + yields[rows] * (2.0 * force - whole[rows])
 
     first = 0.5 * whole if stiffness == 0.0 else _root(difference, whole)
     forces = np.stack([first, whole - first])
@@ -201,13 +210,16 @@ def shared(halves: Halves, total: Array) -> Shares:
         motion = -0.5 * difference(first, np.arange(len(whole))) / rate
     else:
         motion = rate * (forces[0] - forces[1]) / stiffness
-    ways = [deflection + parted for (deflection, _, _), parted in zip(at, halves.parted, strict=True)]
+    ways = [
+        deflection + part + coupling * other
+        for (deflection, _, _), part, other in zip(at, parted, forces[::-1], strict=True)
+    ]
     approach = np.where(forces[0] > 0.0, ways[0] + rate * motion, ways[1] - rate * motion)
     shape = len(total), count
     return Shares(
         np.moveaxis(forces, 0, -1).reshape(*shape, 2),
         approach.reshape(shape),
-        _compliance([slope for _, slope, _ in at], forces, rate, stiffness).reshape(shape),
+        _compliance([slope for _, slope, _ in at], forces, coupling, rate, stiffness).reshape(shape),
         motion.reshape(shape),
         _error(at, yields, stiffness, whole).reshape(shape),
     )
@@ -228,18 +240,19 @@ def _root(difference: Callable[[Array, Indices], Array], whole: Array) -> Array:
     return np.where(at_even == 0.0, even, parts * whole)
 
 
-def _compliance(slopes: list[Array], forces: Array, rate: float, stiffness: float) -> Array:
+def _compliance(slopes: list[Array], forces: Array, coupling: Array, rate: float, stiffness: float) -> Array:
     """Slope of the approach over the whole force."""
     if stiffness == 0.0:
-        return np.asarray(0.25 * (slopes[0] + slopes[1]))
+        return np.asarray(0.25 * (slopes[0] + slopes[1]) + 0.5 * coupling)
     given = rate**2 / stiffness
     a, b = (slope + given for slope in slopes)
-    both = (a * b - given**2) / (a + b + 2.0 * given)
+    between = given - coupling
+    both = (a * b - between**2) / (a + b + 2.0 * between)
     alone = np.where(forces[0] > 0.0, a, b)
     return np.where((forces > 0.0).all(axis=0), both, alone)
 
 
-def _error(at: list[tuple[Array, Array, Array]], yields: float, stiffness: float, whole: Array) -> Array:
+def _error(at: list[tuple[Array, Array, Array]], yields: Array, stiffness: float, whole: Array) -> Array:
     """Error of a share by those of both deflections; none where forces do not depend on these."""
     if stiffness == 0.0:
         return np.zeros_like(whole)

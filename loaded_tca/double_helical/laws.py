@@ -31,12 +31,13 @@ def half_law(cycle: MeshCycle | Revolution, axial_rate: float) -> HalfLaw:
     offset = scene.mounting.axial_offset_mm
     length = -pair.driving * pair.base_radii[1]
     deflection = length * cycle.transmission_error
+    stiffness = cycle.drive_stiffness if scene.is_supported else cycle.mesh_stiffness
     if not np.isfinite(deflection).all():
         raise GeometryError("its flanks are out of contact at some positions; there it cannot share a torque")
     return HalfLaw(
         force=cycle.torque / pair.base_radii[0],
         deflection=deflection - axial_rate * offset,
-        compliance=1.0 / (1e3 * cycle.face_width * cycle.mesh_stiffness),
+        compliance=1.0 / (1e3 * cycle.face_width * stiffness),
         unloaded=length * unloaded - axial_rate * offset,
     )
 
@@ -47,7 +48,13 @@ def axial_stiffness(scene: DoubleHelicalScene) -> float:
     return math.inf if geometry.floating == "none" else 1e3 * geometry.axial_stiffness_N_per_um
 
 
-def balance_of(scene: DoubleHelicalScene, cycles: Sequence[MeshCycle | Revolution], torques: Array) -> Shares:
+def balance_of(
+    scene: DoubleHelicalScene,
+    cycles: Sequence[MeshCycle | Revolution],
+    torques: Array,
+    moved: tuple[Array, Array] | None = None,
+    coupling: float | Array = 0.0,
+) -> Shares:
     """Balance of both halves under pinion torques (t,) [N mm] of both, above 0.
 
     Parameters
@@ -56,13 +63,20 @@ def balance_of(scene: DoubleHelicalScene, cycles: Sequence[MeshCycle | Revolutio
     cycles : two of MeshCycle, or of Revolution
         Of the halves.
     torques : (t,) array [N mm]
+    moved : two arrays (n,) [mm], optional
+        By how much the flanks of both halves part by shafts beside what their mesh cycles have.
+    coupling : float, or (n,) array [mm/N]
+        How far the flanks of each half give way under a unit force on the other.
     """
     laws = []
     for name, cycle in zip(HALVES, cycles, strict=True):
         with named(f"half {name}"):
             laws.append(half_law(cycle, scene.axial_rate))
     total = np.asarray(torques) / scene.mesh().pinion.base_radius
-    return shared(Halves((laws[0], laws[1]), scene.parted, scene.axial_rate, axial_stiffness(scene)), total)
+    parted: tuple[float | Array, float | Array] = scene.parted
+    if moved is not None:
+        parted = parted[0] + moved[0], parted[1] + moved[1]
+    return shared(Halves((laws[0], laws[1]), parted, scene.axial_rate, axial_stiffness(scene), coupling), total)
 
 
 def between_torques(nodes: Array, values: Array, torques: Array, known_at_zero: bool) -> Array:

@@ -241,9 +241,16 @@ def double_helical_rating_of(result: DoubleHelicalResult, *, warn: bool = True) 
 
 
 def _largest_shares(result: DoubleHelicalResult, torques: Array) -> Array:
-    """Largest shares (c, half) over the pitch under torques (c,) of both halves [N mm]; even under none."""
+    """Largest shares (c, half) over the pitch under torques (c,) of both halves [N mm]; even under none.
+
+    On shafts the mesh cycles are those under the largest torque, and shares lie between those of the torques analysed.
+    """
     loaded = torques > 0.0
     shares = np.full((len(torques), len(HALVES)), 0.5)
+    if result.scene.is_supported:
+        order, largest = result.torque.argsort(), result.torque_share.max(axis=1)
+        columns = [np.interp(torques, result.torque[order], of_half[order]) for of_half in largest.T]
+        return np.where(loaded[:, None], np.stack(columns, axis=-1), shares)
     force = balance_of(result.scene, result.halves, torques[loaded]).force
     shares[loaded] = (force / force.sum(axis=-1, keepdims=True)).max(axis=1)
     return shares

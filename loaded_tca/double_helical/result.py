@@ -17,10 +17,12 @@ from loaded_tca.results import MeshCycle, Revolution
 from loaded_tca.results.declared import CYCLE, Asked, Number, Row, numbers
 from loaded_tca.results.figure import Figure
 from loaded_tca.results.files import DOUBLE_HELICAL
+from loaded_tca.results.quantities import BEARING_QUANTITIES, SHAFT_ASKED
 from loaded_tca.results.result import JoinedResult, figures_of
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
+from loaded_tca.scene.half_shafts import without_other_half
 from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
@@ -91,7 +93,8 @@ ROOTS = numbers(
         lambda scene, _: scene.analysis.root_stress, "the result has no root stress; set analysis.root_stress = true"
     ),
 )
-"""Numbers of a double helical pair: those that all have, those of root stress."""
+BEARINGS = numbers(BEARING_QUANTITIES, SHAFT_ASKED)
+"""Numbers of a double helical pair: those that all have, those of root stress, those of gears on shafts."""
 
 
 def _of_half(name: str, half: int, row: Row) -> float:
@@ -173,7 +176,7 @@ class DoubleHelicalResult(JoinedResult):
     KIND: ClassVar = DOUBLE_HELICAL
     WHAT: ClassVar = "the result of a double helical pair"
     TITLE: ClassVar = "Double helical pair"
-    NUMBERS: ClassVar = NUMBERS | ROOTS
+    NUMBERS: ClassVar = NUMBERS | ROOTS | BEARINGS
     COORDINATES: ClassVar = ("torque", "pinion_angle")
     FIGURES: ClassVar = FIGURES
     FILE: ClassVar = PAIR_FILE
@@ -226,10 +229,14 @@ class DoubleHelicalResult(JoinedResult):
         return (*sentences, *self.notes_of_places())
 
     def notes_of_places(self) -> list[str]:
-        """Sentences on torques under which the mesh cycles of both halves are those of another place."""
+        """Sentences on torques under which the mesh cycles of both halves are those of another place or other loads."""
         places = self.axial_motion.mean(axis=1)
         largest = int(self.torque.argmax())
-        return [
+        on_shafts = [
+            f"half_a and half_b hold the mesh cycles under {shown_torque(self.torque[largest])}, with the loads that "
+            "both halves have on the shafts under it: for mesh cycles under another torque, analyse it by itself"
+        ]
+        return (on_shafts if self.scene.is_supported and len(self.torque) > 1 else []) + [
             f"under {shown_torque(torque)} the {self.scene.geometry.floating} stands {plain(way, 3)} mm along its axis "
             f"from its place under {shown_torque(self.torque[largest])}, for which half_a and half_b hold the mesh "
             f"cycles: for mesh cycles at its place under {shown_torque(torque)}, analyse this torque by itself"
@@ -323,6 +330,15 @@ def in_the_scene(
         expected, found = subject.half_scenes(0.0, [torques, torques])[half], cycle.scene
         assert isinstance(found, CylindricalScene)  # half a pair
         stands = replace(expected.mounting, axial_offset_mm=found.mounting.axial_offset_mm)
-        if found != replace(expected, mounting=stands, load=found.load, analysis=found.analysis):
+        if _by_itself(found, expected) != replace(expected, mounting=stands, load=found.load, analysis=found.analysis):
             what = "mesh cycle" if isinstance(cycle, MeshCycle) else "revolution"
             raise InputError(f"{place}: the {what} of another pair than {beside} beside it")
+
+
+def _by_itself(scene: CylindricalScene, expected: CylindricalScene) -> CylindricalScene:
+    """The scene of a half without the loads of the other half, which ``expected`` has not."""
+    for name in GEARS:
+        gear, shaft = getattr(scene, name), getattr(expected, name).shaft
+        if shaft is not None and gear.shaft is not None:
+            scene = replace(scene, **{name: replace(gear, shaft=without_other_half(gear.shaft, shaft))})
+    return scene

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.double_helical.analyse import (
     HalfAnalysis,
     Place,
@@ -27,6 +27,7 @@ from loaded_tca.double_helical.analyse import (
 from loaded_tca.double_helical.laws import gears_of
 from loaded_tca.double_helical.result import FIGURES, NUMBERS, in_the_scene
 from loaded_tca.effort import Effort
+from loaded_tca.errors import require
 from loaded_tca.results.declared import Number
 from loaded_tca.results.figure import Figure
 from loaded_tca.results.files import HALVES_OVER_TURNS
@@ -43,6 +44,10 @@ if TYPE_CHECKING:
 
     from loaded_tca.results.revolution import UnderTorque
 
+ON_RIGID_AXES = (
+    "found a section; not allowed in whole revolutions of double helical pairs, whose gears stand on rigid axes; "
+    "shafts are of account over a pitch: 'loaded-tca run', loaded_tca.double_helical.analyse_double_helical"
+)
 HALVES_REVOLUTION_FILE = "double_helical_revolution.nc"
 """Name of the file of both halves together."""
 _LEFT_OUT = "line_load", "face_load_factor", "face_load", "face_border"
@@ -183,6 +188,8 @@ def analyse_double_helical_revolution(
     >>> revolution.axial_motion.round(6).tolist()
     [[0.01]]
     """
+    shafts = zip(GEARS, scene.have_shafts, strict=True)
+    require(*((not has_shaft, f"{gear}.shaft: {ON_RIGID_AXES}") for gear, has_shaft in shafts))
     way = HalfAnalysis(analyse_revolution, _positions)
     places = settled(scene, scene.mounting.axial_offset_mm, StatesDone(progress), way)
     dataset = joined(DoubleHelicalRevolution, scene, places, [_arrays(place) for place in places])

@@ -34,6 +34,11 @@ STEP = 1e-3
 1e-10 of their slopes."""
 ALLOWED = f"{TORQUE}, {APEX}, and keys of [mounting] and of the modifications of both gears and of their half_b"
 
+ON_SHAFTS = (
+    "both halves load the shafts, and derivatives of both together are those of gears on rigid axes; allowed are those "
+    "of half_a and half_b, where the loads of the other half are held"
+)
+
 
 class _Half(NamedTuple):
     """Derivatives of a half: of its own keys, and how far these change with the keys of the pair (key, own key)."""
@@ -163,7 +168,9 @@ def double_helical_sensitivities(result: DoubleHelicalResult, keys: Sequence[str
             continue
         if key not in (TORQUE, APEX) and not key.startswith("mounting.") and ".modifications." not in key:
             problems.append(f"{key}: there are no derivatives of both halves together; allowed are {ALLOWED}")
-    if apart := result.notes_of_places():
+    if result.scene.is_supported:
+        problems.append(f"sensitivities: {ON_SHAFTS}")
+    elif apart := result.notes_of_places():
         problems.append(f"sensitivities: {apart[0]}")
     if problems:
         raise InputError(problems)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from loaded_tca.double_helical.analyse import expected_double_helical_effort
 from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.output.overview import scene_sections, spectrum_rows, torques_with_columns
@@ -14,6 +16,8 @@ from loaded_tca.scene.double_helical import HALVES
 from loaded_tca.scene.rows import fixed
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from loaded_tca.scene.double_helical import DoubleHelicalScene
     from loaded_tca.scene.model import Row
 
@@ -37,10 +41,11 @@ def describe_double_helical(scene: DoubleHelicalScene) -> str:
 def overview_of_double_helical(scene: DoubleHelicalScene) -> Overview:
     """Return what ``describe_double_helical`` says, before it is text."""
     rows, halves = pair_rows(scene), geometry_of_halves(scene)
+    of_pair = {"pair": rows} | ({"bearings": [*bearing_rows_of_halves(scene)]} if scene.is_supported else {})
     seconds = plain(expected_double_helical_effort(scene).seconds, 2)
     return Overview(
         scene.title or "Double helical pair",
-        {"pair": rows},
+        of_pair,
         {f"{name}, z from the groove outwards": sections for name, sections, _ in halves},
         {"seconds": seconds},
         ("analysis of even shares, about [s]", seconds),
@@ -56,9 +61,25 @@ def geometry_of_halves(scene: DoubleHelicalScene) -> list[tuple[str, dict[str, l
         with noted_accuracy_warnings(given=False) as sentences:
             warn_of_gears(own, own.pair())
             sections = scene_sections(own)
-        shown = {name: rows for name, rows in sections.items() if not half or name in OF_EACH}
+        shown = {
+            name: rows
+            for name, rows in sections.items()
+            if name != "bearings" and (not half or name in OF_EACH)  # both halves load these
+        }
         geometry.append((f"half {HALVES[half]}", shown, list(dict.fromkeys(sentences))))
     return geometry
+
+
+def bearing_rows_of_halves(scene: DoubleHelicalScene) -> Iterator[Row]:
+    """Forces on the bearings of shafts with even shares, each half where its flanks touch, a cell for each torque."""
+    from loaded_tca.double_helical.shafts import first_bearing_forces  # loaded contacts: others do not need them
+
+    axial = scene.mounting.axial_offset_mm
+    forces = [first_bearing_forces(scene, axial, torque) for torque in torques_with_columns(scene.torques)]
+    for gear in forces[0]:
+        for n, bearing in enumerate(getattr(scene, gear).shaft.bearings):
+            cells = (fixed(float(np.linalg.norm(of_gears[gear][n, :3])), 1) for of_gears in forces)
+            yield f"{gear}, bearing {n} at {plain(bearing.at_mm, 6)} mm: force [N]", *cells
 
 
 def pair_rows(scene: DoubleHelicalScene) -> list[Row]:

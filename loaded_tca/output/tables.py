@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     import xarray
 
+    from loaded_tca.arrays import Array
     from loaded_tca.flank_maps.vh_check import VHCheck
     from loaded_tca.results import MeshCycle
     from loaded_tca.results.comparison import Comparison
@@ -267,14 +268,19 @@ def write_sensitivities(
 
 def sensitivities_csv(sensitivities: Sensitivities, tolerances: Mapping[str, float]) -> str:
     """Return one row per torque and key: the changes of key figures by a unit of the key, and by its tolerance."""
-    keys, torques = sensitivities.keys, 1e-3 * sensitivities.result.torque
-    spread = np.array([tolerances[key] for key in keys])
+    ordered = {key: tolerances[key] for key in sensitivities.keys}
+    return slopes_csv(sensitivities.result.torque, key_figure_slopes(sensitivities), ordered)
+
+
+def slopes_csv(torque: Array, slopes: Mapping[str, Array], tolerances: Mapping[str, float]) -> str:
+    """Return one row per torque [N mm] and key: changes (torque, key) of key figures per unit and per tolerance."""
+    keys, torques = [*tolerances], 1e-3 * torque
+    spread = np.array([*tolerances.values()])
     columns: dict[str, list[str]] = {
         "pinion_torque_Nm": [f"{torque:.9g}" for torque in torques for _ in keys],
         "key": [key for _ in torques for key in keys],
         "tolerance": [f"{one:.9g}" for _ in torques for one in spread],
     }
-    slopes = key_figure_slopes(sensitivities)
     for name, values in slopes.items():
         columns[f"{name}_per_unit"] = _cells(values)
     for name, values in slopes.items():
@@ -298,29 +304,52 @@ def sensitivities_text(sensitivities: Sensitivities, tolerances: Mapping[str, fl
     torque : int
         Index of the torque.
     """
-    figures = key_figures(sensitivities.result, torque)
     slopes = {name: values[torque] for name, values in key_figure_slopes(sensitivities).items()}
-    spread = np.array([tolerances[key] for key in sensitivities.keys])
+    heads = [slope.head for name in slopes if (slope := FIGURES[name].slope)]
+    title = sensitivities.result.scene.title or "Sensitivities"
+    ordered = {key: tolerances[key] for key in sensitivities.keys}
+    return slopes_text(title, key_figures(sensitivities.result, torque), heads, slopes, ordered)
+
+
+def slopes_text(
+    title: str,
+    figures: Mapping[str, float],
+    heads: Sequence[str],
+    slopes: Mapping[str, Array],
+    tolerances: Mapping[str, float],
+) -> str:
+    """Return changes of key figures as text: per unit of each key, and per tolerance.
+
+    Parameters
+    ----------
+    title : str
+    figures : mapping of str to float
+        Key figures under the torque.
+    heads : sequence of str
+        Of the columns, one for each figure that has slopes.
+    slopes : mapping of str to (key,) array
+        By the names of figures.
+    tolerances : mapping of str to float
+        Standard deviation of every key, in its unit.
+    """
+    spread = np.array([*tolerances.values()])
     together = [math.sqrt(float(((values * spread) ** 2).sum())) for values in slopes.values()]
     rows: list[tuple[str, list[str]]] = [
-        (
-            f"pinion torque {plain(figures['pinion_torque_Nm'], 6)} N m",
-            [slope.head for name in slopes if (slope := FIGURES[name].slope)],
-        ),
+        (f"pinion torque {plain(figures['pinion_torque_Nm'], 6)} N m", [*heads]),
         ("", [f"[{unit_of(name) or '-'}]" for name in slopes]),
         ("this result", [shown(figures[name], name) for name in slopes]),
         ("change per unit of", []),
-        *((f"  {key}", [_digits(values[k]) for values in slopes.values()]) for k, key in enumerate(sensitivities.keys)),
+        *((f"  {key}", [_digits(values[k]) for values in slopes.values()]) for k, key in enumerate(tolerances)),
         ("change per tolerance (standard deviation) of", []),
         *(
             (f"  {key} = {plain(one, 6)}", [_digits(values[k] * one) for values in slopes.values()])
-            for k, (key, one) in enumerate(zip(sensitivities.keys, spread.tolist(), strict=True))
+            for k, (key, one) in enumerate(tolerances.items())
         ),
         ("  all of them, independent", [_digits(value, sign="") for value in together]),
     ]
     labels = max(len(label) for label, _ in rows)
     lines = [f"{label:<{labels}}" + "".join(f"{cell:>{WIDTH}}" for cell in cells) for label, cells in rows]
-    return "\n".join([sensitivities.result.scene.title or "Sensitivities", *(line.rstrip() for line in lines)])
+    return "\n".join([title, *(line.rstrip() for line in lines)])
 
 
 def _digits(value: float, sign: str = "+") -> str:

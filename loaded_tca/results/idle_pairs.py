@@ -4,6 +4,9 @@ A pair without load touches where the wheel has gone back to the unloaded transm
 its flanks stay apart by the lever times the rotation that is left, and by what the forces of the other pairs bend its
 teeth away. Unloaded contact is traced on both sides of every key, since edges may hold it; the loaded transmission
 error and the shares of loaded pairs follow their derivatives.
+
+On supports all of this is that of the gears as they stand under each torque: keys change the pair as far as the mean
+load moves it by them, and the other motions by the forces open the flanks as the bending of the teeth does.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, give_accuracy_warning
 from loaded_tca.loaded.first_guess import expected_lines, first_law
 from loaded_tca.results.derivatives import JoinedSensitivities
+from loaded_tca.results.support_growth import UnderOneTorque
 from loaded_tca.units import ending_of
 from loaded_tca.unloaded import trace_contact
 
@@ -67,9 +71,7 @@ def idle_pairs(sensitivities: Sensitivities) -> IdlePairs:
     lever = np.array([contact.wheel_lever for contact in contacts])
     apart = np.array([contact.transmission_error for contact in contacts])
     opening = pair.driving * lever * (result.transmission_error[*places[:2]] - apart)
-    way = (
-        pair.driving * lever * (result.unloaded_transmission_error[places[1]] - result.transmission_error[*places[:2]])
-    )
+    way = pair.driving * lever * (result.path.transmission_error[places[1]] - result.transmission_error[*places[:2]])
     near = np.flatnonzero(opening < way)
     places, lever, opening, way = places[:, near], lever[near], opening[near], way[near]
     contacts = [contacts[n] for n in near.tolist()]
@@ -87,6 +89,8 @@ def idle_pairs(sensitivities: Sensitivities) -> IdlePairs:
             if abs(grid.number - numbers[n]) <= bending.neighbours:
                 bent = bending.deflection((numbers[n], line), (grid.number, grid.separation), grid.slice_force)
                 opening[n] += np.interp(0.0, line.y, bent)
+        if isinstance(result, UnderOneTorque):
+            opening[n] += np.interp(0.0, line.y, result.displacement(line))
     return idle
 
 
@@ -110,7 +114,7 @@ def _unloaded_slopes(sensitivities: Sensitivities, places: Indices) -> Array:
 def warn_of_pairs(sensitivities: Sensitivities, tolerances: Mapping[str, float]) -> None:
     """Tell which key brings a tooth pair under load, or takes one from it, within its tolerance (AccuracyWarning).
 
-    Not where supports give way, nor where one pair carries all by the scene.
+    Not where one pair carries all by the scene.
 
     Parameters
     ----------
@@ -118,15 +122,19 @@ def warn_of_pairs(sensitivities: Sensitivities, tolerances: Mapping[str, float])
     tolerances : mapping of str to float
         Standard deviation of every key, in its unit.
     """
-    if isinstance(sensitivities, JoinedSensitivities) or not sensitivities.result.scene.analysis.load_sharing:
+    if not sensitivities.result.scene.analysis.load_sharing:
         return
-    idle = idle_pairs(sensitivities)
+    parts = sensitivities.parts if isinstance(sensitivities, JoinedSensitivities) else (sensitivities,)
     by_key: dict[str, tuple[float, float]] = {}
-    for number, key in enumerate(sensitivities.keys):
-        for step in (-tolerances[key], tolerances[key]):
-            for change, share in (*_coming(sensitivities, idle, number, step), *_leaving(sensitivities, number, step)):
-                if share > max(LEAST_SHARE, by_key.get(key, (0.0, 0.0))[1]):
-                    by_key[key] = change, share
+    for part in parts:
+        if part is None:
+            continue
+        idle = idle_pairs(part)
+        for number, key in enumerate(part.keys):
+            for step in (-tolerances[key], tolerances[key]):
+                for change, share in (*_coming(part, idle, number, step), *_leaving(part, number, step)):
+                    if share > max(LEAST_SHARE, by_key.get(key, (0.0, 0.0))[1]):
+                        by_key[key] = change, share
     if by_key:
         key = max(by_key, key=lambda one: by_key[one][1])
         words = {"key": key, "unit": ending_of(key), "count": len(by_key), "keys": len(sensitivities.keys)}

@@ -10,7 +10,8 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
-from loaded_tca.supports import RollingBearing, SupportCompliance, shafts_of
+from loaded_tca.loaded.moved_gears import standing_under
+from loaded_tca.supports import RollingBearing, SupportCompliance, shafts_of, support_compliance
 from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from loaded_tca.loaded.cycle import CycleSolution
     from loaded_tca.loaded.standing import LoadedStanding, StandingCycle
     from loaded_tca.pairs.gear_pair import GearPair
+    from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.results.numbers import CycleNumbers
 
 LARGEST_WAY, LARGEST_TILT = 0.1, 5e-3
@@ -122,6 +124,29 @@ def element_forces(result: CycleNumbers, gear: str, torque: int) -> dict[int, tu
         for k, bearing in enumerate(shaft.bearings)
         if isinstance(bearing, RollingBearing)
     }
+
+
+def loads_of_stations(result: MeshCycle, torque: int) -> tuple[Array, Array]:
+    """Loads (n, 6 m) [N, N mm] of the stations of pinion and wheel at the positions, read off the pressure maps.
+
+    Parameters
+    ----------
+    result : MeshCycle
+        Of gears on supports.
+    torque : int
+        Index of the torque.
+    """
+    supports = support_compliance(result.scene, result.gear_pair)
+    assert supports is not None
+    pinion, wheel = (result.dataset[f"{gear}_support_load"].values[torque] for gear in GEARS)
+    there = standing_under(supports.linear_near((pinion, wheel)), (pinion, wheel))
+    loads = np.zeros((len(result.path), pinion.size)), np.zeros((len(result.path), wheel.size))
+    for n, maps in enumerate(result.maps[torque]):
+        for one in maps:
+            if one is not None:
+                for of_gear, unit in zip(loads, there.loads(one), strict=True):
+                    of_gear[n] += one.slice_force @ unit
+    return loads
 
 
 def warn_of_supports(pair: GearPair, cycles: Sequence[LoadedStanding]) -> None:

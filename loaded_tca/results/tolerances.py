@@ -22,6 +22,8 @@ OF_RELIEF_ENDS = 10.0
 """The same, so many times as large, where a relief starts or how long it is."""
 OF_THE_TORQUE = 0.01
 """Standard deviation of the torque, as a part of the largest."""
+APEX = "pair.apex_offset_mm"
+"""Of double helical pairs."""
 TWICE = "misalignment_um"
 """Mounting error that adds to another one, which would count twice with it."""
 
@@ -37,7 +39,8 @@ def default_tolerances(scene: Scene, keys: Iterable[str] | None = None) -> dict[
     scene : Scene
     keys : iterable of str, optional
         As of ``scene.with_changes``. Default: all modifications that the gears have, with the starts and lengths of
-        reliefs, all mounting errors, and the torque. Of those that add to each other (``mounting.misalignment_um`` to
+        reliefs, all mounting errors, of double helical pairs the modifications of half b and the apex offset, and the
+        torque. Of those that add to each other (``mounting.misalignment_um`` to
         ``mounting.out_of_plane_deg``) only one is among them.
 
     Returns
@@ -58,11 +61,19 @@ def _varied(scene: Scene) -> list[str]:
     """Modifications that the gears have, mounting errors and the torque."""
     keys = []
     for gear in GEARS:
-        for name, value in contents(getattr(scene, gear).modifications).items():
-            if isinstance(value, Real) and value and name.rpartition("_")[2] in USUAL:
-                keys.append(f"{gear}.modifications.{name}")
-    keys += [f"mounting.{name}" for name in contents(scene.mounting) if name != TWICE]
+        section = getattr(scene, gear)
+        for place, holder in (("", section), ("half_b.", getattr(section, "half_b", None))):
+            for name, value in {} if (own := getattr(holder, "modifications", None)) is None else contents(own).items():
+                if isinstance(value, Real) and value and name.rpartition("_")[2] in USUAL:
+                    keys.append(f"{gear}.{place}modifications.{name}")
+    keys += [f"mounting.{name}" for name, value in contents(scene.mounting).items() if _is_error(name, value)]
+    keys += [APEX] if hasattr(scene.geometry, "apex_offset_mm") else []
     return [*keys, TORQUE]
+
+
+def _is_error(name: str, value: object) -> bool:
+    """Whether a name of [mounting] is an error that counts once; the section of half b is none."""
+    return name != TWICE and isinstance(value, Real)
 
 
 def _usual(scene: Scene, key: str) -> float:

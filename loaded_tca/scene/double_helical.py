@@ -23,6 +23,7 @@ from loaded_tca.plain import plain
 from loaded_tca.scene import cylindrical
 from loaded_tca.scene.cylindrical import CylindricalScene, MountingErrors
 from loaded_tca.scene.flank_form import FlankForm
+from loaded_tca.scene.half_shafts import HalfLoads, fault_of_floating, shaft_of_half
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.parse import scene_from_table, variant
 from loaded_tca.scene.pitch import Pitch
@@ -43,14 +44,9 @@ ONE_BY_ONE = (
     "scene.half_scenes(0.0)"
 )
 SHARED = "found a torque of 0; allowed above 0: the halves share a torque"
-RIGID_AXES = (
-    "the gears stand on rigid axes, but for pair.floating and pair.axial_stiffness_N_per_um: a support takes the loads "
-    "of one mesh, and two load the gear; give misalignments as [mounting] and [mounting.half_b]"
-)
 NOT_OF_HALVES = {
     "tooth": "teeth have the flanks of their half; give the half by itself, as a helical pair",
-    "shaft": RIGID_AXES,
-    "support": RIGID_AXES,
+    "support": "a matrix takes the loads of one mesh at one place, and two halves load the gear at two; give the shaft",
 }
 """Sections of a gear that a double helical pair does not have, and why."""
 
@@ -208,6 +204,13 @@ class DoubleHelicalScene(CylindricalScene):
         rule(
             ("load.pinion_torque_Nm", "analysis.torques_Nm"), lambda torque, several: several or torque != 0.0, SHARED
         ),
+        *(
+            Rule(
+                (f"{gear}.shaft", "pair.floating"),
+                lambda shaft, floating, gear=gear: fault_of_floating(shaft) if floating == gear else None,
+            )
+            for gear in GEARS
+        ),
     )
 
     def __post_init__(self) -> None:
@@ -221,7 +224,10 @@ class DoubleHelicalScene(CylindricalScene):
         return first, second
 
     def half_scenes(
-        self, axial_mm: float, torques_Nm: Sequence[Sequence[float]] | None = None
+        self,
+        axial_mm: float,
+        torques_Nm: Sequence[Sequence[float]] | None = None,
+        loads: Sequence[Sequence[HalfLoads]] | None = None,
     ) -> tuple[CylindricalScene, CylindricalScene]:
         """Return the scenes of both halves, each with z from the groove outwards.
 
@@ -231,6 +237,8 @@ class DoubleHelicalScene(CylindricalScene):
             Where the wheel stands along the axis, positive towards half a: how far the faces lie beside each other.
         torques_Nm : two sequences of float [N m], optional
             Pinion torques of each half; default: halves of those of the scene.
+        loads : two sequences of HalfLoads, optional
+            Of each half on pinion and wheel, which load the shafts of the other half, too; default: none.
 
         Raises
         ------
@@ -241,17 +249,20 @@ class DoubleHelicalScene(CylindricalScene):
         scenes = []
         for half, name in enumerate(HALVES):
             with named(f"half {name}"):
-                scenes.append(self._half(half, axial_mm, tuple(torques[half])))
+                others = (None, None) if loads is None else loads[1 - half]
+                scenes.append(self._half(half, axial_mm, tuple(torques[half]), others))
         return scenes[0], scenes[1]
 
-    def _half(self, half: int, axial_mm: float, torques: tuple[float, ...]) -> CylindricalScene:
+    def _half(
+        self, half: int, axial_mm: float, torques: tuple[float, ...], others: Sequence[HalfLoads | None]
+    ) -> CylindricalScene:
         mounting = self.mounting_of_half(half, axial_mm)
         load = replace(self.load, pinion_torque_Nm=torques[-1], case=None)
         analysis = replace(self.analysis, torques_Nm=torques)
         title = f"{self.title}: half {HALVES[half]}".strip(": ")
         changes = {"title": title, "mounting": mounting, "load": load, "analysis": analysis}
         changes["rating"] = self.rating_of_halves
-        scene = scene_from_table({**contents(self), **self._gears_of_half(half), **changes})
+        scene = scene_from_table({**contents(self), **self._gears_of_half(half, others), **changes})
         assert isinstance(scene, CylindricalScene)
         pitches = {name: self._pitch_with_apex(scene, half, number) for number, name in enumerate(GEARS)}
         gears = {name: replace(getattr(scene, name), pitch=pitch) for name, pitch in pitches.items()}
@@ -270,21 +281,24 @@ class DoubleHelicalScene(CylindricalScene):
         index = index + pitch.index(gear.teeth, partial(scene.pitch_tolerances, number))
         return Pitch(index_um=tuple(index.tolist()), runout_um=pitch.runout_um, runout_phase_deg=pitch.runout_phase_deg)
 
-    def _gears_of_half(self, half: int) -> dict[str, Any]:
+    def _gears_of_half(self, half: int, others: Sequence[HalfLoads | None] = (None, None)) -> dict[str, Any]:
         """Sections of both gears of a half, and what they have in common."""
         sections = {"pair": {k: v for k, v in contents(self.geometry).items() if k not in OF_HALVES}}
-        for name, gear in zip(GEARS, (self.pinion, self.wheel), strict=True):
+        for name, gear, loads in zip(GEARS, (self.pinion, self.wheel), others, strict=True):
             own = {key: value for key, value in contents(gear).items() if not key.startswith("apex_runout")}
             of_half: HalfSection | None = own.pop("half_b")
             if half and of_half is not None:
                 own |= {section: value for section, value in contents(of_half).items() if value is not None}
+            if gear.shaft is not None:
+                floats = self.geometry.floating == name
+                own["shaft"] = shaft_of_half(gear.shaft, SIGNS[half], self.lever_of(gear), floats=floats, others=loads)
             sections[name] = own | {"face_width_mm": self.half_width(gear)}
         return sections
 
     def mounting_of_half(self, half: int, axial_mm: float) -> dict[str, float]:
         """Mounting errors of a half: of the whole wheel, which turns about the middle of its groove, and its own."""
-        sign, lever = SIGNS[half], self._wheel_lever
-        beside = sign * axial_mm + lever - 0.25 * (self.pinion.face_width_mm + self.geometry.gap_mm)
+        sign, lever = SIGNS[half], self.lever_of(self.wheel)
+        beside = sign * axial_mm + lever - self.lever_of(self.pinion)
         in_plane, out_of_plane = self.mounting.in_plane_deg, self.out_of_plane_deg
         apart = lever * math.sin(math.radians(in_plane)) * math.cos(math.radians(out_of_plane))
         own = contents(self.mounting.half_b) if half and self.mounting.half_b is not None else {}
@@ -327,10 +341,9 @@ class DoubleHelicalScene(CylindricalScene):
         """Face width of a half of the narrower gear [mm]."""
         return min(self.half_width(self.pinion), self.half_width(self.wheel))
 
-    @property
-    def _wheel_lever(self) -> float:
-        """Distance from the middle of the wheel's groove to the middle of the face of a half [mm]."""
-        return 0.25 * (self.wheel.face_width_mm + self.geometry.gap_mm)
+    def lever_of(self, gear: cylindrical.GearSection) -> float:
+        """Distance from the middle of the groove of a gear to the middle of the face of a half [mm]."""
+        return 0.25 * (gear.face_width_mm + self.geometry.gap_mm)
 
     @property
     def out_of_plane_deg(self) -> float:
@@ -359,7 +372,7 @@ class DoubleHelicalScene(CylindricalScene):
         """
         turning, drive = signs_of(self.driving, self.sense)
         across = turning * drive * math.cos(self.mesh().working_pressure_angle)
-        moved = -self._wheel_lever * math.sin(math.radians(self.out_of_plane_deg))
+        moved = -self.lever_of(self.wheel) * math.sin(math.radians(self.out_of_plane_deg))
         along = self.mounting.axial_offset_mm + self.geometry.apex_offset_mm
         whole = across * moved + self.axial_rate * along
         own = 0.0 if self.mounting.half_b is None else self.mounting.half_b.axial_offset_mm

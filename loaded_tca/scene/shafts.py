@@ -323,7 +323,11 @@ class ShaftLoadSection(Section):
 class ShaftSection(Section):
     """[pinion.shaft], [wheel.shaft]: what the gear sits on, instead of its support."""
 
-    start_mm: float = key(PLACE_mm, "lower end, in the axial coordinate of the gear: 0 at mid-face; bevel gears: apex")
+    start_mm: float = key(
+        PLACE_mm,
+        "lower end, in the axial coordinate of the gear: 0 at mid-face; double helical gears: in mid-groove; bevel "
+        "gears: apex",
+    )
     torque_at_mm: float = key(PLACE_mm, "where the torque enters or leaves: the rotation about the axis is given there")
     gear: str = key(
         Choice(("rigid", "along")),

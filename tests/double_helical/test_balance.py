@@ -49,9 +49,28 @@ def test_springs_share_by_their_stiffness_and_where_they_stand():
     assert_allclose(state.compliance, 1.0 / 5e5, rtol=CLOSE)
 
 
+@pytest.mark.parametrize("stiffness", [3e3, np.inf])
+def test_springs_on_one_shaft_are_the_solution_of_their_matrix(stiffness):
+    coupling = np.array([1e-6, 2e-6])
+    springs = [
+        HalfLaw(one.force, np.repeat(one.deflection, 2, 1), np.repeat(one.compliance, 2, 1), np.zeros(2))
+        for one in (spring(4e5), spring(1e5))
+    ]
+    parted = np.array([1e-3, 2e-3]), np.array([0.0, 1e-3])
+    state = shared(Halves((springs[0], springs[1]), parted, RATE, stiffness, coupling), np.array([1000.0]))
+    for n, c in enumerate(coupling):
+        # x = c_a F_a + c F_b + e_a + rate r, K r = rate (F_a - F_b), F_a + F_b = F: unknowns F_a, F_b, x
+        soft = RATE**2 / stiffness
+        matrix = [[1 / 4e5 + soft, c - soft, -1.0], [c - soft, 1 / 1e5 + soft, -1.0], [1.0, 1.0, 0.0]]
+        first, second, way = np.linalg.solve(matrix, [-parted[0][n], -parted[1][n], 1000.0])
+        assert_allclose(state.force[0, n], [first, second], rtol=CLOSE)
+        assert_allclose(state.approach[0, n], way, rtol=CLOSE)
+
+
+@pytest.mark.parametrize("coupling", [0.0, 1e-6])
 @pytest.mark.parametrize("stiffness", [0.0, 3e3, np.inf])
-def test_compliance_is_the_slope_of_the_approach(stiffness):
-    halves = Halves((power_law(2e-5), power_law(3e-5)), (0.002, -0.001), RATE, stiffness)
+def test_compliance_is_the_slope_of_the_approach(stiffness, coupling):
+    halves = Halves((power_law(2e-5), power_law(3e-5)), (0.002, -0.001), RATE, stiffness, coupling)
     total = np.array([1999.0, 2000.0, 2001.0])
     state = shared(halves, total)
     slope = (state.approach[2] - state.approach[0]) / 2.0

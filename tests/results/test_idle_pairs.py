@@ -20,6 +20,10 @@ MIDDLE = 1
 """Position at which one pair carries all, and both others nearly touch."""
 
 
+SOFT = tuple(tuple((3e-6 if i < 3 else 1e-9) * (i == j) for j in range(6)) for i in range(6))
+ON_SUPPORTS = {"pinion.support.compliance": SOFT}
+
+
 @cache
 def solved(name="mesh_cycle_helical", torque=60.0, **changes):
     usual = {"analysis.cells": (12, 16), "analysis.accuracy": None, "analysis.positions": 3}
@@ -35,10 +39,17 @@ def told(result, tolerances):
     return [one for one in sentences if kind_of(one) is kinds.PAIR_COMES_OR_GOES]
 
 
-@pytest.mark.parametrize("compliance", ["contact", pytest.param("contact+tooth", marks=pytest.mark.thorough)])
-def test_pair_comes_under_load_where_it_is_told_and_carries_no_more_than_is_told(compliance):
+@pytest.mark.parametrize(
+    "at",
+    [
+        {"analysis.compliance": "contact"},
+        pytest.param({"analysis.compliance": "contact+tooth"}, marks=pytest.mark.thorough),
+        pytest.param(ON_SUPPORTS, marks=pytest.mark.thorough),
+    ],
+    ids=["contact", "contact+tooth", "supports"],
+)
+def test_pair_comes_under_load_where_it_is_told_and_carries_no_more_than_is_told(at):
     """Less crowning closes the gap of the next pair by what the parabola is there."""
-    at = {"analysis.compliance": compliance}
     result = solved(**at)
     assert np.count_nonzero(result.load_share[0, MIDDLE]) == 1
     (sentence,) = told(result, {CROWNING: 3.0, TORQUE: 1.0})
@@ -74,6 +85,19 @@ def test_opening_closes_with_the_torque_as_the_gears_turn_on():
     turned = solved(torque=55.0).transmission_error - solved(torque=60.0).transmission_error
     assert_allclose(low.opening - high.opening, low.lever * turned[*low.places[:2]], rtol=1e-9)
     assert (low.opening > high.opening).all()
+
+
+def test_supports_move_idle_pairs_with_those_under_load():
+    """The pinion goes back by 6 um at the base circle; gaps beside the loaded contact change by the tilt alone."""
+    rigid, moved = solved(), solved(**ON_SUPPORTS)
+    driven = moved.gear_pair.base_radii[1] * (rigid.transmission_error - moved.transmission_error)
+    assert (driven > 0.006).all()
+    (soft,) = moved.sensitivities([CROWNING, TORQUE]).parts
+    opening, slopes = idle_pairs(soft).opening, idle_pairs(soft).slopes
+    assert_allclose(opening, idle_pairs(rigid.sensitivities([CROWNING, TORQUE])).opening, rtol=0.03)  # um of 1e-5 rad
+    # what the torque moves the gears by moves all pairs alike, in proportion to it: 60 N m
+    assert_allclose(slopes[1] * 60.0 * moved.gear_pair.base_radii[1], -driven.mean(), rtol=0.02)
+    assert len(told(moved, {CROWNING: 3.0, TORQUE: 1.0})) == 1
 
 
 def test_one_pair_alone_has_no_others_that_come():

@@ -13,6 +13,13 @@ from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.unloaded import trace_contact
 from tests.refusals import refusals
 
+RADIAL = {"radial_stiffness_N_per_um": 500.0}
+SHAFT = {
+    "start_mm": -100.0,
+    "torque_at_mm": -100.0,
+    "sections": [{"length_mm": 200.0, "outer_diameter_mm": 60.0}],
+}
+
 
 @pytest.fixture(scope="module")
 def scene():
@@ -130,7 +137,19 @@ test_refused = refusals(
     ({"analysis.torques_Nm": [0.0, 5.0]}, "analysis.torques_Nm: found a torque of 0; allowed above 0"),
     (
         {"wheel.support": {"stiffness": [[1e6 * (i == j) for j in range(6)] for i in range(6)]}},
-        "wheel.support: found a section; not allowed of halves: the gears stand on rigid axes, but for pair.floating",
+        "wheel.support: found a section; not allowed of halves: a matrix takes the loads of one mesh at one place",
+    ),
+    *(
+        (
+            {"pinion.shaft": {**SHAFT, "bearings": [{"at_mm": -90.0, **RADIAL}, {"at_mm": 90.0, **bearing}]}},
+            "pinion.shaft: found bearings at 90 mm that hold the floating gear along its axis; allowed are bearings "
+            "without axial stiffness or contact angle, with pair.axial_stiffness_N_per_um",
+        )
+        for bearing in (
+            {**RADIAL, "axial_stiffness_N_per_um": 1.0},
+            {"type": "ball", "balls": 9, "ball_diameter_mm": 16.0, "pitch_diameter_mm": 90.0},
+            {"stiffness": [[1e5 * (i == j) for j in range(6)] for i in range(6)]},
+        )
     ),
 )
 test_one_pair_of_two_halves_is_refused = refusals(

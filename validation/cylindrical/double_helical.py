@@ -10,6 +10,9 @@
 - A gear that floats follows an apex that runs out by R: by R/2 where the tooth meshes whose apex lies farthest out,
   less what the teeth in contact up to two pitches of 87 beside it leave, 1 - cos(360 deg 2/87) of them at the most:
   0.01. No axial force is left, 1e-9.
+- A shaft that can only twist, of the pinion of equal halves that are held, is a spring in the way of the half that is
+  farther from the torque: D(F_a) + 2 l r_b^2/(G I_p) F_a = D(F - F_a), D of one half under several torques. Grids of
+  halves differ from torque to torque by 1e-3 of D: 2e-3.
 """
 
 import math
@@ -17,6 +20,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import scipy
 
 from loaded_tca import AccuracyWarning, analyse, read_scene, trace_contact
 from loaded_tca.double_helical import (
@@ -32,12 +36,13 @@ SCENE = Path(__file__).parents[2] / "examples" / "scenes" / "double_helical.toml
 EQUAL = {"pinion.half_b": None, "pair.apex_offset_mm": 0.0, "pair.floating": "none"}
 OFFSET, SUPPORT = 0.005, 20.0  # mm, N/um
 RUNOUT = 20.0  # um
-SAME, TRACED, LINEAR, BALANCED, FOLLOWED = 1e-10, 1e-9, 3e-3, 1e-9, 0.01
+SHAFT, LEVER = 90.0, 30.0  # mm
+SAME, TRACED, LINEAR, BALANCED, FOLLOWED, TWISTED = 1e-10, 1e-9, 3e-3, 1e-9, 0.01, 2e-3
 
 
 def rows() -> list[Row]:
     """Rows of all."""
-    return [*unloaded_rows(), *equal_rows(), *floating_rows(), *revolution_rows()]
+    return [*unloaded_rows(), *equal_rows(), *floating_rows(), *shaft_rows(), *revolution_rows()]
 
 
 def short_rows() -> list[Row]:
@@ -121,6 +126,36 @@ def floating_rows() -> list[Row]:
             BALANCED,
         ),
     ]
+
+
+def shaft_rows() -> list[Row]:
+    """Equal halves on a shaft that can only twist, by two springs."""
+    held = {"radial_stiffness_N_per_um": 1e9, "axial_stiffness_N_per_um": 1e9, "tilting_stiffness_Nm_per_mrad": 1e9}
+    shaft = {
+        "start_mm": -100.0,
+        "torque_at_mm": -100.0,
+        "sections": [{"length_mm": 200.0, "outer_diameter_mm": SHAFT}],
+        "bearings": [{"at_mm": at, **held} for at in (-LEVER, LEVER)],
+    }
+    scene = scene_with(analysis__positions=1, analysis__compliance="contact").with_changes(EQUAL)
+    assert isinstance(scene, DoubleHelicalScene)
+    on_shaft = scene.with_changes({"pinion.shaft": shaft})
+    assert isinstance(on_shaft, DoubleHelicalScene)
+    share = float(result_of(on_shaft).torque_share[0, 0, 0])
+    torques = [200.0, 350.0, 500.0, 650.0, 800.0, 950.0, 1100.0, 1250.0, 1400.0]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        half = analyse(scene.half_scenes(0.0, 2 * [torques])[0])
+    pair = half.gear_pair
+    ways = -pair.driving * pair.base_radii[1] * half.transmission_error[:, 0]
+    deflection = scipy.interpolate.CubicSpline(half.torque / pair.base_radii[0], ways)
+    twist = 2.0 * LEVER * pair.base_radii[0] ** 2 / (206000.0 / 2.6 * math.pi / 32.0 * SHAFT**4)
+    whole = scene.torques[0] / pair.base_radii[0]
+    force = scipy.optimize.brentq(
+        lambda first: deflection(first) + twist * first - deflection(whole - first), 0.2 * whole, 0.5 * whole
+    )
+    what = f"share of half a, {2.0 * LEVER:g} mm of a shaft of {SHAFT:g} mm farther from the torque"
+    return [Row(CASE, FORM, what, force / whole, share, TWISTED)]
 
 
 def revolution_rows() -> list[Row]:
