@@ -132,7 +132,8 @@ class ToothCycle:
         sample = excess(self.sampled(index, teeth))
         rows = np.flatnonzero(np.diff(sample <= 0.0))
         rows = np.stack([rows, rows + 1])
-        roots = find_roots(lambda own, _: excess(self.heights(own, teeth)), self.step * index[rows].astype(float), sample[rows], EDGE)
+        near = self.step * index[rows].astype(float)
+        roots = find_roots(lambda own, _: excess(self.heights(own, teeth)), near, sample[rows], EDGE)
         return float((roots[1::2] - roots[::2]).sum()) / self.pair.pitch
 
     def changes(self, low: float, high: float, teeth: Indices) -> tuple[Array, Indices]:
