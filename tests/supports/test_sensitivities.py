@@ -191,6 +191,7 @@ def test_load_along_the_face_changes_as_in_whole_analyses() -> None:
         )
 
 
+@pytest.mark.quick_cases("helical")
 @pytest.mark.parametrize("name", ["spur", "helical"])
 def test_derivatives_from_a_file_are_those_of_the_analysis(tmp_path: Any, torques: MeshCycle, name: str) -> None:
     """Of teeth that bend, and of three torques with zero among them."""
