@@ -27,14 +27,16 @@ LONG = ("tests/test_site.py", "tests/test_examples.py", "tests/test_release.py",
 """Files with tests of several seconds."""
 DEAR_EXAMPLES = (
     "loaded_tca.baselines.bidirectional.BidirectionalStart",
+    "loaded_tca.baselines.conventional.solve_conventional",
     "loaded_tca.baselines.golden_section.search_golden_section",
+    "loaded_tca.compliance.compliance.tooth_compliance",
     "loaded_tca.compliance.root_stress.root_stress_model",
     "loaded_tca.flanks.hypoid_synthesis.synthesised_gears",
     "loaded_tca.reports.report.write_html_report",
     "loaded_tca.scene.face_milled.hypoid_table",
     "loaded_tca.studies.run.process_pool",
 )
-"""Of docstrings, of more than a second: thorough."""
+"""Of docstrings, of three quarters of a second and more: thorough."""
 TESTS = pytest.StashKey[dict[str, bool]]()
 """Of each test that is collected whether make test runs a case of it."""
 

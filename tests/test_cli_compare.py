@@ -27,6 +27,7 @@ def compared(out="out"):
     return json.loads(Path(out, "comparison.json").read_text(encoding="utf-8"))
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_compare_writes_table_and_pictures_and_tells_the_differences(run):
     saved("plain")
     saved("crowned", **{"pinion.modifications.lead_crowning_um": 7.5})

@@ -56,11 +56,9 @@ EXPECTED = {
 
 QUICK = (
     "plot_subsurface_stress",
-    "plot_contact_pattern",
     "plot_bevel_pressure",
     "plot_ease_off",
     "plot_measured_settings",
-    "plot_bidirectional_start",
     "plot_teeth_in_mesh",
 )
 """Of half a second. The others are analyses and pictures that the tests of their folders have on fewer cells."""

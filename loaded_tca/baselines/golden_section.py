@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array, Mask, finite_row
+from loaded_tca.arrays import Array, Indices, Mask, finite_row
 from loaded_tca.errors import ConvergenceError, GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plain import plain
@@ -148,12 +148,12 @@ class _Search:
         self.pair, self.phi1, self.sections = pair, phi1, sections
         self.evaluations = 0
 
-    def points(self, rows: Array, rho: Array, z: Array) -> Array:
+    def points(self, rows: Indices, rho: Array, z: Array) -> Array:
         """Points of the pinion flank in the fixed frame (k, 3) [mm]."""
         theta = self.pair.pinion.flank.theta(rho, z).value + self.pair.sense * self.phi1[rows]
         return np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=-1)
 
-    def gap(self, rows: Array, phi2: Array, rho: Array, z: Array) -> Array:
+    def gap(self, rows: Indices, phi2: Array, rho: Array, z: Array) -> Array:
         """Signed distance of the points from the wheel flank, and the penalty beyond the edges (k,) [mm]."""
         self.evaluations += 1
         flank = self.pair.wheel.flank
@@ -175,7 +175,7 @@ class _Search:
 
         return self._lowest(rows, beyond)[0] <= COVERED * self.pair.pinion.flank.extent[0]
 
-    def narrowest(self, rows: Array, phi2: Array) -> tuple[Array, Array, Array]:
+    def narrowest(self, rows: Indices, phi2: Array) -> tuple[Array, Array, Array]:
         """Smallest gap at the wheel angles (k,) [mm], and where on the pinion flank: rho, z (k,) [mm]."""
         return self._lowest(rows, lambda rho, z: self.gap(rows, phi2, rho, z))
 
@@ -183,7 +183,7 @@ class _Search:
         edges = [*self.pair.pinion.flank.edges(rho, z), *self.pair.wheel.flank.edges(radius, axial)]
         return np.asarray(sum(np.maximum(0.0, -edge.value) for edge in edges))
 
-    def _lowest(self, rows: Array, function: Callable[[Array, Array], Array]) -> tuple[Array, Array, Array]:
+    def _lowest(self, rows: Indices, function: Callable[[Array, Array], Array]) -> tuple[Array, Array, Array]:
         """Minimum over the flank, and rho, z: sections along the profile inside one along the face."""
         corners = [np.full((len(rows), part.size), part.ravel()) for part in self.pair.pinion.flank.grid(2, 2)]
         ends = [(part.min(axis=1), part.max(axis=1)) for part in corners]
@@ -210,7 +210,7 @@ def _golden(function: Callable[[Array], Array], low: Array, high: Array, section
     return np.where(falls, right, left), np.where(falls, at_right, at_left)
 
 
-def _close(search: _Search, rows: Array) -> tuple[Array, Array]:
+def _close(search: _Search, rows: Indices) -> tuple[Array, Array]:
     """Wheel angles (k,) [rad] at which the smallest gap vanishes, and what is left of it (k,) [mm]: regula falsi."""
     pair, phi1 = search.pair, search.phi1[rows]
     turned = FULL_TURN * np.round(phi1 / FULL_TURN)  # whole turns bring the same tooth of the pinion back

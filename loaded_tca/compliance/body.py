@@ -313,7 +313,7 @@ def factorised(
     free[held[held >= 0]] = False
     matrices, places = mesh.stiffness(material), mesh.lowest // 2
     places[:, 2:] -= places[:, 2:] % 2  # no cut through an element that is twice as thick
-    used = matrices.astype(np.float32) if single else matrices
+    used = np.asarray(matrices, dtype=np.float32 if single else float)
     return factorise(used, mesh.dofs, places, free.ravel(), kinds=mesh.kinds, blocks=blocks), matrices
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.love import influence_coefficients
@@ -312,7 +312,7 @@ class _Filter:
             self._make = functools.partial(_LargeTransform, rows, box, dtype, threads)
         self._transform = _cache.idle(self._key, self._make)
 
-    def __call__(self, values: Array, out: Array, rows: Rows = ALL) -> Array:
+    def __call__(self, values: NDArray[Any], out: NDArray[Any], rows: Rows = ALL) -> NDArray[Any]:
         """Write the product (count, nx, ny) into ``out`` and return it; of the problems ``rows`` of the stack."""
         if self._transform.in_use:
             self._transform = _cache.idle(self._key, self._make)

@@ -170,7 +170,7 @@ class Descent:
                 if not left.size:
                     return
                 self._keep(left)
-                state = Judgement(*(values[left] for values in state))
+                state = Judgement(state.approach[left], state.residual[left], state.free[left])
                 tolerance, limit = tolerance[left], limit[left]
             self._iterate(state)
             if (step + 1) % REFRESH == 0:
@@ -196,7 +196,9 @@ class Descent:
     def _convolved(self, values: Single, rows: Indices) -> Single:
         """Displacement of values of some of the problems in single precision; it stands until the next."""
         self._used[self._chosen(rows)] += 1
-        return self._fast(values, self._image[: rows.size], self._places(rows))
+        image = self._image[: rows.size]
+        self._fast(values, image, self._places(rows))
+        return image
 
     def _places(self, rows: Rows = ALL) -> Rows:
         """Rows as they are counted at the start."""

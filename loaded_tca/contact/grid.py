@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.convolution import ALL, Convolution, Preconditioner, Rows, Window
@@ -46,7 +48,7 @@ def with_cap(pressure: Array, cap: float | Array) -> Array:
     return np.where((pressure > 0.0) & (pressure >= (1.0 - AT_BOUND) * cap), cap, pressure)
 
 
-def total_of(values: Array) -> Array:
+def total_of(values: NDArray[Any]) -> NDArray[Any]:
     """Sum over the cells of every problem, (count, 1, 1)."""
     return np.add.reduce(values, axis=CELLS, keepdims=True)
 

@@ -174,7 +174,7 @@ class PressedArc:
     def peak(self, solution: GradedSolution, low: float) -> EdgePressure:
         """The peak at this edge."""
         problem, pressure = solution.problem, solution.pressure
-        x, y = low + problem.spacing * (np.arange(len(pressure)) + 0.5), problem.middles
+        x, y = low + problem.spacing * (np.arange(len(pressure), dtype=float) + 0.5), problem.middles
         beyond = (x - self.edge[0])[:, None] * self.normal[0] + (y - self.edge[1]) * self.normal[1]
         along = 0.5 * np.abs(self.normal[0]) * problem.spacing + 0.5 * np.abs(self.normal[1]) * problem.widths
         reached = (beyond + along)[pressure > 0.0]
@@ -227,7 +227,7 @@ def _growth_at_slope_jump(problem: GradedProblem, row: int, column: int) -> floa
 
     Beside a line on which the slope jumps by J a half-space has the pressure E* J/(2 pi) ln(1/s), which has no limit.
     """
-    x = problem.spacing * np.arange(problem.cells[0])
+    x = problem.spacing * np.arange(problem.cells[0], dtype=float)
     jump = math.hypot(slope_jump(x, problem.gap[:, column], row), slope_jump(problem.middles, problem.gap[row], column))
     return growth(jump, problem.contact_modulus)
 

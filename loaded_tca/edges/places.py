@@ -69,7 +69,7 @@ def arcs_at(pair: GearPair, points: Array) -> Mask:
     return np.asarray(lengths_past_tangents(pair, *pair.on_flanks(points)) > 0.0)
 
 
-def dilated(cells: Array | np.bool, steps: int = 1) -> Mask:
+def dilated(cells: Mask | np.bool, steps: int = 1) -> Mask:
     """Some cells (nx, ny, ...) of a grid, and those so many steps away from one of them."""
     wider = np.array(cells, dtype=bool)
     for axis in steps * (0, 1):

@@ -197,7 +197,7 @@ class _Rays:
 
         Edges are counted from 1, the pinion's first; 0: the compound.
         """
-        ends = self._ends(np.arange(rays + 1) * (2.0 * math.pi / rays))
+        ends = self._ends(np.arange(rays + 1, dtype=float) * (2.0 * math.pi / rays))
         low = np.arange(rays)
         for _ in range(MOST_HALVINGS):
             (turn, _, x, y, edge), rows = ends, np.stack([low, low + 1])

@@ -33,7 +33,7 @@ from typing import Any, Literal, cast, get_args
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import GEARS, Array, GearName
+from loaded_tca.arrays import GEARS, Array, GearName, Mask
 from loaded_tca.errors import (
     InputError,
     named,
@@ -187,7 +187,7 @@ class SettingsFit:
     effect: float
 
     @property
-    def at_limit(self) -> Array:
+    def at_limit(self) -> Mask:
         """Whether a correction is as large as allowed, (k,)."""
         return np.abs(self.corrections) >= self.limits * (1.0 - 1e-12)
 

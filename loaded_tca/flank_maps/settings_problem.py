@@ -14,7 +14,7 @@ import scipy
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import GEARS, Array, GearName
+from loaded_tca.arrays import GEARS, Array, GearName, Mask
 from loaded_tca.errors import ConvergenceError, GeometryError, InputError, give_accuracy_warning, named, require
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.setting_slopes import cut_at, setting_of, with_settings
@@ -123,7 +123,7 @@ OFF_EDGE = 1e-6
 """Part of the flank's height and width by which points on its edges may miss them."""
 
 
-def _beside(nominal: Flank, topography: Topography, inside: Array) -> str:
+def _beside(nominal: Flank, topography: Topography, inside: Mask) -> str:
     worst = np.unravel_index(int(np.argmin(nominal.room(topography.radius, topography.axial))), inside.shape)
     place = nominal.frame.place(float(topography.radius[worst]), float(topography.axial[worst]))
     room = -float(nominal.room(topography.radius, topography.axial)[worst])
@@ -276,7 +276,7 @@ class SettingsProblem:
             errors * self.factors,
         )
 
-    def deviation(self, errors: Array, left: Array, fixed: Array) -> Array:
+    def deviation(self, errors: Array, left: Array, fixed: Mask) -> Array:
         """Standard deviations of the errors by what is left, as noise; zero of those that are fixed.
 
         NaN where there are no more points than unknowns, which leave nothing.

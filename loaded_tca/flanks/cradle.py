@@ -40,7 +40,7 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.flanks.base import Jet
 from loaded_tca.gears.face_milled import BLADE_SIGNS, Blade, FlankName, MachineSettings
 
@@ -121,10 +121,10 @@ class GeneratedPoints:
     cradle: Array
     height: Array
     sharpness: Array
-    converged: Array
+    converged: Mask
 
     @property
-    def found(self) -> Array:
+    def found(self) -> Mask:
         """Whether there is such a point of the flank: no undercut edge lies above it."""
         return self.converged & (self.sharpness > 0.0)
 

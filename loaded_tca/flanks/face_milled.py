@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import ConeFrame, Jet, Region
 from loaded_tca.flanks.bevel import NODES, ToothRegion, chebyshev_nodes, face_cone_angles
@@ -195,7 +195,7 @@ class GeneratedFlank(ToothRegion):
             "blade_angle or edge_radius"
         )
 
-    def _not_cut(self, distance: Array, angle: Array, cut: Array) -> GeometryError:
+    def _not_cut(self, distance: Array, angle: Array, cut: Mask) -> GeometryError:
         """What to say of points that the cutter does not reach."""
         worst = int(np.argmin(cut))
         missing = f"{int((~cut).sum())} of {cut.size} points of the flank"

@@ -52,7 +52,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array, OtherKindError, numbers, shown
+from loaded_tca.arrays import Array, Indices, OtherKindError, numbers, shown
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.measured_columns import LINES, along_normals, flank_of_lines, runs_lengthwise_first
@@ -251,7 +251,7 @@ def _factors(line: int, header: Sequence[str]) -> list[tuple[str, float]]:
     return factors
 
 
-def _given_order(count: int, points: str) -> tuple[tuple[int, int], Array]:
+def _given_order(count: int, points: str) -> tuple[tuple[int, int], Indices]:
     """Shape (profile, lengthwise) of a grid that a comment tells, and the order in which ``count`` rows fill it."""
     match = re.fullmatch(r"(\d{1,9})\s*x\s*(\d{1,9})", points, re.ASCII)
     if match is None:
@@ -263,7 +263,7 @@ def _given_order(count: int, points: str) -> tuple[tuple[int, int], Array]:
     return shape, np.arange(count).reshape(shape[::-1]).T.ravel()
 
 
-def _order_by_indices(names: Sequence[str], profile: Array, lengthwise: Array) -> tuple[tuple[int, int], Array]:
+def _order_by_indices(names: Sequence[str], profile: Array, lengthwise: Array) -> tuple[tuple[int, int], Indices]:
     """Shape (profile, lengthwise) of a grid with these indices, and the order of the rows in which they fill it."""
     fractions = [(name, at[at != np.round(at)]) for name, at in zip(names, (profile, lengthwise), strict=True)]
     problems = [

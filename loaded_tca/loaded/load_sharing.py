@@ -482,6 +482,7 @@ class _Balance:
         for index, loaded in self._loaded():
             if forces[index] > 0.0 and loaded.coupling_deflection is not None:
                 now = self._coupling(index, forces, loaded.separation)
+                assert now is not None  # as when it was solved
                 moved = (now - loaded.coupling_deflection)[loaded.slice_force > 0.0]
                 if np.ptp(moved) > SETTLED * allowed[index]:
                     return False

@@ -127,5 +127,5 @@ class Block:
         """Forces [N] that move the cells by nearly these displacements [mm]."""
         given = np.zeros(self._shape, dtype=np.float32)
         given.ravel()[self._at] = self._root * residual
-        pressure = self._inverse(given, np.empty(self._shape, dtype=np.float32)).ravel()[self._at]
+        pressure = self._inverse(given, np.empty_like(given)).ravel()[self._at]
         return np.asarray(self._unit * self._root * pressure)

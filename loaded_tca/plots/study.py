@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import InputError
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
@@ -255,9 +255,9 @@ def plot_study_heat_map(
     return drawing
 
 
-def _samples_of_cells(rows: Array, columns: Array, shape: tuple[int, int]) -> list[list[Array]]:
+def _samples_of_cells(rows: Indices, columns: Indices, shape: tuple[int, int]) -> list[list[Indices]]:
     """Numbers of the samples in each cell (rows, columns): each sample once, whatever the number of cells."""
-    cells = rows.astype(int) * shape[1] + columns.astype(int)
+    cells = rows * shape[1] + columns
     order = np.argsort(cells, kind="stable")
     ends = np.searchsorted(cells[order], np.arange(math.prod(shape) + 1))
     return [[order[ends[k] : ends[k + 1]] for k in range(i * shape[1], (i + 1) * shape[1])] for i in range(shape[0])]

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import InputError
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
@@ -73,7 +73,7 @@ def column_of(study: xarray.Dataset, key: str) -> tuple[Array, list[str] | None]
     return places.astype(float), [str(word) for word in words]
 
 
-def steps_of(study: xarray.Dataset, key: str) -> tuple[Array, list[str]]:
+def steps_of(study: xarray.Dataset, key: str) -> tuple[Indices, list[str]]:
     """Which of its values, in ascending order, a key has in each sample, and the values as text."""
     column, words = column_of(study, key)
     steps, places = np.unique(column, return_inverse=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import GEARS, Array, Mask, index_checks
+from loaded_tca.arrays import GEARS, Array, Indices, Mask, index_checks
 from loaded_tca.errors import require
 from loaded_tca.plain import plain
 from loaded_tca.rating.roots import local_root_factors, stress_ratio
@@ -39,8 +39,8 @@ class FlankSafeties:
     tangent: Array
     radius: Array
     axial: Array
-    position: Array
-    column: Array
+    position: Indices
+    column: Indices
 
     def deciding(self, gear: int) -> int:
         """Index of the slice with the smallest safety of a gear."""

@@ -92,12 +92,12 @@ class SolvedLoads:
         exact = self._of(nearest)
         if np.array_equal(exact.torque, torques):
             return exact
-        roots: dict[str, Array] = {}
+        parts: dict[str, Any] = {name: self._between(getattr(self, name), torques) for name in FACTORS}
         if self.mate_stress_ratios is not None:
-            roots["mate_stress_ratios"] = self._straight(self.mate_stress_ratios, torques)
+            parts["mate_stress_ratios"] = self._straight(self.mate_stress_ratios, torques)
         if self.root_tension is not None and self.root_stress_ratio is not None:
             assert self.largest_root_tension is not None
-            roots |= {
+            parts |= {
                 "root_tension": self._between(self.root_tension, torques, OF_ROOT),
                 "largest_root_tension": self._between(self.largest_root_tension, torques, OF_ROOT),
                 "root_stress_ratio": self._straight(self.root_stress_ratio, torques),
@@ -105,12 +105,11 @@ class SolvedLoads:
         return replace(
             exact,
             torque=torques,
-            **{name: self._between(getattr(self, name), torques) for name in FACTORS},
             pressure=self._between(self.pressure, torques, OF_FLANK),
             excitation={
                 name: self._straight(values[:, None], torques)[:, 0] for name, values in self.excitation.items()
             },
-            **roots,
+            **parts,
         )
 
     def every_second(self, first: int = 0) -> SolvedLoads:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes
     from typing import BinaryIO
 
     import xarray
+    from numpy.typing import NDArray
 
     from loaded_tca.arrays import Array
 
@@ -263,7 +264,7 @@ def _loaded(file: BinaryIO) -> xarray.Dataset:
     return dataset
 
 
-def _shared(texts: Array) -> Array:
+def _shared(texts: NDArray[Any]) -> NDArray[Any]:
     """The same texts, those that are alike one object in memory."""
     same: dict[str, str] = {}
     shared = [same.setdefault(text, text) for text in texts.ravel()]

@@ -414,7 +414,7 @@ def _tilting(tilts: Array) -> Array:
 
 def _to_middle(support: Support) -> Array:
     """Matrix (6, 6 m) of ``Support.at_middle``."""
-    return np.kron(support.shares(np.array([support.middle])), np.eye(6))
+    return np.asarray(np.kron(support.shares(np.array([support.middle])), np.eye(6)), dtype=float)
 
 
 def _directions(motions: Array, whole: Array, lever: float) -> tuple[Array, Array]:

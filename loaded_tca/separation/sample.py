@@ -27,7 +27,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
@@ -51,7 +51,7 @@ SLIVER = 0.01
 
 
 @checked
-def slice_middles(x: Array, pressure: Array) -> tuple[Array, Array]:
+def slice_middles(x: Array, pressure: Array) -> tuple[Indices, Array]:
     """Slices of a grid that carry load, and where across the contact the middle of their pressure lies.
 
     Parameters

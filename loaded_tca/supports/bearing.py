@@ -22,7 +22,7 @@ import numpy as np
 import scipy
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array, keep_copies
+from loaded_tca.arrays import Array, Indices, keep_copies
 from loaded_tca.errors import InputError
 
 
@@ -120,7 +120,7 @@ class Seat(NamedTuple):
         return np.asarray(reaction.tangent + LOOSE * self.bearing.joint)
 
 
-def solved(stiffness: Array, loads: Array, free: Array) -> Array:
+def solved(stiffness: Array, loads: Array, free: Indices) -> Array:
     """Motions under loads, over all nodes; those that are not ``free`` (indices) are zero.
 
     Motions are scaled to a stiffness of one each: mm stand beside rad, soft ones beside stiff ones.
@@ -133,7 +133,7 @@ def solved(stiffness: Array, loads: Array, free: Array) -> Array:
     return motions
 
 
-def balanced(stiffness: Array, load: Array, free: Array, seats: Sequence[Seat]) -> tuple[Array, list[Reaction]]:
+def balanced(stiffness: Array, load: Array, free: Indices, seats: Sequence[Seat]) -> tuple[Array, list[Reaction]]:
     """Motion of the least energy under a load, and what the bearings do there.
 
     Parameters
@@ -179,7 +179,7 @@ class _State(NamedTuple):
 class _Whole:
     """A shaft with its bearings under a load."""
 
-    def __init__(self, stiffness: Array, load: Array, free: Array, seats: Sequence[Seat]) -> None:
+    def __init__(self, stiffness: Array, load: Array, free: Indices, seats: Sequence[Seat]) -> None:
         self.stiffness, self.load, self.free, self.seats = stiffness, load, free, seats
         self.joints = self._with_bearings([seat.bearing.joint for seat in seats])
         self.roots = np.sqrt(self.joints.diagonal()[free])

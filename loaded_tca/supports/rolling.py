@@ -109,7 +109,7 @@ class RollingBearing(ABC):
     @cached_property
     def angles(self) -> Array:
         """Places of the elements around the ring (n,) [rad], from the gear's x axis on towards y."""
-        return 2.0 * math.pi / self.elements * np.arange(self.elements)
+        return 2.0 * math.pi / self.elements * np.arange(self.elements, dtype=float)
 
     @property
     def gamma(self) -> float:

@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.flanks.base import Jet, weighted_sum
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 
@@ -125,7 +125,7 @@ class EaseOff:
         the side on which a point lies. Its shape broadcasts against the points.
     """
 
-    def __init__(self, pair: GearPair, beyond: Array | None = None) -> None:
+    def __init__(self, pair: GearPair, beyond: Mask | None = None) -> None:
         self.pair = pair
         self.beyond = beyond if beyond is not None and beyond.shape[-1] else None
 
@@ -138,7 +138,7 @@ class EaseOff:
         of_pinion = len(flank.relief_starts(*flank.grid(2, 2)))
         return of_pinion, self.beyond.shape[-1] - of_pinion
 
-    def sides(self, phi1: Array, rho: Array, z: Array) -> Array:
+    def sides(self, phi1: Array, rho: Array, z: Array) -> Mask:
         """On which side of each relief start the points (n,) lie: (n, relief starts) bool, the pinion's first."""
         station = self.station(phi1, rho, z)
         of_pinion = self.pair.pinion.flank.relief_starts(station.rho, station.z)
@@ -230,7 +230,7 @@ class EaseOff:
         """0 for an edge of the pinion, 1 for one of the wheel, in the order of ``edges``."""
         return np.repeat([0, 1], [4 + count for count in self._relief_starts])
 
-    def edge_is_relief_start(self) -> Array:
+    def edge_is_relief_start(self) -> Mask:
         """Whether each entry of ``edges`` is a relief start."""
         return np.concatenate([np.arange(4 + count) >= 4 for count in self._relief_starts])
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import FEASIBLE, solve_pairs
 
@@ -53,8 +53,8 @@ class Lines:
         Its ends in the fixed frame, the one at the smaller z first.
     """
 
-    rows: Array
-    flat: Array
+    rows: Indices
+    flat: Indices
     rho: Array
     z: Array
     ends: Array
@@ -118,7 +118,7 @@ class _Ridge:
         heights = [self.field.heights(self.phi1, *where.T)[0] for where in (self.start, points)]
         return heights[0] - heights[1]
 
-    def ends(self) -> tuple[Array, Array, Array]:
+    def ends(self) -> tuple[Array, Array, Mask]:
         """Where the ridge leaves the region on either side, (m, 2) each, and whether both ends were found."""
         count, edges = len(self.phi1), len(self.field.edge_owner())
         every = self._only(np.repeat(np.arange(count), edges))
@@ -164,7 +164,7 @@ class _Ridge:
         inside = distances.min(axis=-1, initial=np.inf) >= -FEASIBLE * extent[1]
         return x, inside & (residual <= FEASIBLE * extent[1])
 
-    def _only(self, rows: Array) -> _Ridge:
+    def _only(self, rows: Indices) -> _Ridge:
         """Some of the ridges, or some of them often."""
         parts = (part[rows] for part in (self.phi1, self.start, self.along, self.multipliers))
         return _Ridge(self.field.restricted(rows), *parts)

@@ -17,7 +17,7 @@ from itertools import combinations
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 
 PARALLEL = 1e-9
@@ -83,7 +83,7 @@ class Quadratic:
     slopes: Array
     bend: Array
 
-    def only(self, rows: Array) -> Quadratic:
+    def only(self, rows: Indices | Mask) -> Quadratic:
         """Some of the problems."""
         parts = (self.gradient, self.curvature, self.edges, self.slopes, self.bend)
         return Quadratic(*(part[rows] for part in parts))
@@ -215,7 +215,7 @@ class Maxima:
     iterations: Array
     converged: Array
 
-    def only(self, rows: Array) -> Maxima:
+    def only(self, rows: Indices | Mask) -> Maxima:
         """Some of the ascents."""
         return Maxima(*(getattr(self, one.name)[rows] for one in fields(Maxima)))
 
@@ -292,7 +292,7 @@ def _advance(
     """Points after the longest step, halved as often as needed, that does not lower the merit; the share accepted."""
     scale = np.asarray(field.pair.pinion.flank.extent)
 
-    def merit(rows: Array, trial: Array) -> tuple[Array, Array]:
+    def merit(rows: Indices, trial: Array) -> tuple[Array, Array]:
         value, edges = field.restricted(rows).heights(phi1[rows], *(trial * scale).T)
         return value - penalty[rows] * np.maximum(0.0, -edges).sum(axis=-1), edges
 
@@ -358,7 +358,7 @@ def _back_to_ridge(field: EaseOff, phi1: Array, points: Array, multipliers: Arra
 
 
 def _propose(
-    field: EaseOff, here: _Local, multipliers: Array, scale: Array, plain: tuple[Array, Array]
+    field: EaseOff, here: _Local, multipliers: Array, scale: Array, plain: tuple[Mask, Mask]
 ) -> tuple[Array, Array]:
     """Step (n, 2) of the quadratic model within the linearised edges, and its multipliers (n, edges).
 

@@ -8,9 +8,10 @@ from piece to piece. A contact that rests on a relief start is thus found like o
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import ConvergenceError
@@ -62,7 +63,7 @@ class FirstTouch:
     z: Array
     value: Array
     multipliers: Array
-    beyond: Array
+    beyond: Mask
     iterations: Array
     in_contact: Array
 
@@ -246,7 +247,7 @@ class _Ascents(NamedTuple):
     """Ascents with the position each belongs to and the smooth piece it stayed on."""
 
     owner: Indices
-    beyond: Array
+    beyond: Mask
     peaks: Maxima
 
 
@@ -266,7 +267,7 @@ def _ascend(pair: GearPair, phi1: Array, owner: Indices, rho: Array, z: Array) -
     return climbs
 
 
-def _crossings(multipliers: Array, last: Array) -> tuple[Array, Array]:
+def _crossings(multipliers: Array, last: Indices) -> tuple[Indices, Indices]:
     """Rows of ascents that are held by a relief start other than the last one they crossed, and that relief start."""
     held = (multipliers > 0.0) & (np.arange(multipliers.shape[1]) != last[:, None])
     row, relief_start = np.nonzero(held)
@@ -291,7 +292,7 @@ def _best(phi1: Array, climbs: list[_Ascents]) -> FirstTouch:
     return FirstTouch(**parts, value=best, beyond=beyond, in_contact=np.isfinite(best))
 
 
-def spread(part: Array, rows: Indices, count: int) -> Array:
+def spread(part: NDArray[Any], rows: Indices, count: int) -> NDArray[Any]:
     """Rows of an array of ``count`` rows; the others NaN, False or zero."""
     full = np.full((count, *part.shape[1:]), np.nan if part.dtype.kind == "f" else 0, dtype=part.dtype)
     full[rows] = part

@@ -86,7 +86,7 @@ class ToothCycle:
     @cached_property
     def own(self) -> Array:
         """Own pinion angles of the samples [rad]."""
-        return self.step * (self.first + np.arange(len(self.height)))
+        return self.step * (self.first + np.arange(len(self.height), dtype=float))
 
     def heights(self, angle: Array, teeth: Indices) -> Array:
         """Heights (m, n) [mm] of the tooth pairs (m,) at pinion angles (n,); -inf out of reach."""
@@ -132,7 +132,8 @@ class ToothCycle:
         sample = excess(self.sampled(index, teeth))
         rows = np.flatnonzero(np.diff(sample <= 0.0))
         rows = np.stack([rows, rows + 1])
-        roots = find_roots(lambda own, _: excess(self.heights(own, teeth)), self.step * index[rows], sample[rows], EDGE)
+        near = self.step * index[rows].astype(float)
+        roots = find_roots(lambda own, _: excess(self.heights(own, teeth)), near, sample[rows], EDGE)
         return float((roots[1::2] - roots[::2]).sum()) / self.pair.pitch
 
     def changes(self, low: float, high: float, teeth: Indices) -> tuple[Array, Indices]:
@@ -173,7 +174,7 @@ def tooth_cycle(pair: GearPair) -> ToothCycle:
     """
     low, high = (angle / pair.pitch * SAMPLES for angle in reach(pair))
     index = np.arange(math.floor(low), math.ceil(high) + 1)
-    return ToothCycle(pair, int(index[0]), *height_and_slope(pair, index * (pair.pitch / SAMPLES)))
+    return ToothCycle(pair, int(index[0]), *height_and_slope(pair, index.astype(float) * (pair.pitch / SAMPLES)))
 
 
 def reach(pair: GearPair, farthest: float = REACH) -> tuple[float, float]:
@@ -227,7 +228,7 @@ def pitches_within_reach(pair: GearPair) -> int:
     first, last = math.ceil(low / step), math.floor(high / step) - most * SAMPLES
     if last - first > 2 * SAMPLES // SCANS:  # beyond what the scan does not know
         return most
-    own = step * (np.arange(first, last + 1) + SAMPLES * np.arange(most + 1)[:, None])
+    own = step * (np.arange(first, last + 1) + SAMPLES * np.arange(most + 1)[:, None]).astype(float)
     heights = first_touch(pair, own.ravel()).value.reshape(own.shape)
     near = np.isfinite(heights) & (heights >= heights.max(axis=0) - REACH * pair.module)
     return most if (near[0] & near[-1]).any() else max(most - 1, 0)

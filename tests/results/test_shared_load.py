@@ -341,7 +341,7 @@ def bending_face_milled(load_sharing, compliance="contact+tooth"):
         return analyse(scene.with_changes({**coarse, **how}))
 
 
-@pytest.mark.parametrize("load_sharing", [False, True])
+@pytest.mark.parametrize("load_sharing", [pytest.param(False, marks=pytest.mark.thorough), True])
 @pytest.mark.parametrize("make", [bending, pytest.param(bending_face_milled, marks=pytest.mark.thorough)])
 def test_transmission_error_of_teeth_that_bend_is_their_deflection(make, load_sharing):
     result = make(load_sharing)

@@ -34,7 +34,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
 
 @pytest.fixture(scope="module")
 def stage():
-    changes = {**QUICK, "stage.pin_tangential_um": None, "analysis.positions": 9, "analysis.torques_Nm": [100.0, 300.0]}
+    changes = {**QUICK, "stage.pin_tangential_um": None, "analysis.positions": 7, "analysis.torques_Nm": [100.0, 300.0]}
     return parse_stage(TEXT).with_changes(changes)
 
 

@@ -191,6 +191,7 @@ def test_load_along_the_face_changes_as_in_whole_analyses() -> None:
         )
 
 
+@pytest.mark.quick_cases("helical")
 @pytest.mark.parametrize("name", ["spur", "helical"])
 def test_derivatives_from_a_file_are_those_of_the_analysis(tmp_path: Any, torques: MeshCycle, name: str) -> None:
     """Of teeth that bend, and of three torques with zero among them."""
@@ -206,7 +207,8 @@ def test_derivatives_from_a_file_are_those_of_the_analysis(tmp_path: Any, torque
 
 
 def test_result_says_how_many_pitches_its_teeth_couple(torques: MeshCycle) -> None:
-    one = analysed("spur", "contact+tooth")
+    few = {"analysis.positions": 2, "analysis.cells": (8, 8)}
+    one = analyse(scene_of("spur", "contact+tooth").with_changes(few))
     assert one.states is not None
     bending = one.states[1][0].bending
     assert isinstance(bending, SumOfParts)

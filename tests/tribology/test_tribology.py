@@ -254,7 +254,7 @@ def test_a_scuffing_temperature_names_what_it_lacks():
 def test_extremes_on_the_arc_of_a_rounded_tip_are_marked_and_warned_of():
     """A film on an arc of 0.8 mm is that of the arc, several times thinner than on the flank beside it."""
     flanks = {"pinion__modifications": None, "wheel__modifications": None, "pinion__tip_rounding_mm": 0.8}
-    rounded = shared("mesh_cycle_spur", positions=25, torque=50.0, **flanks)
+    rounded = shared("mesh_cycle_spur", positions=13, torque=50.0, **flanks)
     table = known(rounded).slices()
     on_arc = table.relative_radius < 1.0
     assert on_arc.any()

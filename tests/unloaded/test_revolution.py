@@ -47,7 +47,7 @@ def deviations_of(pair, seed, eccentricity=(0.0, 0.0)):
     ("kind", "driving", "sense"),
     [
         ("spur", "pinion", "positive"),
-        ("helical", "pinion", "positive"),
+        pytest.param("helical", "pinion", "positive", marks=pytest.mark.thorough),
         ("helical", "wheel", "positive"),
         pytest.param("helical", "pinion", "negative", marks=pytest.mark.thorough),
         pytest.param("bevel", "pinion", "positive", marks=pytest.mark.thorough),

@@ -118,6 +118,7 @@ def test_error_placed_with_the_wrong_sign_fails_its_rows(monkeypatch, name):
     assert [name in quantity for quantity in failed] == [True, True]  # of the straight and of the spiral pair
 
 
+@pytest.mark.thorough
 def test_shaft_angle_leaves_the_motion_of_the_spiral_pair_even():
     one = spiral_effect(0.002, 0.0, gamma_deg=0.2)
     assert one.peak_to_peak < 1e-8
@@ -153,6 +154,7 @@ def test_more_lead_crowning_brings_the_path_back_and_raises_the_pressure():
     assert 1.15 < strong.largest_pressure / weak.largest_pressure < 1.45  # printed: 1.2 to 1.4
 
 
+@pytest.mark.thorough
 def test_curve_of_one_tooth_pair_falls_more_than_that_of_the_gears():
     one = spiral_curve(0.02, 0.08, e=0.04)
     assert max(one.before, one.after) == one.fall

@@ -59,6 +59,7 @@ def test_sections_have_one_topology_and_no_element_is_turned(ring, points):
         assert np.linalg.det(jacobian).min() > 0.0
 
 
+@pytest.mark.thorough
 def test_points_of_the_flank_lie_in_their_faces(ring, points):
     flank = helical_contact.unloaded_flank(ring, points)
     layer, height = 3, 0.3 * ring.levels[3] + 0.7 * ring.levels[4]
@@ -70,6 +71,7 @@ def test_points_of_the_flank_lie_in_their_faces(ring, points):
     assert_allclose(np.hypot(places[:, 0], places[:, 1]), radius, rtol=1e-4)  # chords of sections turned by 0.02 rad
 
 
+@pytest.mark.thorough
 def test_normals_are_those_of_an_involute_helicoid(ring, points):
     nodes = np.unique(helical_contact.unloaded_flank(ring, points).faces[:, 2:4])
     normals = helical_contact.inward_normals(points[nodes], ring.twist)

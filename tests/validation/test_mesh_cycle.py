@@ -125,6 +125,7 @@ def test_position_agrees_with_finite_elements(narrow):
     assert all(row.holds for row in rows)
 
 
+@pytest.mark.thorough
 def test_pressure_at_mid_face_is_below_that_of_the_mean_line_load(narrow):
     (ours,) = narrow.cycle("unmodified", 20.0, [0.0])
     assert ours.pairs[0].pressed < ours.pairs[0].pressure

@@ -34,6 +34,7 @@ def test_load_is_the_line_load_along_the_line_of_action():
         assert -moment == pytest.approx(plane_ring.LINE_LOAD * form.base_radius, rel=2e-3)
 
 
+@pytest.mark.thorough
 def test_coarse_mesh_has_nearly_the_kept_stresses():
     kept = plane_ring.read()
     for row in plane_ring.measured(COARSE):
