@@ -2508,22 +2508,23 @@ FAULTS = (
     Fault(
         "double helical pairs: the place of a floating gear that moves on at the last step counts as settled",
         "double_helical/analyse.py",
-        "    if not stands:\n",
-        "    if float(np.abs(places - axial).max()) > FACES * scene.narrow_half:\n",
+        "    if not stands:\n        raise _not_settled(scene, moved, MOST_ROUNDS)\n",
+        "    if float(np.abs(places - axial).max()) > FACES * scene.narrow_half:\n"
+        "        raise _not_settled(scene, moved, MOST_ROUNDS)\n",
         "double_helical/test_analyse.py::test_a_place_that_does_not_settle_is_an_error",
     ),
     Fault(
         "double helical pairs: halves of a wheel that is tilted open and close the wrong way round",
         "scene/double_helical.py",
-        "moved = -self._wheel_lever",
-        "moved = self._wheel_lever",
+        "moved = -self.lever_of(self.wheel)",
+        "moved = self.lever_of(self.wheel)",
         "scene/test_double_helical_scene.py::test_axis_errors_of_the_whole_wheel_move_and_turn_its_halves",
     ),
     Fault(
         "double helical pairs: a support of the floating gear pushes it on",
         "double_helical/balance.py",
-        "yields = 2.0 * rate**2 / stiffness if",
-        "yields = -2.0 * rate**2 / stiffness if",
+        "yields = (2.0 * rate**2 / stiffness if",
+        "yields = (-2.0 * rate**2 / stiffness if",
         "double_helical/test_balance.py::test_halves_are_in_balance_on_any_support",
     ),
     Fault(
