@@ -64,6 +64,10 @@ def estimated_at_first(figure: Figure) -> Iterator[None]:
             setattr(artist, name, method)
             until_drawn.callback(vars(artist).pop, name, None)
 
+        legends = [*figure.legends, *(legend for axes in figure.axes if (legend := axes.get_legend()))]
+        in_legends = [text for legend in legends for text in (legend.get_title(), *legend.get_texts())]
+        for text in (*figure.texts, *in_legends):
+            _lay_out_once(text, replace)
         for axes in panels:
             replace(axes, "get_tightbbox", _estimated(axes))
             for part in (axes, *axes.child_axes):

@@ -196,7 +196,7 @@ class Numbers:
 
     @classmethod
     def dataset_of(
-        cls, arrays: Mapping[str, Any], labels: Mapping[str, Sequence[str]] | None = None, **about: str
+        cls, arrays: Mapping[str, Any], labels: Mapping[str, Sequence[str]] | None = None, /, **about: str
     ) -> xarray.Dataset:
         """Make a dataset of the arrays of all numbers, those that not all results have where there are any.
 
