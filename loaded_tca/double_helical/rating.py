@@ -235,7 +235,7 @@ def double_helical_rating_of(result: DoubleHelicalResult, *, warn: bool = True) 
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
     about: dict[str, Any] = {"version": whole.version, "warnings": "\n".join(sentences)}
-    dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*GEARS], mode=[*whole.modes])
+    dataset = kind.dataset_of(arrays, {"gear": GEARS, "mode": whole.modes}, **about)
     half_a, half_b = ratings
     return kind(result, half_a, half_b, whole, dataset)
 

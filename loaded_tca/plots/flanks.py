@@ -12,11 +12,12 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
+from matplotlib.path import Path
 
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.flanks.base import Flank, Point
@@ -45,6 +46,10 @@ BEGIN_OF_ARC: dict[str, Any] = {"color": "black", "linestyle": "--", "linewidth"
 MOST_AREAS = 7
 PALE = "#dfe3ee"
 """Of contacts whose pressure is not drawn."""
+PATCH = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
+"""Codes of a patch with four corners."""
+SHADES = 256
+"""Colours of a scale: as many as Matplotlib's have."""
 CELLS_OF_SPIKES = 0.05
 """Part of the cells of a map under pressure that may lie beyond its scale of colours."""
 LEAST_SEEN = 0.01
@@ -221,21 +226,41 @@ def _under_pressure(one: PressureMap) -> tuple[Array, Array]:
 
 
 def _draw_pale(axes: Axes, to_picture: ToPicture, maps: Sequence[PressureMap]) -> list[Artist]:
-    """Cells under pressure where they lie on a flank, all in one pale colour: a patch for each row of cells across."""
+    """Cells under pressure where they lie on a flank, all in one pale colour: a patch for each row of cells across.
+
+    The patches of a map are one path: no two of them overlap, and single ones take ten times as long.
+    """
     if not maps:
         return []
-    corners = []
+    paths = []
     for one in maps:
         ends = np.diff(np.pad(one.pressure > 0.0, ((1, 1), (0, 0))).astype(int), axis=0).T
         (column, first), (_, last) = np.nonzero(ends == 1), np.nonzero(ends == -1)
         x, y = one.borders
-        across = np.stack([x[first], x[last], x[last], x[first]], axis=-1)
-        along = np.stack([y[column], y[column], y[column + 1], y[column + 1]], axis=-1)
-        corners.append(one.origin + across[..., None] * one.axes[0] + along[..., None] * one.axes[1])
-    places = to_picture(np.concatenate(corners))
-    patches = PolyCollection(list(places), facecolors=PALE, linewidths=0.0, antialiaseds=False, rasterized=True)
+        across = np.stack([x[first], x[last], x[last], x[first], x[first]], axis=-1)
+        along = np.stack([y[column], y[column], y[column + 1], y[column + 1], y[column]], axis=-1)
+        corners = one.origin + across[..., None] * one.axes[0] + along[..., None] * one.axes[1]
+        paths.append(Path(to_picture(corners).reshape(-1, 2), PATCH * len(column)))
+    patches = PathCollection(paths, facecolors=PALE, linewidths=0.0, antialiaseds=False, rasterized=True)
     axes.add_collection(patches, autolim=False)
     return [patches]
+
+
+def draw_segments(
+    axes: Axes, places: Array, values: Array, scale: Normalize, colours: str = COLOURS, width: float = 2.0
+) -> LineCollection:
+    """Draw segments from place to place (n, 2, 2) in the colours of their values (n,), in their order.
+
+    Those in a row that have one colour are one line with gaps: single ones take several times as long.
+    """
+    shade = np.minimum((SHADES * np.asarray(scale(values))).astype(int), SHADES - 1)
+    begins = np.flatnonzero(np.diff(shade)) + 1
+    with_gaps = np.pad(places, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan)
+    lines = [part.reshape(-1, 2) for part in np.split(with_gaps, begins)] if len(places) else []
+    collection = LineCollection(lines, cmap=colours, norm=scale, linewidths=width, rasterized=True)
+    collection.set_array(values[[0, *begins]] if len(places) else values)
+    axes.add_collection(collection, autolim=False)
+    return collection
 
 
 def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None = None) -> list[PressureMap]:

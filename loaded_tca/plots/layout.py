@@ -4,19 +4,23 @@ Constrained layout measures everything around each panel, moves the panels, and 
 panels shrink. Measuring takes a third of the time of a picture, and the first pass only has to come near.
 
 Matplotlib places the ticks of an axis and measures their labels up to ten times in a drawing, for the axis, its label,
-the title and each side of the frame: here once where the panel lies. New ticks copy from the first one what was set
-for it alone: here without its marks.
+the title and each side of the frame: here once where the panel lies. It lays a text out whenever it measures or draws
+it: here once. It makes each tick from what its axis was given, and then copies what the first one was given by itself:
+here ticks are copies of the first one from the beginning.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from copy import copy
 from typing import Any
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis, Tick
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 POINTS_PER_INCH = 72.0
@@ -30,8 +34,13 @@ MEASURED_AGAIN = "_update_ticks", "_get_ticklabel_bboxes"
 They are its own: of public ones ``get_tightbbox`` covers layouts, but not drawing and the places of titles and labels
 of axes, which ask for ticks by these two. A later Matplotlib that has none of that name measures as it does by itself.
 """
-COPY_OF_TICK = "_copy_tick_props"
-"""Method by which Matplotlib gives a new tick what the first one of its axis was given by itself."""
+LAYOUT_OF_TEXT = "_get_layout"
+"""Method by which Matplotlib lays out a text, wherever it measures or draws it: no public one does only that."""
+TICKS = (("majorTicks", "get_major_ticks", "get_majorticklocs"), ("minorTicks", "get_minor_ticks", "get_minorticklocs"))
+"""Of an axis: the lists of its ticks, the methods that make as many as are asked for, and those of their places."""
+PARTS_OF_TICK = "tick1line", "tick2line", "gridline", "label1", "label2"
+Replace = Callable[[Artist, str, Callable[..., Any]], None]
+"""Sets a method of a single artist until its figure is drawn."""
 COLORBAR = "<colorbar>"
 """What Matplotlib labels the panels of colour bars, which it measures twice in a pass."""
 
@@ -49,25 +58,30 @@ def estimated_at_first(figure: Figure) -> Iterator[None]:
         Drawn once inside.
     """
     panels = [axes for axes in figure.axes if axes.name == "rectilinear"]
-    axles = [axis for axes in panels for part in (axes, *axes.child_axes) for axis in (part.xaxis, part.yaxis)]
-    for axes in panels:
-        _estimate(axes)
-    for axis in axles:
-        for name in MEASURED_AGAIN:
-            _measure_once(axis, name)
-        _copy_no_marks(axis)
-    try:
-        yield
-    finally:
+    with ExitStack() as until_drawn:
+
+        def replace(artist: Artist, name: str, method: Callable[..., Any]) -> None:
+            setattr(artist, name, method)
+            until_drawn.callback(vars(artist).pop, name, None)
+
+        legends = [*figure.legends, *(legend for axes in figure.axes if (legend := axes.get_legend()))]
+        in_legends = [text for legend in legends for text in (legend.get_title(), *legend.get_texts())]
+        for text in (*figure.texts, *in_legends):
+            _lay_out_once(text, replace)
         for axes in panels:
-            del axes.get_tightbbox
-        for axis in axles:
-            for name in MEASURED_AGAIN:
-                vars(axis).pop(name, None)
-            vars(axis).pop(COPY_OF_TICK, None)
+            replace(axes, "get_tightbbox", _estimated(axes))
+            for part in (axes, *axes.child_axes):
+                _lay_out_once(part.title, replace)
+                for axis in (part.xaxis, part.yaxis):
+                    _lay_out_once(axis.label, replace)
+                    for name in MEASURED_AGAIN:
+                        _measure_once(axis, name, replace)
+                    for names in TICKS:
+                        _copy_ticks(axis, names, replace)
+        yield
 
 
-def _measure_once(axis: Axis, name: str) -> None:
+def _measure_once(axis: Axis, name: str, replace: Replace) -> None:
     """Have an axis keep what one of its methods returns as long as its panel and its limits stay as they are."""
     measure = getattr(axis, name, None)
     if measure is None:  # of another Matplotlib
@@ -82,37 +96,73 @@ def _measure_once(axis: Axis, name: str) -> None:
             kept, place = measure(*arguments, **options), now
         return kept
 
-    setattr(axis, name, measure_once)
+    replace(axis, name, measure_once)
 
 
-def _copy_no_marks(axis: Axis) -> None:
-    """Have new ticks copy labels and line of the grid of the first one, and not both marks, which all have alike.
-
-    Matplotlib copies marks with all of their paths, which takes a third of the time of a tick.
-    """
-    if not hasattr(axis, COPY_OF_TICK):  # of another Matplotlib
+def _lay_out_once(text: Text, replace: Replace) -> None:
+    """Have a text keep its layout as long as it says the same: where it stands and its colour have no part in it."""
+    lay_out = getattr(text, LAYOUT_OF_TEXT, None)
+    if lay_out is None or text.get_wrap():  # of another Matplotlib; lines as wide as the place allows
         return
+    said: str | None = None
+    kept: Any = None
 
-    def copy(first: Tick, new: Tick) -> None:
-        new.label1.update_from(first.label1)
-        new.label2.update_from(first.label2)
-        new.gridline.update_from(first.gridline)
+    def lay_out_once(renderer: Any) -> Any:
+        nonlocal said, kept
+        if said != text.get_text():
+            kept, said = lay_out(renderer), text.get_text()
+        return kept
 
-    setattr(axis, COPY_OF_TICK, copy)
+    replace(text, LAYOUT_OF_TEXT, lay_out_once)
 
 
-def _estimate(axes: Axes) -> None:
-    """Have a panel tell its estimated box where a layout asks for the first time, and the measured one from then on."""
-    measured, told = axes.get_tightbbox, 2 if axes.get_label() == COLORBAR else 1
+def _copy_ticks(axis: Axis, names: tuple[str, str, str], replace: Replace) -> None:
+    """Have an axis copy its first tick where it needs more, and lay out labels once.
+
+    Matplotlib makes each tick with three lines and two texts, which takes a sixth of the time of a picture.
+    """
+    ticks_of, method, places = names
+    laid_out = 0
+
+    def get_ticks(numticks: int | None = None) -> list[Tick]:
+        nonlocal laid_out
+        ticks: list[Tick] = getattr(axis, ticks_of)
+        count = len(getattr(axis, places)()) if numticks is None else numticks
+        ticks.extend(_alike(ticks[0]) for _ in range(len(ticks), count))
+        for tick in ticks[laid_out:]:
+            _lay_out_once(tick.label1, replace)
+            _lay_out_once(tick.label2, replace)
+        laid_out = max(laid_out, len(ticks))
+        return ticks[:count]
+
+    replace(axis, method, get_ticks)
+
+
+def _alike(first: Tick) -> Tick:
+    """Return a copy of a tick with lines and texts of its own, which share what Matplotlib replaces as a whole."""
+    tick = copy(first)
+    tick.axes = first.axes  # tells the panel what becomes stale
+    for name in PARTS_OF_TICK:
+        part = copy(getattr(first, name))
+        vars(part).pop(LAYOUT_OF_TEXT, None)
+        setattr(tick, name, part)
+    for label in (tick.label1, tick.label2):
+        label.set_fontproperties(label.get_fontproperties())  # a copy
+    return tick
+
+
+def _estimated(axes: Axes) -> Callable[..., Bbox | None]:
+    """A panel's box: the estimated one where a layout asks for the first time, and the measured one from then on."""
+    measured, estimates = axes.get_tightbbox, 2 if axes.get_label() == COLORBAR else 1
 
     def get_tightbbox(*arguments: Any, **options: Any) -> Bbox | None:
-        nonlocal told
-        if told and options.get("for_layout_only"):
-            told -= 1
+        nonlocal estimates
+        if estimates and options.get("for_layout_only"):
+            estimates -= 1
             return estimated_box(axes)
         return measured(*arguments, **options)
 
-    axes.get_tightbbox = get_tightbbox  # type: ignore[method-assign]
+    return get_tightbbox
 
 
 def estimated_box(axes: Axes) -> Bbox:

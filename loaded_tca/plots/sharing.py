@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
@@ -18,7 +17,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.plain import plain, signed
 from loaded_tca.plots import style
-from loaded_tca.plots.flanks import ToPicture, both_flanks, loaded_maps
+from loaded_tca.plots.flanks import ToPicture, both_flanks, draw_segments, loaded_maps
 from loaded_tca.plots.style import (
     COLOURS,
     DISTINCT_COLOURS,
@@ -283,21 +282,20 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
         If the result has no such torque.
     """
     torque = chosen_torque(result, torque)
-    segments, values = [np.zeros((0, 2, 3))], [np.zeros(0)]
+    parts, loads_of_parts = [np.zeros((0, 2, 3))], [np.zeros(0)]
     for one in loaded_maps(result, torque):
         loaded, across = slice_middles(one.x, one.pressure)
         points = one.origin + across[:, None] * one.axes[0] + one.y[loaded, None] * one.axes[1]
         line_load = one.pressure[:, loaded].sum(axis=0) * one.spacing[0]
-        segments.append(np.stack([points[:-1], points[1:]], axis=1))
-        values.append(0.5 * (line_load[:-1] + line_load[1:]))
+        parts.append(np.stack([points[:-1], points[1:]], axis=1))
+        loads_of_parts.append(0.5 * (line_load[:-1] + line_load[1:]))
+    values = np.concatenate(loads_of_parts)
+    rising = np.argsort(values, kind="stable")  # the largest is seen where lines meet
+    segments, values = np.concatenate(parts)[rising], values[rising]
     scale = Normalize(0.0, float(np.nanmax(result.line_load, initial=0.0)) or 1.0)
 
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
-        places = list(to_picture(np.concatenate(segments)))
-        lines = LineCollection(places, cmap=COLOURS, norm=scale, linewidths=2.0, rasterized=True)
-        lines.set_array(np.concatenate(values))
-        axes.add_collection(lines, autolim=False)
-        return [lines]
+        return [draw_segments(axes, to_picture(segments), values, scale)]
 
     figure, panels = both_flanks(result, draw)
     figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="line load [N/mm]")

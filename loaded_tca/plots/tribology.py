@@ -10,14 +10,13 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
-from loaded_tca.plots.flanks import ToPicture, both_flanks
+from loaded_tca.plots.flanks import ToPicture, both_flanks, draw_segments
 from loaded_tca.plots.sharing import OVER_THE_PATH, over_the_path
 from loaded_tca.plots.style import ACCENT, COLOURS, DISTINCT_COLOURS, load, loads, range_of_positions, torque_styles
 from loaded_tca.tribology import Tribology
@@ -132,10 +131,7 @@ def plot_over_flank(tribology: Tribology, name: str, torque: int | None = None, 
     colours = f"{COLOURS}_r" if thin else COLOURS
 
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
-        lines = LineCollection(list(to_picture(segments)), cmap=colours, norm=scale, linewidths=2.5, rasterized=True)
-        lines.set_array(values[known])
-        axes.add_collection(lines, autolim=False)
-        return [lines]
+        return [draw_segments(axes, to_picture(segments), values[known], scale, colours, 2.5)]
 
     figure, panels = both_flanks(result, draw)
     figure.colorbar(ScalarMappable(scale, colours), ax=panels, label=_labelled(label, unit))

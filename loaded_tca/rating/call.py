@@ -66,7 +66,7 @@ def rating_of(
         more, remarks, warned = of_spectrum(inputs, arrays, error, of_both_sides=coast is not None)
         arrays, notes, sentences = arrays | more, (*notes, *remarks), [*sentences, *warned]
     about: dict[str, Any] = {"version": result.version, "warnings": "\n".join(sentences)}
-    dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*GEARS], mode=[*endurances])
+    dataset = kind.dataset_of(arrays, {"gear": GEARS, "mode": [*endurances]}, **about)
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
     return kind(result, dataset, inputs, endurances, notes)

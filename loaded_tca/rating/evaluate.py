@@ -231,11 +231,13 @@ def _local_root(inputs: CommonInputs, loads: Arrays, place: int) -> tuple[Arrays
     assert solved.largest_root_places is not None
     every, ratios = np.arange(len(inputs.torque)), solved.root_stress_ratio[:, place]
     tensions = np.stack([solved.root_tension[:, place], solved.largest_root_tension[:, place]])
-    uses = [
-        tension / local_root_factors(inputs, place, ratio, every)[1].strength
-        for tension, ratio in zip(tensions, (ratios, np.zeros(len(every))), strict=True)
-    ]
-    by_others = (inputs.cases.press_on_back > 0.0) & (uses[1] >= uses[0])
+    by_others = inputs.cases.press_on_back > 0.0
+    if by_others.any():
+        uses = [
+            tension / local_root_factors(inputs, place, ratio, every)[1].strength
+            for tension, ratio in zip(tensions, (ratios, np.zeros(len(every))), strict=True)
+        ]
+        by_others &= uses[1] >= uses[0]
     ratio, factors, notes = local_root_factors(inputs, place, np.where(by_others, 0.0, ratios), every)
     tension = np.where(by_others, tensions[1], tensions[0])
     tension = np.where(inputs.torque > 0.0, tension, 0.0) * loads["K_A"] * loads["K_gamma"] * loads["K_v"]

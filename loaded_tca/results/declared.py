@@ -13,7 +13,7 @@ from loaded_tca.results.files import Part, variables_of
 from loaded_tca.units import MICROMETRES, as_ending, factor_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     import xarray
 
@@ -187,7 +187,7 @@ class Numbers:
 
     def values(self, name: str) -> Array:
         """Array of a number that the result has."""
-        return np.asarray(self.dataset[name].values)
+        return np.asarray(self.dataset.variables[name].values)
 
     def along(self, axis: str) -> list[Any]:
         """What counts along an axis: gears by their names, directions, numbers of tooth pairs."""
@@ -195,12 +195,16 @@ class Numbers:
         return directions[axis] if axis in directions else [*self.dataset[axis].values.tolist()]
 
     @classmethod
-    def dataset_of(cls, arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
+    def dataset_of(
+        cls, arrays: Mapping[str, Any], labels: Mapping[str, Sequence[str]] | None = None, /, **about: str
+    ) -> xarray.Dataset:
         """Make a dataset of the arrays of all numbers, those that not all results have where there are any.
 
         Parameters
         ----------
         arrays : mapping of str to array
+        labels : mapping of str to sequence of str, optional
+            What counts along dimensions, as coordinates of their names.
         **about : str
             Attributes of ``ABOUT``.
         """
@@ -209,7 +213,8 @@ class Numbers:
         there = {name: part for name, part in cls.NUMBERS.items() if part.asked is None or name in arrays}
         variables = variables_of(there, arrays)
         coordinates = {name: variables.pop(name) for name in cls.COORDINATES}
-        return xarray.Dataset(variables, coordinates, about)
+        along = {name: [*texts] for name, texts in (labels or {}).items()}
+        return xarray.Dataset(variables, coordinates | along, about)
 
     @property
     def um_per_rad(self) -> float:

@@ -236,7 +236,7 @@ def stage_rating_of(result: StageResult, *, warn: bool = True) -> StageRating:
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
     about: dict[str, Any] = {"version": meshes[0].version, "warnings": "\n".join(sentences)}
-    dataset = kind.dataset_of(arrays, **about).assign_coords(gear=[*MEMBERS], mode=[*gears.endurances])
+    dataset = kind.dataset_of(arrays, {"gear": MEMBERS, "mode": [*gears.endurances]}, **about)
     return kind(result, *meshes, dataset, cases, gears.endurances)
 
 

@@ -67,25 +67,47 @@ def test_estimates_are_near_what_is_measured():
         assert estimated_box(axes).extents == pytest.approx(measured.extents, abs=NEAR * figure.dpi / 72.0)
 
 
-def test_ticks_measured_once_at_a_place_draw_the_same_picture(monkeypatch):
+def test_ticks_and_texts_made_once_draw_the_same_picture(monkeypatch):
     """Ticks depend on where a panel lies and on its limits, those of a colour bar and of a second scale, too.
 
-    So does whether their marks are copied or made, and their grid has what was asked of it.
+    Copies of the first tick have what was asked of all, and what was asked of that one; so has their grid.
     """
     pictures = []
-    for names, copied in ((layout.MEASURED_AGAIN, layout.COPY_OF_TICK), ((), "_nothing")):
-        monkeypatch.setattr(layout, "MEASURED_AGAIN", names)
-        monkeypatch.setattr(layout, "COPY_OF_TICK", copied)
+    for quick in (True, False):
+        if not quick:
+            for name, nothing in (("MEASURED_AGAIN", ()), ("TICKS", ()), ("LAYOUT_OF_TEXT", "_nothing")):
+                monkeypatch.setattr(layout, name, nothing)
         figure = Figure(figsize=(3.0, 2.0), layout="constrained")
-        axes = figure.add_subplot(ylabel="stress")
-        figure.colorbar(axes.pcolormesh(np.arange(12.0).reshape(3, 4)))
+        axes = figure.add_subplot(ylabel="stress", title="at the root", xscale="log", xlim=(0.3, 40.0))
+        figure.colorbar(axes.pcolormesh(np.arange(1.0, 5.0), np.arange(4.0), np.arange(9.0).reshape(3, 3)))
         axes.secondary_yaxis("right", functions=(lambda x: 2.0 * x, lambda x: 0.5 * x))
         axes.grid(alpha=0.3)
+        axes.plot([1.0, 30.0], [0.5, 2.0], label="measured")
+        axes.legend(title="pinion")
+        axes.tick_params("x", labelrotation=30.0)
+        axes.yaxis.get_major_ticks(1)[0].label1.set_color("red")
+        axes.yaxis.get_major_ticks(1)[0].tick1line.set_markersize(8.0)
         canvas = FigureCanvasAgg(figure)
         with estimated_at_first(figure):
             canvas.draw()
+            axes.set_title("another, longer title")
+            canvas.draw()
         pictures.append(np.array(canvas.buffer_rgba()))
     assert_array_equal(*pictures)
+
+
+def test_copies_of_ticks_change_alone_afterwards():
+    """A notebook may give one tick another size or place."""
+    figure = Figure(figsize=(2.0, 2.0))
+    axes = figure.add_subplot()
+    with estimated_at_first(figure):
+        FigureCanvasAgg(figure).draw()
+    first, second, *_ = ticks = axes.xaxis.get_major_ticks()
+    second.label1.set_fontsize(30.0)
+    second.tick1line.set_markersize(20.0)
+    assert first.label1.get_fontsize() < second.label1.get_fontsize()
+    assert first.tick1line.get_markersize() < second.tick1line.get_markersize()
+    assert_array_equal([tick.get_loc() for tick in ticks], axes.get_xticks())
 
 
 def test_figures_measure_as_before_afterwards():
@@ -93,7 +115,6 @@ def test_figures_measure_as_before_afterwards():
     figure = panels()
     with pytest.raises(RuntimeError), estimated_at_first(figure):
         raise RuntimeError
-    assert not any("get_tightbbox" in vars(axes) for axes in figure.axes)
-    assert not any(
-        name in vars(axes.xaxis) for name in (*layout.MEASURED_AGAIN, layout.COPY_OF_TICK) for axes in figure.axes
-    )
+    methods = [method for _, method, _ in layout.TICKS]
+    replaced = "get_tightbbox", layout.LAYOUT_OF_TEXT, *layout.MEASURED_AGAIN, *methods
+    assert not any(name in vars(artist) for artist in figure.findobj() for name in replaced)

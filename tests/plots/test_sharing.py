@@ -4,7 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import GeometryError, InputError
@@ -21,6 +24,7 @@ from loaded_tca.plots import (
     plot_pressure_envelope,
     sharing,
 )
+from loaded_tca.plots.flanks import draw_segments
 from tests.samples.pictures import told
 from tests.samples.results import changed, changed_scene, result, with_a_gap
 
@@ -74,6 +78,23 @@ def test_line_load_on_the_flanks_carries_the_largest_line_load(name):
         # A segment has the mean of its ends; the top of a contact is flat.
         assert_allclose(lines.get_array().max(), np.nanmax(cycle.line_load), rtol=0.01)
     assert "[N/mm]" in figure.axes[2].get_ylabel()
+
+
+def test_lines_on_the_flanks_are_as_segments_one_by_one():
+    """Segments of one colour in a row are one line with gaps; the colours are those of their values."""
+    rng = np.random.default_rng(5)
+    fields = np.stack(np.meshgrid(np.arange(8.0), np.arange(5.0)), axis=-1).reshape(-1, 1, 2)
+    places = (fields + rng.uniform(0.2, 0.8, (40, 2, 2))) / (8.0, 5.0)  # each within a field of its own
+    values, scale = np.repeat(rng.uniform(0.0, 3.0, 10), 4), Normalize(0.0, 3.0)
+    single = LineCollection(list(places), array=values, cmap="viridis", norm=scale, linewidths=2.0)
+    pictures = []
+    for draw in (lambda axes: draw_segments(axes, places, values, scale), lambda axes: axes.add_collection(single)):
+        figure = Figure(figsize=(2.0, 2.0))
+        draw(figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0.0, 1.0), ylim=(0.0, 1.0)))
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        pictures.append(np.array(canvas.buffer_rgba()))
+    assert_array_equal(*pictures)
 
 
 def test_pair_at_the_pitch_point_has_no_sign():
