@@ -7,7 +7,7 @@ import pytest
 
 from loaded_tca import read_scene
 from validation import invariances
-from validation.invariances import INVARIANCES
+from validation.laws import LAWS
 from validation.loaded.random_scenes import beyond, examined
 from validation.random_scenes import ALL_FAMILIES, SCENES, coins
 from validation.scene_features import FEATURES
@@ -60,7 +60,7 @@ def test_every_feature_family_and_invariance_is_among_the_quick_scenes():
     families, tossed = zip(*map(coins, QUICK), strict=True)
     assert set(families) == set(ALL_FAMILIES)
     assert {feature.name for features in tossed for feature, _ in features} == {feature.name for feature in FEATURES}
-    assert {name for names in QUICK.values() for name in names} == {one.name for one in INVARIANCES}
+    assert {name for names in QUICK.values() for name in names} == {one.name for one in LAWS}
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.sensitivities import TORQUE
-from loaded_tca.scene.section import contents
+from loaded_tca.scene.section import values_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -37,8 +37,8 @@ def default_tolerances(scene: Scene, keys: Iterable[str] | None = None) -> dict[
     scene : Scene
     keys : iterable of str, optional
         As of ``scene.with_changes``. Default: all modifications that the gears have, with the starts and lengths of
-        reliefs, all mounting errors, and the torque. Of those that add to each other (``mounting.misalignment_um`` to
-        ``mounting.out_of_plane_deg``) only one is among them.
+        reliefs, all mounting errors, those of half b of double helical gears too, and the torque. Of those that add to
+        each other (``mounting.misalignment_um`` to ``mounting.out_of_plane_deg``) only one is among them.
 
     Returns
     -------
@@ -58,10 +58,14 @@ def _varied(scene: Scene) -> list[str]:
     """Modifications that the gears have, mounting errors and the torque."""
     keys = []
     for gear in GEARS:
-        for name, value in contents(getattr(scene, gear).modifications).items():
-            if isinstance(value, Real) and value and name.rpartition("_")[2] in USUAL:
-                keys.append(f"{gear}.modifications.{name}")
-    keys += [f"mounting.{name}" for name in contents(scene.mounting) if name != TWICE]
+        for name, value in values_of(getattr(scene, gear)).items():
+            of_flanks = "modifications" in name.split(".")
+            if of_flanks and isinstance(value, Real) and value and name.rpartition("_")[2] in USUAL:
+                keys.append(f"{gear}.{name}")
+    errors = values_of(scene.mounting)  # those of half b of a double helical wheel, too
+    keys += [
+        f"mounting.{name}" for name in errors if isinstance(errors[name], Real) and name.rpartition(".")[2] != TWICE
+    ]
     return [*keys, TORQUE]
 
 

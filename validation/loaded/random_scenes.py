@@ -3,7 +3,7 @@
 ``python -m validation.loaded.random_scenes 0 300 --log FILE`` runs seeds 0 to 299 and writes a line of JSON for each,
 with processor seconds and what is off by more than is allowed; seeds that stand in the file are not run again.
 ``data/random_scenes.csv`` has the last run of each seed from 70 on: family, number of features, laws (a for the first
-of ``INVARIANCES``, b for the second), and what is off by how many times what is allowed.
+of ``LAWS``, b for the second), and what is off by how many times what is allowed.
 """
 
 import argparse
@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from loaded_tca import AccuracyWarning
-from validation.invariances import INVARIANCES, Subject
+from validation.invariances import Subject
+from validation.laws import LAWS
 from validation.table import Row
 
 CASE, SOURCE = "random scenes", "invariances of every scene"
@@ -50,12 +51,12 @@ def examined(seed: int, checks: tuple[str, ...] = ()) -> dict[str, Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
         subject = Subject.of(seed)
-        for invariance in INVARIANCES:
+        for invariance in LAWS:
             wanted = invariance.name in checks if checks else invariance.is_tried_on(subject)
-            if not wanted or not invariance.holds_for(subject):
-                continue
             since = time.process_time()
             try:
+                if not wanted or not invariance.holds_for(subject):
+                    continue
                 off[invariance.name] = invariance.check(subject)
             except Exception as error:  # whatever a check raises is a result of it
                 failed[invariance.name] = f"{type(error).__name__}: {error}"[:300]
