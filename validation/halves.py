@@ -21,7 +21,7 @@ class Renamed:
         self.of_pair = pair
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self.of_pair, OTHER_NAMES.get(name, name))
+        return getattr(self.of_pair, name if hasattr(self.of_pair, name) else OTHER_NAMES.get(name, name))
 
 
 class HalvesAsPairs(Renamed):

@@ -110,14 +110,13 @@ def mirrored_across(scene: Scene) -> Scene:
 
 
 def halves_exchanged(scene: Scene) -> Scene:
-    """A double helical pair in a mirror across its axes: each half in the place of the other one.
+    """A double helical pair in a mirror across its axes: each half in the place of the other one, with its hand.
 
     Half b may have no mounting errors of its own.
     """
     table = as_table(scene)
-    for gear, hand in zip(GEARS, scene.hands, strict=True):
+    for gear in GEARS:
         own = table[gear]
-        own["hand"] = OTHER[hand]
         if half_b := own.get("half_b"):
             own["half_b"] = {name: own[name] for name in half_b}
             own |= half_b
