@@ -127,7 +127,7 @@ def halves_close_together(subject: Subject) -> Off:
     """
     scene, result = _double_helical(subject), subject.result
     shares = np.asarray(result.load_share)[-1]
-    if (shares <= 0.0).any():
+    if scene.out_of_plane_deg != 0.0 or (shares <= 0.0).any():
         return {}
     n = int(np.abs(shares[:, 0] - 0.5).argmax())  # the position where they differ most
     toward = {"pinion": -1.0}.get(scene.geometry.floating, 1.0)
