@@ -1,20 +1,20 @@
 """What must hold of every scene: invariances, laws of mechanics and continuity, as a table of functions.
 
 Each takes a ``Subject``, a scene with its analysis, and returns what is off: by quantity, in parts of what is allowed.
-The docstring of each says how the scene is turned into another one; its row in ``INVARIANCES`` has what is allowed, and
-why. Transmission errors and their differences are seen over the peak to peak of the curve, or over a fifth of the
-deflection where that is more; shares as they are; pressures relative to the largest one of the scene.
+The docstring of each says how the scene is turned into another one; its row in ``validation.laws`` has the scenes that
+it is for. Constants say what is allowed, and why. Transmission errors and their differences are seen over the peak to
+peak of the curve, or over a fifth of the deflection where that is more; shares as they are; pressures relative to the
+largest one of the scene.
 """
 
 import math
 import tempfile
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
-from zlib import crc32
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -22,25 +22,33 @@ from loaded_tca import AccuracyWarning, MeshCycle, analyse, analyse_revolution, 
 from loaded_tca.analysis import grid_of
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.compliance import model_of
+from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.loaded.standing import GearsUnderTorques, all_torques
 from loaded_tca.results.collect import mesh_cycle
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.results.tolerances import default_tolerances
 from loaded_tca.scene import Scene
-from loaded_tca.separation.pair_change import value_at
+from loaded_tca.scene.double_helical import DoubleHelicalScene
+from loaded_tca.scene.rack import RackScene
+from loaded_tca.scene.section import as_table
+from loaded_tca.separation.pair_change import number_at
 from loaded_tca.unloaded import trace_teeth
 from loaded_tca.unloaded.tooth_cycle import pitches_within_reach
+from validation.halves import HalvesAsPairs
 from validation.random_scenes import FeaturedScene, featured_scene
 from validation.scene_transforms import exchanged, mirrored_across, mirrored_along, scaled
 
 CHEAP = {"positions": 3, "accuracy": 1e-2}
 """Settings of the analyses: half a pitch is between two positions."""
+COARSE: dict[str, Any] = {"positions": 3, "cells": [8, 16], "accuracy": None}
+"""The same of quicker ones, for laws that compare states on alike grids: few cells, whose errors nothing estimates."""
 LEAST_SPAN = 0.2
 """Of the deflection: a peak to peak below it counts as that, since rotations agree to 5e-4 of themselves."""
 LITTLE_LOAD = 0.02
 """Share below which pressures are not compared: contacts that only just touch."""
 CYLINDRICAL, BEVEL = ("spur", "helical", "internal"), ("straight_bevel", "spiral_bevel")
+RACK, HALVES = ("rack",), ("double_helical",)
 Off = dict[str, float]
 """Quantity -> how far it is off, over what is allowed."""
 
@@ -83,9 +91,9 @@ class Subject:
     featured: FeaturedScene
 
     @classmethod
-    def of(cls, seed: int) -> "Subject":
-        """Of a seed, by cheap settings."""
-        return cls(featured_scene(seed, **CHEAP))
+    def of(cls, seed: int, settings: Mapping[str, Any] = CHEAP) -> "Subject":
+        """Of a seed, by cheap settings of the section [analysis]."""
+        return cls(featured_scene(seed, **settings))
 
     @property
     def scene(self) -> Scene:
@@ -108,10 +116,17 @@ class Subject:
 
 
 def analysed(scene: Scene) -> MeshCycle:
-    """Analysis of a scene whose warnings are kept in its dataset."""
+    """Analysis of a scene whose warnings are kept in its dataset; of two halves with the names of a mesh cycle."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
+        if isinstance(scene, DoubleHelicalScene):
+            return cast("MeshCycle", HalvesAsPairs(analyse_double_helical(scene)))
         return analyse(scene)
+
+
+def module_of(scene: Scene) -> float:
+    """Module of the gears, of two halves as well [mm]."""
+    return scene.mesh().pinion.normal_module if isinstance(scene, DoubleHelicalScene) else scene.pair().module
 
 
 # What two results differ by
@@ -147,11 +162,12 @@ def difference(
     allowed: tuple[float, float, float],
     here: Any = EVERY,
     there: Any = EVERY,
+    scale: float = 1.0,
 ) -> Off:
     """By how much transmission errors, shares and peak pressures of two results differ, over what is allowed.
 
     Peaks of contacts that are solved anew are known to the errors that are told of their grids, where these are more.
-    ``here``, ``there``: states of each.
+    ``here``, ``there``: states of each. ``scale``: of motions of the other one, which are seen as rotations.
     """
     pairs = np.union1d(one.pair, other.pair)
     shares, peaks, errors = (
@@ -161,13 +177,15 @@ def difference(
     counted = (shares[0] > LITTLE_LOAD) & (shares[1] > LITTLE_LOAD)
     known = np.maximum(errors[0] * peaks[0], errors[1] * peaks[1]) if allowed == SOLVED_ANEW else 0.0
     moved = np.where(counted, np.abs(peaks[1] - peaks[0]), 0.0)
+    size = span(one)[here[0]] * allowed[0]
     off = {
-        "transmission error": np.abs(other.transmission_error[there] - one.transmission_error[here])
-        / span(one)[here[0]]
-        / allowed[0],
+        "transmission error": np.abs(other.transmission_error[there] - one.transmission_error[here]) / size,
         "load share": np.abs(shares[1] - shares[0]) / allowed[1],
         "peak pressure": moved / np.maximum(allowed[2] * peaks[0].max(), known),
     }
+    if isinstance(one, HalvesAsPairs):
+        turned = (other.axial_motion[there] * scale - one.axial_motion[here]) * one.turn_by_motion
+        off["axial motion"] = np.abs(turned) / size
     return {name: float(part.max()) for name, part in off.items()}
 
 
@@ -176,7 +194,7 @@ def difference(
 
 def lengths_doubled(subject: Subject) -> Off:
     """All lengths twice, forces four times, torques eight times as large: the same angles, shares and pressures."""
-    return difference(subject.result, analysed(scaled(subject.scene)), SOLVED_ANEW)
+    return difference(subject.result, analysed(scaled(subject.scene)), SOLVED_ANEW, scale=0.5)
 
 
 def mirror_across(subject: Subject) -> Off:
@@ -288,12 +306,17 @@ def pitch_later(subject: Subject) -> Off:
 
 
 def torque_in_a_list(subject: Subject) -> Off:
-    """A torque among others gives what it gives alone."""
+    """A torque among others gives what it gives alone.
+
+    Halves that are held are analysed under other torques then, between which what they carry lies.
+    """
     result = subject.result
     torque = 1e-3 * float(result.torque[-1])
     several = [0.4 * torque, torque] if len(result.torque) == 1 else [torque]
     other = analysed(subject.scene.with_changes({"analysis.torques_Nm": several}))
-    return difference(result, other, SAME_TORQUE, (-1, slice(None)), (-1, slice(None)))
+    scene = subject.scene
+    between = isinstance(scene, DoubleHelicalScene) and not scene.floats_freely
+    return difference(result, other, SOLVED_ANEW if between else SAME_TORQUE, (-1, slice(None)), (-1, slice(None)))
 
 
 def positions_among_others(subject: Subject) -> Off:
@@ -303,7 +326,8 @@ def positions_among_others(subject: Subject) -> Off:
     """
     count = subject.scene.analysis.positions
     finer = analysed(subject.scene.with_changes({"analysis.positions": 2 * count - 1}))
-    allowed = SOLVED_ANEW if subject.scene.is_supported else SAME_TORQUE
+    moves = subject.scene.is_supported or subject.featured.family in HALVES
+    allowed = SOLVED_ANEW if moves else SAME_TORQUE
     return difference(subject.result, finer, allowed, there=(slice(None), slice(None, None, 2)))
 
 
@@ -317,36 +341,61 @@ def zeros_as_none(subject: Subject) -> Off:
         changes |= {
             f"{gear}.modifications.{name}": getattr(own.modifications, name) for name in ("twist_um", "polynomial_mm")
         }
+        if isinstance(scene, RackScene):
+            continue  # which has neither pitch deviations nor a second support
         if own.pitch is None:
             changes |= {f"{gear}.pitch.index_um": [0.0] * abs(own.teeth), f"{gear}.pitch.runout_um": 0.0}
-        if own.support is None and own.shaft is None:
+        if isinstance(scene, DoubleHelicalScene):
+            changes[f"{gear}.half_b"] = _as_half_a(scene, gear)
+        elif own.support is None and own.shaft is None:
             changes[f"{gear}.support.compliance"] = [[0.0] * 6] * 6
         if getattr(own, "thickness_allowance_um", 0.0) is None:
             changes |= {f"{gear}.thickness_allowance_um": 0.0, f"{gear}.tip_chamfer_mm": own.tip_chamfer_mm}
     return difference(subject.result, analysed(scene.with_changes(changes)), SAME_TORQUE)
 
 
+def _as_half_a(scene: Scene, gear: str) -> dict[str, Any]:
+    """What half b has, and all else as half a has it."""
+    own = as_table(scene)[gear]
+    return {name: own[name] for name in ("modifications", "flank")} | own.get("half_b", {})
+
+
 def memory_and_file(subject: Subject) -> Off:
     """A result from its file has the numbers and derivatives that it has in memory."""
-    result = subject.result
+    result: Any = subject.result
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        path = Path(folder) / "result.nc"
-        result.save(path)
-        loaded = load_result(path)
+        loaded = _from_file(result, Path(folder))
         off = {
             f"figure {name}": _unlike(value, loaded.key_figures()[0][name])
             for name, value in result.key_figures()[0].items()
         }
-        tolerances = default_tolerances(subject.scene)
+        tolerances = tolerances_of(subject.scene)
         keys = subject.rng.choice([*tolerances], min(3, len(tolerances)), replace=False).tolist()
         slopes = [one.sensitivities(keys) for one in (result, loaded)]
         for name in ("transmission_error", "peak_pressure", "line_load", "face_load_factor", "peak_to_peak"):
-            off[f"derivatives of the {name}"] = _unlike(*(getattr(one, name) for one in slopes))
+            if hasattr(slopes[0], name):  # two halves have no load factor together
+                off[f"derivatives of the {name}"] = _unlike(*(getattr(one, name) for one in slopes))
         widths = np.array([tolerances[key] for key in slopes[0].keys])
         shares = [one.load_share * widths for one in slopes]
         off["derivatives of the load_share"] = _unlike(*shares, least=NO_SHARE)
     return {name: part / FROM_FILE for name, part in off.items()}
+
+
+def _from_file(result: Any, folder: Path) -> Any:
+    """A result as it is read from the file, or files, that it is written into."""
+    if isinstance(result, HalvesAsPairs):
+        result.save(folder)
+        return HalvesAsPairs(DoubleHelicalResult.load(folder))
+    path = folder / "result.nc"
+    result.save(path)
+    return load_result(path)
+
+
+def tolerances_of(scene: Scene) -> dict[str, float]:
+    """Keys that have derivatives, with their usual tolerances; of two halves where their apex lies, too."""
+    halves = isinstance(scene, DoubleHelicalScene)
+    return default_tolerances(scene) | (default_tolerances(scene, ["pair.apex_offset_mm"]) if halves else {})
 
 
 def _unlike(one: Any, other: Any, least: float = 0.0) -> float:
@@ -403,12 +452,12 @@ def energy_kept(subject: Subject) -> Off:
     rotation = -result.gear_pair.driving * (result.transmission_error - result.unloaded_transmission_error)
     between = (moment[2] - moment[0]) * (rotation[0] + 4.0 * rotation[1] + rotation[2]) / 6.0
     work = moment[2] * rotation[2] - moment[0] * rotation[0] - between
-    stored = _deformation_work(result)
+    stored = stored_in(result)
     allowed = ENERGY + told(result).max(axis=0)
     return {"work": float((np.abs((stored[2] - stored[0]) / work - 1.0) / allowed).max())}
 
 
-def _deformation_work(result: MeshCycle) -> Array:
+def stored_in(result: MeshCycle) -> Array:
     """Half of what pressures times the closing of the gaps beneath them sum up to, (torque, position) [N mm]."""
     assert result.states is not None
     (states,) = result.states[1]
@@ -458,7 +507,7 @@ def stiffness_and_rotation(subject: Subject) -> Off:
     torque = 1e-3 * float(subject.result.torque[-1])
     result = analysed(subject.scene.with_changes({"analysis.torques_Nm": [0.95 * torque, 1.05 * torque]}))
     turned = np.abs(np.diff(result.transmission_error, axis=0)[0])
-    lengths = 1e3 * result.gear_pair.base_radii[0] * result.gear_pair.base_radii[1] * result.gear_pair.face_width
+    lengths = 1e3 * result.gear_pair.base_radii[0] * result.gear_pair.base_radii[1] * float(result.face_width)
     chord = np.diff(result.torque)[0] / turned / lengths
     stiffness = result.mesh_stiffness
     if subject.scene.is_supported:
@@ -469,7 +518,7 @@ def stiffness_and_rotation(subject: Subject) -> Off:
 
 def derivatives_and_differences(subject: Subject) -> Off:
     """Derivatives to a key beside differences of analyses on both sides, unless those of twice the step are others."""
-    tolerances = {key: size for key, size in default_tolerances(subject.scene).items() if key != TORQUE}
+    tolerances = {key: size for key, size in tolerances_of(subject.scene).items() if key != TORQUE}
     key = str(subject.rng.choice([*tolerances]))
     step = 0.1 * tolerances[key]
     with warnings.catch_warnings():
@@ -505,7 +554,7 @@ def _differences(subject: Subject, key: str, step: float) -> dict[str, Array]:
     its force grows from nothing with about the power 3/2 of the key, which puts slopes over both sides off by the root
     of the step, while the derivative is that without it.
     """
-    value, here = value_at(subject.scene, key), subject.result
+    value, here = number_at(subject.scene, key), subject.result
     low, high = (analysed(subject.scene.with_changes({key: value + by})) for by in (-step, step))
     results = low, here, high
     numbers = np.unique(np.concatenate([one.pair for one in results]))
@@ -541,7 +590,7 @@ def _along(
     key: str, low: float, high: float, *, over_module: bool = False
 ) -> Callable[[Subject, float], dict[str, Any]]:
     def changes(subject: Subject, part: float) -> dict[str, Any]:
-        unit = subject.scene.pair().module if over_module else 1.0
+        unit = module_of(subject.scene) if over_module else 1.0
         return {key: unit * (low + part * (high - low))}
 
     return changes
@@ -564,13 +613,16 @@ def _relief_start(subject: Subject, part: float) -> dict[str, Any]:
 
 
 AXES = (
-    Axis("misalignment", CYLINDRICAL, _along("mounting.misalignment_um", -20.0, 20.0)),
+    Axis("misalignment", (*CYLINDRICAL, *RACK, *HALVES), _along("mounting.misalignment_um", -20.0, 20.0)),
     Axis("misalignment", (*BEVEL, "face_milled"), _along("mounting.offset_mm", -0.01, 0.01, over_module=True)),
-    Axis("relief start", (*CYLINDRICAL[:2], *BEVEL), _relief_start),
-    Axis("tip diameter", CYLINDRICAL[:2], _along("pinion.tip_alteration_coefficient", -0.15, 0.0)),
-    Axis("rounding from zero", (*CYLINDRICAL, *BEVEL), _rounding_from_zero),
+    Axis("relief start", (*CYLINDRICAL[:2], *BEVEL, *RACK), _relief_start),
+    Axis("tip diameter", (*CYLINDRICAL[:2], *RACK), _along("pinion.tip_alteration_coefficient", -0.15, 0.0)),
+    Axis("rounding from zero", (*CYLINDRICAL, *BEVEL, *RACK), _rounding_from_zero),
     Axis("shaft angle", BEVEL, _along("mounting.shaft_angle_error_deg", -0.03, 0.03)),
-    Axis("centre distance", CYLINDRICAL, _along("mounting.centre_distance_error_mm", 0.0, 0.05, over_module=True)),
+    Axis("centre distance", (*CYLINDRICAL, *RACK, *HALVES),
+         _along("mounting.centre_distance_error_mm", 0.0, 0.05, over_module=True)),
+    Axis("apex offset", HALVES, _along("pair.apex_offset_mm", -5e-3, 5e-3, over_module=True)),
+    Axis("addendum of the rack", RACK, _along("wheel.addendum_mm", 0.8, 1.0, over_module=True)),
 )  # fmt: skip
 VALUES = 41
 
@@ -616,76 +668,3 @@ def largest_jump(values: Array, least: float) -> float:
     before, after = steps[1:-1] - steps[:-2], steps[1:-1] - steps[2:]
     jumps = np.where(before * after > 0.0, np.minimum(np.abs(before), np.abs(after)), 0.0)
     return float(jumps.max()) / max(float(np.ptp(values)), least)
-
-
-class Invariance(NamedTuple):
-    """A law that scenes obey.
-
-    Attributes
-    ----------
-    check : callable
-        Its docstring says how the scene is changed.
-    part : float
-        Of the scenes of a long run that it is tried on: dear ones on few.
-    holds_for : callable
-        Subjects that it is for.
-    """
-
-    check: Callable[[Subject], Off]
-    part: float
-    holds_for: Callable[[Subject], bool]
-
-    @property
-    def name(self) -> str:
-        """That of the function, in words."""
-        return self.check.__name__.replace("_", " ")
-
-    def is_tried_on(self, subject: Subject) -> bool:
-        """Whether a long run has it for a subject."""
-        coin = np.random.default_rng([subject.featured.seed, crc32(self.name.encode())]).random()
-        return bool(coin < self.part * (0.5 if subject.featured.family in ("face_milled", "hypoid") else 1.0))
-
-
-def _every(_: Subject) -> bool:
-    return True
-
-
-def _held(subject: Subject) -> bool:
-    """Gears that stand where they are."""
-    return not subject.scene.is_supported
-
-
-def _elastic_and_held(subject: Subject) -> bool:
-    return _held(subject) and not subject.has("pressure cap")
-
-
-INVARIANCES = (
-    Invariance(lengths_doubled, 0.15, _every),
-    Invariance(mirror_across, 0.15, _every),
-    Invariance(mirror_along, 0.2, lambda subject: subject.featured.family in CYLINDRICAL),
-    Invariance(
-        gears_exchanged, 0.5,
-        lambda subject: (
-            _held(subject)
-            and subject.featured.family in ("spur", "helical", *BEVEL)
-            and not subject.has("one pair carries", "blank")
-        ),
-    ),
-    Invariance(pitch_later, 1.0, lambda subject: not subject.has("one pair carries")),
-    Invariance(torque_in_a_list, 0.15, _every),
-    Invariance(positions_among_others, 0.15, _every),
-    Invariance(zeros_as_none, 0.15, _every),
-    Invariance(memory_and_file, 0.2, _every),
-    Invariance(finer_grids, 0.2, _every),
-    Invariance(revolution_doubled, 0.5, lambda subject: subject.has("pitch deviations", "runout", "odd tooth")
-               and not subject.has("one pair carries")),
-    Invariance(torque_balanced, 1.0, _held),
-    Invariance(energy_kept, 0.3, _elastic_and_held),
-    Invariance(
-        moments_on_shafts, 1.0,
-        lambda subject: not _held(subject) and subject.featured.family in CYLINDRICAL,
-    ),
-    Invariance(stiffness_and_rotation, 0.2, lambda subject: not subject.has("pressure cap")),
-    Invariance(derivatives_and_differences, 0.2, _every),
-    Invariance(continuous, 0.05, _every),
-)  # fmt: skip

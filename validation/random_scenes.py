@@ -18,6 +18,7 @@ from loaded_tca import AccuracyWarning, parse_scene, read_scene
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import LoadedTCAError
 from loaded_tca.scene import Scene
+from loaded_tca.scene.double_helical import DoubleHelicalScene
 from validation.scene_features import FEATURES, Feature
 
 SCENES = Path(__file__).parents[1] / "examples" / "scenes"
@@ -48,6 +49,8 @@ ALL_FAMILIES = (
     "hypoid",
 )
 """By seed, in turn, of scenes with features: flanks that machines cut take ten times as long as others."""
+FROM_HERE, LATER_FAMILIES = 10_000, ("rack", "double_helical")
+"""Seeds from here on have these families in turn: later kinds leave the scenes of earlier seeds as they are."""
 MOST_DRAWS = 100
 Section = dict[str, Any]
 
@@ -98,8 +101,7 @@ def featured_scene(seed: int, **analysis: Any) -> FeaturedScene:
         for feature, rng in tossed:
             try:
                 more = feature.draw(rng, scene)
-                more.pair()
-                more.interferences()
+                _make(more)
             except LoadedTCAError:
                 continue
             scene = more
@@ -110,7 +112,8 @@ def featured_scene(seed: int, **analysis: Any) -> FeaturedScene:
 
 def coins(seed: int) -> tuple[str, list[tuple[Feature, np.random.Generator]]]:
     """Family of a seed, and the features whose coins fall for it, each with the generator that draws it."""
-    family, tossed = ALL_FAMILIES[seed % len(ALL_FAMILIES)], []
+    families = ALL_FAMILIES if seed < FROM_HERE else LATER_FAMILIES
+    family, tossed = families[seed % len(families)], []
     for feature in FEATURES:
         rng = np.random.default_rng([seed, crc32(feature.name.encode())])
         if family in feature.families and rng.random() < feature.chance:
@@ -123,12 +126,20 @@ def _plain(family: str, rng: np.random.Generator) -> Scene:
     for _ in range(MOST_DRAWS):
         try:
             scene = _PLAIN[family](rng).with_changes({"analysis.compliance": "contact"})
-            scene.pair()
-            scene.interferences()
+            _make(scene)
         except LoadedTCAError:
             continue
         return scene
     raise RuntimeError(f"no {family} pair in {MOST_DRAWS} draws")
+
+
+def _make(scene: Scene) -> None:
+    """Make the gears of a scene, which its values may not allow."""
+    if isinstance(scene, DoubleHelicalScene):
+        assert scene.halves
+    else:
+        scene.pair()
+    scene.interferences()
 
 
 def _crowned(rng: np.random.Generator, scene: Scene) -> Scene:
@@ -188,6 +199,23 @@ def _internal(rng: np.random.Generator) -> Scene:
     return parse_scene(_toml(_steel(table)))
 
 
+def _rack(rng: np.random.Generator) -> Scene:
+    """A pinion on a rack."""
+    helix_angle = float(rng.choice([0.0, rng.uniform(8.0, 25.0)]))
+    module, teeth = float(rng.choice([1.5, 2.0, 3.0, 4.0])), int(rng.integers(17, 40))
+    face, radius = float(module * rng.uniform(6.0, 12.0)), 0.5 * module * teeth / np.cos(np.radians(helix_angle))
+    shift, height = float(rng.uniform(0.0, 0.4)), float(module * rng.uniform(5.0, 9.0))
+    table: dict[str, Section] = {
+        "pair": {"type": "cylindrical", "normal_module_mm": module, "helix_angle_deg": helix_angle},
+        "pinion": {"teeth": teeth, "face_width_mm": face + float(rng.choice([0.0, 2.0])), "profile_shift": shift},
+        "wheel": {"teeth": "rack", "face_width_mm": face, "height_mm": height},
+        "load": {"pinion_torque_Nm": float(1e-3 * module * rng.uniform(40.0, 130.0) * face * radius)},
+    }
+    if helix_angle:
+        table["pinion"]["hand"] = str(rng.choice(["left", "right"]))
+    return parse_scene(_toml(_steel(table)))
+
+
 def _bevel(rng: np.random.Generator, kind: str) -> Scene:
     """A straight or spiral bevel pair with crownings and mounting errors."""
     module, teeth = rng.choice([1.0, 2.0, 3.0]), (int(rng.integers(16, 25)), int(rng.integers(25, 45)))
@@ -232,6 +260,8 @@ _PLAIN = {
     "spiral_bevel": lambda rng: _bevel(rng, "spiral_bevel"),
     "face_milled": lambda rng: _face_milled(rng),
     "hypoid": _hypoid,
+    "rack": lambda rng: _crowned(rng, _rack(rng)),
+    "double_helical": lambda rng: _crowned(rng, _two_cylinders(rng, float(rng.uniform(15.0, 35.0)))),
 }
 
 _DRAWS = {

@@ -12,7 +12,9 @@ import numpy as np
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.flanks.measured_columns import flank_of_lines
 from loaded_tca.scene import Scene
-from loaded_tca.scene.section import contents
+from loaded_tca.scene.parse import scene_from_table
+from loaded_tca.scene.rack import RackScene
+from loaded_tca.scene.section import as_table, contents
 
 Draw = Callable[[np.random.Generator, Scene], Scene]
 Section = dict[str, Any]
@@ -20,7 +22,11 @@ EXTERNAL = frozenset({"spur", "helical"})
 CYLINDRICAL = EXTERNAL | {"internal"}
 BEVEL = frozenset({"straight_bevel", "spiral_bevel"})
 CUT = frozenset({"face_milled", "hypoid"})
-ALL = CYLINDRICAL | BEVEL | CUT
+RACK, HALVES = frozenset({"rack"}), frozenset({"double_helical"})
+CUT_BY_RACKS = EXTERNAL | HALVES
+PARALLEL = CYLINDRICAL | RACK | HALVES
+ON_SHAFTS = CYLINDRICAL | BEVEL | CUT | RACK
+ALL = ON_SHAFTS | HALVES
 ROUNDINGS = (0.02, 0.28)
 """Least and largest radius of a rounded edge over the module; scenes allow 0.3."""
 TORQUES = (1e-2, 10.0)
@@ -29,6 +35,8 @@ POINTS = (7, 9)
 """Of a measured flank, along the profile and lengthwise."""
 IN_INCHES = {"mm": ("in", 25.4), "um": ("uin", 0.0254)}
 """Unit of a key -> that of drawings in inches, and how much of the first it is."""
+TOOL = {"addendum_coefficient": (0.9, 1.0), "dedendum_coefficient": (1.2, 1.4), "root_radius_coefficient": (0.2, 0.38)}
+"""Of a tool of its own: least and largest coefficients."""
 LINE = 20
 """Half of the spaces between the points of a measured line."""
 
@@ -40,6 +48,11 @@ class Feature(NamedTuple):
     families: frozenset[str]
     chance: float
     draw: Draw
+
+
+def _around_axes(scene: Scene) -> tuple[str, ...]:
+    """Gears that turn about an axis: not a rack."""
+    return GEARS[:1] if scene.rack_radius else GEARS
 
 
 # Which flanks, how much load
@@ -122,7 +135,7 @@ def _cutter(rng: np.random.Generator, scene: Scene) -> Scene:
 
 
 def _tip_chamfer(rng: np.random.Generator, scene: Scene) -> Scene:
-    gear = str(rng.choice(GEARS))
+    gear = str(rng.choice(_around_axes(scene)))
     height = float(scene.pair().module * rng.uniform(0.03, 0.1))
     return scene.with_changes(
         {f"{gear}.tip_chamfer_mm": height, f"{gear}.tip_chamfer_angle_deg": float(rng.uniform(45.0, 60.0))}
@@ -139,9 +152,108 @@ def _blank(rng: np.random.Generator, scene: Scene) -> Scene:
 
 def _bores(rng: np.random.Generator, scene: Scene) -> Scene:
     """Other bores, or none, than those by default."""
-    names = GEARS[:1] if scene.wheel.teeth < 0 else GEARS
+    names = GEARS[:1] if scene.rack_radius or scene.wheel.teeth < 0 else GEARS
     bores = zip(names, scene.pair().rigid_bores, strict=False)
     return scene.with_changes({f"{name}.bore_diameter_mm": float(bore * rng.uniform(0.7, 1.1)) for name, bore in bores})
+
+
+def _own_tool(rng: np.random.Generator, scene: Scene) -> Scene:
+    """A tool of its own for a pinion beside a rack, whose fillets are those of [pair]."""
+    own = {name: float(rng.uniform(*ends)) for name, ends in TOOL.items()}
+    rack = {name: float(rng.uniform(*TOOL[name])) for name in ("dedendum_coefficient", "root_radius_coefficient")}
+    places = {"pinion": own, "pair": rack}
+    return scene.with_changes({f"{place}.{name}": value for place, of in places.items() for name, value in of.items()})
+
+
+def _ground_pinion(rng: np.random.Generator, scene: Scene) -> Scene:
+    stock, module = float(rng.uniform(0.01, 0.02)), 1e3 * scene.pair().module  # um
+    changes = {"grinding_stock_um": stock * module, "protuberance_um": (stock + 0.01) * module}
+    return scene.with_changes({f"pinion.{name}": value for name, value in changes.items()})
+
+
+# Racks
+
+
+def _distance(rng: np.random.Generator, scene: Scene) -> Scene:
+    """A distance of its own: the pinion's profile shift leaves no backlash, or is given and leaves some."""
+    scene, module = _as_rack(scene), scene.pair().module
+    if rng.random() < 0.5:
+        return scene.with_changes({"pair.distance_mm": float(scene.distance + module * rng.uniform(0.01, 0.1))})
+    shift = {"pinion.profile_shift": None, "pair.distance_mm": float(scene.distance + module * rng.uniform(-0.1, 0.2))}
+    return scene.with_changes(shift)
+
+
+def _bar(rng: np.random.Generator, scene: Scene) -> Scene:
+    """A toothed part that is just long enough, or long, above a bed near the roots or far below."""
+    scene = _as_rack(scene)
+    module, ways = scene.rack.normal_module, 1.0 + scene.mesh().total_contact_ratio
+    length = scene.rack.pitch * ways * float(rng.choice([1.0 + 1e-6, rng.uniform(2.0, 20.0)]))
+    return scene.with_changes({"wheel.length_mm": length, "wheel.height_mm": float(module * rng.uniform(2.5, 10.0))})
+
+
+def _addendum(rng: np.random.Generator, scene: Scene) -> Scene:
+    return scene.with_changes({"wheel.addendum_mm": float(scene.pair().module * rng.uniform(0.8, 1.0))})
+
+
+def _as_rack(scene: Scene) -> RackScene:
+    assert isinstance(scene, RackScene)
+    return scene
+
+
+# Double helical pairs
+
+
+def _two_halves(rng: np.random.Generator, scene: Scene) -> Scene:
+    """A pair of which either half is the helical pair that the scene was: on both sides of a groove."""
+    gap, table = float(scene.pair().module * rng.uniform(2.0, 8.0)), as_table(scene)
+    for gear in GEARS:
+        table[gear]["face_width_mm"] = 2.0 * table[gear]["face_width_mm"] + gap
+    table["pair"] |= {"double_helical": True, "gap_mm": gap}
+    table["load"]["pinion_torque_Nm"] *= 2.0
+    if torques := table["analysis"].get("torques_Nm"):
+        table["analysis"]["torques_Nm"] = [2.0 * torque for torque in torques]
+    return scene_from_table(table)
+
+
+def _apex_offset(rng: np.random.Generator, scene: Scene) -> Scene:
+    module = scene.mesh().pinion.normal_module
+    return scene.with_changes({"pair.apex_offset_mm": float(5e-3 * module * rng.uniform(-1.0, 1.0))})
+
+
+def _soft_along(rng: np.random.Generator, scene: Scene) -> Scene:
+    """An axial support of the gear that floats, from as soft to as stiff as teeth are along the axis."""
+    stiffness = float(np.exp(rng.uniform(*np.log((5.0, 500.0)))))
+    return scene.with_changes({"pair.axial_stiffness_N_per_um": stiffness})
+
+
+def _both_held(_: np.random.Generator, scene: Scene) -> Scene:
+    return scene.with_changes({"pair.floating": "none", "pair.axial_stiffness_N_per_um": 0.0})
+
+
+def _flanks_of_half_b(rng: np.random.Generator, scene: Scene) -> Scene:
+    """Amounts of half b of one gear that half a does not have, of some micrometres; reliefs are those of both."""
+    gear = str(rng.choice(GEARS))
+    amounts = {"lead_crowning_um": _amount(rng, 1.0, 8.0), "profile_crowning_um": _amount(rng, 0.0, 4.0)}
+    amounts |= {name: _amount(rng, -6.0, 6.0) for name in ("helix_slope_um", "profile_slope_um", "twist_um")}
+    own = as_table(scene)[gear]
+    return scene.with_changes(
+        {f"{gear}.half_b": {**own.get("half_b", {}), "modifications": own["modifications"] | amounts}}
+    )
+
+
+def _fitted_half_b(rng: np.random.Generator, scene: Scene) -> Scene:
+    gear = str(rng.choice(GEARS))
+    own = as_table(scene)[gear].get("half_b", {})
+    return scene.with_changes({f"{gear}.half_b": own | {"flank": {"form": "bspline", "points": [17, 17]}}})
+
+
+def _errors_of_half_b(rng: np.random.Generator, scene: Scene) -> Scene:
+    """Half b of the wheel turned and moved against half a."""
+    module = scene.mesh().pinion.normal_module
+    sizes = {"misalignment_um": 8.0, "in_plane_deg": 0.01, "out_of_plane_deg": 0.01,
+             "centre_distance_error_mm": 5e-3 * module, "axial_offset_mm": 5e-3 * module}  # fmt: skip
+    chosen = rng.choice([*sizes], 2, replace=False).tolist()
+    return scene.with_changes({"mounting.half_b": {name: sizes[name] * _amount(rng, -1.0, 1.0) for name in chosen}})
 
 
 # Flanks
@@ -174,6 +286,8 @@ def _reliefs(rng: np.random.Generator, scene: Scene, form: str, end: str, gears:
         if coordinates[0] < 0.0:  # a ring, whose roll lengths fall towards the tip
             nearest = int(np.abs(coordinates - start).argmin())
             changes[f"{name}_start_mm"] = 2.0 * float(radii[nearest, 1])
+        elif gear not in _around_axes(scene):  # a rack, whose reliefs start below its tip line
+            changes[f"{name}_start_mm"] = float(np.ptp(radii[:, 1]) * (part if end == "tip" else 1.0 - part))
         else:
             changes[f"{name}_start_length_mm"] = float(start * own.flank.profile_unit)
     return scene.with_changes(changes)
@@ -217,12 +331,12 @@ def _polynomial(rng: np.random.Generator, scene: Scene) -> Scene:
 
 
 def _fitted(rng: np.random.Generator, scene: Scene) -> Scene:
-    return scene.with_changes({f"{rng.choice(GEARS)}.flank": {"form": "bspline", "points": [17, 17]}})
+    return scene.with_changes({f"{rng.choice(_around_axes(scene))}.flank": {"form": "bspline", "points": [17, 17]}})
 
 
 def _measured(rng: np.random.Generator, scene: Scene) -> Scene:
     """A measured flank with slopes, twist and a wave, of some micrometres each."""
-    gear, pair = str(rng.choice(GEARS)), scene.pair()
+    gear, pair = str(rng.choice(_around_axes(scene))), scene.pair()
     flank = (pair.pinion if gear == "pinion" else pair.wheel).flank
     radius, axial = (part[1::2, 1::2] for part in flank.grid(*(2 * count + 1 for count in POINTS)))
     profile, along = (np.linspace(-1.0, 1.0, 2 * count + 1)[1::2] for count in POINTS)
@@ -235,7 +349,7 @@ def _measured(rng: np.random.Generator, scene: Scene) -> Scene:
 
 def _measured_lines(rng: np.random.Generator, scene: Scene) -> Scene:
     """A flank measured along a profile and a helix, each with a slope, a crowning and a wave of some micrometres."""
-    gear, pair = str(rng.choice(GEARS)), scene.pair()
+    gear, pair = str(rng.choice(_around_axes(scene))), scene.pair()
     radii, axials = (pair.pinion if gear == "pinion" else pair.wheel).flank.grid(2 * LINE + 1, 2 * LINE + 1)
     middle, along = LINE, np.linspace(-1.0, 1.0, 2 * LINE + 1)[1:-1]
     line = np.repeat([0.0, 1.0], along.size)
@@ -287,7 +401,9 @@ def _matrix(rng: np.random.Generator, scene: Scene) -> Scene:
     matrix = np.diag([way, way, 2.0 * way, turn, turn, turn])
     matrix[0, 4] = matrix[4, 0] = coupled * rng.uniform(-1.0, 1.0)
     matrix[1, 3] = matrix[3, 1] = -matrix[0, 4]
-    return scene.with_changes({f"{rng.choice(GEARS)}.support": {"compliance": tuple(map(tuple, matrix.tolist()))}})
+    return scene.with_changes(
+        {f"{rng.choice(_around_axes(scene))}.support": {"compliance": tuple(map(tuple, matrix.tolist()))}}
+    )
 
 
 def _shaft(bearings: Callable[[np.random.Generator, float, float], list[Section]], gear: str = "rigid") -> Draw:
@@ -397,10 +513,19 @@ def _setting(**values: Any) -> Draw:
 
 def _inches(_: np.random.Generator, scene: Scene) -> Scene:
     """Lengths of gears and mounting errors in inches, amounts of modifications in microinches."""
+    return _in_inches(scene, (*GEARS, *(f"{gear}.modifications" for gear in GEARS), "mounting"))
+
+
+def _pair_in_inches(_: np.random.Generator, scene: Scene) -> Scene:
+    """Lengths of [pair] in inches: module, groove and apex, the distance of a rack."""
+    return _in_inches(scene, ("pair",))
+
+
+def _in_inches(scene: Scene, places: tuple[str, ...]) -> Scene:
     changes = {}
-    for place in (*GEARS, *(f"{gear}.modifications" for gear in GEARS), "mounting"):
+    for place in places:
         section: Any = scene
-        for name in place.split("."):
+        for name in ("geometry" if place == "pair" else place).split("."):
             section = getattr(section, name)
         for name, value in contents(section).items():
             stem, _, unit = name.rpartition("_")
@@ -415,19 +540,25 @@ def _form(form: str, draw: Callable[[np.random.Generator, Scene, str], Scene]) -
 
 
 FEATURES = (
-    Feature("other flank", CYLINDRICAL | BEVEL, 0.2, _other_flank),
+    Feature("other flank", PARALLEL | BEVEL, 0.2, _other_flank),
     Feature("wheel drives", ALL, 0.3, _wheel_drives),
-    Feature("unlike faces", CYLINDRICAL, 0.3, _unlike_faces),
-    Feature("few teeth", EXTERNAL, 0.06, _few_teeth),
-    Feature("centre distance", CYLINDRICAL, 0.15, _other_centre_distance),
-    Feature("shorter tips", EXTERNAL, 0.15, _shorter_tips),
-    Feature("own racks", CYLINDRICAL, 0.1, _own_racks),
-    Feature("protuberance", EXTERNAL, 0.1, _protuberance),
+    Feature("unlike faces", PARALLEL, 0.3, _unlike_faces),
+    Feature("few teeth", CUT_BY_RACKS, 0.06, _few_teeth),
+    Feature("centre distance", CYLINDRICAL | HALVES, 0.15, _other_centre_distance),
+    Feature("shorter tips", CUT_BY_RACKS, 0.15, _shorter_tips),
+    Feature("own racks", CYLINDRICAL | HALVES, 0.1, _own_racks),
+    Feature("protuberance", CUT_BY_RACKS, 0.1, _protuberance),
     Feature("cutter", frozenset({"internal"}), 0.3, _cutter),
-    Feature("tip chamfer", CYLINDRICAL, 0.1, _tip_chamfer),
+    Feature("tip chamfer", PARALLEL, 0.1, _tip_chamfer),
+    Feature("pinion of few teeth", RACK, 0.2, _few_teeth),
+    Feature("tool of the pinion", RACK, 0.2, _own_tool),
+    Feature("ground pinion", RACK, 0.1, _ground_pinion),
+    Feature("distance", RACK, 0.3, _distance),
+    Feature("addendum of the rack", RACK, 0.3, _addendum),
+    Feature("bar", RACK, 0.4, _bar),
     Feature("shaft angle", BEVEL, 0.3, _shaft_angle),
     Feature("blank", BEVEL, 0.2, _blank),
-    Feature("thickness allowances", CYLINDRICAL, 0.15, _thinner_teeth),
+    Feature("thickness allowances", PARALLEL, 0.15, _thinner_teeth),
     Feature("unlike materials", ALL, 0.15, _unlike_materials),
     Feature("pressure cap", ALL, 0.12, _cap),
     Feature("other torque", ALL, 0.4, _other_torque),
@@ -446,31 +577,40 @@ FEATURES = (
     Feature("polynomial", ALL, 0.1, _polynomial),
     Feature("fitted flank", ALL, 0.08, _fitted),
     Feature("measured flank", ALL, 0.08, _measured),
-    Feature("measured lines", CYLINDRICAL, 0.06, _measured_lines),
+    Feature("measured lines", PARALLEL, 0.06, _measured_lines),
     Feature("tip roundings", ALL, 0.2, _rounding("tip")),
     Feature("side roundings", ALL, 0.2, _rounding("side")),
-    Feature("misalignment", CYLINDRICAL, 0.3, _mounting("misalignment_um", 20.0)),
-    Feature("axis error in the plane", CYLINDRICAL, 0.15, _mounting("in_plane_deg", 0.02)),
-    Feature("axis error across the plane", CYLINDRICAL, 0.15, _mounting("out_of_plane_deg", 0.02)),
-    Feature("error of the centre distance", CYLINDRICAL, 0.15, _mounting("centre_distance_error_mm", 0.02)),
-    Feature("axial offset", CYLINDRICAL, 0.15, _mounting("axial_offset_mm", 0.3)),
+    Feature("misalignment", PARALLEL, 0.3, _mounting("misalignment_um", 20.0)),
+    Feature("axis error in the plane", PARALLEL, 0.15, _mounting("in_plane_deg", 0.02)),
+    Feature("axis error across the plane", PARALLEL, 0.15, _mounting("out_of_plane_deg", 0.02)),
+    Feature("error of the centre distance", PARALLEL, 0.15, _mounting("centre_distance_error_mm", 0.02)),
+    Feature("axial offset", PARALLEL, 0.15, _mounting("axial_offset_mm", 0.3)),
+    Feature("two halves", HALVES, 1.0, _two_halves),
+    Feature("apex offset", HALVES, 0.5, _apex_offset),
+    Feature("wheel floats", HALVES, 0.25, lambda _, scene: scene.with_changes({"pair.floating": "wheel"})),
+    Feature("axial support", HALVES, 0.25, _soft_along),
+    Feature("both gears held", HALVES, 0.25, _both_held),
+    Feature("flanks of half b", HALVES, 0.5, _flanks_of_half_b),
+    Feature("fitted half b", HALVES, 0.1, _fitted_half_b),
+    Feature("errors of half b", HALVES, 0.25, _errors_of_half_b),
     Feature("offset", BEVEL | CUT, 0.25, _mounting("offset_mm", 0.015)),
     Feature("axial place of the pinion", BEVEL | CUT, 0.25, _mounting("pinion_axial_mm", 0.015)),
     Feature("axial place of the wheel", BEVEL | CUT, 0.25, _mounting("wheel_axial_mm", 0.015)),
     Feature("error of the shaft angle", BEVEL | CUT, 0.15, _mounting("shaft_angle_error_deg", 0.02)),
-    Feature("matrix", ALL, 0.08, _matrix),
-    Feature("shaft", ALL, 0.08, _shaft(_linear)),
-    Feature("shaft along the face", EXTERNAL, 0.06, _shaft(_linear, "along")),
-    Feature("rolling bearings", CYLINDRICAL, 0.08, _shaft(_rolling)),
-    Feature("tapered bearings", ALL, 0.06, _shaft(_tapered)),
-    Feature("pitch deviations", ALL, 0.1, _pitch_deviations),
-    Feature("runout", ALL, 0.1, _runout),
-    Feature("odd tooth", ALL, 0.05, _odd_tooth),
+    Feature("matrix", ON_SHAFTS, 0.08, _matrix),
+    Feature("shaft", ON_SHAFTS, 0.08, _shaft(_linear)),
+    Feature("shaft along the face", EXTERNAL | RACK, 0.06, _shaft(_linear, "along")),
+    Feature("rolling bearings", CYLINDRICAL | RACK, 0.08, _shaft(_rolling)),
+    Feature("tapered bearings", ON_SHAFTS, 0.06, _shaft(_tapered)),
+    Feature("pitch deviations", CYLINDRICAL | BEVEL | CUT, 0.1, _pitch_deviations),
+    Feature("runout", CYLINDRICAL | BEVEL | CUT, 0.1, _runout),
+    Feature("odd tooth", CYLINDRICAL | BEVEL | CUT, 0.05, _odd_tooth),
     Feature("teeth bend", ALL, 0.25, _setting(compliance="contact+tooth")),
-    Feature("bores", CYLINDRICAL | BEVEL, 0.1, _bores),
+    Feature("bores", CYLINDRICAL | BEVEL | RACK, 0.1, _bores),
     Feature("edges not free", ALL, 0.1, _setting(free_edges=False)),
-    Feature("one pair carries", ALL, 0.08, _setting(load_sharing=False)),
+    Feature("one pair carries", ON_SHAFTS, 0.08, _setting(load_sharing=False)),
     Feature("all edge pressures", ALL, 0.1, _setting(edge_pressures="all")),
     Feature("inches", ALL, 0.1, _inches),
+    Feature("pair in inches", RACK | HALVES, 0.2, _pair_in_inches),
 )
 """In the order in which they are drawn: gears before flanks, whose reliefs follow from them, before shafts."""

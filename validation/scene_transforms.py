@@ -11,6 +11,7 @@ from loaded_tca.arrays import GEARS
 from loaded_tca.scene import Scene
 from loaded_tca.scene.parse import scene_from_table
 from loaded_tca.scene.section import as_table
+from loaded_tca.scene.variants import OF_HALVES
 
 Table = dict[str, Any]
 POWERS = {
@@ -101,9 +102,71 @@ def mirrored_across(scene: Scene) -> Scene:
             own["pitch"]["runout_phase_deg"] *= -1.0
     if not table["pair"].get("pinion_flank"):
         table["pair"]["sense"] = OTHER[scene.sense]
-    for name in ("out_of_plane_deg", "misalignment_um", "offset_mm"):
-        if name in table["mounting"]:
-            table["mounting"][name] *= -1.0
+    for errors in (table["mounting"], table["mounting"].get("half_b", {})):
+        for name in ("out_of_plane_deg", "misalignment_um", "offset_mm"):
+            if name in errors:
+                errors[name] *= -1.0
+    return scene_from_table(table)
+
+
+def halves_exchanged(scene: Scene) -> Scene:
+    """A double helical pair in a mirror across its axes: each half in the place of the other one, with its hand.
+
+    Half b may have no mounting errors of its own.
+    """
+    table = as_table(scene)
+    for gear in GEARS:
+        own = table[gear]
+        if half_b := own.get("half_b"):
+            own["half_b"] = {name: own[name] for name in half_b}
+            own |= half_b
+    for name in ("in_plane_deg", "out_of_plane_deg", "misalignment_um", "axial_offset_mm"):
+        table["mounting"][name] *= -1.0
+    table["pair"]["apex_offset_mm"] *= -1.0
+    return scene_from_table(table)
+
+
+def half_alone(scene: Scene) -> Scene:
+    """Half a of a double helical pair as the helical pair that it is, under half the torque.
+
+    Faces begin at the groove: the middle of a wider one lies farther outwards.
+    """
+    table = as_table(scene)
+    table["mounting"]["axial_offset_mm"] += 0.25 * (table["wheel"]["face_width_mm"] - table["pinion"]["face_width_mm"])
+    gap = {name: table["pair"].pop(name, None) for name in OF_HALVES}["gap_mm"]
+    for gear in GEARS:
+        own = table[gear]
+        own["face_width_mm"] = 0.5 * (own["face_width_mm"] - gap)
+        for name in ("half_b", "apex_runout_um", "apex_runout_phase_deg"):
+            own.pop(name, None)
+    table["mounting"].pop("half_b", None)
+    table["load"]["pinion_torque_Nm"] *= 0.5
+    if torques := table["analysis"].get("torques_Nm"):
+        table["analysis"]["torques_Nm"] = [0.5 * torque for torque in torques]
+    return scene_from_table(table)
+
+
+def as_wheel(scene: Scene, teeth: int) -> Scene:
+    """A pinion and a rack as that pinion and a wheel of many teeth, which the rack is the limit of.
+
+    An axis error in the plane may not be: a rack tilts about its reference line, a wheel about its axis.
+    """
+    table = as_table(scene)
+    pair, wheel, pinion = table["pair"], table["wheel"], table["pinion"]
+    module = pair["normal_module_mm"]
+    radius = 0.5 * teeth * module / np.cos(np.radians(pair["helix_angle_deg"]))
+    addendum = wheel.pop("addendum_mm", module)
+    for name in ("height_mm", "length_mm"):
+        wheel.pop(name, None)
+    wheel |= {"teeth": teeth, "profile_shift": 0.0}
+    wheel["tip_alteration_coefficient"] = addendum / module - pair["addendum_coefficient"]
+    if (distance := pair.pop("distance_mm", None)) is None:
+        pinion["profile_shift"] = pinion.get("profile_shift") or 0.0
+    else:
+        pair["centre_distance_mm"] = float(radius + distance)
+    for relief in ("tip_relief", "root_relief"):
+        if below := wheel["modifications"][f"{relief}_start_mm"]:
+            wheel["modifications"][f"{relief}_start_mm"] = float(2.0 * (radius + addendum - below))
     return scene_from_table(table)
 
 

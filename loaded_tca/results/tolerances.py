@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.sensitivities import TORQUE
-from loaded_tca.scene.section import contents
+from loaded_tca.scene.section import values_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -39,9 +39,9 @@ def default_tolerances(scene: Scene, keys: Iterable[str] | None = None) -> dict[
     scene : Scene
     keys : iterable of str, optional
         As of ``scene.with_changes``. Default: all modifications that the gears have, with the starts and lengths of
-        reliefs, all mounting errors, of double helical pairs the modifications of half b and the apex offset, and the
-        torque. Of those that add to each other (``mounting.misalignment_um`` to
-        ``mounting.out_of_plane_deg``) only one is among them.
+        reliefs, all mounting errors, of double helical pairs those of half b too and the apex offset, and the torque.
+        Of those that add to each other (``mounting.misalignment_um`` to ``mounting.out_of_plane_deg``) only one is
+        among them.
 
     Returns
     -------
@@ -61,19 +61,16 @@ def _varied(scene: Scene) -> list[str]:
     """Modifications that the gears have, mounting errors and the torque."""
     keys = []
     for gear in GEARS:
-        section = getattr(scene, gear)
-        for place, holder in (("", section), ("half_b.", getattr(section, "half_b", None))):
-            for name, value in {} if (own := getattr(holder, "modifications", None)) is None else contents(own).items():
-                if isinstance(value, Real) and value and name.rpartition("_")[2] in USUAL:
-                    keys.append(f"{gear}.{place}modifications.{name}")
-    keys += [f"mounting.{name}" for name, value in contents(scene.mounting).items() if _is_error(name, value)]
+        for name, value in values_of(getattr(scene, gear)).items():
+            of_flanks = "modifications" in name.split(".")
+            if of_flanks and isinstance(value, Real) and value and name.rpartition("_")[2] in USUAL:
+                keys.append(f"{gear}.{name}")
+    errors = values_of(scene.mounting)  # those of half b of a double helical wheel, too
+    keys += [
+        f"mounting.{name}" for name in errors if isinstance(errors[name], Real) and name.rpartition(".")[2] != TWICE
+    ]
     keys += [APEX] if hasattr(scene.geometry, "apex_offset_mm") else []
     return [*keys, TORQUE]
-
-
-def _is_error(name: str, value: object) -> bool:
-    """Whether a name of [mounting] is an error that counts once; the section of half b is none."""
-    return name != TWICE and isinstance(value, Real)
 
 
 def _usual(scene: Scene, key: str) -> float:

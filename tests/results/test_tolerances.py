@@ -55,6 +55,25 @@ def test_mounting_errors_are_those_of_the_kind_of_gears():
     }
 
 
+def test_keys_of_a_double_helical_pair_are_those_of_half_b_as_well():
+    errors = {"out_of_plane_deg": 0.01, "misalignment_um": 2.0}
+    keys = default_tolerances(scene("double_helical", mounting__half_b=errors))
+    of_half_b = {key: size for key, size in keys.items() if "half_b" in key}
+    assert of_half_b == {
+        "pinion.half_b.modifications.lead_crowning_um": 1.0,
+        "pinion.half_b.modifications.tip_relief_um": 1.0,
+        "pinion.half_b.modifications.tip_relief_start_roll_deg": 0.1,
+        "pinion.half_b.modifications.helix_slope_um": 1.0,
+        **{f"mounting.half_b.{name}": 0.01 for name in ("in_plane_deg", "out_of_plane_deg")},
+        **{f"mounting.half_b.{name}": 0.01 for name in ("centre_distance_error_mm", "axial_offset_mm")},
+    }
+    without = default_tolerances(scene("double_helical"))
+    assert {key for key in without if key.startswith("mounting.")} == {
+        f"mounting.{name}"
+        for name in ("in_plane_deg", "out_of_plane_deg", "centre_distance_error_mm", "axial_offset_mm")
+    }
+
+
 def test_roll_angle_of_a_relief_start_has_a_tolerance_of_its_own():
     key = "pinion.modifications.tip_relief_start_roll_deg"
     assert default_tolerances(scene("mesh_cycle_spur"), [key]) == {key: 0.1}

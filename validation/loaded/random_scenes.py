@@ -3,7 +3,7 @@
 ``python -m validation.loaded.random_scenes 0 300 --log FILE`` runs seeds 0 to 299 and writes a line of JSON for each,
 with processor seconds and what is off by more than is allowed; seeds that stand in the file are not run again.
 ``data/random_scenes.csv`` has the last run of each seed from 70 on: family, number of features, laws (a for the first
-of ``INVARIANCES``, b for the second), and what is off by how many times what is allowed.
+of ``LAWS``, b for the second), and what is off by how many times what is allowed.
 """
 
 import argparse
@@ -11,11 +11,13 @@ import json
 import math
 import time
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from loaded_tca import AccuracyWarning
-from validation.invariances import INVARIANCES, Subject
+from validation.invariances import CHEAP, COARSE, Subject
+from validation.laws import LAWS
 from validation.table import Row
 
 CASE, SOURCE = "random scenes", "invariances of every scene"
@@ -37,7 +39,7 @@ def _rows(found: dict[str, Any]) -> list[Row]:
     return [Row(CASE, SOURCE, f"{who}: {name}", 0.0, sizes[name], 1.0, note=features) for name in shown]
 
 
-def examined(seed: int, checks: tuple[str, ...] = ()) -> dict[str, Any]:
+def examined(seed: int, checks: tuple[str, ...] = (), settings: Mapping[str, Any] = CHEAP) -> dict[str, Any]:
     """What is off of a scene, over what is allowed, by invariance and quantity; what failed with an error; seconds.
 
     Parameters
@@ -45,17 +47,19 @@ def examined(seed: int, checks: tuple[str, ...] = ()) -> dict[str, Any]:
     seed : int
     checks : tuple of str
         Names of invariances; none: those that a long run has for the scene.
+    settings : mapping
+        Of the section [analysis].
     """
     start, off, failed, seconds = time.process_time(), {}, {}, {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        subject = Subject.of(seed)
-        for invariance in INVARIANCES:
+        subject = Subject.of(seed, settings)
+        for invariance in LAWS:
             wanted = invariance.name in checks if checks else invariance.is_tried_on(subject)
-            if not wanted or not invariance.holds_for(subject):
-                continue
             since = time.process_time()
             try:
+                if not wanted or not invariance.holds_for(subject):
+                    continue
                 off[invariance.name] = invariance.check(subject)
             except Exception as error:  # whatever a check raises is a result of it
                 failed[invariance.name] = f"{type(error).__name__}: {error}"[:300]
@@ -85,13 +89,14 @@ def main() -> None:
     parser.add_argument("end", type=int)
     parser.add_argument("--log", type=Path, required=True, help="lines of JSON, one for each scene")
     parser.add_argument("--only", nargs="*", default=(), help="names of invariances, tried on every scene")
+    parser.add_argument("--coarse", action="store_true", help="on few cells")
     options = parser.parse_args()
     lines = options.log.read_text().splitlines() if options.log.exists() else []
     known = {json.loads(line)["seed"] for line in lines}
     for seed in range(options.first, options.end):
         if seed in known:
             continue
-        found = examined(seed, tuple(options.only))
+        found = examined(seed, tuple(options.only), COARSE if options.coarse else CHEAP)
         with options.log.open("a") as log:
             log.write(json.dumps(found) + "\n")
         print(*beyond(found), sep="\n", end="\n" if beyond(found) else "", flush=True)
