@@ -91,7 +91,7 @@ def continue_outside(square: Array) -> Array:
     first, last = 2 * width, padded.size - 2 * width
     inner = line.reshape(-1)[first:last]
     for step in (width, -width, 1, -1):
-        near, far = (flat[first + k * step : last + k * step] for k in (1, 2))
+        near, far = flat[first + step : last + step], flat[first + 2 * step : last + 2 * step]
         np.minimum(inner, 2.0 * near - far, out=inner, where=near > 0.0)
     return np.where(square > 0.0, square, line[..., 2:-2, 2:-2])
 
@@ -126,8 +126,7 @@ def window_around(cells: Mask) -> Window:
     """
     spans = []
     for axis in (0, 1):
-        marked = np.flatnonzero(cells.any(axis=1 - axis))
-        size = cells.shape[axis]
+        marked, size = cells.any(axis=1 - axis).nonzero()[0], cells.shape[axis]
         start = max(0, int(marked[0]) - MARGIN_CELLS)
         stop = min(size, int(marked[-1]) + 1 + MARGIN_CELLS)
         stop = min(size, start + fast_length(2 * (stop - start)) // 2)
