@@ -110,9 +110,8 @@ def _quadratic_of(pressure: Array) -> tuple[float, Callable[[], Array], tuple[In
     square, x, y, cells = _upper_part(pressure)
     if square.size < FEWEST:
         return None
-    terms = np.empty((6, x.size))
-    for row, term in zip(terms, (1.0, x, y, 0.5 * x * x, x * y, 0.5 * y * y), strict=True):
-        row[:] = term
+    terms = np.ones((6, x.size))
+    terms[1:] = x, y, 0.5 * x * x, x * y, 0.5 * y * y
     # Not by BLAS: its threads wait for each other on a busy machine.
     scales, modes = np.linalg.eigh(np.einsum("ik,jk->ij", terms, terms))
     if scales[0] <= RANK * scales[-1]:
@@ -152,7 +151,7 @@ def area_and_semi_axes(pressure: Array, spacing: tuple[float, float], cover: Arr
 def _upper_part(pressure: Array) -> tuple[Array, Array, Array, tuple[Indices, Indices]]:
     """Square of the pressures above a half, their places, both axes scaled to -1 ... 1, and cells; thinned if many."""
     high = pressure > 0.5
-    rows, columns = (high.any(axis=axis).nonzero()[0] for axis in (1, 0))
+    rows, columns = (np.nonzero(high.any(axis=axis))[0] for axis in (1, 0))
     rows, columns = (index[:: -(-index.size // SAMPLES)] for index in (rows, columns))
     row, column = high[rows][:, columns].nonzero()
     cells = rows[row], columns[column]
@@ -211,7 +210,7 @@ def values_at_ends(pressure: Array, values: Array, cover: Array, axes: tuple[int
     square = continue_outside(pressure**2)
     values_of = []
     for axis in axes:
-        levels, known, parts = (np.moveaxis(array, axis, 0) for array in (square, values, cover))
+        levels, known, parts = (array.swapaxes(0, axis) for array in (square, values, cover))
         for inner, outer in ((slice(-1), slice(1, None)), (slice(1, None), slice(-1))):
             ends = (levels[inner] > 0.0) & (levels[outer] <= 0.0)
             inside, beyond = levels[inner][ends], levels[outer][ends]
