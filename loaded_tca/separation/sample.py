@@ -64,7 +64,7 @@ def slice_middles(x: Array, pressure: Array) -> tuple[Array, Array]:
     -------
     (n,) array of int, (n,) array [mm]
     """
-    carrying = np.nonzero(pressure.any(axis=0))[0]
+    carrying = np.flatnonzero(pressure.any(axis=0))
     loaded = pressure[:, carrying]
     return carrying, x @ loaded / loaded.sum(axis=0)
 
