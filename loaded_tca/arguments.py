@@ -104,21 +104,24 @@ def _with_checks(function: FunctionType, documented: object) -> FunctionType:
     optional = {name for name in checks if str(annotations[name]).endswith(" | None")}
     take = _taking(documented, places, checks, optional)
     quick = [
-        (places.index(name) if name in places else sys.maxsize, name, AS_THEY_ARE.get(kind, _never))
+        (places.index(name) if name in places else sys.maxsize, name, FLOATS.get(kind, ()), AS_THEY_ARE.get(kind))
         for name, kind in checks.items()
     ]
 
     @functools.wraps(function)
     def call_checked(*arguments: Any, **options: Any) -> Any:
         count = len(arguments)
-        for place, name, stays in quick:  # nearly all calls pass
+        for place, name, floats, stays in quick:  # nearly all calls pass, most without a call for each argument
             if place < count:
                 value = arguments[place]
             elif name in options:
                 value = options[name]
             else:
                 continue
-            if not stays(value) and not (value is None and name in optional):
+            kind = type(value)
+            if kind in floats and (kind is not np.ndarray or value.dtype is FLOAT):
+                continue
+            if not (stays and stays(value)) and not (value is None and name in optional):
                 break
         else:
             return function(*arguments, **options)
@@ -182,30 +185,19 @@ def _taken(
 
 def _array(name: str, value: Any, unit: Unit) -> Any:
     """An array, or a number that behaves as one."""
-    return value if _is_array(value) else numbers(name, value, unit())
+    return value if type(value) in FLOATS[_number] else numbers(name, value, unit())
 
 
 LARGEST_INT = 2**63
 """Whole numbers up to here are told at once to be numbers."""
 
 
-def _is_array(value: Any) -> bool:
-    """Whether a value is an array of floats, or one float."""
-    kind = type(value)
-    return (kind is np.ndarray and value.dtype is FLOAT) or kind is float or kind is np.float64
-
-
-def _is_plain_number(value: Any) -> bool:
-    kind = type(value)
-    return kind is float or (kind is int and abs(value) <= LARGEST_INT)
+def _is_whole_number(value: Any) -> bool:
+    return type(value) is int and abs(value) <= LARGEST_INT
 
 
 def _is_pair_of_floats(value: Any) -> bool:
     return type(value) is tuple and len(value) == 2 and type(value[0]) is float and type(value[1]) is float
-
-
-def _never(value: Any) -> bool:  # noqa: ARG001
-    return False
 
 
 def _number(name: str, value: Any, unit: Unit) -> Any:
@@ -297,9 +289,7 @@ KINDS: dict[str, Kind] = {
     **{title: _instance(title) for title in CLASSES},
 }
 """Annotation of a parameter, less None -> what its argument becomes, with InputError if it is of no such kind."""
-AS_THEY_ARE: dict[Kind, Callable[[Any], bool]] = {
-    _array: _is_array,
-    _number: _is_plain_number,
-    _pair: _is_pair_of_floats,
-}
-"""Kind -> whether a value is told at once to stay as it is; without an entry only the kind itself tells."""
+FLOATS: dict[Kind, tuple[type, ...]] = {_array: (float, np.float64, np.ndarray), _number: (float, np.float64)}
+"""Kind -> types of values that stay as they are, arrays if they hold floats."""
+AS_THEY_ARE: dict[Kind, Callable[[Any], bool]] = {_number: _is_whole_number, _pair: _is_pair_of_floats}
+"""Kind -> whether another value is told at once to stay as it is; without an entry only the kind itself tells."""

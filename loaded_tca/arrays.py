@@ -136,6 +136,8 @@ def keep_copies(instance: Any) -> None:
 
 def real(value: Any) -> Any:
     """One real number, or NaN in place of anything else, which lies in no range."""
+    if type(value) is float:
+        return value
     if getattr(value, "ndim", None) == 0:
         value = math.nan if has_masked_cells(value) or has_unit(value) else value.item()
     return value if isinstance(value, Real) and not isinstance(value, bool) else math.nan

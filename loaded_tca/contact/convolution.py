@@ -161,11 +161,11 @@ class _SmallTransforms(_Transform):
 
     def _filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:  # noqa: ARG002
         """Transform values at the first corner, multiply by the symbols, transform back."""
+        while len(self._forth) < min(self._block, len(values)):
+            self._plan(len(self._forth))
         for start in range(0, len(values), self._block):
             given = values[start : start + self._block]
             count = len(given)
-            while len(self._forth) < count:
-                self._plan(len(self._forth))
             self._given[:count, :, : self._columns] = given
             for rows_forth, lines_forth in self._forth[:count]:
                 rows_forth()

@@ -74,10 +74,12 @@ class CutCells:
 
     def add(self, pressure: Array, out: Array, rows: Rows = ALL) -> None:
         """Add the displacement under pressures on some of the problems to that of their grids."""
-        pressures = np.zeros(self.shape, dtype=pressure.dtype)
-        pressures[rows] = pressure
+        if len(pressure) < self.shape[0]:
+            pressures = np.zeros(self.shape, dtype=pressure.dtype)
+            pressures[rows] = pressure
+            pressure = pressures
         moved = np.zeros(self.shape, dtype=out.dtype)
-        moved.reshape(-1)[self.cell] = np.add.reduceat(self.crowding * pressures.reshape(-1)[self.under], self.start)
+        moved.reshape(-1)[self.cell] = np.add.reduceat(self.crowding * pressure.reshape(-1)[self.under], self.start)
         out += moved[rows]
 
 

@@ -91,7 +91,7 @@ def continue_outside(square: Array) -> Array:
     first, last = 2 * width, padded.size - 2 * width
     inner = line.reshape(-1)[first:last]
     for step in (width, -width, 1, -1):
-        near, far = (flat[first + k * step : last + k * step] for k in (1, 2))
+        near, far = flat[first + step : last + step], flat[first + 2 * step : last + 2 * step]
         np.minimum(inner, 2.0 * near - far, out=inner, where=near > 0.0)
     return np.where(square > 0.0, square, line[..., 2:-2, 2:-2])
 
@@ -107,11 +107,12 @@ def split(values: Array, axis: int) -> Array:
         return (..., slice(start, stop, step)) if axis == -1 else (..., slice(start, stop, step), slice(None))
 
     padded = np.concatenate((values[at(0, 1)], values, values[at(-1, None)]), axis=axis)
-    before, after = padded[at(0, -2)], padded[at(2, None)]
+    first, last = at(0, -2), at(2, None)
+    before, after, positive = padded[first], padded[last], padded > 0.0
     # (5 before + 30 own - 3 after)/32 = (3 own + before)/4 - (before - 2 own + after) 3/32
     bend = before + after
     bend -= 2.0 * values
-    bend *= 0.09375 * ((before > 0.0) & (values > 0.0) & (after > 0.0))
+    bend *= 0.09375 * (positive[first] & positive[at(1, -1)] & positive[last])
     np.subtract(0.75 * values, bend, out=bend)
     fine = np.empty([2 * n if k == values.ndim + axis else n for k, n in enumerate(values.shape)])
     np.add(bend, 0.25 * before, out=fine[at(0, None, 2)])
@@ -126,8 +127,7 @@ def window_around(cells: Mask) -> Window:
     """
     spans = []
     for axis in (0, 1):
-        marked = np.flatnonzero(cells.any(axis=1 - axis))
-        size = cells.shape[axis]
+        marked, size = np.nonzero(cells.any(axis=1 - axis))[0], cells.shape[axis]
         start = max(0, int(marked[0]) - MARGIN_CELLS)
         stop = min(size, int(marked[-1]) + 1 + MARGIN_CELLS)
         stop = min(size, start + fast_length(2 * (stop - start)) // 2)

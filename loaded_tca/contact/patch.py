@@ -5,6 +5,7 @@ an ellipse it is a quadratic.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,7 +54,7 @@ def peak_weights(pressure: Array) -> Array:
         return _weights_of_parabolas(part**2)
     weights = np.zeros(part.shape)
     _, of_cells, cells = quadratic
-    weights[cells] = of_cells
+    weights[cells] = of_cells()
     return weights
 
 
@@ -101,15 +102,16 @@ def _weights_of_parabolas(square: Array) -> Array:
     return weights
 
 
-def _quadratic_of(pressure: Array) -> tuple[float, Array, tuple[Indices, Indices]] | None:
+def _quadratic_of(pressure: Array) -> tuple[float, Callable[[], Array], tuple[Indices, Indices]] | None:
     """Top of a quadratic through the squares of pressures (nx, ny), the largest of them 1; None if none fits.
 
-    Also returns the weights (n,) of the cells of the fit in it, and these cells.
+    Also returns a function that returns the weights (n,) of the cells of the fit in it, and these cells.
     """
     square, x, y, cells = _upper_part(pressure)
     if square.size < FEWEST:
         return None
-    terms = np.stack((np.ones_like(x), x, y, 0.5 * x * x, x * y, 0.5 * y * y))
+    terms = np.ones((6, x.size))
+    terms[1:] = x, y, 0.5 * x * x, x * y, 0.5 * y * y
     # Not by BLAS: its threads wait for each other on a busy machine.
     scales, modes = np.linalg.eigh(np.einsum("ik,jk->ij", terms, terms))
     if scales[0] <= RANK * scales[-1]:
@@ -124,7 +126,7 @@ def _quadratic_of(pressure: Array) -> tuple[float, Array, tuple[Indices, Indices
     if max(abs(x_top), abs(y_top)) > 1.0:
         return None
     at_top = np.array([1.0, x_top, y_top, 0.5 * x_top**2, x_top * y_top, 0.5 * y_top**2])
-    return float(at_top @ fitted), np.einsum("i,ik->k", modes @ (modes.T @ at_top / scales), terms), cells
+    return float(at_top @ fitted), lambda: np.einsum("i,ik->k", modes @ (modes.T @ at_top / scales), terms), cells
 
 
 def area_and_semi_axes(pressure: Array, spacing: tuple[float, float], cover: Array) -> tuple[float, float, float]:
@@ -149,9 +151,9 @@ def area_and_semi_axes(pressure: Array, spacing: tuple[float, float], cover: Arr
 def _upper_part(pressure: Array) -> tuple[Array, Array, Array, tuple[Indices, Indices]]:
     """Square of the pressures above a half, their places, both axes scaled to -1 ... 1, and cells; thinned if many."""
     high = pressure > 0.5
-    rows, columns = np.flatnonzero(high.any(axis=1)), np.flatnonzero(high.any(axis=0))
+    rows, columns = (np.nonzero(high.any(axis=axis))[0] for axis in (1, 0))
     rows, columns = (index[:: -(-index.size // SAMPLES)] for index in (rows, columns))
-    row, column = np.nonzero(high[rows][:, columns])
+    row, column = high[rows][:, columns].nonzero()
     cells = rows[row], columns[column]
     return pressure[cells] ** 2, _centred(rows)[row], _centred(columns)[column], cells
 
@@ -175,12 +177,11 @@ def ends_at_material(pressure: Array, void: Mask) -> bool:
     """
     if not void.any():
         return False
-    square = pressure**2
-    turned = ((void, square), (void.T, square.T))
-    for beyond, squares in (*turned, *((cells[::-1], values[::-1]) for cells, values in turned)):
-        last, across = np.nonzero(beyond[1:] & (squares[:-1] > 0.0))
-        before = np.where(last > 0, squares[last - 1, across], 0.0)
-        if (3.0 * squares[last, across] >= before).any():
+    square = np.zeros((pressure.shape[0] + 2, pressure.shape[1] + 2))  # no pressure before the first cell
+    square[1:-1, 1:-1] = pressure * pressure
+    for squares, beyond in ((square[:, 1:-1], void), (square[1:-1].T, void.T)):
+        last = np.where(squares[1:-1] > 0.0, 3.0 * squares[1:-1], -1.0)
+        if (beyond[1:] & (last >= squares[:-2])[:-1]).any() or (beyond[:-1] & (last >= squares[2:])[1:]).any():
             return True
     return False
 
@@ -209,7 +210,7 @@ def values_at_ends(pressure: Array, values: Array, cover: Array, axes: tuple[int
     square = continue_outside(pressure**2)
     values_of = []
     for axis in axes:
-        levels, known, parts = (np.moveaxis(array, axis, 0) for array in (square, values, cover))
+        levels, known, parts = (array.swapaxes(0, axis) for array in (square, values, cover))
         for inner, outer in ((slice(-1), slice(1, None)), (slice(1, None), slice(-1))):
             ends = (levels[inner] > 0.0) & (levels[outer] <= 0.0)
             inside, beyond = levels[inner][ends], levels[outer][ends]

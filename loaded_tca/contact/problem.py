@@ -120,8 +120,10 @@ class ContactProblem(HalfSpaces):
         checks.raise_if([] if there.any() else ["free_edges: no cell within them holds material"])
         cover = None if cover is None or (cover == 1.0)[there].all() else np.where(there, cover, 0.0)
         self._set(gap=gap, spacing=spacing, free_edges=edges, slice_compliance=slices, cover=cover)
-        demand = self.load, self.approach, self.max_pressure
-        checks.raise_if(checks.check_demand(*demand, gap, self.material_area, spacing, self.contact_modulus))
+        demand, area = (self.load, self.approach, self.max_pressure), math.inf
+        if self.max_pressure is not None:
+            area = self.material_area
+        checks.raise_if(checks.check_demand(*demand, gap, area, spacing, self.contact_modulus))
 
     @cached_property
     def cap(self) -> float | Array:

@@ -73,7 +73,7 @@ def dilated(cells: Mask | np.bool, steps: int = 1) -> Mask:
     """Some cells (nx, ny, ...) of a grid, and those so many steps away from one of them."""
     wider = np.array(cells, dtype=bool)
     for axis in steps * (0, 1):
-        lines = np.moveaxis(wider, axis, 0)
+        lines = wider.swapaxes(0, axis)
         before = lines.copy()
         lines[1:] |= before[:-1]
         lines[:-1] |= before[1:]

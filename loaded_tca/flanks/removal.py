@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any, Literal
 
 import numpy as np
@@ -138,11 +139,11 @@ class ModifiedFlank(DerivedFlank):
 
     def removal(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
         """Material removed [mm] by all modifications together."""
-        total = Jet(np.zeros(np.broadcast(rho, z).shape))
+        removed = []
         for term in self.terms:
             branch = beyond[..., self._ramps.index(term)] if beyond is not None and term in self._ramps else None
-            total = total + term.removal(self.nominal, rho, z, branch)
-        return total
+            removed.append(term.removal(self.nominal, rho, z, branch))
+        return reduce(Jet.__add__, removed) if removed else Jet(np.zeros(np.broadcast(rho, z).shape))
 
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
         """Theta of the modified flank."""

@@ -121,9 +121,10 @@ def balance(
     lever, turning = levers.tolist()
     apart = (turning * (separations - separations.min())).tolist()
     pairs = [_Pair(*parts) for parts in zip(laws, apart, lever, turning, strict=True)]
+    between = compliance - np.diag(compliance.diagonal())
     forces, change = [torque / sum(lever)] * len(pairs) if start is None else start.tolist(), math.inf
     for _ in range(MOST_STEPS):
-        target = _newton_step(pairs, torque, forces, compliance)
+        target = _newton_step(pairs, torque, forces, compliance, between)
         before, change = change, max(abs(new - old) for new, old in zip(target, forces, strict=True)) / max(target)
         forces = target
         if change <= STEP_TOLERANCE or before <= change <= STALLED:
@@ -141,8 +142,12 @@ class _Pair(NamedTuple):
     wheel_lever: float
 
 
-def _newton_step(pairs: Sequence[_Pair], torque: float, forces: Sequence[float], compliance: Array) -> list[float]:
+def _newton_step(
+    pairs: Sequence[_Pair], torque: float, forces: Sequence[float], compliance: Array, between: Array
+) -> list[float]:
     """Forces (k,) after one step for the pairs under load, and those that come under load or part.
+
+    ``between``: the compliance (k, k) [mm/N] without that of the pairs themselves.
 
     No force falls below a tenth at once. The deformation grows without end over a force that vanishes (or not at all),
     so that a pair parts once its force is little and the rotation that the heaviest pair asks for, less the coupling,
@@ -170,7 +175,7 @@ def _newton_step(pairs: Sequence[_Pair], torque: float, forces: Sequence[float],
         wanted = forces[n] + rotation * turned + rest
         target[n] = min(max(wanted, LARGEST_FALL * forces[n]), torque / pairs[n].lever)
     most = max(target)
-    by_others = ((compliance - np.diag(compliance.diagonal())) @ target).tolist()
+    by_others = (between @ target).tolist()
     heaviest = target.index(most)
     pair, own = pairs[heaviest], float(compliance[heaviest, heaviest])
     asked = pair.separation + pair.law.deformation_under(most) + own * most + by_others[heaviest]

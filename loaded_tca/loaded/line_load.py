@@ -70,7 +70,7 @@ def loaded_length(force: Array, borders: Array) -> float:
     >>> round(loaded_length(np.array([0.0, 2.0, 2.0, 2.0]), np.arange(5.0)), 12)
     3.0
     """
-    carrying = np.flatnonzero(force)
+    carrying = force.nonzero()[0]
     even = math.sqrt(12.0 * float(force @ _squares(force, borders)) / float(force.sum()))
     return min(even, float(borders[carrying[-1] + 1] - borders[carrying[0]]))
 
@@ -91,7 +91,7 @@ def loaded_length_slopes(force: Array, borders: Array) -> Array:
 def _squares(force: Array, borders: Array) -> Array:
     """Squares (ny,) of the distances of the slices from the middle of their forces, in the mean over each [mm^2]."""
     middles = 0.5 * (borders[:-1] + borders[1:])
-    return np.asarray((middles - force @ middles / force.sum()) ** 2 + np.diff(borders) ** 2 / 12.0)
+    return np.asarray((middles - force @ middles / force.sum()) ** 2 + (borders[1:] - borders[:-1]) ** 2 / 12.0)
 
 
 class SliceLoads:
@@ -137,7 +137,7 @@ class SliceLoads:
 
     def at(self, places: Array) -> tuple[Array, Array, Array]:
         """Where the contact lies at places along it, x and y [mm] on the slices that carry load, and its line load."""
-        y = np.clip(places, *self.ends)
+        y = np.minimum(np.maximum(places, self.ends[0]), self.ends[1])
         return np.interp(y, *self._middles), y, np.interp(places, self.places, self.line_load)
 
     @property

@@ -29,7 +29,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from itertools import combinations
 
@@ -39,7 +38,7 @@ import scipy
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.errors import ConvergenceError, InputError, named
-from loaded_tca.loaded.balance import balance
+from loaded_tca.loaded.balance import PowerLaw, balance
 from loaded_tca.loaded.first_guess import ExpectedLine, first_law
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.together import Bend, Gap, Line, Steps, Trace, run_alone, with_gears
@@ -319,8 +318,8 @@ class _Balance:
         self.solved[index], self.first_gaps[index] = loaded, loaded.separation.cut_gap.min()
         deformation = loaded.contact_deformation - self.first_gaps[index]
         if loaded.solution.load > 0.0 and deformation > 0.0:
-            first = replace(law, load=force, deformation=deformation)
-            self.laws[index] = first if before is None else law.through(force, deformation)
+            first = before is None
+            self.laws[index] = PowerLaw(force, deformation, law.exponent) if first else law.through(force, deformation)
 
     def _solve_at_common_rotation(self, shared: SharedLoad) -> Steps[Array]:
         """Solve the carrying pairs on their grids at the rotation that balances the torque; forces (k,).

@@ -142,10 +142,10 @@ class LoadedContact:
     def central_pressure(self) -> float:
         """Pressure beside the contact point [MPa]: what is left of the peak where that sits at an edge."""
         grid = self.separation
-        beside = (np.abs(places) <= BESIDE * step for places, step in zip((grid.x, grid.y), grid.spacing, strict=True))
-        middle = np.ix_(*beside)
-        there = np.isfinite(grid.cut_gap[middle])
-        return float(self.solution.pressure_on_material[middle][there].mean()) if there.any() else 0.0
+        across, along = (np.abs(x) <= BESIDE * step for x, step in zip((grid.x, grid.y), grid.spacing, strict=True))
+        gap, pressure = (cells[across][:, along] for cells in (grid.cut_gap, self.solution.pressure_on_material))
+        there = np.isfinite(gap)
+        return float(pressure[there].mean()) if there.any() else 0.0
 
     @property
     def line_load(self) -> float:

@@ -186,8 +186,8 @@ def _of_flanks(
     if isinstance(requests[0], Trace):
         near = [contact for request in requests for contact in request.contacts]
         path = trace_near(gears, near, [angle for request in requests for angle in request.pinion_angles])
-        places = iter(range(len(path)))
-        return {index: [path[n] for n in islice(places, len(request.contacts))] for index, request in asked.items()}
+        points = iter(path)
+        return {index: [*islice(points, len(request.contacts))] for index, request in asked.items()}
     if isinstance(requests[0], Ends):
         return dict(zip(asked, edge_compliances(gears, [request.separation for request in requests]), strict=True))
     if isinstance(requests[0], Line):

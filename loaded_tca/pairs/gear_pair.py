@@ -216,9 +216,10 @@ class GearPair:
         x, y, z = self._in_wheel_frame(points)
         return np.hypot(x, y), z
 
-    def _in_wheel_frame(self, points: Array) -> Array:
-        """Coordinates x, y, z of points (..., 3) of the fixed frame in that of the wheel (3, ...)."""
-        return np.moveaxis((points - self.wheel_origin) @ self.wheel_axes.T, -1, 0)
+    def _in_wheel_frame(self, points: Array) -> tuple[Array, Array, Array]:
+        """Coordinates x, y, z of points (..., 3) of the fixed frame in that of the wheel, (...) each."""
+        moved = (points - self.wheel_origin) @ self.wheel_axes.T
+        return moved[..., 0], moved[..., 1], moved[..., 2]
 
     def wheel_basis(self, theta: Array) -> Array:
         """e_rho, e_theta, e_z of the wheel at the azimuth theta, in rows, in the fixed frame: (..., 3, 3)."""

@@ -87,7 +87,8 @@ def warn_of_accuracy(
                 if loaded is not None:
                     reasons = reasons_of(pair, grid, loaded)
                     error = large.get((t, n, k), 0.0)
-                    maps.append((torque, place_of(torque, angle, number), loaded.solution.load, error, reasons))
+                    place = place_of(torque, angle, number) if reasons or error else ""
+                    maps.append((torque, place, loaded.solution.load, error, reasons))
 
     def under(largest: float) -> dict[str, str]:
         """Sentences on the contacts under torques up to the largest, by what all of one reason have in common."""

@@ -31,7 +31,7 @@ def strip_extents(gap: Array, x: Array, y: Array, loads: Array, modulus: float) 
     width, length = x[:, -1], y[:, -1]
     for _ in range(4):
         stiffness = _stiffness(width, length, modulus)
-        penetration = _water_level(ordered, sums, loads / (stiffness * dy)) - floor
+        penetration = _water_level(sums, loads / (stiffness * dy)) - floor
         closed = penetration > 0.0
         lifted = np.where(closed, (2.0 * stiffness / (math.pi * modulus))[:, None] * penetration, -1.0)
         loaded = (depth <= lifted[:, None]).max(axis=2)
@@ -70,11 +70,10 @@ def strip_pressure(gap: Array, spacing: tuple[float, float], load: float, modulu
     """
     (dx, dy), floor = spacing, gap.min(axis=0)
     depth = gap - np.where(np.isfinite(floor), floor, 0.0)
-    ordered = np.sort(floor)[None]
-    sums, cells = np.cumsum(ordered, axis=1), np.array(gap.shape)
+    sums, cells = np.cumsum(np.sort(floor))[None], np.array(gap.shape)
     for _ in range(2):  # first as long and wide as the grid
         stiffness = _stiffness(cells[0] * dx, cells[1] * dy, modulus)
-        penetration = np.maximum(_water_level(ordered, sums, np.array([load / (stiffness * dy)]))[0] - floor, 0.0)
+        penetration = np.maximum(_water_level(sums, np.array([load / (stiffness * dy)]))[0] - floor, 0.0)
         pressure = np.sqrt(np.maximum(2.0 * stiffness / (math.pi * modulus) * penetration - depth, 0.0))
         cells = np.maximum([np.count_nonzero(pressure, axis=0).max(), np.count_nonzero(penetration)], 1)
     sum_across = dx * pressure.sum(axis=0)
@@ -115,8 +114,9 @@ def _ends_of_parabolas(distance: Array, penetration: Array, closed: Mask) -> Arr
     return np.sqrt(outer + rest)
 
 
-def _water_level(ordered: Array, sums: Array, total: Array) -> Array:
-    """The deltas (n, 1) at which (delta - floor)_+ adds up to ``total``, of floors in order and their running sums."""
-    levels = (total[:, None] + sums) / np.arange(1, ordered.shape[1] + 1)
-    above = np.append(ordered[:, 1:], np.full((len(ordered), 1), np.inf), axis=1)
-    return np.take_along_axis(levels, (levels <= above).argmax(axis=1)[:, None], axis=1)
+def _water_level(sums: Array, total: Array) -> Array:
+    """The deltas (n, 1) at which (delta - floor)_+ adds up to ``total``, of running sums of floors in order.
+
+    Each is the lowest of the levels to which the k lowest floors alone would be filled.
+    """
+    return np.asarray((total[:, None] + sums) / np.arange(1, sums.shape[1] + 1)).min(axis=1, keepdims=True)

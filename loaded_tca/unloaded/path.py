@@ -6,7 +6,7 @@ Where the unloaded contact point of a tooth pair comes into its flanks and leave
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, TypeVar, overload
 
@@ -104,6 +104,10 @@ class ContactPath(_Contact[Array, Indices, Mask]):
 
     def __len__(self) -> int:
         return len(self.pinion_angle)
+
+    def __iter__(self) -> Iterator[ContactPoint]:
+        """Position by position."""
+        return map(ContactPoint, *(getattr(self, field.name) for field in fields(self)))
 
     @overload
     def __getitem__(self, position: int | np.integer) -> ContactPoint: ...
