@@ -3441,6 +3441,13 @@ FAULTS = (
         "return path.E, math.inf",
         "plots/test_first_look.py::test_active_part_of_an_undercut_pair_is_that_of_the_path_as_analysed",
     ),
+    Fault(
+        "report --coast: the rating is that of the drive side",
+        "reports/rating_page.py",
+        "rating_of(result, coast=coast, warn=False)",
+        "rating_of(result, warn=False)",
+        "test_cli_rating.py::test_commands_rate_both_sides",
+    ),
 )
 
 
