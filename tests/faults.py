@@ -3448,6 +3448,13 @@ FAULTS = (
         "rating_of(result, warn=False)",
         "test_cli_rating.py::test_commands_rate_both_sides",
     ),
+    Fault(
+        "rating of torques: a half that carries nothing has load factors",
+        "rating/call.py",
+        "    arrays |= {name: _loaded(inputs.torque, arrays[name]) for name in UNDER_LOAD if name in arrays}\n",
+        "",
+        "double_helical/test_rating.py::test_half_without_load_under_a_torque_has_no_load_factors_there",
+    ),
 )
 
 
