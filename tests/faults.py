@@ -3455,6 +3455,20 @@ FAULTS = (
         "",
         "double_helical/test_rating.py::test_half_without_load_under_a_torque_has_no_load_factors_there",
     ),
+    Fault(
+        "map of the root safety: places without tension are white",
+        "plots/safety.py",
+        "        fields = np.where(np.isposinf(fields), np.finfo(float).max, fields)\n",
+        "",
+        "rating/test_places.py::test_places_of_roots_without_tension_have_the_colour_of_safe_ones",
+    ),
+    Fault(
+        "picture of the root safety: the wheel's smallest values lie over the places of the pinion",
+        "plots/safety.py",
+        "places, least = one.over_face()",
+        "places, least = both[0].over_face()[0], one.over_face()[1]",
+        "rating/test_places.py::test_smallest_root_safety_is_over_the_face_of_each_gear",
+    ),
 )
 
 
