@@ -133,7 +133,8 @@ DYNAMICS = """files:
 All in SI units; lines that begin with # say what the columns are. The result must have load sharing."""
 STUDY = """files in DIR:
   study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
-  study.csv                 the same, one row per variant and torque
+  study.csv                 the same, one row per variant and torque: torque_Nm, or where variants have different
+                            torques their torque_number from 0
   ranking.csv               one row per variant, the best by --rank-by first
   shortfall.csv             for scenes with strengths: how probable safeties below the required ones are
   study_*.png               pictures, depending on what varies

@@ -284,7 +284,7 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
     torque = 1e3 * next((arrays[name] for name in TORQUES if name in arrays), np.full((1, torques), np.nan))
     known = torque[np.isfinite(torque).any(axis=1)]  # one of fewer torques has others
     if len(known) and (known == known[0]).all():  # the same in all variants
-        places["torque"] = ("torque", known[0])
+        places["torque"] = ("torque", known[0], {"units": "N mm"})
     return xarray.Dataset(
         {**variables, **own, "seconds": spent}, coords={**places, **_varied(study)}, attrs={"kind": STUDY, **attributes}
     )
