@@ -3476,6 +3476,20 @@ FAULTS = (
         "lambda torque: torque",
         "results/test_tables.py::test_frame_of_a_study_has_the_torques_that_all_variants_share",
     ),
+    Fault(
+        "spectrum of a stage: computed roots of planets are not pressed by the other mesh",
+        "stages/rating.py",
+        "return compression[1] / tension[0], compression[0] / tension[1]",
+        "return compression[0] / tension[0], compression[1] / tension[1]",
+        "stages/test_stage_spectrum.py::test_local_roots_of_planets_add_up_the_bins_that_draw_each_fillet_by_hand",
+    ),
+    Fault(
+        "spectrum of a stage: reversed bins draw computed roots of planets on the same side",
+        "stages/gears.py",
+        "drawn = cases.reversed if mode in ROOTS else",
+        "drawn = cases.reversed if mode == ROOT else",
+        "stages/test_stage_spectrum.py::test_local_roots_of_planets_add_up_the_bins_that_draw_each_fillet_by_hand",
+    ),
 )
 
 
