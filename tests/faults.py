@@ -3490,6 +3490,20 @@ FAULTS = (
         "drawn = cases.reversed if mode == ROOT else",
         "stages/test_stage_spectrum.py::test_local_roots_of_planets_add_up_the_bins_that_draw_each_fillet_by_hand",
     ),
+    Fault(
+        "error of K_Hbeta: an empty slice beyond an end shares the load of the last one",
+        "results/load_factors.py",
+        "slices.any(axis=0).all(axis=-1)",
+        "slices.any(axis=0).any(axis=-1)",
+        "results/test_load_factors.py::test_slices_share_their_load_in_pairs_where_both_carry_some",
+    ),
+    Fault(
+        "error of K_Hbeta: none away from the ends of the face",
+        "results/load_factors.py",
+        "        return IN_PAIRS * _change_in_pairs(pair, loaded, borders, forces)\n    cells",
+        "        return math.nan\n    cells",
+        "results/test_load_factors.py::test_face_load_factor_away_from_ends_misses_at_most_what_is_estimated",
+    ),
 )
 
 
