@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -68,16 +69,28 @@ def test_command_rates_a_result_again_under_a_spectrum(run, out):
     assert {*os.listdir(out)} == {"result.nc", "rating.json", "rating.csv", "safeties.png", "pressure_map.png"}
 
 
-def test_command_rates_both_sides(run, out):
+def test_commands_rate_both_sides(run, out, monkeypatch):
+    monkeypatch.setattr("loaded_tca.reports.result_page.result_figures", lambda *_, **__: {})
+    monkeypatch.setattr("loaded_tca.reports.rating_page.rating_figures", lambda _: {})
     cases = reversed_first((200.0, 10.0), (100.0, 30.0))
     whole = solved(**FLANKS, **{"analysis.torques_Nm": (100.0, 200.0), "load.case": cases})
     whole.save(f"{out}/result.nc")
     coast_result(**FLANKS).save("coast.nc")
     code, text, _ = run("rating", out, "--coast", "coast.nc")
     assert code == 0
-    assert all(line in text for line in whole.rating(coast=coast_result(**FLANKS)).summary().splitlines())
+    rated = whole.rating(coast=coast_result(**FLANKS))
+    assert all(line in text for line in rated.summary().splitlines())
     with open(f"{out}/rating.json", encoding="utf-8") as file:
         assert json.load(file)["spectrum"]["pinion_coast_flank"]["spectrum_safety"] > 0.0
+    assert run("report", out, "--coast", "coast.nc")[0] == 0
+    page = Path(out, "report.html").read_text(encoding="utf-8")
+    cells = re.search(r">pitting of the coast flank</th>(.*)</tr>", page).group(1)
+    _, pinion, _, wheel, _ = re.findall(r"<td>(.*?)</td>", cells)  # required, safeties and lives
+    assert re.search(rf"coast flank: safety in the required life +{pinion} +{wheel}\n", text)
+    assert all(note in page for note in rated.notes())
+    code, _, errors = run("report", out, "--coast", out)  # the drive side itself: no page of one side alone
+    assert code == 2
+    assert any("coast: " in line for line in errors), errors
 
 
 def test_run_says_why_a_scene_is_not_rated(tmp_path):
@@ -152,7 +165,9 @@ def test_command_that_rates_both_sides_is_shown_where_bins_are_reversed(capsys, 
     rated = solved(**FLANKS, **spectrum)
     _show_rating_of_both(rated.scene, Path("both"))
     command = f"'loaded-tca rating {Path('both/drive')} --coast {Path('both/coast')}'"
-    assert (command in capsys.readouterr().out) == is_shown
+    text = capsys.readouterr().out
+    assert (command in text) == is_shown
+    assert (command.replace("rating", "report") in text) == is_shown
     assert (
         any("'loaded-tca rating DIR --coast OTHER' rates both" in note for note in rated.rating().notes()) == is_shown
     )

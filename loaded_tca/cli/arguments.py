@@ -135,7 +135,8 @@ DYNAMICS = """files:
 All in SI units; lines that begin with # say what the columns are. The result must have load sharing."""
 STUDY = """files in DIR:
   study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
-  study.csv                 the same, one row per variant and torque
+  study.csv                 the same, one row per variant and torque: torque_Nm, or where variants have different
+                            torques their torque_number from 0
   ranking.csv               one row per variant, the best by --rank-by first
   shortfall.csv             for scenes with strengths: how probable safeties below the required ones are
   study_*.png               pictures, depending on what varies
@@ -319,16 +320,16 @@ def _add_tribology(command: Command) -> None:
     reader.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: beside the result")
 
 
+COAST = "result of the coast side, whose flanks carry reversed bins: after run --coast it is DIR/coast beside DIR/drive"
+
+
 def _add_rating(command: Command) -> None:
     """Add the command that rates a result."""
     text = "show safeties and lives of flanks and roots of a result, after ISO 6336 or 10300 and by its local stresses"
     reader = command("rating", run_by.rating, text, RATING)
     text = "result.nc, or stage.nc of a stage, or the directory that holds it"
     reader.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
-    text = (
-        "result of the coast side, whose flanks carry reversed bins: after run --coast it is DIR/coast beside DIR/drive"
-    )
-    reader.add_argument("--coast", metavar="DIR|FILE", type=_path, help=text)
+    reader.add_argument("--coast", metavar="DIR|FILE", type=_path, help=COAST)
     text = "another value of a key, for instance rating.life_hours=5000; may be given again for other keys"
     reader.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
     reader.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: beside the result")
@@ -488,6 +489,8 @@ def _add_studies(command: Command) -> None:
     report.add_argument("--names", metavar="NAME", nargs="+", help=text)
     text = "for several results: pinion torque of the pictures; default: largest"
     report.add_argument("--torque", metavar="NM", type=_float, help=text)
+    text = f"for a result with a load spectrum: {COAST}; the report then rates both sides"
+    report.add_argument("--coast", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument(
         "--rank-by",
         metavar="FIGURE",

@@ -109,7 +109,8 @@ def _show_rating_of_both(scene: Scene, directory: Path) -> None:
 
     if is_rated(scene) and any(case.reversed for case in scene.load.case or ()):
         both = f"{directory / 'drive'} --coast {directory / 'coast'}"
-        show(f"\nNext: 'loaded-tca rating {both}' rates both sides, reversed bins by the coast side")
+        show(f"\nNext: 'loaded-tca rating {both}' rates both sides, reversed bins by the coast side,")
+        show(f"and 'loaded-tca report {both}' writes a report with this rating")
 
 
 def _run_scene(scene: Scene, directory: Path) -> None:
@@ -210,7 +211,7 @@ def rating(options: argparse.Namespace) -> None:
     kind = _joined_kind(result_file(options.result))
     if kind is None:
         result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
-        rated = result.rating(coast=None if options.coast is None else _coast_of(options.coast))
+        rated = result.rating(coast=None if options.coast is None else _coast_of(options.coast, "rating"))
     else:
         require((options.coast is None, f"--coast: not allowed with {kind.FILE}; allowed with the result of one pair"))
         result, directory = _changed_joined(options, kind)
@@ -218,13 +219,13 @@ def rating(options: argparse.Namespace) -> None:
     print_summary(rated.summary(), _rating_files(rated, directory))
 
 
-def _coast_of(place: Path) -> MeshCycle:
-    """Result of a coast side, which a rating takes the flanks of reversed bins from."""
+def _coast_of(place: Path, command: str) -> MeshCycle:
+    """Result of a coast side, which the rating of a command takes the flanks of reversed bins from."""
     from loaded_tca.results.mesh_cycle import MeshCycle
 
     path = result_file(place)
     if place.is_dir():
-        require_result(place, path, "loaded-tca rating --coast")
+        require_result(place, path, f"loaded-tca {command} --coast")
     return MeshCycle.load(path)
 
 
@@ -608,11 +609,15 @@ def report(options: argparse.Namespace) -> None:
     path, out = file_of_report(options.result), options.out
     out = path.parent / (INTERACTIVE_REPORT if options.interactive else REPORT) if out is None else out
     check_files([out], path)
+    coast = None
+    if options.coast is not None:
+        coast = _coast_of(options.coast, "report")
+        check_files([out], result_file(options.coast))
     subject = subject_of_report(path)
     date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
     date = getattr(subject, "date", "") or date
     ways = {"date": date, "rank_by": options.rank_by, "interactive": options.interactive}
-    print_files([write_html_report(subject, out, **ways)])
+    print_files([write_html_report(subject, out, coast=coast, **ways)])
 
 
 def _report_comparison(options: argparse.Namespace) -> None:
@@ -622,6 +627,7 @@ def _report_comparison(options: argparse.Namespace) -> None:
     require(
         (options.out is not None, "--out: missing; several results have no directory in common, give a file"),
         (options.rank_by is None, "--rank-by: only for a study; a comparison has no ranking"),
+        (options.coast is None, "--coast: only for one result; a comparison has no rating"),
     )
     paths = [options.result, *options.others]
     for path in paths:

@@ -311,6 +311,9 @@ def _of_pair(rating: DoubleHelicalRating) -> Iterator[str]:
     for name in HALVES:
         if name not in rating.of_halves:
             yield f"half {name} carries nothing under any torque: the rating is that of the other half"
+        elif (idle := (rating.of_halves[name].torque == 0.0) & (rating.torque > 0.0)).any():
+            largest = shown_torque(float(rating.torque[idle].max()))
+            yield f"half {name} carries nothing under up to {largest} of both halves, and has no load factors there"
     if not scene.floats_freely:
         yield "each half is rated under the largest of its shares over the pitch"
     shares = result.torque_share

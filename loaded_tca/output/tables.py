@@ -404,7 +404,8 @@ def write_study(
 def study_csv(study: xarray.Dataset) -> str:
     """Return every figure as CSV, one row per variant and torque, the varied keys first.
 
-    Variants and torques are numbered from 0. Columns of whole numbers, as counts are, have no decimals.
+    Variants are numbered from 0, as are torques where variants have different ones. Columns of whole numbers, as counts
+    are, have no decimals.
     """
     table: str = to_pandas(study).reset_index().to_csv(index=False)
     return table

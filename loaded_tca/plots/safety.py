@@ -88,7 +88,7 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
 
 
 def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
-    """Local safety against tooth breakage over fillet and face of both gears, and its smallest over the face.
+    """Local safety against tooth breakage over fillet and face of both gears, and its smallest along the face of each.
 
     Parameters
     ----------
@@ -121,15 +121,15 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
         axes.set_title(name, fontsize="medium")
         axes.set(xlabel="tangent angle [deg]: back of the tooth | side in contact", ylabel=_axial(name))
     figure.colorbar(ScalarMappable(scale, colours), ax=maps, label="local safety against breakage", extend="both")
-    below: Axes = figure.add_subplot(grid[1, :])
-    for name, one, colour in zip(GEARS, both, GEAR_COLOURS, strict=True):
+    for column, (name, one) in enumerate(zip(GEARS, both, strict=True)):
+        below: Axes = figure.add_subplot(grid[1, column])
         places, least = one.over_face()
-        below.plot(places, np.where(np.isfinite(least), least, np.nan), color=colour, label=name)
-    below.axhline(required, color="black", linestyle="--", label=f"required {plain(required)}")
-    below.set(xlabel="axial position on each gear [mm]", ylabel="smallest over the fillets")
-    below.set_ylim(0.0, float(scale.vmax or LARGEST))
-    below.grid(alpha=0.3)
-    below.legend(fontsize="small", ncols=3)
+        below.plot(places, np.where(np.isfinite(least), least, np.nan), color=GEAR_COLOURS[column])
+        below.axhline(required, color="black", linestyle="--", label=f"required {plain(required)}")
+        below.set(xlabel=_axial(name), ylabel="smallest over the fillets")
+        below.set_ylim(0.0, float(scale.vmax or LARGEST))
+        below.grid(alpha=0.3)
+        below.legend(fontsize="small")
     style.set_title(
         figure,
         rating.result,
@@ -262,10 +262,14 @@ def _mark(axes: Axes, at: Array, value: float) -> None:
 
 
 def _draw_fillets(axes: Axes, one: RootSafeties, scale: Normalize, colours: Colormap) -> None:
-    """Both sides of a tooth, the back mirrored to the left; a field between nodes has the least of its four."""
+    """Both sides of a tooth, the back mirrored to the left; a field between nodes has the least of its four.
+
+    Fields that nothing draws have the last colour, as all safe ones: an infinite value would leave them white.
+    """
     for side, sign in ((0, 1.0), (1, -1.0)):
         nodes = one.safety[side]
         fields = np.fmin.reduce([nodes[:-1, :-1], nodes[1:, :-1], nodes[:-1, 1:], nodes[1:, 1:]])
+        fields = np.where(np.isposinf(fields), np.finfo(float).max, fields)
         angle = sign * np.degrees(one.tangent_angle[side])
         axes.pcolormesh(angle, one.axial[side], fields, cmap=colours, norm=scale, rasterized=True)
     axes.axvspan(-10.0, 10.0, color=style.NO_MATERIAL)
@@ -306,7 +310,8 @@ SAFETY_PICTURES = {
     ),
     "root_safety": RatingPicture(
         "local safety against breakage over fillet and face of both gears, in the case that decides",
-        "Safety with the extreme stresses of a whole turn at each place; below, its smallest value over the face.",
+        "Safety with the extreme stresses of a whole turn at each place; below, its smallest values along the face of "
+        "each gear.",
         "local_root_safety",
         plot_root_safety,
         of_places=True,

@@ -10,7 +10,7 @@ import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import GEARS
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.rating.bevel import BevelInputs, bevel_evaluated, bevel_inputs_of
 from loaded_tca.rating.both_sides import as_coast_side, evaluated_together
@@ -18,6 +18,7 @@ from loaded_tca.rating.evaluate import Evaluated, evaluated
 from loaded_tca.rating.inputs import CommonInputs, Duty, RatingInputs, inputs_of
 from loaded_tca.rating.interpolation import interpolation_error
 from loaded_tca.rating.lives import Endurances, lives_of
+from loaded_tca.rating.quantities import UNDER_LOAD
 from loaded_tca.rating.rating import WORDS, Rating
 from loaded_tca.rating.solved import solved_loads
 from loaded_tca.rating.spectrum import SpectrumRating, of_spectrum
@@ -59,6 +60,7 @@ def rating_of(
         if inputs.cases.is_spectrum:
             error = interpolation_error(inputs, endurances, _evaluated)
     arrays |= lives_of(inputs.cases, endurances, inputs.cycles_per_hour)
+    arrays |= {name: _loaded(inputs.torque, arrays[name]) for name in UNDER_LOAD if name in arrays}
     sentences = [*_edges_left_out([result] if coast is None else [result, coast]), *_above_static(inputs, endurances)]
     kind: type[Rating] = Rating
     if inputs.cases.is_spectrum:
@@ -70,6 +72,11 @@ def rating_of(
     for sentence in sentences if warn else ():
         give_accuracy_warning(sentence, stacklevel=3)
     return kind(result, dataset, inputs, endurances, notes)
+
+
+def _loaded(torque: Array, values: Array) -> Array:
+    """Values (c, ...) under torques (c,); NaN under none."""
+    return np.where((torque > 0.0).reshape(-1, *[1] * (values.ndim - 1)), values, np.nan)
 
 
 def _solved_inputs(result: CycleNumbers, duty: Duty) -> CommonInputs:

@@ -159,7 +159,7 @@ UNDER_LOAD = (
     *_EXCITATION,
     *(f"local_{name}" for name in ("flank_radius", "flank_axial", "root_angle", "root_axial", "stress_ratio", "Y_M")),
 )
-"""Numbers that nothing has without a torque: those of idle bins are not known."""
+"""Numbers that nothing has without a torque: those of idle bins and idle halves are not known."""
 SPECTRUM_NUMBERS: dict[str, Number] = {
     "torque": NUMBERS["torque"],
     "pinion_speed": Number(CASE, "rpm", "pinion speed", label="pinion speed"),

@@ -12,7 +12,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.plain import apart, plain
-from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS, UNDER_LOAD
+from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS
 from loaded_tca.rating.rating import WORDS, OfCases, Rating, all_figures
 from loaded_tca.rating.roots import REVERSED
 from loaded_tca.results.figure import labelled
@@ -40,7 +40,6 @@ def of_spectrum(
         "hours": cases.hours,
         "reversed": cases.reversed.astype(int),
         "interpolation_error": error,
-        **{name: _loaded(cases.torque, arrays[name]) for name in UNDER_LOAD if name in arrays},
     }
     return more, [*_notes(inputs, arrays, error, of_both_sides=of_both_sides)], told_error(error, len(solved.torque))
 
@@ -49,11 +48,6 @@ def told_error(error: Array, solved: int) -> list[str]:
     """Sentence of the warning where the error of damages (gear, mode) is large, between a number of solved torques."""
     largest = float(np.nanmax(error)) if np.isfinite(error).any() else nan
     return [kinds.SPECTRUM_BETWEEN.sentence(change=largest, count=solved)] if largest > TOLD else []
-
-
-def _loaded(torque: Array, values: Array) -> Array:
-    """Values (c, ...) under torques (c,); NaN under none."""
-    return np.where((torque > 0.0).reshape(-1, *[1] * (values.ndim - 1)), values, nan)
 
 
 def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_both_sides: bool) -> Iterator[str]:
@@ -88,7 +82,8 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
         else:
             yield (
                 f"{bins} load the other flanks, which are not analysed: damage of the other flanks is not counted; "
-                "with the result of the coast side 'loaded-tca rating DIR --coast OTHER' rates both"
+                "with the result of the coast side 'loaded-tca rating DIR --coast OTHER' rates both, and 'loaded-tca "
+                "report DIR --coast OTHER' reports it"
             )
             yield f"{bins} stress the roots as much as the same torques that are not reversed"
             yield (

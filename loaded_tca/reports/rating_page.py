@@ -47,13 +47,22 @@ STAGE_BLOCKS = {
 """First number of each table, of pairs and of stages, and its caption with the standard."""
 
 
-def rating_content(result: MeshCycle) -> dict[str, Any] | None:
+def rating_content(result: MeshCycle, coast: MeshCycle | None = None) -> dict[str, Any] | None:
     """Return what the template takes of the rating of a result; None if its scene has no strengths or no [rating].
 
     Parameters
     ----------
     result : MeshCycle
+    coast : MeshCycle, optional
+        Result of its coast side; both sides are then rated together.
+
+    Raises
+    ------
+    InputError
+        If both sides cannot be rated together.
     """
+    if coast is not None:
+        return _of_pair(rating_of(result, coast=coast, warn=False))
     return _rated(is_rated(result.scene), lambda: _of_pair(rating_of(result, warn=False)))
 
 

@@ -68,6 +68,7 @@ def write_html_report(
     rank_by: str | None = None,
     torque: float | None = None,
     interactive: bool = False,
+    coast: MeshCycle | None = None,
 ) -> Path:
     """Write the report of a result, a comparison, a stage, a study or a design: one HTML file that needs no other.
 
@@ -92,6 +93,9 @@ def write_html_report(
         Of the pictures of a comparison; default: the largest that all results have.
     interactive : bool
         True: the page of :func:`explore`, of a result or a study, which needs the extra ``interactive``.
+    coast : MeshCycle, optional
+        Result of ``scene.coast_side()`` of the scene of a result: its rating is that of both sides, as
+        :meth:`loaded_tca.MeshCycle.rating` has it. The rest of the report shows the result alone.
 
     Returns
     -------
@@ -102,7 +106,7 @@ def write_html_report(
     ------
     InputError
         If the subject is none of these, no study with the figure that is to rank it, or no comparison under the torque;
-        if jinja2 is not installed, or
+        if it cannot be rated with the coast side; if jinja2 is not installed, or
         the file cannot be written, which leaves what was there before.
 
     Examples
@@ -116,6 +120,9 @@ def write_html_report(
     ...     write_html_report(analyse(scene), Path(directory, "report.html")).name
     'report.html'
     """
+    rates = isinstance(subject, MeshCycle) and not interactive
+    about = "the interactive page" if interactive else f"a {type(subject).__name__}"
+    require((coast is None or rates, f"coast: not allowed; {about} has no rating of one pair"))
     if interactive:
         from loaded_tca.reports.interactive import explore  # which shows tables of this module, too
 
@@ -127,7 +134,7 @@ def write_html_report(
     require((torque is None or is_compared, f"torque: {torque!r:.60}; a {type(subject).__name__} has all torques"))
     with one_thread():  # sums of several threads differ in their last digits each time
         if isinstance(subject, MeshCycle):
-            template, content = "result.html.j2", result_content(subject)
+            template, content = "result.html.j2", result_content(subject, coast)
             date = date or subject.date
         elif isinstance(subject, Comparison):
             template, content = "comparison.html.j2", comparison_content(subject, torque)

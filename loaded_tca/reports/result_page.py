@@ -38,12 +38,14 @@ MOST_TORQUES = 5
 TORQUE = "pinion_torque_Nm"
 
 
-def result_content(result: MeshCycle) -> dict[str, Any]:
+def result_content(result: MeshCycle, coast: MeshCycle | None = None) -> dict[str, Any]:
     """Return what the template of a result takes.
 
     Parameters
     ----------
     result : MeshCycle
+    coast : MeshCycle, optional
+        Result of its coast side, for the rating.
     """
     pictures = result_figures(result, more=True)
     glance = {name: pictures.pop(name) for name in ("at_a_glance",) if name in pictures}
@@ -52,7 +54,7 @@ def result_content(result: MeshCycle) -> dict[str, Any]:
         "glance": pictures_of(glance, CAPTIONS, result.scene.title),
         "pictures": pictures_of(pictures, CAPTIONS, result.scene.title),
         "lubrication": _lubrication(result),
-        "rating": rating_content(result),
+        "rating": rating_content(result, coast),
     }
 
 

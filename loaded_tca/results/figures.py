@@ -394,7 +394,7 @@ SUMMARY: tuple[Line, ...] = (
     Line("  largest pressure there [MPa]", tuple(f"{gear}_element_pressure_MPa" for gear in GEARS)),
     Line("  shortest life [million revolutions]", tuple(f"{gear}_bearing_life_Mrev" for gear in GEARS)),
     Line("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
-    Line("  K_Hbeta too low by its cells, at the most [%]", ("face_load_factor_error",)),
+    Line("  K_Hbeta off by its cells, at the most [%]", ("face_load_factor_error",)),
     Line("  change of its strips if only every second position counts [%]", ("face_load_factor_by_positions",)),
     Line(*LOAD_ROW),
     Line(

@@ -222,12 +222,7 @@ class UnderTorque(Row):
 
     @property
     def face_load_factor_error(self) -> float:
-        """By how much K_Hbeta is too low without free edges; NaN with them.
-
-        They keep the line load at the ends finite: the law of half-spaces in ``face_load_factor_error`` does not hold.
-        """
-        if self.result.scene.analysis.free_edges:
-            return math.nan
+        """By how much K_Hbeta is off by its cells, at the most; NaN without load."""
         return face_load_factor_error(self.result.gear_pair, self.result.path, self.result.maps[self.row])
 
     @cached_property

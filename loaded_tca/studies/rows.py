@@ -280,11 +280,11 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
     variables = {name: (("sample", "torque"), array) for name, array in arrays.items()}
     own = {name: ("sample", np.array(column, dtype=object)) for name, column in texts.items()}
     spent = ("sample", seconds, {"units": "s", "long_name": "time of the analysis"})
-    places = {"sample": ("sample", np.arange(count, dtype=np.int32))}
+    places: dict[str, tuple[Any, ...]] = {"sample": ("sample", np.arange(count, dtype=np.int32))}
     torque = 1e3 * next((arrays[name] for name in TORQUES if name in arrays), np.full((1, torques), np.nan))
     known = torque[np.isfinite(torque).any(axis=1)]  # one of fewer torques has others
     if len(known) and (known == known[0]).all():  # the same in all variants
-        places["torque"] = ("torque", known[0])
+        places["torque"] = ("torque", known[0], {"units": "N mm"})
     return xarray.Dataset(
         {**variables, **own, "seconds": spent}, coords={**places, **_varied(study)}, attrs={"kind": STUDY, **attributes}
     )

@@ -31,7 +31,8 @@ def to_pandas(study: xarray.Dataset) -> pandas.DataFrame:
     -------
     pandas.DataFrame
         The varied keys first, then the key figures, whose names end in their units, ``status``, ``reason``,
-        ``warnings``. Its index: variants and torques, numbered from 0; variants alone where none is ok. NaN: not known.
+        ``warnings``. Its index: ``sample``, variants numbered from 0, and ``torque_Nm``, or where variants have
+        different torques ``torque_number``, counted from 0; variants alone where none is ok. NaN: not known.
         Columns of whole numbers, as counts are, are of type Int64.
 
     Raises
@@ -41,7 +42,10 @@ def to_pandas(study: xarray.Dataset) -> pandas.DataFrame:
     """
     _require_study(study)
     order = [name for name in ("sample", "torque") if name in study.sizes]  # no torque where no variant is ok
-    frame = study.drop_vars("torque", errors="ignore").to_dataframe(order)
+    frame = study.to_dataframe(order)
+    if "torque" in study.coords:
+        frame = frame.rename(index=lambda torque: torque / 1e3, level="torque")
+    frame = frame.rename_axis(index={"torque": "torque_Nm" if "torque" in study.coords else "torque_number"})
     for name in study.data_vars:
         known = frame[name].dropna()
         if known.dtype.kind == "f" and (known.abs() < 2**53).all() and (known % 1 == 0).all():

@@ -99,6 +99,21 @@ def test_whole_gear_takes_of_a_half_what_it_carries(apex):
     assert (np.diff(rating.whole_flank_safety, axis=0) < 0.0).all()
 
 
+def test_half_without_load_under_a_torque_has_no_load_factors_there():
+    """Between 550 and 750 N m half b begins to carry, as bins of these torques show above."""
+    rating = result_of(**{**HELD, "pair.apex_offset_mm": 0.02, "analysis.torques_Nm": [500.0, 800.0]}).rating()
+    assert rating.half_b.torque[0] == 0.0 < rating.half_b.torque[1]
+    for name in ("K_Hbeta", "K_v", "local_flank_radius"):
+        assert (np.isnan(rating.half_b.values(name).reshape(2, -1)) == [[True], [False]]).all(), name
+    assert (rating.half_b.damage[0] == 0.0).all()
+    assert_array_equal(rating.K_Hbeta[0], rating.half_a.K_Hbeta[0])
+    note = "half b carries nothing under up to 500 N m of both halves, and has no load factors there"
+    assert note in rating.notes()
+    of_half_b = rating.summary().partition("half b, under")[2]
+    (line,) = [line for line in of_half_b.splitlines() if "  face load factor K_Hbeta" in line]
+    assert line.split()[-2] == "-"
+
+
 @pytest.mark.parametrize(("apex", "name", "more"), [(1.0, "b", {}), (-1.0, "a", {"load": {"case": BINS}})])
 def test_half_without_load_under_all_torques_is_not_rated(apex, name, more):
     result, half = result_of(**{**HELD, "pair.apex_offset_mm": apex}, **more), f"half_{name}"

@@ -20,7 +20,8 @@ def test_tables_hold_every_variant_and_torque(tmp_path):
     written = write_study(study, tmp_path, {"study_ranking.png": b"picture"})
     assert [path.name for path in written] == ["study.csv", "ranking.csv", "study_ranking.png"]
     table = rows(tmp_path / "study.csv")
-    assert [(row["sample"], row["torque"]) for row in table] == [(str(k), str(t)) for k in range(6) for t in (0, 1)]
+    index = [(row["sample"], row["torque_number"]) for row in table]
+    assert index == [(str(k), str(t)) for k in range(6) for t in (0, 1)]
     assert [float(table[5][name]) for name in (LEAD, "peak_pressure_MPa")] == [3.0, 530.0]
     assert (table[2]["peak_pressure_MPa"], table[2]["reason"]) == ("", "it is refused")
     ranking = rows(tmp_path / "ranking.csv")
@@ -32,7 +33,7 @@ def test_table_begins_with_the_keys_and_has_whole_numbers_for_counts(tmp_path):
     figures = {"positions": [9.0, 9.0, 9.0], "edge_is_rounded": [0.0, 1.0, 0.0], "span_um": [1.0, 2.5, np.inf]}
     write_study(dataset({LEAD: [1.0, 2.0, 3.0]}, figures, ["ok", "refused", "ok"]), tmp_path)
     table = rows(tmp_path / "study.csv")
-    assert list(table[0])[:3] == ["sample", "torque", LEAD]
+    assert list(table[0])[:3] == ["sample", "torque_number", LEAD]
     assert [[row[name] for row in table] for name in figures] == [["9", "", "9"], ["0", "", "0"], ["1.0", "", "inf"]]
 
 

@@ -18,7 +18,7 @@ from loaded_tca.output import write_comparison, write_dynamics
 from loaded_tca.output.result_files import contacts_csv, positions_csv
 from loaded_tca.output.tables import sensitivities_csv, subsurface_csv
 from loaded_tca.results import compare_results
-from loaded_tca.results.load_factors import face_load_factor_by_positions
+from loaded_tca.results.load_factors import face_load_factor_by_positions, face_load_factor_error
 from loaded_tca.results.quantities import QUANTITIES, ROOT_QUANTITIES
 from loaded_tca.results.subsurface import stress_below
 from loaded_tca.studies.ranking import figures_of
@@ -278,7 +278,8 @@ def expected_figures(cycle, t):
     whole = found["mesh_stiffness_mean_N_per_mm_um"]
     found["mesh_stiffness_without_body_torsion_mean_N_per_mm_um"] = 1.0 / (1.0 / whole - BODY_TORSION)
     found["max_pressure_MPa"] = cycle.max_pressure
-    found["face_load_factor_error"] = math.nan  # the sides carry no load
+    by_cells = face_load_factor_error(cycle.gear_pair, cycle.path, cycle.maps[t])  # as the number is
+    found["face_load_factor_error"] = by_cells
     by_positions = face_load_factor_by_positions(cycle.gear_pair, cycle.path, cycle.maps[t])  # as the number is
     found["face_load_factor_by_positions"] = by_positions
     for name, flag in (("edge_positions", "on_edge"), ("relief_start_positions", "on_relief_start")):

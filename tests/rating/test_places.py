@@ -1,6 +1,7 @@
 """Which place decides: local safeties over flanks and roots, pictures of them, and sentences on them."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.plots import plot_flank_safety, plot_root_safety, plot_safeties, rating_figures
 from loaded_tca.rating import flank_safeties, root_safeties
 from loaded_tca.rating.findings import findings, worst_of
+from loaded_tca.rating.places import worst_case
 from loaded_tca.reports import write_html_report
 from loaded_tca.reports.rating_page import rating_content
 from tests.samples.rating import HARD, solved
@@ -102,9 +104,33 @@ def test_map_of_the_flank_has_the_least_safety_at_its_cross():
         assert (apart < 0.03).all()
 
 
-def test_maps_of_both_gears_have_one_scale():
+@cache
+def picture_of_roots():
+    return plot_root_safety(solved().rating())
+
+
+def test_smallest_root_safety_is_over_the_face_of_each_gear():
     rated = solved().rating()
-    flanks, roots = plot_flank_safety(rated), plot_root_safety(rated)
+    case = worst_case(rated, "local_root_safety")[0]
+    _, _, _, *below = picture_of_roots().axes  # maps and scale before
+    for gear, (axes, name) in enumerate(zip(below, ("pinion", "wheel"), strict=True)):
+        assert axes.get_xlabel() == f"axial position on the {name} [mm]"
+        assert_allclose(axes.lines[0].get_xdata(), root_safeties(rated, case, gear).over_face()[0])
+        assert_allclose(np.nanmin(axes.lines[0].get_ydata()), rated.local_root_safety[case, gear])
+
+
+def test_places_of_roots_without_tension_have_the_colour_of_safe_ones(monkeypatch):
+    rated = solved().rating()
+    places = root_safeties(rated, 1, 0)
+    pressed = places.safety.copy()
+    pressed[1] = np.inf
+    monkeypatch.setattr("loaded_tca.plots.safety.root_safeties", lambda *_: replace(places, safety=pressed))
+    meshes = plot_root_safety(rated).axes[0].collections[:2]
+    assert [np.ma.count_masked(mesh.get_array()) for mesh in meshes] == [0, 0]
+
+
+def test_maps_of_both_gears_have_one_scale():
+    flanks, roots = plot_flank_safety(solved().rating()), picture_of_roots()
     for figure in (flanks, roots):
         scales = {(mesh.norm.vmin, mesh.norm.vmax) for axes in figure.axes[:2] for mesh in axes.collections[:1]}
         assert len(scales) == 1

@@ -117,10 +117,20 @@ def test_workbooks_of_another_ending_or_with_too_many_rows_are_refused(tmp_path)
 def test_frame_of_a_study_has_keys_first_and_counts_as_whole_numbers():
     study = dataset({LEAD: [1.0, 2.0]}, {"positions": [9.0, 9.0], "span_um": [1.0, 2.5]}, ["ok", "refused"])
     frame = to_pandas(study)
-    assert frame.index.names == ["sample", "torque"]
+    assert frame.index.tolist() == [(0, 0), (1, 0)]
+    assert frame.index.names == ["sample", "torque_number"]  # this one has no torques that all variants share
     assert next(iter(frame)) == LEAD
     assert frame["positions"].tolist() == [9, pandas.NA]
     assert frame["span_um"].tolist()[:1] == [1.0]
+
+
+def test_frame_of_a_study_has_the_torques_that_all_variants_share():
+    study = grid(torques=(40.0, 80.2)).assign_coords(torque=[40e3, 1e3 * 80.2])
+    frame = to_pandas(study)
+    assert frame.index.names == ["sample", "torque_Nm"]
+    assert frame.index.tolist() == [(variant, torque) for variant in range(6) for torque in (40.0, 80.2)]
+    assert frame["pinion_torque_Nm"].tolist() == 6 * [40.0, 80.2]
+    assert "torque" not in frame
 
 
 def test_workbook_of_a_study_has_variants_ranking_and_counted_warnings(tmp_path):

@@ -303,3 +303,74 @@ def test_command_rates_a_stage_again_under_a_spectrum(run, tmp_path, monkeypatch
     code, _, errors = run("rating", str(tmp_path), "--set", "load.sun_torque_Nm=20")
     assert code == 2
     assert "load.sun_torque_Nm: an analysis depends on it; allowed keys of [sun.strength]" in errors[0]
+
+
+TENSIONS = {"sun_mesh": (5e-3, 4e-3), "ring_mesh": (5.5e-3, 3e-3)}
+"""Of the roots of both gears of a mesh [MPa] over the torque of its pinion [N mm]."""
+PRESSED, AT_PLACE = {"sun_mesh": 0.7, "ring_mesh": 0.5}, -0.1
+"""Largest compression of a root by its mesh over its largest tension; smallest over largest stress of each place."""
+
+
+def with_root_stress(cycle, name):
+    """A mesh cycle with roots under stresses in proportion to the torque, on a fillet of four nodes."""
+    torque = cycle.dataset["torque"].values
+    tension = torque[:, None] * TENSIONS[name]
+    over_pitch = np.array([0.5, 1.0, 0.8, 0.6, 0.5])[:, None] * tension[:, None]
+    nodes = np.array([[[1.0, 0.9], [0.8, 0.7]], [[0.3, 0.3], [0.2, 0.2]]])
+    dims = "torque", "position", "gear"
+    arrays = {"root_tension": (dims, over_pitch), "root_compression": (dims, -PRESSED[name] * over_pitch)}
+    for n, gear in enumerate(("pinion", "wheel")):
+        of_nodes = "side", "station", f"{gear}_along"
+        largest = tension[:, n, None, None, None] * nodes
+        arrays |= {
+            f"{gear}_root_angle": (of_nodes, np.ones(nodes.shape)),
+            f"{gear}_root_point": ((*of_nodes, "vector"), np.zeros((*nodes.shape, 3))),
+        }
+        for which, values in (("at_tension", largest), ("largest", largest), ("smallest", AT_PLACE * largest)):
+            arrays[f"{gear}_root_stress_{which}"] = (("torque", *of_nodes), values)
+    scene = cycle.scene.with_changes({"analysis.root_stress": True})
+    return replace(cycle, scene=scene, dataset=cycle.dataset.assign(arrays))
+
+
+def test_local_roots_of_planets_add_up_the_bins_that_draw_each_fillet_by_hand():
+    """Palmgren and Miner on lines of ISO 6336-6 from 1e3 to 3e6 cycles, Y_M by annex B of ISO 6336-3:2006."""
+    stage = solved().stage.with_changes(
+        SECTIONS | REQUIRED | {"analysis.root_stress": True, "rating.mesh_load_factor": 1.0}
+    )
+    rows = bins((480.0, 2.0), (300.0, 5.0)) + bins((480.0, 3.0), reversed=True)
+    meshes = {name: with_root_stress(getattr(solved(), name), name) for name in TENSIONS}
+    result = replace(solved(), stage=stage.with_changes({"load.case": rows}), **meshes)
+    rating = result.rating()
+    back, hours = np.array([False, False, True]), 20000.0 * np.array([0.2, 0.5, 0.3])
+    sun, planet, ring = stage.teeth
+    shares = np.array([480.0, 300.0, 480.0]) * 1e3 / len(stage.stage.angles)
+    tension = {"sun_mesh": 4e-3 * shares, "ring_mesh": 5.5e-3 * shares * planet / sun}
+    presses = {name: -PRESSED[name] * tension[name] for name in TENSIONS}
+    turns = 60.0 * 6000.0 * ring / (sun + ring) * sun / planet
+    damages, mode = {}, rating.modes.index("local_root")
+    for name, other, place in (("sun_mesh", "ring_mesh", 1), ("ring_mesh", "sun_mesh", 0)):
+        mesh = getattr(rating, name)
+        ratio = np.where(back, -1.2, np.maximum(presses[other] / tension[name], -1.2))
+        sensitivities = 0.8 - 0.15 * mesh.Y_S[:, place], 0.7  # of the endurance and of the static strength
+        mean, at_rest = (1.0 / (1.0 - ratio * (1.0 - each) / (1.0 + each)) for each in sensitivities)
+        assert_allclose(mesh.local_root_stress[:, place], tension[name], rtol=1e-6)  # torques went through N m
+        assert_allclose(mesh.local_stress_ratio[:, place], ratio, rtol=1e-6)
+        assert_allclose(mesh.local_Y_M[:, place], mean, rtol=1e-6)
+        allowable = mesh.sigma_F_lim[:, place] * mesh.Y_ST[:, place]
+        static = 2.5 * allowable * mesh.Y_delta_relT_static[:, place] * at_rest
+        endured = allowable * mean
+        for factor in ("Y_delta_relT", "Y_R_relT", "Y_X"):
+            endured = endured * mesh.values(factor)[:, place]
+        exponent = np.log(3e6 / 1e3) / np.log(static / endured)
+        lasts = 3e6 * (endured / (2.4 * tension[name])) ** exponent
+        assert ((lasts > 1e3) & (lasts < 3e6)).all()  # all bins lie on that line
+        damages[name] = turns * hours / lasts
+        assert_allclose(mesh.damage[:, place, mode], damages[name], rtol=1e-4)  # powers of 8 of torques to 1e-6
+    fillets = [
+        np.where(back, damages[drawn_back], damages[drawn]).sum()
+        for drawn, drawn_back in (("sun_mesh", "ring_mesh"), ("ring_mesh", "sun_mesh"))
+    ]
+    assert fillets[0] != pytest.approx(fillets[1], rel=0.01)
+    assert_allclose(rating.miner_sum[1, mode], max(fillets), rtol=1e-4)
+    least = [rating.sun_mesh.local_root_safety[:, 1], rating.ring_mesh.local_root_safety[:, 0]]
+    assert_allclose(rating.local_root_safety[:, 1], np.minimum(*least), rtol=ROUNDING)
