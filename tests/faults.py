@@ -3441,6 +3441,21 @@ FAULTS = (
         "return path.E, math.inf",
         "plots/test_first_look.py::test_active_part_of_an_undercut_pair_is_that_of_the_path_as_analysed",
     ),
+    Fault(
+        "rounded edges: arcs under a grid are seen along the surfaces of their edges",
+        "separation/arcs.py",
+        "on_arcs[cells] = ArcsOfContact(pair, grid).lengths(grid.x[across], grid.y[along]) > 0.0",
+        "in_plane = np.stack([grid.x[across], grid.y[along]], axis=-1) @ grid.axes[:2]\n"
+        "        on_arcs[cells] = lengths_past_tangents(pair, *pair.on_flanks(grid.origin + in_plane)) > 0.0",
+        "separation/test_arcs.py::test_cells_on_arcs_are_those_whose_gap_the_arc_opens",
+    ),
+    Fault(
+        "rounded edges: of the outermost cells of a contact those that lie on an arc do not count",
+        "separation/arcs.py",
+        "return cells_on_arcs(pair, grid, dilated(pressed) & outermost)",
+        "return cells_on_arcs(pair, grid, pressed & ~outermost)",
+        "separation/test_arcs.py::test_outermost_cells_of_a_contact_tell_whether_it_lies_on_an_arc",
+    ),
 )
 
 

@@ -18,7 +18,7 @@ from loaded_tca.contact import ContactProblem, ContactSolution
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.patch import ends_at_material, values_at_ends
-from loaded_tca.edges.places import arcs_at, has_relief_starts, relief_start_distances
+from loaded_tca.edges.places import has_relief_starts, relief_start_distances
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import LoadedContact
@@ -26,6 +26,7 @@ from loaded_tca.loaded.together import Bend, Ends, Gap, Steps, Task, run_alone
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.plain import plain
 from loaded_tca.separation import Separation
+from loaded_tca.separation.arcs import arcs_beside
 from loaded_tca.separation.strips import strip_pressure
 from loaded_tca.unloaded import ContactPoint
 
@@ -288,9 +289,7 @@ def _reaches_arc(pair: GearPair, separation: Separation, pressure: Array) -> boo
     """Whether cells on the arc of a rounded edge are under pressure, or the contact goes on to where one begins."""
     if pair.sharp is pair:
         return False
-    pressed = (np.flatnonzero(pressure.any(axis=axis)) for axis in (1, 0))
-    beside = tuple(slice(max(0, cells[0] - 1), cells[-1] + 2) if cells.size else slice(0) for cells in pressed)
-    on_arc, pressure = np.asarray(arcs_at(pair, separation.points[beside]).any(axis=-1)), pressure[beside]
+    on_arc = np.asarray(arcs_beside(pair, separation, pressure > 0.0).any(axis=-1))
     return bool(pressure[on_arc].any()) or ends_at_material(np.where(on_arc, 0.0, pressure), on_arc)
 
 
