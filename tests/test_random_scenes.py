@@ -86,3 +86,10 @@ def test_differences_leave_out_the_side_on_which_a_tooth_pair_comes_under_load(s
     assert slopes["transmission_error"] == pytest.approx(3.0, rel=1e-9)  # over both sides off by 0.05
     assert slopes["load_share"] == pytest.approx(0.0, abs=1e-9)
     assert slopes["peak_pressure"] == pytest.approx(5.0, rel=1e-9)
+
+
+def test_jump_of_a_curve_counts_beyond_the_errors_that_are_told_of_it():
+    curve = np.linspace(0.0, 6.0, 7) + np.where(np.arange(7) > 3, 4.0, 0.0)  # 4 in the fourth of six steps, range 10
+    assert invariances.largest_jump(curve, 1.0) == pytest.approx(0.4, rel=1e-12)
+    assert invariances.largest_jump(curve, 1.0, np.array([9.0, 9.0, 0.0, 1.0, 3.0, 0.0, 9.0])) == pytest.approx(0.1)
+    assert invariances.largest_jump(curve, 1.0, np.full(7, 5.0)) == 0.0

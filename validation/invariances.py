@@ -591,31 +591,36 @@ def continuous_over(subject: Subject, axis: Axis | None) -> Off:
         results = [analysed(scene.with_changes({"analysis.torques_Nm": (torque * (0.5 + parts)).tolist()}))]
     else:
         results = [analysed(scene.with_changes(axis.changes(subject, float(part)))) for part in parts]
-    deflection, error, peak, *shares = np.concatenate([_numbers(result) for result in results]).T
+    deflection, error, peak, told, *shares = np.concatenate([_numbers(result) for result in results]).T
     name = "torque" if axis is None else axis.name
     known = scene.analysis.accuracy * float(peak.max())  # by which peaks may scatter
     jumps = {
         "transmission error": largest_jump(error, LEAST_SPAN * float(np.abs(deflection).max())),
-        "peak pressure": largest_jump(peak, known / JUMP),
+        "peak pressure": largest_jump(peak, known / JUMP, told),
         "load share": max(largest_jump(values, LEAST_SPAN) for values in shares),
     }
     return {f"{quantity} over the {name}": jump / JUMP for quantity, jump in jumps.items()}
 
 
 def _numbers(result: MeshCycle) -> Array:
-    """Deflection, transmission error, peak pressure and shares at the only position, in a row for each torque."""
+    """Deflection, transmission error, peak pressure, its error as told, and shares at the only position, by torque."""
     error, peak = result.transmission_error[:, 0], np.where(result.load_share > LITTLE_LOAD, result.peak_pressure, 0.0)
+    told = np.nanmax(peak * np.nan_to_num(result.discretisation_error), axis=(1, 2))
     shares = of_pairs(result, "load_share", np.arange(-3, 4))[:, 0]
     deflection = error - result.unloaded_transmission_error[0]
-    return np.column_stack([deflection, error, np.nanmax(peak, axis=(1, 2)), shares])
+    return np.column_stack([deflection, error, np.nanmax(peak, axis=(1, 2)), told, shares])
 
 
-def largest_jump(values: Array, least: float) -> float:
-    """Largest jump of a curve over its range, or over a least one; see ``validation.loaded.jumps``."""
-    steps = np.diff(values)
+def largest_jump(values: Array, least: float, told: Array | float = 0.0) -> float:
+    """Largest jump of a curve over its range, or over a least one; see ``validation.loaded.jumps``.
+
+    Beyond the errors of both values as they are told.
+    """
+    steps, told = np.diff(values), np.broadcast_to(told, values.shape)
     before, after = steps[1:-1] - steps[:-2], steps[1:-1] - steps[2:]
     jumps = np.where(before * after > 0.0, np.minimum(np.abs(before), np.abs(after)), 0.0)
-    return float(jumps.max()) / max(float(np.ptp(values)), least)
+    beyond = np.maximum(jumps - np.maximum(told[1:-2], told[2:-1]), 0.0)
+    return float(beyond.max()) / max(float(np.ptp(values)), least)
 
 
 class Invariance(NamedTuple):
