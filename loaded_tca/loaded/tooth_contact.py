@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import ContactProblem, ContactSolution
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
@@ -212,16 +212,19 @@ class _InBox:
             expected = strip_pressure(first.cut_gap, first.spacing, self.load, pair.contact_modulus) * first.cover
 
             def smooth(solution: ContactSolution) -> bool:
-                return not (across_start or _reaches_arc(pair, self.separation, solution.pressure_on_material))
+                pressure = solution.pressure_on_material
+                return not (across_start or _reaches_arc(_cells_on_arcs(pair, self.separation, pressure), pressure))
 
             solution, *_ = yield from refinement(self._solved, grid.accuracy, grid.tolerance, smooth, cells, expected)
         on_material = solution.pressure_on_material
+        on_arc = _cells_on_arcs(pair, self.separation, on_material)
         return LoadedContact(
             contact,
             self.separation,
             solution,
             at_relief_start=_crosses_relief_start(pair, contact, self.separation, on_material),
-            at_arc=_reaches_arc(pair, self.separation, on_material),
+            at_arc=_reaches_arc(on_arc, on_material),
+            ends_on_arc=_ends_on_arc(on_arc, on_material),
             tolerance=self.tolerance,
             coupling_deflection=self.displaced,
             bending=self.bent,
@@ -285,12 +288,26 @@ def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Sep
     return False
 
 
-def _reaches_arc(pair: GearPair, separation: Separation, pressure: Array) -> bool:
+def _cells_on_arcs(pair: GearPair, separation: Separation, pressure: Array) -> Mask:
+    """Cells at the border of a contact that lie on the arc of any rounded edge."""
+    return np.asarray(arcs_beside(pair, separation, pressure > 0.0).any(axis=-1))
+
+
+def _reaches_arc(on_arc: Mask, pressure: Array) -> bool:
     """Whether cells on the arc of a rounded edge are under pressure, or the contact goes on to where one begins."""
-    if pair.sharp is pair:
-        return False
-    on_arc = np.asarray(arcs_beside(pair, separation, pressure > 0.0).any(axis=-1))
     return bool(pressure[on_arc].any()) or ends_at_material(np.where(on_arc, 0.0, pressure), on_arc)
+
+
+def _ends_on_arc(on_arc: Mask, pressure: Array) -> bool:
+    """Whether an end slice of a contact, at its largest pressure, or what comes next along it lies on an arc."""
+    carrying = np.flatnonzero(pressure.any(axis=0))
+    ends = [(carrying[0], carrying[0] - 1), (carrying[-1], carrying[-1] + 1)] if carrying.size else []
+    return any(
+        bool(on_arc[pressure[:, end].argmax(), place])
+        for end, beyond in ends
+        for place in (end, beyond)
+        if 0 <= place < pressure.shape[1]
+    )
 
 
 def expected_pressure(separation: Separation) -> Array:
