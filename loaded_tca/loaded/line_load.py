@@ -19,7 +19,7 @@ may agree by chance (``validation/loaded/error_estimates.py``); and the line loa
 which the pressure there may be the largest, where the contact is more curved."""
 LEFT_BESIDE_ARC = 0.25
 """The same of the line load beside an end on the arc of a rounded edge, before which it rises without the grid's seeing
-it: pressures of random contacts whose two grids agree by chance were off by 0.14 and 0.18 of the part of a slice."""
+it: the pressure of a random contact whose two grids agree by chance was off by 0.14 of the part of a slice."""
 
 
 def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Array, Array]:
