@@ -989,8 +989,8 @@ FAULTS = (
     Fault(
         "line loads: scatter within a slice counts twice",
         "loaded/line_load.py",
-        "+ np.diff(borders) ** 2 / 12.0)",
-        "+ np.diff(borders) ** 2 / 6.0)",
+        "(borders[1:] - borders[:-1]) ** 2 / 12.0)",
+        "(borders[1:] - borders[:-1]) ** 2 / 6.0)",
         "loaded/test_tooth_contact.py::test_loaded_length_is_that_of_an_even_load_with_the_same_scatter",
     ),
     Fault(
@@ -2486,7 +2486,7 @@ FAULTS = (
     ),
     Fault(
         "spectra: idle bins show load factors of a thousandth of the largest torque",
-        "rating/spectrum.py",
+        "rating/call.py",
         "(torque > 0.0).reshape",
         "(torque >= 0.0).reshape",
         "rating/test_spectrum.py::test_idle_bins_take_their_time_and_do_no_damage",
@@ -3560,6 +3560,29 @@ FAULTS = (
         "        return IN_PAIRS * _change_in_pairs(pair, loaded, borders, forces)\n    cells",
         "        return math.nan\n    cells",
         "results/test_load_factors.py::test_face_load_factor_away_from_ends_misses_at_most_what_is_estimated",
+    ),
+    Fault(
+        "rounded edges: arcs under a grid are seen along the surfaces of their edges",
+        "separation/arcs.py",
+        "on_arcs[cells] = ArcsOfContact(pair, grid).lengths(grid.x[across], grid.y[along]) > 0.0",
+        "in_plane = np.stack([grid.x[across], grid.y[along]], axis=-1) @ grid.axes[:2]\n"
+        "        on_arcs[cells] = lengths_past_tangents(pair, *pair.on_flanks(grid.origin + in_plane)) > 0.0",
+        "separation/test_arcs.py::test_cells_on_arcs_are_those_whose_gap_the_arc_opens",
+    ),
+    Fault(
+        "rounded edges: of the outermost cells of a contact those that lie on an arc do not count",
+        "separation/arcs.py",
+        "return cells_on_arcs(pair, grid, dilated(pressed) & outermost)",
+        "return cells_on_arcs(pair, grid, pressed & ~outermost)",
+        "separation/test_arcs.py::test_outermost_cells_of_a_contact_tell_whether_it_lies_on_an_arc",
+    ),
+    Fault(
+        "slices: a line load that rises towards the arc of a face end has the error of one at a sharp end",
+        "loaded/line_load.py",
+        "        if ends_on_arc:",
+        "        if ends_on_arc and places.size < 0:",
+        "loaded/test_tooth_contact.py::"
+        "test_estimate_of_slices_beside_the_arc_of_a_face_end_covers_what_finer_grids_add",
     ),
 )
 

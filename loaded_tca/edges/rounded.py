@@ -32,7 +32,7 @@ from loaded_tca.contact.columns import whole_cells
 from loaded_tca.contact.edges import RoundedEdge
 from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, edge_pressures
 from loaded_tca.edges.free import edge_compliances
-from loaded_tca.edges.places import arcs_of, dilated, edge_distances, lengths_past_tangents, relief_start_distances
+from loaded_tca.edges.places import arcs_of, dilated, edge_distances, relief_start_distances
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import Arc, material_cosines
@@ -40,6 +40,7 @@ from loaded_tca.loaded.cycle import CycleSolution, told_where
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.separation.arcs import ArcsOfContact
 from loaded_tca.separation.normal_gap import NormalGap
 
 CELLS_ACROSS, CELLS_ALONG = 8, 12
@@ -108,7 +109,7 @@ def reached_arcs(pair: GearPair, loaded: LoadedContact) -> list[ReachedArc]:
     An edge is a straight line beside the cell there with the largest pressure.
     """
     grid, arcs = loaded.separation, arcs_of(pair)
-    seen = _SeenAlongNormal(pair, loaded)
+    seen = _Beginnings(pair, loaded)
     lengths, (dx, dy) = seen.lengths(grid.x[:, None], grid.y), grid.spacing
     distances, pressed = edge_distances(pair, grid.points), dilated(loaded.solution.pressure_on_material > 0.0)
     beyond_start = relief_start_distances(pair, grid.points) > 0.0
@@ -138,21 +139,12 @@ def reached_arcs(pair: GearPair, loaded: LoadedContact) -> list[ReachedArc]:
     return sorted((_joined(group, pair.contact_modulus) for group in groups), key=lambda one: -one.bound)
 
 
-class _SeenAlongNormal:
-    """Where arcs begin on the flanks of a contact, in the plane of its grid.
-
-    Flanks leave that plane by up to some tenths of a millimetre, together: the surface in which an edge lies is seldom
-    normal to the plane, and crosses it elsewhere than the flank.
-    """
+class _Beginnings(ArcsOfContact):
+    """Lines where the arcs of a loaded contact begin."""
 
     def __init__(self, pair: GearPair, loaded: LoadedContact) -> None:
-        self.pair, self.spacing = pair, np.array(loaded.separation.spacing)
-        self.flanks = NormalGap(pair.sharp, loaded.contact, loaded.separation.axes)
-
-    def lengths(self, x: Array, y: Array) -> Array:
-        """Lengths (..., 8) [mm] past the beginnings of the arcs, of the points of sharp flanks at places."""
-        places = self.flanks.places(*(part[None] for part in np.broadcast_arrays(x, y)))
-        return lengths_past_tangents(self.pair, *places)[0]
+        super().__init__(pair, loaded.separation)
+        self.spacing = np.array(loaded.separation.spacing)
 
     def nearest(self, edge: int, place: Array) -> tuple[Array, Array]:
         """Place (2,) where an arc begins, the nearest to one within a cell or two, and how fast lengths grow there."""

@@ -63,6 +63,8 @@ class LoadedContact:
     judged : (float, float) or None [MPa], [N]
         Largest pressure and load of the solution that the errors were estimated of: lines of forces and other pairs may
         have moved the pressure since. None: it is that.
+    ends_on_arc : bool
+        Whether the first or the last slice that carries load reaches the arc of a rounded edge.
     """
 
     contact: ContactPoint
@@ -76,6 +78,7 @@ class LoadedContact:
     ends: Array | None = None
     line_loads: tuple[Callable[[], SliceLoads], ...] = ()
     judged: tuple[float, float] | None = None
+    ends_on_arc: bool = False
 
     @property
     def is_rough(self) -> bool:
@@ -113,7 +116,7 @@ class LoadedContact:
         if len(self.line_loads) < 2:
             return math.nan
         coarse, fine = (line_load() for line_load in self.line_loads)
-        return fine.error_of_largest(coarse)
+        return fine.error_of_largest(coarse, ends_on_arc=self.ends_on_arc)
 
     @property
     def peak_change(self) -> float:

@@ -12,13 +12,13 @@ from functools import partial
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import ContactProblem, ContactSolution
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.patch import ends_at_material, values_at_ends
-from loaded_tca.edges.places import arcs_at, has_relief_starts, relief_start_distances
+from loaded_tca.edges.places import has_relief_starts, relief_start_distances
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import LoadedContact
@@ -26,6 +26,7 @@ from loaded_tca.loaded.together import Bend, Ends, Gap, Steps, Task, run_alone
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.plain import plain
 from loaded_tca.separation import Separation
+from loaded_tca.separation.arcs import arcs_beside
 from loaded_tca.separation.strips import strip_pressure
 from loaded_tca.unloaded import ContactPoint
 
@@ -211,16 +212,19 @@ class _InBox:
             expected = strip_pressure(first.cut_gap, first.spacing, self.load, pair.contact_modulus) * first.cover
 
             def smooth(solution: ContactSolution) -> bool:
-                return not (across_start or _reaches_arc(pair, self.separation, solution.pressure_on_material))
+                pressure = solution.pressure_on_material
+                return not (across_start or _reaches_arc(_cells_on_arcs(pair, self.separation, pressure), pressure))
 
             solution, *_ = yield from refinement(self._solved, grid.accuracy, grid.tolerance, smooth, cells, expected)
         on_material = solution.pressure_on_material
+        on_arc = _cells_on_arcs(pair, self.separation, on_material)
         return LoadedContact(
             contact,
             self.separation,
             solution,
             at_relief_start=_crosses_relief_start(pair, contact, self.separation, on_material),
-            at_arc=_reaches_arc(pair, self.separation, on_material),
+            at_arc=_reaches_arc(on_arc, on_material),
+            ends_on_arc=_ends_on_arc(on_arc, on_material),
             tolerance=self.tolerance,
             coupling_deflection=self.displaced,
             bending=self.bent,
@@ -284,14 +288,26 @@ def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Sep
     return False
 
 
-def _reaches_arc(pair: GearPair, separation: Separation, pressure: Array) -> bool:
+def _cells_on_arcs(pair: GearPair, separation: Separation, pressure: Array) -> Mask:
+    """Cells at the border of a contact that lie on the arc of any rounded edge."""
+    return np.asarray(arcs_beside(pair, separation, pressure > 0.0).any(axis=-1))
+
+
+def _reaches_arc(on_arc: Mask, pressure: Array) -> bool:
     """Whether cells on the arc of a rounded edge are under pressure, or the contact goes on to where one begins."""
-    if pair.sharp is pair:
-        return False
-    pressed = (np.flatnonzero(pressure.any(axis=axis)) for axis in (1, 0))
-    beside = tuple(slice(max(0, cells[0] - 1), cells[-1] + 2) if cells.size else slice(0) for cells in pressed)
-    on_arc, pressure = np.asarray(arcs_at(pair, separation.points[beside]).any(axis=-1)), pressure[beside]
     return bool(pressure[on_arc].any()) or ends_at_material(np.where(on_arc, 0.0, pressure), on_arc)
+
+
+def _ends_on_arc(on_arc: Mask, pressure: Array) -> bool:
+    """Whether an end slice of a contact, at its largest pressure, or what comes next along it lies on an arc."""
+    carrying = np.flatnonzero(pressure.any(axis=0))
+    ends = [(carrying[0], carrying[0] - 1), (carrying[-1], carrying[-1] + 1)] if carrying.size else []
+    return any(
+        bool(on_arc[pressure[:, end].argmax(), place])
+        for end, beyond in ends
+        for place in (end, beyond)
+        if 0 <= place < pressure.shape[1]
+    )
 
 
 def expected_pressure(separation: Separation) -> Array:

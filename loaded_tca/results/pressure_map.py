@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy
 
-from loaded_tca.edges.places import arcs_at, dilated, edge_distances
+from loaded_tca.edges.places import dilated, edge_distances
 from loaded_tca.errors import InputError
 from loaded_tca.results.quantities import LAID_END_TO_END, MAP_CELLS, MAP_PARTS, SIZES
+from loaded_tca.separation.arcs import arcs_beside
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -194,8 +195,8 @@ def maps_from(arrays: Mapping[str, Array]) -> Maps:
 
 
 def arc_cells(pair: GearPair, one: PressureMap) -> Mask:
-    """Cells (nx, ny, 8) of a map on the arc of each edge of both flanks, the cells beside them with them."""
-    return dilated(arcs_at(pair, one.points))
+    """Cells (nx, ny, 8) beside those of a map that bound its pressure on the arc of each edge of both flanks."""
+    return dilated(arcs_beside(pair, one, one.pressure > 0.0))
 
 
 def sharp_edge_cell(pair: GearPair, one: PressureMap) -> tuple[int, int]:

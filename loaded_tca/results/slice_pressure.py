@@ -27,9 +27,10 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.patch import peak_pressure, reaches_border, top_weights
-from loaded_tca.edges.places import arcs_at, dilated, relief_start_distances
+from loaded_tca.edges.places import dilated, relief_start_distances
 from loaded_tca.loaded.line_load import SliceLoads, stretch_parts
 from loaded_tca.separation import Separation
+from loaded_tca.separation.arcs import arcs_beside
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
 
@@ -115,7 +116,7 @@ def _inner_peak(pair: GearPair, separation: Separation, pressure: Array, of_slic
     if pressure.max() <= of_slices.pressure:
         return None
     reach = 0.5 * (of_slices.slices.length + separation.spacing[1])
-    rough = separation.y[(_rough_cells(pair, separation) & (pressure > 0.0)).any(axis=0)]
+    rough = separation.y[(_rough_cells(pair, separation, pressure) & (pressure > 0.0)).any(axis=0)]
     away = np.abs(separation.y[:, None] - rough).min(axis=1, initial=math.inf)
     cells = np.where(away > reach, pressure, 0.0)
     if cells.max() <= of_slices.pressure:
@@ -129,13 +130,12 @@ def _inner_peak(pair: GearPair, separation: Separation, pressure: Array, of_slic
     return InnerPeak(largest, (float(separation.x[across]), float(separation.y[along])), cells)
 
 
-def _rough_cells(pair: GearPair, separation: Separation) -> Mask:
+def _rough_cells(pair: GearPair, separation: Separation, pressure: Array) -> Mask:
     """Cells (nx, ny) beside those that an edge cuts or an arc lies on, and on both sides of a relief start."""
-    points = separation.points
     rough = dilated(separation.cover < 1.0)
     if pair.sharp is not pair:
-        rough |= dilated(arcs_at(pair, points).any(axis=-1))
-    beyond = np.moveaxis(relief_start_distances(pair, points) > 0.0, -1, 0)
+        rough |= dilated(arcs_beside(pair, separation, pressure > 0.0).any(axis=-1))
+    beyond = np.moveaxis(relief_start_distances(pair, separation.points) > 0.0, -1, 0)
     for one in beyond:
         rough |= dilated(one) & dilated(~one)
     return rough

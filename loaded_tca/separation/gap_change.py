@@ -20,9 +20,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, Mask
-from loaded_tca.edges.places import arcs_at, dilated
+from loaded_tca.edges.places import dilated
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.separation.arcs import cells_on_arcs
 from loaded_tca.separation.contact_points import PointChanges, point_changes
 from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
 from loaded_tca.separation.pair_change import (
@@ -230,8 +231,7 @@ def _near_arcs(pair: GearPair, grid: Separation, cells: Mask) -> Mask:
     """Edges (n, 8) on whose arcs cells of a grid lie, or cells beside them."""
     near = np.zeros((np.count_nonzero(cells), 2 * len(EDGE_NAMES)), dtype=bool)
     if pair.sharp is not pair:
-        places = grid.origin + grid.x[:, None, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
-        on = arcs_at(pair, places)
+        on = cells_on_arcs(pair, grid, dilated(cells))
         for edge in np.flatnonzero(on.any(axis=(0, 1))).tolist():
             near[:, edge] = dilated(on[..., edge])[cells]
     return near

@@ -13,6 +13,7 @@ from loaded_tca import AccuracyWarning, InputError, trace_contact
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact.patch import widths
 from loaded_tca.flanks import FlankModifications
+from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.loaded.line_load import SliceLoads, loaded_length, loaded_length_slopes
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.together import run_alone
@@ -20,6 +21,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.reference import hertz
+from loaded_tca.results.slice_pressure import rough_peaks
 from loaded_tca.separation import sample_separation, slice_middles
 from loaded_tca.unloaded import trace_teeth
 from tests.samples.gear_pairs import SAM_PAPER_TORQUE, cylindrical_mesh, gear_pair, sam_paper
@@ -392,9 +394,9 @@ def test_peak_error_is_that_of_the_peak_or_of_the_line_load():
     rough = solved(gear_pair(), 2700.0, grid=GridChoice(accuracy=1e-2))
     assert rough.is_rough
     assert rough.line_load_error > 0.0
-    off = replace(rough, line_loads=(lambda: None, lambda: SimpleNamespace(error_of_largest=lambda _: 0.5)))
+    off = replace(rough, line_loads=(lambda: None, lambda: SimpleNamespace(error_of_largest=lambda *_, **__: 0.5)))
     assert off.peak_error == 0.5
-    even = SimpleNamespace(error_of_largest=lambda _: 0.0)
+    even = SimpleNamespace(error_of_largest=lambda *_, **__: 0.0)
     assert 0.0 < replace(rough, line_loads=(lambda: even, lambda: even)).peak_error < 0.02
     assert np.isnan(replace(rough, line_loads=()).peak_error)
 
@@ -451,6 +453,21 @@ def test_estimate_of_slices_beside_a_sharp_end_grows_with_their_length():
     assert error(16, 1.0) == pytest.approx(0.5 * error(8, 1.0))
     assert error(16, 1.0) > 0.01
     assert error(16, 0.3) == 0.0
+
+
+def test_estimate_of_slices_beside_the_arc_of_a_face_end_covers_what_finer_grids_add():
+    """An end at a rounding on a tilted pair, before which the line load rises: cells a quarter as long and as wide."""
+    tilted = {"teeth": (25, 37), "width": 20.0, "mounting": Mounting(0.0, math.radians(0.03))}
+    pair = gear_pair(**tilted).rounded(EdgeRounding(side=0.2), EdgeRounding(side=0.2))
+    coarse, fine = (solved(pair, 1000.0, grid=GridChoice(cells, 1e-2, free_edges=True)) for cells in (None, (64, 128)))
+    assert coarse.ends_on_arc
+    assert not solved(gear_pair(**tilted), 1000.0, grid=GridChoice((16, 32))).ends_on_arc
+    peaks = [
+        rough_peaks(pair, [(one.contact, one.separation, one.solution.pressure)])[0].pressure for one in (coarse, fine)
+    ]
+    assert abs(peaks[0] / peaks[1] - 1.0) < coarse.peak_error
+    part = coarse.separation.spacing[1] / (0.25 * pair.module)
+    assert coarse.peak_error > 0.1 * part, "half of what was seen where two grids agree by chance"
 
 
 def test_width_of_a_contact_that_leaves_the_axis_of_its_grid_is_that_of_its_slices():
