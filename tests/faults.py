@@ -361,7 +361,7 @@ FAULTS = (
             (
                 "estimates of slices beside a sharp end come from two grids alone",
                 "loaded/line_load.py",
-                "self.step / self.length if at_end else 0.0",
+                "LEFT_BESIDE_END * part if at_end else 0.0",
                 "0.0",
                 "loaded/test_tooth_contact.py::test_estimate_of_slices_beside_a_sharp_end_grows_with_their_length",
             ),
