@@ -3441,6 +3441,20 @@ FAULTS = (
         "return path.E, math.inf",
         "plots/test_first_look.py::test_active_part_of_an_undercut_pair_is_that_of_the_path_as_analysed",
     ),
+    Fault(
+        "the quadrant of a symbol is unfolded from the wrong row on",
+        "contact/convolution.py",
+        "quadrant[:, half - 2 : 0 : -1]",
+        "quadrant[:, half - 1 : 1 : -1]",
+        "contact/test_convolution.py::test_large_transforms_in_blocks_have_the_result_of_those_in_one",
+    ),
+    Fault(
+        "parts of a grid have a margin one row too small for what depends on it",
+        "contact/levels.py",
+        "start - margin), min(stop + margin, count)",
+        "start - margin + 1), min(stop + margin - 1, count)",
+        "contact/test_levels.py::test_grids_in_parts_are_those_in_one",
+    ),
 )
 
 
