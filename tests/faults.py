@@ -1298,8 +1298,8 @@ FAULTS = (
     Fault(
         "transforms: work arrays that an exception found in use are used again",
         "contact/convolution.py",
-        "if kept is None or kept.in_use else kept",
-        "if kept is None else kept",
+        "if kept is None or kept.in_use:",
+        "if kept is None:",
         "contact/test_convolution.py::test_exception_at_any_line_leaves_the_next_convolution_right",
     ),
     Fault(
