@@ -294,7 +294,8 @@ def _beside(lines: Array, blocks: Array) -> Iterator[tuple[Array, Array]]:
     """Views of lines (lines, rows), each with that of the blocks (blocks, lines, depth) which has the same rows."""
     depth = blocks.shape[2]
     whole, rest = divmod(lines.shape[1], depth)
-    yield lines[:, : whole * depth].reshape(len(lines), whole, depth), blocks[:whole].transpose(1, 0, 2)
+    if whole:
+        yield lines[:, : whole * depth].reshape(len(lines), whole, depth), blocks[:whole].transpose(1, 0, 2)
     if rest:
         yield lines[:, whole * depth :], blocks[whole, :, :rest]
 
