@@ -10,7 +10,7 @@ import os
 import threading
 from abc import ABC, abstractmethod
 from collections import OrderedDict
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -32,6 +32,12 @@ ALL = slice(None)
 CACHE_BYTES = 256 * 2**20
 # Symbols in double precision that others are made of are kept up to this; larger ones would displace the others.
 MOST_BESIDE = 2**24
+# Work arrays of a transform that take more than this are made anew: they would displace symbols, which take longer.
+LARGEST_KEPT = 2**26
+# Half-transformed data of more bytes are kept in blocks: that costs a tenth of the time where they fit the cache.
+LARGEST_WHOLE = 2**23
+# Rows that are written as columns together.
+SQUARE = 64
 # Fewer points of a transform than this are not worth a second thread.
 THREADED_POINTS = 2**17
 # A piece of a transform, with its part of the kernel, should stay in the cache of a core.
@@ -76,7 +82,10 @@ class _Cache(threading.local):
     def idle(self, key: Hashable, make: Callable[[], "_Transform"]) -> "_Transform":
         """Return the transform that is kept under the key; make and keep one if there is none or it is in use."""
         kept = self.find(key)
-        return self.keep(key, make()) if kept is None or kept.in_use else kept
+        if kept is None or kept.in_use:
+            kept = make()
+            return self.keep(key, kept) if kept.nbytes <= LARGEST_KEPT else kept
+        return kept
 
 
 _cache = _Cache()
@@ -202,28 +211,38 @@ class _LargeTransform(_Transform):
     """Planned transforms of rows of real data in a periodic box, and back, in pieces that fit the cache.
 
     ``rows`` counts those that hold data on the way forth and on the way back: no others are transformed or kept. The
-    doubled box itself exists in pieces only, one at a time in the work arrays of each thread. That takes 14 % off a
-    solve on 512 x 512 cells and 20 % off one on 1024 x 1024, and threads need not wait for each other within a piece.
+    doubled box itself exists in pieces only, one at a time in the work arrays of each thread, and threads need not wait
+    for each other within a piece. What is kept between the two directions is (blocks, second direction, rows): one
+    block of all rows, or, where that is large (``folded``), one for each piece, which fits the cache. There transforms
+    of 6144 and 7168 points take half the time, and the symbol is a quadrant, to be unfolded piece by piece.
     """
 
-    def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str, threads: int) -> None:
-        # The second direction first, so that transforms along the first run over contiguous data. Rows a power of two
-        # apart share their place in the cache: a few unused ones keep them apart.
-        row_bytes, compound = box[1] * np.dtype(dtype).itemsize, np.result_type(dtype, np.complex64)
-        inward, outward = (_pieces(count, row_bytes, 8) for count in rows)  # whole eights of rows are aligned
-        across = _pieces(box[1] // 2 + 1, box[0] * compound.itemsize)
-        room = (max(inward[-1].stop, outward[-1].stop) + 15) // 8 * 8
-        self._kept = pyfftw.zeros_aligned((across[-1].stop, room), compound)
-        self._spectrum = self._kept[: box[1] // 2 + 1].T
-        self._rows, self._parts, self._plans, self.nbytes = rows, (inward, across, outward), [], self._kept.nbytes
+    def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str, threads: int, folded: bool) -> None:
+        # The second direction first, so that transforms along the first run over contiguous data.
+        compound, half = np.result_type(dtype, np.complex64), box[1] // 2 + 1
+        across = _pieces(half, box[0] * compound.itemsize)
+        deep = _pieces(max(rows), box[1] * np.dtype(dtype).itemsize, 8)  # whole eights of rows are aligned
+        depth, lines = deep[0].stop, across[0].stop
+        # Rows a power of two apart share their place in the cache: a few unused ones keep them apart.
+        shape = (len(deep), depth) if folded else (1, (deep[-1].stop + 15) // 8 * 8)
+        self._kept = pyfftw.zeros_aligned((shape[0], across[-1].stop, shape[1]), compound)
+        in_blocks = (divmod(piece.start, shape[1]) for piece in deep)
+        self._pieces = [self._kept[block, :half, start : start + depth].T for block, start in in_blocks]
+        self._depth, self._folded = depth, folded
+        self._rows, self._across = rows, across
+        self._inward, self._outward = (range(-(-count // depth)) for count in rows)
+        self._plans, self.nbytes = [], self._kept.nbytes
+        size = max(lines * box[0], -(-depth * box[1] // 2))
         for _ in range(threads):
-            given, output = (pyfftw.zeros_aligned((part[0].stop, box[1]), dtype) for part in (inward, outward))
-            lines, moved = (pyfftw.zeros_aligned((across[0].stop, box[0]), compound) for _ in "12")
-            forth = _planned(given, self._spectrum[inward[0]], "FFTW_FORWARD")
-            lines_forth, lines_back = _planned(lines, moved, "FFTW_FORWARD"), _planned(moved, lines, "FFTW_BACKWARD")
-            back = _planned(self._spectrum[outward[0]], output, "FFTW_BACKWARD", "FFTW_DESTROY_INPUT")
+            # What a piece takes in either direction stands in the same place.
+            sources, targets = (pyfftw.zeros_aligned(size, compound) for _ in "12")
+            given, output = (room.view(dtype)[: depth * box[1]].reshape(depth, box[1]) for room in (sources, targets))
+            loaded, moved = (room[: lines * box[0]].reshape(lines, box[0]) for room in (sources, targets))
+            forth = _planned(given, self._pieces[0], "FFTW_FORWARD")
+            lines_forth, lines_back = _planned(loaded, moved, "FFTW_FORWARD"), _planned(moved, loaded, "FFTW_BACKWARD")
+            back = _planned(self._pieces[0], output, "FFTW_BACKWARD", "FFTW_DESTROY_INPUT")
             self._plans.append((forth, lines_forth, lines_back, back))
-            self.nbytes += given.nbytes + output.nbytes + 2 * lines.nbytes
+            self.nbytes += sources.nbytes + targets.nbytes
 
     def _filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
         """Problems by turns."""
@@ -234,38 +253,51 @@ class _LargeTransform(_Transform):
         """Transform values (rows, columns), multiply by the symbol, transform back."""
         top, left = corner
         bottom, right = top + values.shape[0], left + values.shape[1]
-        loaded, back = self._kept[:, : self._rows[0]], self._kept[:, : self._rows[1]]
+        depth, half = self._depth, symbol.shape[1]
 
-        def inward(part: slice, forth: Any, *_: Any) -> None:
-            given, rows = values[part], forth.input_array
-            if left:
-                rows[:, :left] = 0.0
+        def inward(piece: int, forth: Any, *_: Any) -> None:
+            given, rows = values[piece * depth : (piece + 1) * depth], forth.input_array
+            rows[:, :left] = 0.0
             rows[: len(given), left:right] = given
             rows[:, right:] = 0.0
-            forth.update_arrays(rows, self._spectrum[part])
+            forth.update_arrays(rows, self._pieces[piece])
             forth.execute()
 
         def across(part: slice, _: Any, forth: Any, again: Any, __: Any) -> None:
             lines, own = forth.input_array, symbol[part]
-            if top:
-                lines[:, :top] = 0.0
-            lines[:, top:bottom] = loaded[part]
+            lines[:, :top] = 0.0
+            for line, block in _beside(lines[:, top:bottom], self._kept[:, part]):
+                line[...] = block
             lines[:, bottom:] = 0.0
             forth.execute()
+            if self._folded:
+                quadrant, own = own, lines.view(own.dtype)[: len(own), : lines.shape[1]]
+                own[:, :half], own[:, half:] = quadrant, quadrant[:, half - 2 : 0 : -1]
             moved = forth.output_array[: len(own)]
             np.multiply(moved, own, out=moved)
             again.execute()
-            back[part] = lines[:, : back.shape[1]]
+            for line, block in _beside(lines[:, : self._rows[1]], self._kept[:, part]):
+                block[...] = line
 
-        def outward(part: slice, *plans: Any) -> None:
-            target, again = out[part], plans[-1]
-            again.update_arrays(self._spectrum[part], again.output_array)
+        def outward(piece: int, *plans: Any) -> None:
+            target, again = out[piece * depth : (piece + 1) * depth], plans[-1]
+            again.update_arrays(self._pieces[piece], again.output_array)
             again.execute()
             np.copyto(target, again.output_array[: len(target), : out.shape[1]], casting="same_kind")
 
-        shared(inward, self._parts[0], self._plans)
-        shared(across, self._parts[1], self._plans)
-        shared(outward, self._parts[2], self._plans)
+        shared(inward, self._inward, self._plans)
+        shared(across, self._across, self._plans)
+        shared(outward, self._outward, self._plans)
+
+
+def _beside(lines: Array, blocks: Array) -> Iterator[tuple[Array, Array]]:
+    """Views of lines (lines, rows), each with that of the blocks (blocks, lines, depth) which has the same rows."""
+    depth = blocks.shape[2]
+    whole, rest = divmod(lines.shape[1], depth)
+    if whole:
+        yield lines[:, : whole * depth].reshape(len(lines), whole, depth), blocks[:whole].transpose(1, 0, 2)
+    if rest:
+        yield lines[:, whole * depth :], blocks[whole, :, :rest]
 
 
 def _pieces(count: int, row_bytes: int, multiple: int = 1) -> list[slice]:
@@ -301,15 +333,17 @@ class _Filter:
     ) -> None:
         threads = useful_threads(box, threads)
         small = corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES
-        self._symbol, self._corner = _kernels(kind, box, aspects, dtype), corner
+        spectrum_bytes = (box[1] + 2) * max(rows) * np.dtype(dtype).itemsize
+        folded = not small and spectrum_bytes > LARGEST_WHOLE
+        self._symbol, self._corner = _kernels(kind, box, aspects, dtype, folded), corner
         self._key: Hashable
         self._make: Callable[[], _Transform]
         if small:
             self._key = rows, columns, box, dtype
             self._make = functools.partial(_SmallTransforms, rows, columns, box, dtype)
         else:
-            self._key = rows, box, dtype, threads
-            self._make = functools.partial(_LargeTransform, rows, box, dtype, threads)
+            self._key = rows, box, dtype, threads, folded
+            self._make = functools.partial(_LargeTransform, rows, box, dtype, threads, folded)
         self._transform = _cache.idle(self._key, self._make)
 
     def __call__(self, values: NDArray[Any], out: NDArray[Any], rows: Rows = ALL) -> NDArray[Any]:
@@ -368,49 +402,55 @@ def useful_threads(box: tuple[int, int], wanted: int) -> int:
     return 1 if box[0] * box[1] < THREADED_POINTS else allowed_threads(wanted)
 
 
-def _kernels(kind: str, box: tuple[int, int], aspects: ArrayLike, dtype: str) -> Array:
+def _kernels(kind: str, box: tuple[int, int], aspects: ArrayLike, dtype: str, folded: bool = False) -> Array:
     """Symbols (count, second, first direction) of a stack, those not kept from before computed together.
 
     The half that the transform of real data has: numpy multiplies by contiguous rows two to three times as fast as by
-    quadrants, of which one half of a row is read backwards.
+    quadrants, of which one half of a row is read backwards. ``folded``: the quadrants.
     """
-    keys = [(kind, box, aspect, dtype) for aspect in np.asarray(aspects, dtype=np.float64).tolist()]
+    keys = [(kind, folded, box, aspect, dtype) for aspect in np.asarray(aspects, dtype=np.float64).tolist()]
     kept = {key: _cache.find(key) for key in keys}
     missing = [key for key, kernel in kept.items() if kernel is None]
     if missing:
-        new_aspects = [key[2] for key in missing]
+        new_aspects = [key[3] for key in missing]
         if kind == "inverse":
-            made = _inverse_kernels(box, new_aspects, dtype)
+            made = _inverse_kernels(box, new_aspects, dtype, folded)
         elif dtype == "float64":
-            made = _love_kernels(box, new_aspects)
+            made = _love_kernels(box, new_aspects, folded)
         else:
-            made = _in_double(box, new_aspects).astype(dtype)
+            made = _in_double(box, new_aspects, folded).astype(dtype)
         for key, kernel in zip(missing, made, strict=True):
             kept[key] = _cache.keep(key, kernel if len(made) == 1 else kernel.copy())
     return np.stack([kept[key] for key in keys]) if len(keys) > 1 else kept[keys[0]][None]
 
 
-def _in_double(box: tuple[int, int], aspects: Sequence[float]) -> Array:
+def _in_double(box: tuple[int, int], aspects: Sequence[float], folded: bool) -> Array:
     """Symbols of the convolution in double precision, of which others are made, as :func:`_kernels` has them."""
-    kept = [_cache.find(("love", box, aspect, "float64")) for aspect in aspects]
+    kept = [_cache.find(("love", folded, box, aspect, "float64")) for aspect in aspects]
     if 8 * box[0] * (box[1] // 2 + 1) > MOST_BESIDE and any(kernel is None for kernel in kept):
-        return _love_kernels(box, aspects)
-    return _kernels("love", box, aspects, "float64")
+        return _love_kernels(box, aspects, folded)
+    return _kernels("love", box, aspects, "float64", folded)
 
 
-def _love_kernels(box: tuple[int, int], aspects: Sequence[float]) -> Array:
+def _love_kernels(box: tuple[int, int], aspects: Sequence[float], folded: bool) -> Array:
     """Transform of Love's coefficients wrapped into the box, over its points, as :func:`_kernels` has it."""
     quadrant = (box[0] // 2 + 1, box[1] // 2 + 1)
     symbol = scipy.fft.dctn(influence_coefficients(quadrant, np.array(aspects)), type=1, axes=(1, 2), overwrite_x=True)
-    symbol /= box[0] * box[1]
-    half = np.empty((len(symbol), quadrant[1], box[0]))  # rows of it contiguous, other than those of the transform
-    half[:, :, : quadrant[0]] = symbol.transpose(0, 2, 1)
-    half[:, :, quadrant[0] :] = half[:, :, quadrant[0] - 2 : 0 : -1]
-    return half
+    # Rows of it contiguous, other than those of the transform.
+    kernels = np.empty((len(symbol), quadrant[1], quadrant[0] if folded else box[0]))
+    for start in range(0, quadrant[0], SQUARE):
+        rows = slice(start, min(start + SQUARE, quadrant[0]))
+        np.divide(symbol[:, rows].transpose(0, 2, 1), box[0] * box[1], out=kernels[:, :, rows])
+    if not folded:
+        kernels[:, :, quadrant[0] :] = kernels[:, :, quadrant[0] - 2 : 0 : -1]
+    return kernels
 
 
-def _inverse_kernels(box: tuple[int, int], aspects: Sequence[float], dtype: str) -> Array:
+def _inverse_kernels(box: tuple[int, int], aspects: Sequence[float], dtype: str, folded: bool = False) -> Array:
     """Reciprocal of the transform of the wrapped coefficients, over the number of points of the box."""
-    transformed = _in_double(box, aspects) * (box[0] * box[1])
+    points = box[0] * box[1]
+    transformed = _in_double(box, aspects, folded) * points
     floor = transformed.max(axis=(1, 2), keepdims=True) * np.finfo(np.float32).eps
-    return np.asarray(1.0 / (np.maximum(transformed, floor) * (box[0] * box[1])), dtype=dtype)
+    np.maximum(transformed, floor, out=transformed)
+    transformed *= points
+    return np.divide(1.0, transformed, out=transformed).astype(dtype)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.convolution import ALL, Rows
 from loaded_tca.contact.grid import CELLS, Grids, Operator, total_of
+from loaded_tca.contact.levels import parts_of
 
 Single = NDArray[np.float32]
 
@@ -229,11 +230,12 @@ class Descent:
         if rows.size:
             chosen = self._chosen(rows)
             target = self._grids.clip(trial[chosen], state.free[chosen], chosen)
-            trial[chosen], length[chosen] = self._now[chosen], 0.0
         if rows.size < len(trial):
+            if rows.size:
+                trial[chosen], length[chosen] = self._now[chosen], 0.0
             image *= length
             self._displacement -= image
-        self._now, self._next = trial, self._now
+            self._now, self._next = trial, self._now
         if rows.size:
             stuck = self._move(rows, target)
             if stuck.size:
@@ -277,18 +279,23 @@ class Descent:
     def _move(self, rows: Indices, target: Array) -> Indices:
         """Go towards pressures within the bounds as far as the energy falls; returns where it does not fall at all."""
         chosen = self._chosen(rows)
-        now, scale = self._now[chosen], self._scale[chosen]
-        step = target - now
-        single = np.multiply(step, 1.0 / scale, out=self._preconditioned[: rows.size], casting="same_kind")
+        now, scale, single = self._now[chosen], self._scale[chosen], self._preconditioned[: rows.size]
+        for part, _ in parts_of(now.shape):
+            step = target[:, part] - now[:, part]
+            np.multiply(step, 1.0 / scale, out=single[:, part], casting="same_kind")
         image = self._convolved(single, rows)
         # The residual is the excess over the scale where a step goes, but for a constant, which a sum of zero meets.
         slope, curvature = dots(single, self._residual[chosen]), dots(single, image)
         falls = (slope < 0.0) & (curvature > 0.0)
-        part = np.divide(-slope, curvature, out=np.zeros(falls.shape), where=falls)
-        part = np.where(part < WHOLE_STEP, part, 1.0)
-        step *= 1.0 - part
-        self._now[chosen] = np.subtract(target, step, out=step)  # a whole step to the last digit
-        image *= (part * scale).astype(np.float32)
+        length = np.divide(-slope, curvature, out=np.zeros(falls.shape), where=falls)
+        length = np.where(length < WHOLE_STEP, length, 1.0)
+        for part, _ in parts_of(now.shape):
+            step = target[:, part] - now[:, part]
+            step *= 1.0 - length
+            np.subtract(target[:, part], step, out=now[:, part])  # a whole step to the last digit
+        if not isinstance(chosen, slice):  # of which ``now`` is a copy
+            self._now[chosen] = now
+        image *= (length * scale).astype(np.float32)
         self._displacement[chosen] += image
         return rows[~falls[:, 0, 0]]
 

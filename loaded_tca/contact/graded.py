@@ -322,7 +322,7 @@ class GradedGrids(Grids):
         starts = np.arange(0, self.shape[1], merge[1])
         borders = np.append(self.kernel.borders[starts], self.kernel.borders[-1])
         dx, both = self.kernel.spacing * merge[0], (merge[self.slice_axis],) * 2
-        gap = np.minimum(coarsen(np.where(self.reachable, self.gap, np.inf), merge), self.gap.max())
+        gap = np.minimum(coarsen(self.gap, merge, self.reach), self.gap.max())
         return replace(
             self,
             gap=gap,

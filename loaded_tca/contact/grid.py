@@ -226,7 +226,7 @@ class Grids:
         """Return the same problems with so many cells merged along each axis."""
         return replace(
             self,
-            gap=coarsen(np.where(self.reachable, self.gap, np.inf), merge),
+            gap=coarsen(self.gap, merge, self.reach),
             spacing=self.spacing * merge,
             total=self.total / merge[1],
             cap=self.cap * merge[0],
@@ -285,8 +285,8 @@ class Grids:
         return self.fitted(np.sqrt(np.maximum(level - self.gap, 0.0)))
 
     def fitted(self, pressure: Array) -> Array:
-        """Return pressures within the bounds and with the right sums, zero where no contact is possible."""
-        pressure = np.minimum(pressure, self.limit)
+        """Return pressures within the bounds and with the right sums, zero where no contact is possible; in place."""
+        np.minimum(pressure, self.limit, out=pressure)
         pressure *= self.reachable
         if not self.loaded:
             return pressure
@@ -310,10 +310,10 @@ class Grids:
         return self.clip(pressure, (pressure > 0.0) & (pressure < self.limit))
 
     def clip(self, pressure: Array, movable: Mask, rows: Rows = ALL) -> Array:
-        """Pressures of some of the problems within the bounds and with the right sums, scaled if there is no cap."""
+        """Pressures of some of the problems within the bounds and with the right sums; in place without a cap."""
         if self.capped or not self.loaded:
             return self.project(pressure, movable, rows)
-        clipped = np.maximum(pressure, 0.0)
+        clipped = np.maximum(pressure, 0.0, out=pressure)
         clipped *= self.total[rows] / total_of(clipped)
         return clipped
 

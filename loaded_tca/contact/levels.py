@@ -1,5 +1,6 @@
 """From grid to grid: coarser gaps, pressures carried to a finer grid, windows around a contact."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,8 @@ COARSEST = 16
 MARGIN_CELLS = 3
 # Newton steps for the constant between the squares of two pressures; the solver takes care of what is left.
 SHIFTS = 3
+# Cells of a grid that are worked on at a time: a dozen arrays of them fit the cache.
+PART_CELLS = 2**16
 
 
 def coarsening(shape: tuple[int, int]) -> tuple[int, int]:
@@ -18,16 +21,31 @@ def coarsening(shape: tuple[int, int]) -> tuple[int, int]:
     return (2 if shape[0] >= 2 * COARSEST else 1, 2 if shape[1] >= 2 * COARSEST else 1)
 
 
-def coarsen(gap: Array, merge: tuple[int, int]) -> Array:
+def coarsen(gap: Array, merge: tuple[int, int], reach: Array | float = np.inf) -> Array:
     """Gap (..., nx, ny) at the centres of the merged cells; infinite only where a whole block has no material.
 
     Cubic interpolation inside, so that a smooth gap is sampled rather than blurred; the mean at borders and beside
-    cells without material. An odd last row or column makes a block of its own.
+    cells without material. An odd last row or column makes a block of its own. Gaps beyond the reach (..., 1, 1) count
+    as no material.
     """
-    for axis in (-2, -1):
-        if merge[axis] == 2:
-            gap = np.moveaxis(_merge_pairs(np.moveaxis(gap, axis, 0)), 0, axis)
-    return np.ascontiguousarray(gap)
+    coarse = np.empty((*gap.shape[:-2], -(-gap.shape[-2] // merge[0]), -(-gap.shape[-1] // merge[1])))
+    for rows, around in parts_of(coarse.shape, 1):
+        part = gap[..., merge[0] * around.start : merge[0] * around.stop, :]
+        part = np.where(part <= reach, part, np.inf)
+        for axis in (-2, -1):
+            if merge[axis] == 2:
+                part = np.moveaxis(_merge_pairs(np.moveaxis(part, axis, 0)), 0, axis)
+        coarse[..., rows, :] = part[..., rows.start - around.start : rows.stop - around.start, :]
+    return coarse
+
+
+def parts_of(shape: tuple[int, ...], margin: int = 0) -> Iterator[tuple[slice, slice]]:
+    """Rows (..., rows, columns) in parts that fit the cache, each also with a margin where there are rows beyond it."""
+    count, columns = shape[-2:]
+    size = max(PART_CELLS // columns, 8 * margin, 1)
+    for start in range(0, count, size):
+        stop = min(start + size, count)
+        yield slice(start, stop), slice(max(0, start - margin), min(stop + margin, count))
 
 
 def _merge_pairs(gap: Array) -> Array:
@@ -59,11 +77,17 @@ def prolong(pressure: Array, shape: tuple[int, int], merge: tuple[int, int]) -> 
 
     Near a smooth edge the pressure grows as the root of the distance to it, so that its square is smooth there.
     """
-    square = continue_outside(pressure * pressure)
-    for axis in (-2, -1):
-        if merge[axis] == 2:
-            square = split(square, axis)
-    return np.ascontiguousarray(np.sqrt(np.maximum(square[..., : shape[0], : shape[1]], 0.0)))
+    fine = np.empty((*pressure.shape[:-2], *shape))
+    for rows, around in parts_of(pressure.shape, MARGIN_CELLS):  # what a cell becomes depends on three to either side
+        square = continue_outside(pressure[..., around, :] ** 2)
+        for axis in (-2, -1):
+            if merge[axis] == 2:
+                square = split(square, axis)
+        target = fine[..., merge[0] * rows.start : merge[0] * rows.stop, :]
+        first = merge[0] * (rows.start - around.start)
+        part = square[..., first : first + target.shape[-2], : shape[1]]
+        np.sqrt(np.maximum(part, 0.0, out=part), out=target)
+    return fine
 
 
 def under_other_load(pressure: Array, ratio: float) -> Array:

@@ -391,10 +391,12 @@ def _solve_on_finest(
             if problem.max_pressure is not None:
                 own = with_cap(own, problem.cap)
             before = coarser[rows[k]]
+            gap = displacement[k] + grids.gap[k]
+            gap -= approach[k]
             change = math.nan if before is None else abs(1.0 - before[1] / float(approach[k]))
             solutions[rows[k]] = ContactSolution(
                 pressure=own,
-                gap=displacement[k] + grids.gap[k] - approach[k],
+                gap=gap,
                 approach=problem.first_contact + float(approach[k]),
                 load=float(own.sum()) * problem.cell_area if problem.load is None else problem.load,
                 iterations=int(iterations[rows[k]]),

@@ -187,3 +187,24 @@ def test_convolution_inside_an_interrupted_one_leaves_it_right(rng):
         assert np.array_equal(outer, right), line
         assert np.array_equal(inner, right_of_others), line
     assert line > 10
+
+
+@pytest.mark.parametrize(("dtype", "tolerance"), [("float64", DOUBLE), ("float32", 1e-6)])  # roundings as above
+def test_large_transforms_in_blocks_have_the_result_of_those_in_one(monkeypatch, dtype, tolerance):
+    shape, window, aspects = (330, 270), (slice(41, 318), slice(11, 220)), [0.7]
+    pressure = np.random.default_rng(5).random((1, 277, 209))
+    results = []
+    for most, cores in ((2**40, 1), (0, 1), (0, 2)):
+        monkeypatch.setattr(convolution, "LARGEST_WHOLE", most)
+        filtered = convolution.Convolution(shape, aspects, window, dtype, cores)
+        results.append(filtered(pressure, np.empty((1, *shape))))
+    whole, blocks, by_two = results
+    assert_allclose(blocks, whole, rtol=0, atol=tolerance * whole.max())
+    assert (by_two == blocks).all()
+
+
+def test_large_work_arrays_are_not_kept(monkeypatch):
+    monkeypatch.setattr(convolution, "_cache", convolution._Cache())
+    monkeypatch.setattr(convolution, "LARGEST_KEPT", 0)
+    convolution.Preconditioner((8, 8), [1.0])
+    assert {key[0] for key in convolution._cache.items} == {"love", "inverse"}

@@ -104,3 +104,14 @@ def test_pressure_under_another_load_is_that_of_hertz(ratio):
     found = levels.under_other_load(pressure, ratio)
     assert_allclose(found.sum(), ratio * pressure.sum(), rtol=1e-2)
     assert np.abs(found - expected).sum() < 0.1 * abs(ratio - 1.0) * pressure.sum() + 1e-3 * pressure.sum()
+
+
+@pytest.mark.parametrize("merge", [(2, 2), (1, 2), (2, 1)])
+def test_grids_in_parts_are_those_in_one(monkeypatch, merge):
+    values = np.random.default_rng(2).random((61, 23)) * (np.hypot(*np.mgrid[-30:31, -11:12]) < 20.0)
+    shape = merge[0] * 61 - merge[0] + 1, merge[1] * 23
+    whole = levels.prolong(values, shape, merge), levels.coarsen(values, merge, 0.8)
+    monkeypatch.setattr(levels, "PART_CELLS", 1)
+    assert (levels.prolong(values, shape, merge) == whole[0]).all()
+    assert (levels.coarsen(values, merge, 0.8) == whole[1]).all()
+    assert (levels.coarsen(np.where(values <= 0.8, values, np.inf), merge) == whole[1]).all()
