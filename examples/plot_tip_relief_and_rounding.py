@@ -22,8 +22,7 @@ SCENE = read_scene(Path(__file__).parent / "scenes" / "mesh_cycle_helical.toml")
 )
 STARTS = {"pinion": 108.0, "wheel": 179.5}  # diameters at which the relief starts: 1.8 mm below the tip
 RELIEFS = [0.0, 4.0, 6.0, 8.0, 9.0, 10.0, 12.0]
-RADII = [0.05, 0.1, 0.2, 0.5]
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7")
+RADII = {0.05: "#0072b2", 0.1: "#d55e00", 0.2: "#009e73", 0.5: "#cc79a7"}  # colours for colour-blind readers, too
 
 
 def pressures(relief: float, radius: float) -> tuple[float, float]:
@@ -45,15 +44,15 @@ def main() -> float:
     print("tip relief [um]" + "".join(f"{radius:>8g} mm" for radius in RADII))
     for relief, row in zip(RELIEFS, ratio, strict=True):
         print(f"{relief:15g}" + "".join(f"{one:11.2f}" for one in row))
-    for radius, column, marker, colour in zip(RADII, ratio.T, "osD^", COLOURS, strict=True):
-        axes.plot(RELIEFS, column, marker=marker, color=colour, label=f"tip rounding {radius:g} mm")
+    for radius, column, marker in zip(RADII, ratio.T, "osD^", strict=True):
+        axes.plot(RELIEFS, column, marker=marker, color=RADII[radius], label=f"tip rounding {radius:g} mm")
         enough = [relief for relief, one in zip(RELIEFS, column, strict=True) if one <= 1.0]
         print(f"tip rounding {radius:g} mm: a relief of {min(enough):g} um is enough")
     axes.set(ylim=(0.0, None), title="Helical pair 34/57, pinion torque 260 N m")
     axes.set(xlabel="tip relief of both gears [µm]", ylabel="pressure at the tip edge over that of the flanks")
     axes.legend()
     save_figure(figure, "tip_relief_and_rounding.png")
-    return float(np.log(found[0, 2, 0] / found[0, 0, 0]) / np.log(RADII[2] / RADII[0]))
+    return float(np.log(found[0, 2, 0] / found[0, 0, 0]) / np.log(0.2 / 0.05))
 
 
 if __name__ == "__main__":

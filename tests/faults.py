@@ -3598,6 +3598,13 @@ FAULTS = (
         "start - margin + 1), min(stop + margin - 1, count)",
         "contact/test_levels.py::test_grids_in_parts_are_those_in_one",
     ),
+    Fault(
+        "commands: files of a half replace those of the pair",
+        "cli/inputs.py",
+        "return file.parent / file.stem if is_part else file.parent",
+        "return file.parent",
+        "test_cli_double_helical.py::test_files_of_a_half_replace_none_of_the_pair",
+    ),
 )
 
 

@@ -54,7 +54,16 @@ def test_commands_for_one_pair_name_the_files_of_the_halves(written, capsys):
     assert "a double helical pair, not the result of a mesh cycle; half_a.nc and half_b.nc" in capsys.readouterr().err
     assert main(["run", str(SCENE.with_name("helical.toml")), "--out", str(written)]) == 2
     assert "holds a double helical pair (double_helical.nc)" in capsys.readouterr().err
-    assert main(["dynamics", str(written / "half_b.nc"), "--out", str(written / "b.csv")]) == 0
+
+
+@pytest.mark.usefixtures("blank_pictures")
+def test_files_of_a_half_replace_none_of_the_pair(written):
+    """They go into a folder of the half."""
+    before = {path: path.read_bytes() for path in written.iterdir()}
+    for command in ("dynamics", "report"):
+        assert main([command, str(written / "half_b.nc")]) == 0
+    assert {path: path.read_bytes() for path in written.iterdir() if path.is_file()} == before
+    assert {path.name for path in (written / "half_b").iterdir()} > {"dynamics.csv", "report.html"}
 
 
 CHANGED = "--set", "pair.axial_stiffness_N_per_um=20", "--set", "wheel.apex_runout_um=12"

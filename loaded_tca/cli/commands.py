@@ -16,6 +16,7 @@ from loaded_tca.cli.inputs import (
     check_files,
     check_place,
     comparison_of,
+    directory_of,
     executor_of,
     file_of_report,
     index_of_position,
@@ -247,7 +248,7 @@ def _changed_joined(
 
     path = result_file(options.result)
     result = kind.load(path)
-    directory = options.out or path.parent
+    directory = options.out or directory_of(path)
     check_place(directory)
     subject, changes = getattr(result, kind.SUBJECT), changes_of(options)
     of_scene = isinstance(subject, Scene)
@@ -292,7 +293,7 @@ def _changed_result(
     if options.result.is_dir():
         require_result(options.result, path, f"loaded-tca {command}")
     result = MeshCycle.load(path)
-    directory = options.out or path.parent
+    directory = options.out or directory_of(path)
     check_place(directory)
     changes = changes_of(options)
     require(*((is_allowed(writing_at(result.scene, key)[0]), f"--set {key}: {allowed}") for key in changes))
@@ -465,7 +466,7 @@ def _sensitivities_of_halves(options: argparse.Namespace) -> None:
     path = result_file(options.result)
     result = DoubleHelicalResult.load(path)
     torque = index_or_largest(result.torque, index_of_torque(options.torque, result))
-    directory = options.out or path.parent / ("" if options.torque is None else f"torque_{options.torque:g}_Nm")
+    directory = options.out or directory_of(path) / ("" if options.torque is None else f"torque_{plain(options.torque, 6)}_Nm")
     check_place(directory)
     tolerances = tolerances_of(options, result.scene)
     slopes = result.sensitivities([*tolerances])
@@ -479,7 +480,7 @@ def dynamics(options: argparse.Namespace) -> None:
     from loaded_tca.results import load_result
 
     file = result_file(options.result)
-    out = options.out or file.parent / DYNAMICS
+    out = options.out or directory_of(file) / DYNAMICS
     require((not out.is_dir(), f"--out {out}: a directory; give the name of a file, as {out / DYNAMICS}"))
     check_files(tables_at(out), file)
     print_files(write_dynamics(load_result(file), out))
@@ -607,7 +608,7 @@ def report(options: argparse.Namespace) -> None:
     of_several = options.names is None and options.torque is None
     require((of_several, "--names, --torque: only for a comparison; give two results or more"))
     path, out = file_of_report(options.result), options.out
-    out = path.parent / (INTERACTIVE_REPORT if options.interactive else REPORT) if out is None else out
+    out = directory_of(path) / (INTERACTIVE_REPORT if options.interactive else REPORT) if out is None else out
     check_files([out], path)
     coast = None
     if options.coast is not None:

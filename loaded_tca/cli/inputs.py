@@ -141,7 +141,7 @@ def result_of(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None,
     chosen = {"torque_{:g}_Nm": options.torque, "position_{}": given}
     chosen |= {"pair_{}": getattr(options, "pair", None), "below_{}": getattr(options, "gear", None)}
     names = [name.format(value) for name, value in chosen.items() if value not in (None, "pinion")]
-    directory = options.out or path.parent / "_".join(names)  # files of a part do not replace those of the whole
+    directory = options.out or directory_of(path) / "_".join(names)  # files of a part do not replace those of the whole
     check_place(directory)
     return result, directory, torque, position
 
@@ -206,6 +206,15 @@ def result_file(path: Path) -> Path:
     if not os.path.isdir(path) or (path / RESULT).exists():
         return path / RESULT if os.path.isdir(path) else path
     return path / next((name for name in (STAGE_FILE, PAIR_FILE) if (path / name).is_file()), RESULT)
+
+
+def directory_of(file: Path) -> Path:
+    """Where the files of a result go: its folder, or in it one of its own where it is a mesh of a stage or a half."""
+    from loaded_tca.double_helical.result import DoubleHelicalResult
+    from loaded_tca.stages.result import StageResult
+
+    is_part = any(file.name in kind.PARTS.values() for kind in (DoubleHelicalResult, StageResult))
+    return file.parent / file.stem if is_part else file.parent
 
 
 def file_of_report(path: Path) -> Path:
