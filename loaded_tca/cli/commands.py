@@ -466,7 +466,8 @@ def _sensitivities_of_halves(options: argparse.Namespace) -> None:
     path = result_file(options.result)
     result = DoubleHelicalResult.load(path)
     torque = index_or_largest(result.torque, index_of_torque(options.torque, result))
-    directory = options.out or directory_of(path) / ("" if options.torque is None else f"torque_{plain(options.torque, 6)}_Nm")
+    part = "" if options.torque is None else f"torque_{plain(options.torque, 6)}_Nm"
+    directory = options.out or directory_of(path) / part
     check_place(directory)
     tolerances = tolerances_of(options, result.scene)
     slopes = result.sensitivities([*tolerances])
