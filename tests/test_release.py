@@ -11,7 +11,9 @@ import zipfile
 from email import message_from_bytes
 from pathlib import Path
 
+import hatchling.build
 import pytest
+from hatchling.builders.sdist import SdistBuilder
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -21,6 +23,9 @@ SOURCES = {
     for path in (ROOT / "loaded_tca").rglob("*")
     if path.is_file() and path.suffix != ".pyc"
 }
+
+ADDED = {"LICENSE", "pyproject.toml", ".gitignore"}
+"""Files of the working copy that every source archive has, listed or not."""
 
 
 def call(*command, cwd, silent=False):
@@ -74,19 +79,31 @@ def test_wheel_of_the_source_archive_is_that_of_the_working_copy(archives, tmp_p
     assert contents(wheel) == contents(archives[1])
 
 
-def test_source_archive_has_what_the_tests_need_and_no_leftovers(archives):
-    with tarfile.open(archives[0]) as archive:
-        files = {name.partition("/")[2] for name in archive.getnames()}
-    assert files >= SOURCES | {"pyproject.toml", "LICENSE", "README.md", "CITATION.cff", "SECURITY.md", "conftest.py"}
-    folders = {name.partition("/")[0] for name in files if "/" in name}
+@pytest.fixture
+def listed():
+    """Files that the tool for building puts into the source archive, without those that it always adds."""
+    return {file.distribution_path for file in SdistBuilder(str(ROOT)).recurse_included_files()}
+
+
+def test_source_archive_has_what_the_tests_need_and_no_leftovers(listed):
+    assert listed >= SOURCES | {"README.md", "CITATION.cff", "SECURITY.md", "conftest.py"}
+    folders = {name.partition("/")[0] for name in listed if "/" in name}
     assert folders == {"loaded_tca", "tests", "validation", "examples", "docs"}
-    assert [name for name in files if name.endswith((".nc", ".pyc", ".inp", ".frd"))] == []
+    assert [name for name in listed if name.endswith((".nc", ".pyc", ".inp", ".frd"))] == []
     tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False).stdout.split()
-    assert {name for name in tracked if (ROOT / name).exists()} - files <= {".ci/run"}
+    assert {name for name in tracked if (ROOT / name).exists()} - listed <= ADDED | {".ci/run"}
 
 
-def test_metadata_are_complete(archives):
-    told = message_from_bytes(contents(archives[1])[f"loaded_tca-{VERSION}.dist-info/METADATA"])
+@pytest.mark.thorough
+def test_source_archive_has_what_is_listed_and_what_its_tool_adds(listed, archives):
+    with tarfile.open(archives[0]) as archive:
+        assert {name.partition("/")[2] for name in archive.getnames()} == listed | ADDED | {"PKG-INFO"}
+
+
+def test_metadata_are_complete(tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    folder = tmp_path / hatchling.build.prepare_metadata_for_build_wheel(str(tmp_path))
+    told = message_from_bytes((folder / "METADATA").read_bytes())
     assert (told["Name"], told["Version"], told["License-Expression"]) == ("loaded_tca", VERSION, "BSD-3-Clause")
     licence = (ROOT / "LICENSE").read_text(encoding="utf-8")
     assert re.search(r"^Copyright \(c\) \d+, (.*)$", licence, re.MULTILINE)[1] == told["Author"]
