@@ -458,7 +458,10 @@ def energy_kept(subject: Subject) -> Off:
 
 
 def stored_in(result: MeshCycle) -> Array:
-    """Half of what pressures times the closing of the gaps beneath them sum up to, (torque, position) [N mm]."""
+    """Half of what pressures times the closing of the gaps beneath them sum up to, (torque, position) [N mm].
+
+    On cells that edges cut, and whose middles may lie outside the flank, the gap is that of the flanks continued.
+    """
     assert result.states is not None
     (states,) = result.states[1]
     work = np.zeros(len(states.grids))
@@ -468,9 +471,8 @@ def stored_in(result: MeshCycle) -> Array:
         for grid in grids:
             unloaded = result.paths[columns[grid.number]].transmission_error[position]
             rotation = -result.gear_pair.driving * (result.transmission_error[t, position] - unloaded)
-            gap, pressed = np.asarray(grid.separation.gap), grid.pressure > 0.0
-            pressed &= np.isfinite(gap)
-            closing = rotation * grid.contact.wheel_lever - gap[pressed]
+            pressed = grid.pressure > 0.0
+            closing = rotation * grid.contact.wheel_lever - grid.separation.cut_gap[pressed]
             work[n] += 0.5 * float(grid.pressure[pressed] @ closing) * math.prod(grid.separation.spacing)
     return work.reshape(result.transmission_error.shape)
 

@@ -28,6 +28,7 @@ from loaded_tca.separation.contact_points import PointChanges, point_changes
 from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
 from loaded_tca.separation.pair_change import (
     MOTIONS,
+    PLACES_OF_BORDER,
     BorderCells,
     PairChange,
     Places,
@@ -213,10 +214,12 @@ def contact_changes(
     spacings = np.array([one.spacing for one in separations])
 
     def beside(cell: Indices) -> Places:
-        """Middles of cells, then those of the next ones across, then those of the next ones along."""
+        """Middles of cells, then those of the ones on both sides across, then those of the ones on both along."""
         (dx, dy), none = spacings[contact[cell]].T, np.zeros(cell.size)
-        steps = np.concatenate([none, dx, none]), np.concatenate([none, none, dy])
-        return met.at(np.tile(contact[cell], 3), np.tile(x[cell], 3) + steps[0], np.tile(y[cell], 3) + steps[1])[0]
+        steps = np.concatenate([none, -dx, dx, none, none]), np.concatenate([none, none, none, -dy, dy])
+        count = PLACES_OF_BORDER
+        middles = np.tile(x[cell], count) + steps[0], np.tile(y[cell], count) + steps[1]
+        return met.at(np.tile(contact[cell], count), *middles)[0]
 
     near = np.concatenate([dilated(grid.cover < 1.0)[own] for grid, own in zip(separations, cells, strict=True)])
     on_arcs = np.concatenate([_near_arcs(pair, *one) for one in zip(separations, cells, strict=True)])

@@ -213,6 +213,8 @@ Distance = Callable[[GearPair, FlankPoints], Jet]
 """To an edge or a relief start of one flank of a pair [mm], at points of it."""
 MOTIONS = 3
 """Of a grid in its plane: along x, along y, its turn from x to y."""
+PLACES_OF_BORDER = 5
+"""Of a cell in which an edge runs: its middle, and those of the cells on both sides across and along."""
 AT_ONE_PLACE = 0.02
 """Difference of the parts that two edges leave of a cell, up to which either may rule."""
 OPEN = 1e-5
@@ -354,15 +356,18 @@ class BorderCells:
         ----------
         pair : GearPair
         places : Places
-            Of n cells the middles, then those of the next ones across, then those of the next ones along.
+            Of n cells the middles, then those of the ones on both sides across, then those of the ones on both along.
         cell : (n,) int array
         changes : sequence of PairChange
         """
         edges = _edges()
-        values = [np.broadcast_to(distance(pair, places.points[gear]).value, 3 * cell.size) for gear, distance in edges]
-        distances = np.array(values).reshape(len(edges), 3, cell.size)
+        values = [
+            np.broadcast_to(distance(pair, places.points[gear]).value, PLACES_OF_BORDER * cell.size)
+            for gear, distance in edges
+        ]
+        distances = np.array(values).reshape(len(edges), PLACES_OF_BORDER, cell.size)
         steps = distances[:, 1:] - distances[:, :1]
-        widths = np.abs(steps).sum(axis=1)
+        widths = 0.5 * np.abs(steps).sum(axis=1)
         parts = 0.5 + distances[:, 0] / widths
         part, ruling, gears = parts.min(axis=0), parts.argmin(axis=0), np.array([gear for gear, _ in edges])
         kept = (part >= SLIVER) & (part <= 1.0 + SLIVER)
@@ -374,11 +379,11 @@ class BorderCells:
             own, (gear, distance) = near[number], edges[number]
             mine, signs = rules[number, own], np.sign(steps[number][:, own])
             by_keys, by_motion = (
-                (grown[:, 0] - (part[own] - 0.5) * ((grown[:, 1:] - grown[:, :1]) * signs).sum(axis=1))
+                (grown[:, 0] - (part[own] - 0.5) * 0.5 * ((grown[:, 1:] - grown[:, :1]) * signs).sum(axis=1))
                 / widths[number, own]
                 for grown in (
-                    places.growth(pair, gear, distance, changes).reshape(-1, 3, cell.size)[..., own],
-                    places.slopes_of(pair, gear, distance).T.reshape(MOTIONS, 3, cell.size)[..., own],
+                    places.growth(pair, gear, distance, changes).reshape(-1, PLACES_OF_BORDER, cell.size)[..., own],
+                    places.slopes_of(pair, gear, distance).T.reshape(MOTIONS, PLACES_OF_BORDER, cell.size)[..., own],
                 )
             )
             rates[:, own & rules[number]], slopes[own & rules[number]] = by_keys[:, mine], by_motion[:, mine].T
@@ -407,8 +412,8 @@ class BorderCells:
         rates, slopes = np.zeros((len(changes), rows.size)), np.zeros((rows.size, MOTIONS))
         for number in np.unique(edges).tolist():
             own, (gear, distance) = edges == number, _edges()[number]
-            values = np.reshape(distance(pair, places.points[gear]).value, (3, -1))
-            width = np.abs(values[1:] - values[0]).sum(axis=0)[rows[own]]
+            values = np.reshape(distance(pair, places.points[gear]).value, (PLACES_OF_BORDER, -1))
+            width = 0.5 * np.abs(values[1:] - values[0]).sum(axis=0)[rows[own]]
             rates[:, own] = places.growth(pair, gear, distance, changes)[:, rows[own]] / width
             slopes[own] = places.slopes_of(pair, gear, distance)[rows[own]] / width[:, None]
         return cls(cell[rows], rates, np.zeros(len(changes), dtype=bool), slopes)

@@ -391,7 +391,8 @@ def _covers(distances: Array, spacings: Array) -> Array:
     """Part of every cell that has material (n, nx, ny), of the distances (edges, n, nx, ny) of their middles to edges.
 
     From one cell to the next the distance grows by a and b: with a straight edge along an axis of the grid the part is
-    1/2 + distance/(|a| + |b|), from 0 to 1; with an oblique one nearly so.
+    1/2 + distance/(|a| + |b|), from 0 to 1; with an oblique one nearly so. Of a bent edge |a| and |b| are the means of
+    those to the cells on both sides, so that a mirror leaves the parts as they are.
     """
     covers, near = np.ones(distances.shape[1:]), distances.min(axis=(2, 3)) < spacings.sum(axis=1)
     if not near.any():
@@ -400,9 +401,9 @@ def _covers(distances: Array, spacings: Array) -> Array:
     met = np.where(np.isfinite(ends), ends, np.nan)
     for lines, sums in ((met, growth), (met.swapaxes(1, 2), growth.swapaxes(1, 2))):
         if lines.shape[1] > 1:
-            steps = np.abs(lines[:, 1:] - lines[:, :-1])
-            sums[:, :-1] += steps
-            sums[:, -1] += steps[:, -1]
+            steps = np.pad(np.abs(np.diff(lines, axis=1)), ((0, 0), (1, 1), (0, 0)), constant_values=np.nan)
+            before, after = steps[:, :-1], steps[:, 1:]
+            sums += np.where(np.isfinite(before + after), 0.5 * (before + after), np.fmax(before, after))
     parts = np.divide(ends, growth, out=np.copysign(1.0, ends), where=growth > 0.0)
     parts += 0.5
     for part, contact in zip(parts, np.nonzero(near)[1], strict=True):

@@ -103,7 +103,17 @@ def _farthest(distance: Array, there: Mask) -> Array:
 
 
 def _ends_of_parabolas(distance: Array, penetration: Array, closed: Mask) -> Array:
-    """Distances (n,) at which penetrations end that fall as parabolas about y = 0; infinite if one does not fall."""
+    """Distances (n,) at which penetrations end that fall as parabolas about y = 0; infinite if one does not fall.
+
+    Where the last strips on both sides are as far, it is the farther end: the same one in a mirror.
+    """
+    sides = (slice(None), slice(None, None, -1))
+    first, last = (_ends_on_first_side(distance[:, side], penetration[:, side], closed[:, side]) for side in sides)
+    return np.maximum(first, last)
+
+
+def _ends_on_first_side(distance: Array, penetration: Array, closed: Mask) -> Array:
+    """The same of the first one of the farthest strips."""
     places, rows = np.arange(distance.shape[1]), np.arange(len(distance))
     last = np.where(closed, distance, -1.0).argmax(axis=1)
     others = np.where(closed & (places != last[:, None]), np.abs(places - last[:, None]), places.size)

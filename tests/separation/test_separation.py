@@ -351,3 +351,12 @@ def test_cover_of_cells_that_an_oblique_edge_cuts_follows_its_distance_up_to_the
     expected = np.clip(0.5 + distance / 1.4, 0.0, 1.0)
     assert_allclose(covers, expected, atol=1e-12)
     assert 0.0 < expected[3, 3] < 1.0
+
+
+def test_cover_of_cells_that_a_bent_edge_cuts_is_the_same_in_a_mirror():
+    places = np.arange(8.0) - 3.5
+    distance = np.hypot(places[:, None] + 1.0, places + 2.0) - 3.3  # from a circle
+    covers = [_covers(sides[None, None], np.ones((1, 2)))[0] for sides in (distance, distance[::-1], distance[:, ::-1])]
+    assert ((covers[0] > 0.0) & (covers[0] < 1.0)).any()
+    assert_allclose(covers[1][::-1], covers[0], rtol=0, atol=1e-12)  # sums in another order
+    assert_allclose(covers[2][:, ::-1], covers[0], rtol=0, atol=1e-12)

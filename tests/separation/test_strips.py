@@ -57,3 +57,11 @@ def test_end_of_a_penetration_that_falls_as_a_parabola_is_where_that_is_zero():
     penetration = np.stack([3e-3 * (1.0 - (places / end) ** 2) for end in (1.27, 0.73)])
     ends = _ends_of_parabolas(np.abs(np.stack([places, places])), penetration, penetration > 0.0)
     assert_allclose(ends, [1.27, 0.73], rtol=1e-9)
+
+
+def test_ends_of_penetrations_are_those_of_their_mirror_images():
+    """Both last strips are as far from the contact point, to the bit; one of them is deeper."""
+    places = np.arange(-16, 17) / 8.0
+    penetration = np.stack([3e-3 * (1.0 - (places / 1.27) ** 2) * (1.0 + skew * places) for skew in (0.3, -0.3)])
+    first, second = _ends_of_parabolas(np.abs(np.stack([places, places])), penetration, penetration > 0.0)
+    assert first == pytest.approx(second, rel=1e-9)
