@@ -59,6 +59,12 @@ class HalvesAsPairs(Renamed):
         return np.broadcast_to(np.stack(errors, axis=-1)[..., self.order], self.of_pair.torque_share.shape)
 
     @property
+    def transmission_error_by_grids(self) -> Array:
+        """The largest of the torques of both halves at each position [rad]."""
+        errors = [half.transmission_error_by_grids.max(axis=0) for half in self.of_pair.halves]
+        return np.broadcast_to(np.max(errors, axis=0), self.of_pair.transmission_error.shape)
+
+    @property
     def gear_pair(self) -> Any:
         """Gears of half a."""
         return self.of_pair.half_a.gear_pair

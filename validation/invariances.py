@@ -61,7 +61,7 @@ SAME_TORQUE = (1e-3, 5e-4, 1e-3)
 SAME_STEPS = 1e-6
 """Of the span, and share, of states that are solved by the same steps: rounding, far above what it was seen to be."""
 GRIDS = 1e-2
-"""Transmission error and share by grids: the accuracy that was asked for."""
+"""Share by grids: the accuracy that was asked for."""
 FROM_FILE = 1e-6
 """Files keep every digit; states that are solved again from them are solved to 1e-6."""
 NO_SHARE = 1e-5
@@ -410,7 +410,7 @@ def _unlike(one: Any, other: Any, least: float = 0.0) -> float:
 
 
 def finer_grids(subject: Subject) -> Off:
-    """Peak pressures of two accuracies differ by what both tell at the most; transmission errors by a part of them."""
+    """Numbers of two accuracies differ by no more than the errors told of both; load shares by a part of the whole."""
     fine = analysed(subject.scene.with_changes({"analysis.accuracy": 0.2 * subject.scene.analysis.accuracy}))
     result = subject.result
     pairs = np.union1d(result.pair, fine.pair)
@@ -421,10 +421,11 @@ def finer_grids(subject: Subject) -> Off:
     counted = (np.minimum(*shares) > LITTLE_LOAD) & (errors[0] > 0.0)
     allowed = errors[0] * peaks[0] + errors[1] * peaks[1] + LITTLE_LOAD * 1e-2 * peaks[0].max()
     off = np.where(counted, np.abs(peaks[1] - peaks[0]) / allowed, 0.0)
+    turned = np.abs(fine.transmission_error - result.transmission_error)
+    by_grids = sum(one.transmission_error_by_grids.max(axis=1, keepdims=True) for one in (result, fine))
     return {
         "peak pressure over the errors told": float(off.max()),
-        "transmission error": float(np.abs((fine.transmission_error - result.transmission_error) / span(result)).max())
-        / GRIDS,
+        "transmission error": float((turned / (by_grids + SAME_TORQUE[0] * span(result))).max()),
         "load share": float(np.abs(shares[1] - shares[0]).max()) / GRIDS,
     }
 

@@ -177,6 +177,9 @@ class SliceLoads:
         return max(above - 1.0, 1.0 - below, change, LEFT_BESIDE_END * part if at_end else 0.0)
 
     def _beside_end(self, places: Array) -> Mask:
-        """Which places lie nearer to an end than the length of the average."""
+        """Which places lie nearer to an end than the length of the average and a slice.
+
+        Whether the last slice counts in the average there is a matter of the grid.
+        """
         y = np.clip(places, *self.ends)
-        return np.asarray(np.minimum(y - self.ends[0], self.ends[1] - y) < self.length)
+        return np.asarray(np.minimum(y - self.ends[0], self.ends[1] - y) < self.length + self.step)

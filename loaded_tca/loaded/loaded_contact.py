@@ -110,6 +110,17 @@ class LoadedContact:
         least = LEAST_ERROR_OF_SLICES / min(self.solution.cells_across) ** 2
         return float(np.maximum(self.line_load_error, least))
 
+    @property
+    def approach_error(self) -> float:
+        """Estimated error of its approach by the grid [mm], all of the change from the one before.
+
+        NaN where there was one grid alone, zero without load.
+        """
+        if self.solution.load == 0.0:
+            return 0.0
+        coarser = self.solution.coarser
+        return math.nan if coarser is None else coarser.approach_change * self.solution.approach_under_load
+
     @cached_property
     def line_load_error(self) -> float:
         """Estimated relative error of the pressure of slices by their line load; NaN where there was one grid."""

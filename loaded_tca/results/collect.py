@@ -89,6 +89,7 @@ def mesh_cycle(
         "face_load_factor": face_load_factor,
         "transverse_load_factor": transverse_load_factor,
         "transmission_error": path.transmission_error - pair.driving * carried.rotation,
+        "transmission_error_by_grids": _rotation_errors(contacts, share),
         "mesh_stiffness": np.concatenate([one.mesh_rate for one in cycles]) / pair.rate_of_stiffness,
         "secant_stiffness": secant_on_rigid_supports(carried, cycles) / pair.rate_of_stiffness,
         **support_arrays(pair, cycles, pressure_angle=scene.transverse_angles[0]),
@@ -111,6 +112,19 @@ def mesh_cycle(
         maps=stacked,
         states=(scene, tuple(one.carried.states for one in cycles)),
     )
+
+
+def _rotation_errors(contacts: Mapping[Place, LoadedContact | None], share: Array) -> Array:
+    """Estimated errors of the rotations of the wheel under load by the grids, (torque, position) [rad].
+
+    What a contact needs for its load moves the rotation by the part that it has in the stiffness of all, which is about
+    its share; ways of unlike contacts are not told to cancel.
+    """
+    errors = np.zeros(share.shape)
+    for place, loaded in contacts.items():
+        if loaded is not None:
+            errors[place] = loaded.approach_error / loaded.contact.wheel_lever
+    return np.asarray(np.where(share > 0.0, share * errors, 0.0).sum(axis=-1))
 
 
 def rack_arrays(scene: Scene, pair: GearPair, arrays: Mapping[str, Array]) -> dict[str, Array]:

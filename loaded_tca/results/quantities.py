@@ -30,6 +30,13 @@ QUANTITIES: dict[str, Part] = {
     "face_load_factor": (("torque",), "1", "face load factor K_Hbeta, from 30 strips of the face"),
     "transverse_load_factor": (("torque",), "1", "transverse load factor K_Halpha; NaN for bevel gears"),
     "transmission_error": Number(CYCLE, "rad", "loaded transmission error, absolute", at_base_circle=True),
+    "transmission_error_by_grids": Number(
+        CYCLE,
+        "rad",
+        "estimated error of the transmission error by the grids, from the two finest of each contact; NaN where cells "
+        "are given",
+        at_base_circle=True,
+    ),
     "mesh_stiffness": (
         CYCLE,
         "N/(mm um)",

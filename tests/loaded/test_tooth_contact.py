@@ -415,7 +415,8 @@ def test_estimate_of_slices_sees_a_change_beside_the_largest_line_load():
     """Where two maxima compete the largest one of two grids may stay, and the other one move."""
 
     def loads(line_load):
-        grid = SimpleNamespace(x=np.arange(3.0), y=np.arange(8.0), spacing=(1.0, 1.0), cover=np.ones((3, 8)))
+        grid = SimpleNamespace(x=np.arange(3.0), y=np.arange(10.0), spacing=(1.0, 1.0), cover=np.ones((3, 10)))
+        line_load = [5, *line_load, 5]  # none of them beside an end
         return SliceLoads(4.0, grid, np.array(line_load) * np.array([[0.0], [1.0], [0.0]]))  # averaged over a slice
 
     def error(coarse, fine):
@@ -437,22 +438,26 @@ def test_loaded_length_is_that_of_an_even_load_with_the_same_scatter():
 
 
 def test_estimate_of_slices_beside_a_sharp_end_grows_with_their_length():
-    """Two equal line loads: a contact that ends with a third of its line load there has no such error."""
+    """Two equal line loads: a contact that ends with a third of its line load there has no such error.
 
-    def error(slices, at_end):
+    ``half``: where that begins, from the middle.
+    """
+
+    def error(slices, at_end, half=3.0):
         grid = SimpleNamespace(
             x=np.arange(3.0),
             y=np.arange(slices) * 8.0 / slices,
             spacing=(1.0, 8.0 / slices),
             cover=np.ones((3, slices)),
         )
-        even = np.where(np.abs(grid.y - grid.y.mean()) < 3.0, 1.0, at_end) * np.array([[0.0], [1.0], [0.0]])
+        even = np.where(np.abs(grid.y - grid.y.mean()) < half, 1.0, at_end) * np.array([[0.0], [1.0], [0.0]])
         loads = SliceLoads(4.0, grid, even)
         return loads.error_of_largest(loads)
 
     assert error(16, 1.0) == pytest.approx(0.5 * error(8, 1.0))
     assert error(16, 1.0) > 0.01
-    assert error(16, 0.3) == 0.0
+    assert error(16, 0.3, half=2.5) == 0.0
+    assert error(8, 0.3) == error(8, 1.0), "the whole line load begins within a slice of the length of the average"
 
 
 def test_estimate_of_slices_beside_the_arc_of_a_face_end_covers_what_finer_grids_add():

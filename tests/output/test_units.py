@@ -52,6 +52,8 @@ CONTACT_POINT = {
 OF_POSITIONS = {
     "transmission_error_arcsec": ("transmission_error", ARCSECONDS),
     "transmission_error_um": ("transmission_error", LENGTH),
+    "transmission_error_by_grids_arcsec": ("transmission_error_by_grids", ARCSECONDS),
+    "transmission_error_by_grids_um": ("transmission_error_by_grids", LENGTH),
     "mesh_stiffness_N_per_mm_um": ("mesh_stiffness", 1.0),
     "secant_stiffness_N_per_mm_um": ("secant_stiffness", 1.0),
     "loaded_pairs": ("loaded_pairs", 1.0),

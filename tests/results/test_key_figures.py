@@ -178,6 +178,8 @@ def test_discretisation_error_bounds_the_error_of_the_peak_by_the_grid():
     assert (error <= (coarse.discretisation_error + fine.discretisation_error)[known]).all()
     for cycle, accuracy in ((coarse, 1e-2), (fine, 1e-4)):
         assert (cycle.discretisation_error[known & ~cycle.on_edge] <= accuracy).all()
+    moved = np.abs(coarse.transmission_error - fine.transmission_error)
+    assert (moved <= coarse.transmission_error_by_grids + fine.transmission_error_by_grids).all()
 
 
 def test_discretisation_error_is_known_of_every_contact_under_load():
@@ -188,6 +190,18 @@ def test_discretisation_error_is_known_of_every_contact_under_load():
     assert np.isnan(refined(1e-2, (0.0, 130.0)).discretisation_error[0]).all()
     cells_given = result("mesh_cycle_helical", positions=3, torques=(130.0,))
     assert np.isnan(cells_given.discretisation_error).all()
+
+
+def test_error_of_the_rotation_by_grids_is_a_part_of_it_that_the_accuracy_bounds():
+    """Each approach is at most the way of the wheel along that normal, and changes by less than the accuracy."""
+    cycle = refined(1e-2, (0.0, 130.0))
+    idle, loaded = cycle.transmission_error_by_grids
+    assert_array_equal(idle, 0.0)
+    deflection = np.abs(cycle.transmission_error - cycle.unloaded_transmission_error)[1]
+    assert (loaded > 0.0).all()
+    assert (loaded <= 1e-2 * deflection).all()
+    cells_given = result("mesh_cycle_helical", positions=3, torques=(130.0,))
+    assert np.isnan(cells_given.transmission_error_by_grids).all()
 
 
 def test_largest_discretisation_error_is_that_of_its_torque():
