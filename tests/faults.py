@@ -3563,17 +3563,17 @@ FAULTS = (
     ),
     Fault(
         "rounded edges: arcs under a grid are seen along the surfaces of their edges",
-        "separation/arcs.py",
-        "on_arcs[cells] = ArcsOfContact(pair, grid).lengths(grid.x[across], grid.y[along]) > 0.0",
-        "in_plane = np.stack([grid.x[across], grid.y[along]], axis=-1) @ grid.axes[:2]\n"
-        "        on_arcs[cells] = lengths_past_tangents(pair, *pair.on_flanks(grid.origin + in_plane)) > 0.0",
+        "separation/flank_places.py",
+        "return self.at(self.grid.x[across], self.grid.y[along])",
+        "in_plane = np.stack([self.grid.x[across], self.grid.y[along]], axis=-1) @ self.grid.axes[:2]\n"
+        "        return self.flanks.pair.on_flanks(self.grid.origin + in_plane)",
         "separation/test_arcs.py::test_cells_on_arcs_are_those_whose_gap_the_arc_opens",
     ),
     Fault(
         "rounded edges: of the outermost cells of a contact those that lie on an arc do not count",
-        "separation/arcs.py",
-        "return cells_on_arcs(pair, grid, dilated(pressed) & outermost)",
-        "return cells_on_arcs(pair, grid, pressed & ~outermost)",
+        "separation/flank_places.py",
+        "return dilated(pressed) & outermost",
+        "return pressed & ~outermost",
         "separation/test_arcs.py::test_outermost_cells_of_a_contact_tell_whether_it_lies_on_an_arc",
     ),
     Fault(
@@ -3583,6 +3583,23 @@ FAULTS = (
         "        if ends_on_arc and places.size < 0:",
         "loaded/test_tooth_contact.py::"
         "test_estimate_of_slices_beside_the_arc_of_a_face_end_covers_what_finer_grids_add",
+    ),
+    Fault(
+        "relief starts under a grid are seen at points of the tangent plane",
+        "separation/flank_places.py",
+        "past = relief_start_distances(pair, *FlankPlaces(pair, grid).of(cells))",
+        "across, along = cells.nonzero()\n"
+        "    points = grid.origin + np.stack([grid.x[across], grid.y[along]], axis=-1) @ grid.axes[:2]\n"
+        "    past = relief_start_distances(pair, *pair.on_flanks(points))",
+        "separation/test_flank_places.py::test_reliefs_open_the_gap_in_the_cells_past_their_start",
+    ),
+    Fault(
+        "edges under a grid are seen at points of the tangent plane",
+        "separation/flank_places.py",
+        "of_pinion, of_wheel = self.flanks.places(*(part[None] for part in np.broadcast_arrays(x, y)))",
+        "plane = np.stack(np.broadcast_arrays(x, y), axis=-1) @ self.grid.axes[:2]\n"
+        "        of_pinion, of_wheel = self.flanks.pair.on_flanks((self.grid.origin + plane)[None])",
+        "separation/test_flank_places.py::test_cells_without_material_are_those_beyond_an_edge",
     ),
 )
 
