@@ -2148,8 +2148,8 @@ FAULTS = (
     Fault(
         "derivatives: peak pressures by modifications are those of contacts that stay on their grids",
         "results/sensitivities.py",
-        "by_key + (left * by_motion.T).sum(axis=-1)",
-        "by_key",
+        "left[:, self.tangents.grid, way] * motions.gaps[way]",
+        "0.0 * motions.gaps[way]",
         "results/test_sensitivities.py::"
         "test_peak_pressures_follow_contacts_that_a_profile_crowning_moves_over_their_grids",
     ),
@@ -3563,17 +3563,17 @@ FAULTS = (
     ),
     Fault(
         "rounded edges: arcs under a grid are seen along the surfaces of their edges",
-        "separation/arcs.py",
-        "on_arcs[cells] = ArcsOfContact(pair, grid).lengths(grid.x[across], grid.y[along]) > 0.0",
-        "in_plane = np.stack([grid.x[across], grid.y[along]], axis=-1) @ grid.axes[:2]\n"
-        "        on_arcs[cells] = lengths_past_tangents(pair, *pair.on_flanks(grid.origin + in_plane)) > 0.0",
+        "separation/flank_places.py",
+        "return self.at(self.grid.x[across], self.grid.y[along])",
+        "in_plane = np.stack([self.grid.x[across], self.grid.y[along]], axis=-1) @ self.grid.axes[:2]\n"
+        "        return self.flanks.pair.on_flanks(self.grid.origin + in_plane)",
         "separation/test_arcs.py::test_cells_on_arcs_are_those_whose_gap_the_arc_opens",
     ),
     Fault(
         "rounded edges: of the outermost cells of a contact those that lie on an arc do not count",
-        "separation/arcs.py",
-        "return cells_on_arcs(pair, grid, dilated(pressed) & outermost)",
-        "return cells_on_arcs(pair, grid, pressed & ~outermost)",
+        "separation/flank_places.py",
+        "return dilated(pressed) & outermost",
+        "return pressed & ~outermost",
         "separation/test_arcs.py::test_outermost_cells_of_a_contact_tell_whether_it_lies_on_an_arc",
     ),
     Fault(
@@ -3632,6 +3632,23 @@ FAULTS = (
         " / loaded.contact.wheel_lever",
         "",
         "results/test_key_figures.py::test_error_of_the_rotation_by_grids_is_a_part_of_it_that_the_accuracy_bounds",
+    ),
+    Fault(
+        "relief starts under a grid are seen at points of the tangent plane",
+        "separation/flank_places.py",
+        "past = relief_start_distances(pair, *FlankPlaces(pair, grid).of(cells))",
+        "across, along = cells.nonzero()\n"
+        "    points = grid.origin + np.stack([grid.x[across], grid.y[along]], axis=-1) @ grid.axes[:2]\n"
+        "    past = relief_start_distances(pair, *pair.on_flanks(points))",
+        "separation/test_flank_places.py::test_reliefs_open_the_gap_in_the_cells_past_their_start",
+    ),
+    Fault(
+        "edges under a grid are seen at points of the tangent plane",
+        "separation/flank_places.py",
+        "of_pinion, of_wheel = self.flanks.places(*(part[None] for part in np.broadcast_arrays(x, y)))",
+        "plane = np.stack(np.broadcast_arrays(x, y), axis=-1) @ self.grid.axes[:2]\n"
+        "        of_pinion, of_wheel = self.flanks.pair.on_flanks((self.grid.origin + plane)[None])",
+        "separation/test_flank_places.py::test_cells_without_material_are_those_beyond_an_edge",
     ),
 )
 

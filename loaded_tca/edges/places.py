@@ -1,8 +1,11 @@
-"""Edges, arcs and relief starts of both flanks of a pair, seen from points of the fixed frame.
+"""Edges, arcs and relief starts of both flanks of a pair, seen from places on them.
 
 The edges of a pair are counted as in ``EDGE_NAMES``, those of the pinion first (0 to 3), then those of the wheel (4 to
 7). A distance to an edge is positive on the flank. Where an edge is rounded, an arc begins before it: lengths past its
 beginning are positive on the arc.
+
+Places are (rho, z) [mm] on the pinion and on the wheel: those under the cells of a contact are in
+``separation/flank_places.py``; of points on the flanks, ``pair.on_flanks(points)``.
 """
 
 from __future__ import annotations
@@ -18,21 +21,23 @@ from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 
 
-def edge_distances(pair: GearPair, points: Array) -> Array:
-    """Distances (..., 8) [mm] of points (..., 3) of the fixed frame to the edges of both flanks, negative beyond."""
-    return _distances(pair, points, "edges")
+def edge_distances(pair: GearPair, *places: tuple[Array, Array]) -> Array:
+    """Distances (..., 8) [mm] of places on pinion and wheel to the edges of both flanks, negative beyond."""
+    return _distances(pair, places, "edges")
 
 
-def relief_start_distances(pair: GearPair, points: Array) -> Array:
-    """Distances (..., n) [mm] of points (..., 3) of the fixed frame to the relief starts of both flanks, beyond > 0."""
-    return _distances(pair, points, "relief_starts")
+def relief_start_distances(pair: GearPair, *places: tuple[Array, Array]) -> Array:
+    """Distances (..., n) [mm] of places on pinion and wheel to the relief starts of both flanks, beyond > 0."""
+    return _distances(pair, places, "relief_starts")
 
 
-def _distances(pair: GearPair, points: Array, lines: Literal["edges", "relief_starts"]) -> Array:
-    """Distances (..., n) [mm] of points (..., 3) to lines of both flanks."""
-    gears = zip((pair.pinion, pair.wheel), pair.on_flanks(points), strict=True)
+def _distances(
+    pair: GearPair, places: tuple[tuple[Array, Array], ...], lines: Literal["edges", "relief_starts"]
+) -> Array:
+    """Distances (..., n) [mm] of places to lines of both flanks."""
+    gears = zip((pair.pinion, pair.wheel), places, strict=True)
     jets = [jet for gear, place in gears for jet in getattr(gear.flank, lines)(*place)]
-    shape = points.shape[:-1]
+    shape = places[0][0].shape
     return np.stack([np.broadcast_to(jet.value, shape) for jet in jets], axis=-1) if jets else np.zeros((*shape, 0))
 
 

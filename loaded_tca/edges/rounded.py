@@ -19,6 +19,7 @@ is no bound where a sharp edge ends a rounded one within the contact, or a relie
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import NamedTuple
@@ -32,7 +33,13 @@ from loaded_tca.contact.columns import whole_cells
 from loaded_tca.contact.edges import RoundedEdge
 from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, edge_pressures
 from loaded_tca.edges.free import edge_compliances
-from loaded_tca.edges.places import arcs_of, dilated, edge_distances, relief_start_distances
+from loaded_tca.edges.places import (
+    arcs_of,
+    dilated,
+    edge_distances,
+    lengths_past_tangents,
+    relief_start_distances,
+)
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import Arc, material_cosines
@@ -40,7 +47,7 @@ from loaded_tca.loaded.cycle import CycleSolution, told_where
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation.arcs import ArcsOfContact
+from loaded_tca.separation.flank_places import FlankPlaces
 from loaded_tca.separation.normal_gap import NormalGap
 
 CELLS_ACROSS, CELLS_ALONG = 8, 12
@@ -109,10 +116,10 @@ def reached_arcs(pair: GearPair, loaded: LoadedContact) -> list[ReachedArc]:
     An edge is a straight line beside the cell there with the largest pressure.
     """
     grid, arcs = loaded.separation, arcs_of(pair)
-    seen = _Beginnings(pair, loaded)
-    lengths, (dx, dy) = seen.lengths(grid.x[:, None], grid.y), grid.spacing
-    distances, pressed = edge_distances(pair, grid.points), dilated(loaded.solution.pressure_on_material > 0.0)
-    beyond_start = relief_start_distances(pair, grid.points) > 0.0
+    seen, (dx, dy) = _Beginnings(pair, loaded), grid.spacing
+    places, pressed = seen.at(grid.x[:, None], grid.y), dilated(loaded.solution.pressure_on_material > 0.0)
+    lengths, distances = lengths_past_tangents(pair, *places), edge_distances(pair, *places)
+    beyond_start = relief_start_distances(pair, *places) > 0.0
     groups: list[list[_BesideCell]] = []
     for edge, (gear, arc) in arcs.items():
         pressure = np.where(lengths[..., edge] > -math.hypot(dx, dy), loaded.solution.pressure_on_material, 0.0)
@@ -124,7 +131,7 @@ def reached_arcs(pair: GearPair, loaded: LoadedContact) -> list[ReachedArc]:
             (float(place[0]), float(place[1])),
             (float(slope[0]), float(slope[1])),
             arc.radius,
-            _material_angle(pair, gear, arc, grid.points[row, column]),
+            _material_angle(gear, arc, [part[row, column] for part in places[gear is pair.wheel]]),
             pair.contact_modulus / gear.material.plane_strain_modulus,
         )
         width = float(np.abs(slope) @ (dx, dy)) / math.hypot(*slope)
@@ -139,19 +146,19 @@ def reached_arcs(pair: GearPair, loaded: LoadedContact) -> list[ReachedArc]:
     return sorted((_joined(group, pair.contact_modulus) for group in groups), key=lambda one: -one.bound)
 
 
-class _Beginnings(ArcsOfContact):
+class _Beginnings(FlankPlaces):
     """Lines where the arcs of a loaded contact begin."""
 
     def __init__(self, pair: GearPair, loaded: LoadedContact) -> None:
         super().__init__(pair, loaded.separation)
-        self.spacing = np.array(loaded.separation.spacing)
+        self.pair, self.spacing = pair, np.array(loaded.separation.spacing)
 
     def nearest(self, edge: int, place: Array) -> tuple[Array, Array]:
         """Place (2,) where an arc begins, the nearest to one within a cell or two, and how fast lengths grow there."""
         ways = np.diag(STEP * self.spacing)
         around = np.concatenate([np.zeros((1, 2)), ways, -ways])
         for _ in range(STEPS_TO_EDGE):
-            length, *beside = self.lengths(*(place + around).T)[:, edge]
+            length, *beside = lengths_past_tangents(self.pair, *self.at(*(place + around).T))[:, edge]
             slope = np.subtract(beside[:2], beside[2:]) / (2.0 * STEP * self.spacing)
             place = place - length / (slope @ slope) * slope
         return place, slope
@@ -187,9 +194,8 @@ def largest_pressure(mean: float, width: float, radius: float, contact_modulus: 
     return 0.5 * PEAK_OF_ROUNDING * mean * math.sqrt(width / pressed + ON_FINE_CELLS)
 
 
-def _material_angle(pair: GearPair, gear: Gear, arc: Arc, point: Array) -> float:
-    """Angle [rad] of the material between the flank and the surface beyond an arc, beside a point of the contact."""
-    place = pair.on_flanks(point)[gear is pair.wheel]
+def _material_angle(gear: Gear, arc: Arc, place: Sequence[Array]) -> float:
+    """Angle [rad] of the material between the flank and the surface beyond an arc, beside a place of the contact."""
     return math.acos(float(material_cosines(gear.flank, arc.edge, *place)))
 
 

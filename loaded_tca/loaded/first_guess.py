@@ -82,7 +82,8 @@ def expected_lines(
     axes = np.array([curvature.axes for curvature in relative_curvatures(pair, contacts)])
     origins, middles = np.array([one.point for one in contacts]), (2.0 * np.arange(SLICES) + 1.0) / SLICES - 1.0
     y = np.asarray(half_lengths)[:, None] * middles
-    there = edge_distances(pair.sharp, origins[:, None] + y[..., None] * axes[:, None, 1]).min(axis=-1) >= 0.0
+    points = origins[:, None] + y[..., None] * axes[:, None, 1]
+    there = edge_distances(pair.sharp, *pair.on_flanks(points)).min(axis=-1) >= 0.0
     there |= ~there.any(axis=1, keepdims=True)  # in a corner of a flank
     force = np.where(there, 1.0 - middles**2, 0.0)
     held = np.zeros(SLICES)

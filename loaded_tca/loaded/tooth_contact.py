@@ -18,7 +18,6 @@ from loaded_tca.contact import ContactProblem, ContactSolution
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.patch import ends_at_material, values_at_ends
-from loaded_tca.edges.places import has_relief_starts, relief_start_distances
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import LoadedContact
@@ -27,6 +26,7 @@ from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.plain import plain
 from loaded_tca.separation import Separation
 from loaded_tca.separation.arcs import arcs_beside
+from loaded_tca.separation.flank_places import border_of, past_relief_starts
 from loaded_tca.separation.strips import strip_pressure
 from loaded_tca.unloaded import ContactPoint
 
@@ -278,11 +278,10 @@ def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Sep
     """Whether the start of a linear relief, of either flank, runs through the contact, whose ends lie within cells."""
     if contact.on_relief_start:
         return True
-    if not has_relief_starts(pair):
-        return False
-    distances = relief_start_distances(pair, separation.points)
-    for beyond in np.moveaxis(distances, -1, 0) if pressure.any() else ():
-        values = np.concatenate([beyond[pressure > 0.0], values_at_ends(pressure, beyond, separation.cover)])
+    pressed = pressure > 0.0
+    border = border_of(pressed)  # a start that runs through a contact crosses its border
+    for past in past_relief_starts(pair, separation, border):
+        values = np.concatenate([past[pressed & border], values_at_ends(pressure, past, separation.cover)])
         if values.min() < 0.0 < values.max():
             return True
     return False

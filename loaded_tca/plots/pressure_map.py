@@ -49,6 +49,7 @@ from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.subsurface import NAMES, Quantity, StressBelow, depth_of_largest
 from loaded_tca.results.support_growth import gears_under_torque
 from loaded_tca.separation import slice_middles
+from loaded_tca.separation.flank_places import FlankPlaces
 
 PRESSURE = "contact pressure [MPa]"
 TICKS = 5
@@ -191,7 +192,7 @@ def _draw_pressure(axes: Axes, pair: GearPair, one: PressureMap, highest: float)
     loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
     axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, highest), rasterized=True)
     if void.any():
-        beyond = edge_distances(pair, one.corners).min(axis=-1)
+        beyond = edge_distances(pair, *FlankPlaces(pair, one).at(x[:, None], y)).min(axis=-1)
         if beyond.min() < 0.0:
             axes.contourf(y, x, beyond, [beyond.min(), 0.0], colors=[NO_MATERIAL])
 
@@ -383,7 +384,7 @@ def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array
             cut = one.cover[loaded] < 1.0
             if cut.any():  # these reach beyond the flanks
                 within = np.ones(pressure.shape, dtype=bool)
-                within[cut] = edge_distances(pair, cells[cut]).min(axis=-1) >= 0.0
+                within[cut] = edge_distances(pair, *pair.on_flanks(cells[cut])).min(axis=-1) >= 0.0
                 places, pressure = places[within], pressure[within]
             yield places.reshape(-1, 2), pressure.ravel()
             points, height = _ridge(one)

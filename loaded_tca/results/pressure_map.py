@@ -17,6 +17,7 @@ from loaded_tca.edges.places import dilated, edge_distances
 from loaded_tca.errors import InputError
 from loaded_tca.results.quantities import LAID_END_TO_END, MAP_CELLS, MAP_PARTS, SIZES
 from loaded_tca.separation.arcs import arcs_beside
+from loaded_tca.separation.flank_places import FlankPlaces
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -220,7 +221,7 @@ def place_on_material(pair: GearPair, one: PressureMap, cell: tuple[int, int]) -
         return float(middle[0]), float(middle[1])
     inner = np.stack([one.x[there[:, 0]], one.y[there[:, 1]]], axis=-1)
     ends = np.stack([inner[np.hypot(*(inner - middle).T).argmin()], middle])
-    within, beyond = edge_distances(pair, one.origin + ends @ one.axes[:2])
+    within, beyond = edge_distances(pair, *FlankPlaces(pair, one).at(*ends.T))
     crossed = (beyond < 0.0) & (within >= 0.0)
     part = float(np.min(within[crossed] / (within - beyond)[crossed], initial=1.0))
     x, y = (ends[0] + part * (ends[1] - ends[0])).tolist()

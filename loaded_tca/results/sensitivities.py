@@ -110,12 +110,12 @@ class Sensitivities:
     @cached_property
     def torques(self) -> Array:
         """Growth of the torques that the forces balance with the levers as they are, (keys, states) [N mm per unit]."""
-        return self._raised + self._of_levers(self.growth)
+        return self._raised + self._of_levers(self.growth.lever_torques)
 
-    def _of_levers(self, growth: GapGrowth) -> Array:
+    def _of_levers(self, lever_torques: Array) -> Array:
         """The same of levers alone."""
         first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
-        return -np.add.reduceat(growth.lever_torques, first, axis=1)
+        return -np.add.reduceat(lever_torques, first, axis=1)
 
     @property
     def _raised(self) -> Array:
@@ -175,7 +175,7 @@ class Sensitivities:
         """
         kinks = np.zeros((*self.result.transmission_error.shape, len(self.keys)))
         if (apart := self.growth.kinks) is not None:
-            change = self.tangents.rotation_change(apart.gaps, self._of_levers(apart))
+            change = self.tangents.rotation_change(apart.gaps, self._of_levers(apart.lever_torques))
             kinks[*self.places] = -self.result.gear_pair.driving * change.T
         return kinks
 
@@ -202,7 +202,7 @@ class Sensitivities:
         """Derivatives of the load shares, (torque, position, pair, key) [1 per unit]; zero where nothing is carried."""
         state = self.tangents.state
         torque, share = self.result.torque[self.places[0]][state], self.result.load_share[*self._grids]
-        own = self._of_each_pair(self.tangents.pinion_levers) + self.growth.lever_torques
+        own = self._of_followed_contacts(self.tangents.pinion_levers) + self._with_contacts[1]
         slopes = self._by_pair((own - share * self._raised) / torque)
         shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1, keepdims=True)
         slopes[shared & np.isnan(slopes).all(axis=-1)] = 0.0
@@ -284,7 +284,7 @@ class Sensitivities:
         warn_of_contacts(self.result, jumps, self._of_changes(self.beside_curvature_jumps), stacklevel=3)
         pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._rough_peaks
         slopes = peak_pressure_slopes(pair, [(one.contact, one.separation, one.pressure) for one in grids], peaks)
-        by_pair = self._with_contacts(self.tangents.gathered(slopes))
+        by_pair = self._of_followed_contacts(self.tangents.gathered(slopes))
         rough = {i: peak for i, peak in enumerate(peaks) if isinstance(peak, SlicePeak)}
         if rough:
             at, tops = [*rough], [*rough.values()]
@@ -292,27 +292,29 @@ class Sensitivities:
             by_pair[:, at] += grown * [0.5 * peak.pressure if peak.slopes.any() else 0.0 for peak in tops]
         return self._by_pair(by_pair)
 
-    def _with_contacts(self, slopes: Array) -> Array:
-        """Changes (keys, grids) of the tops of smooth contacts, whose derivatives by the forces are ``slopes`` (n,).
+    @cached_property
+    def _with_contacts(self) -> tuple[Array, Array]:
+        """Growth of gaps (keys, n) and of lever torques (keys, grids), as the grids of smooth contacts follow these.
 
-        A top that is fitted to few cells changes a little with its place between them. Where a modification moves the
-        contact over a grid that stays, that is no change of the peak: what the motion of the contact point over the
-        grid adds is taken off, by the changes with the motions of all grids, which are nothing else.
+        What is read off few cells changes a little with the place of a contact between them. Where a modification moves
+        the contact over a grid that stays, that is no change of it: each grid is moved on with its contact.
         """
         modified = [*map(is_of_modifications, self.keys)]  # on supports their changes move gears, too
         smooth = [peak is None for peak in self._rough_peaks]
         left = self.growth.shifts - self.growth.motions[..., :2]
         left[np.logical_not(modified)] = left[:, np.logical_not(smooth)] = 0.0
-        if not left.any():
-            return self._of_each_pair(slopes)
-        of_motions = self._of_motions
-        first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
-        torques = -np.add.reduceat(of_motions.lever_torques, first, axis=1)
-        changes = self._of_each_grid(
-            slopes, np.concatenate([self.growth.gaps, of_motions.gaps]), np.concatenate([self.torques, torques])
-        )
-        by_key, by_motion = np.split(changes, [len(self.keys)])
-        return np.asarray(by_key + (left * by_motion.T).sum(axis=-1))
+        gaps, lever_torques = self.growth.gaps, self.growth.lever_torques
+        if left.any():
+            motions = self._of_motions
+            for way in range(left.shape[-1]):
+                gaps = gaps + left[:, self.tangents.grid, way] * motions.gaps[way]
+                lever_torques = lever_torques + left[..., way] * motions.lever_torques[way]
+        return gaps, lever_torques
+
+    def _of_followed_contacts(self, slopes: Array) -> Array:
+        """As of :meth:`_of_each_pair`, as the grids of smooth contacts follow these."""
+        gaps, lever_torques = self._with_contacts
+        return self._of_each_grid(slopes, gaps, self._raised + self._of_levers(lever_torques))
 
     @cached_property
     def _rough_peaks(self) -> list[SlicePeak | InnerPeak | None]:
@@ -409,7 +411,7 @@ class Sensitivities:
             )
             row += self.tangents.gathered(slopes) * parts[self._grids[0]][self.tangents.grid]
             by_motion += parts[:, None] * moved
-        torques = np.concatenate([self.torques, self._of_levers(kinks)])
+        torques = np.concatenate([self.torques, self._of_levers(kinks.lever_torques)])
         change = self.tangents.functional_change(row, gaps, torques)
         for t in range(len(by_motion)):
             by_motion[t] += change[:, self.places[0] == t].sum(axis=1)

@@ -27,10 +27,11 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.patch import peak_pressure, reaches_border, top_weights
-from loaded_tca.edges.places import dilated, relief_start_distances
+from loaded_tca.edges.places import dilated
 from loaded_tca.loaded.line_load import SliceLoads, stretch_parts
 from loaded_tca.separation import Separation
 from loaded_tca.separation.arcs import arcs_beside
+from loaded_tca.separation.flank_places import past_relief_starts
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
 
@@ -131,13 +132,12 @@ def _inner_peak(pair: GearPair, separation: Separation, pressure: Array, of_slic
 
 
 def _rough_cells(pair: GearPair, separation: Separation, pressure: Array) -> Mask:
-    """Cells (nx, ny) beside those that an edge cuts or an arc lies on, and on both sides of a relief start."""
+    """Cells (nx, ny) beside those that an edge cuts or an arc lies on, and in the contact on both sides of a start."""
     rough = dilated(separation.cover < 1.0)
     if pair.sharp is not pair:
         rough |= dilated(arcs_beside(pair, separation, pressure > 0.0).any(axis=-1))
-    beyond = np.moveaxis(relief_start_distances(pair, separation.points) > 0.0, -1, 0)
-    for one in beyond:
-        rough |= dilated(one) & dilated(~one)
+    for past in past_relief_starts(pair, separation, dilated(pressure > 0.0)):
+        rough |= dilated(past > 0.0) & dilated(past <= 0.0)
     return rough
 
 

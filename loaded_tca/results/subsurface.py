@@ -140,7 +140,7 @@ class StressBelow:
         """Whether the contact point under load lies on the arc of an edge or on a relief start."""
         pair = gears_under_torque(self.result, self.torque)[0].gear_pair
         point = self.pressure_map.origin
-        from_starts = np.abs(relief_start_distances(pair, point))
+        from_starts = np.abs(relief_start_distances(pair, *pair.on_flanks(point)))
         return bool(arcs_at(pair, point).any() or (from_starts <= ON_START * pair.module).any())
 
     @property

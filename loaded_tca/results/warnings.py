@@ -20,6 +20,7 @@ from loaded_tca.plain import plain, signed
 from loaded_tca.results.gear_warnings import HARDEST_ROOT_MPa, hardest_pressure
 from loaded_tca.results.pressure_map import arc_cells, mean_pressure_of
 from loaded_tca.results.support_growth import gears_under_torque
+from loaded_tca.separation.flank_places import FlankPlaces
 from loaded_tca.unloaded.tooth_cycle import REACH
 
 if TYPE_CHECKING:
@@ -291,9 +292,9 @@ def edges_of_contact(result: CycleNumbers, torque: int, position: int, column: i
     one = result.maps[torque][position][column]
     if one is None or not result.on_edge[torque, position, column]:
         return np.asarray(reached)
-    row, across = np.nonzero(_with_neighbours(one.pressure > 0.0) & np.isinf(one.gap))
-    points = one.origin + one.x[row, None] * one.axes[0] + one.y[across, None] * one.axes[1]
-    reached = reached | (edge_distances(pair, points) < 0.0).any(axis=0)
+    beyond = _with_neighbours(one.pressure > 0.0) & np.isinf(one.gap)
+    if beyond.any():
+        reached = reached | (edge_distances(pair, *FlankPlaces(pair, one).of(beyond)) < 0.0).any(axis=0)
     if pair.sharp is not pair:
         reached = reached | arc_cells(pair, one)[one.pressure > 0.0].any(axis=0)
     return np.asarray(reached)
@@ -316,9 +317,8 @@ def _edges_of_pressure(result: CycleNumbers, torque: int, position: int, column:
     if one is None or not reached.any():
         return reached
     place = np.array([result.edge_radius[torque, position, column], result.edge_axial[torque, position, column]])
-    points = one.points.reshape(-1, 3)
-    away = np.hypot(np.hypot(points[:, 0], points[:, 1]) - place[0], points[:, 2] - place[1])
-    distances = edge_distances(pair, points[[away.argmin()]])[0]
+    away = np.hypot(np.hypot(one.points[..., 0], one.points[..., 1]) - place[0], one.points[..., 2] - place[1])
+    distances = edge_distances(pair, *FlankPlaces(pair, one).of(away == away.min()))[0]
     return np.asarray(reached & (distances <= distances[reached].min() + 2.0 * max(one.spacing)))
 
 

@@ -22,7 +22,7 @@ def between_the_axes(pair, radius, z):
 
 def test_distances_to_edges_are_those_to_tip_circles_and_face_ends_pinion_first():
     pair = gear_pair()
-    distances = edge_distances(pair, between_the_axes(pair, 50.0, [[3.0, 0.0]]))
+    distances = edge_distances(pair, *pair.on_flanks(between_the_axes(pair, 50.0, [[3.0, 0.0]])))
     assert distances.shape == (1, 2, 8)
     sides = [0.5 * WIDTH + 3.0, 0.5 * WIDTH - 3.0]
     assert_allclose(distances[0, 0, [0, 2, 3]], [PINION_TIP - 50.0, *sides], atol=EXACT)
@@ -47,10 +47,10 @@ def test_relief_starts_of_either_gear_are_told(gear):
     relief = FlankModifications(tip_relief=0.02, tip_relief_start=start, tip_relief_form="linear")
     pair = gear_pair(*((relief, NONE) if gear == 0 else (NONE, relief)))
     assert has_relief_starts(pair)
-    beyond = relief_start_distances(pair, between_the_axes(pair, PINION_TIP - 0.5, [0.0]))
+    beyond = relief_start_distances(pair, *pair.on_flanks(between_the_axes(pair, PINION_TIP - 0.5, [0.0])))
     assert (beyond > 0.0).tolist() == [[gear == 0]]  # 0.5 mm below one tip is far below the other
     assert not has_relief_starts(gear_pair())
-    assert relief_start_distances(gear_pair(), between_the_axes(pair, 50.0, [0.0])).shape == (1, 0)
+    assert relief_start_distances(gear_pair(), *pair.on_flanks(between_the_axes(pair, 50.0, [0.0]))).shape == (1, 0)
 
 
 def test_cells_beside_an_edge_stay_with_that_edge():
