@@ -1129,8 +1129,8 @@ FAULTS = (
     Fault(
         "cover: cells at the end of a grid count half their width",
         "separation/sample.py",
-        "sums[:, -1] += steps[:, -1]",
-        "sums[:, -1] += 0.5 * steps[:, -1]",
+        "0.5 * (before + after), np.fmax(before, after))",
+        "0.5 * (before + after), 0.5 * np.fmax(before, after))",
         "separation/test_separation.py::test_cover_of_cells_that_an_oblique_edge_cuts_follows_its_distance_up_to_the_end_of_the_grid",
     ),
     Fault(
