@@ -1625,8 +1625,8 @@ FAULTS = (
     Fault(
         "stages: a sun that stays where it is has a picture of its orbit",
         "plots/stage.py",
-        "if moves or draw is not plot_stage_sun_orbit}",
-        "}",
+        "lambda result: bool(result.sun_motion.any()),",
+        "",
         "plots/test_stage.py::test_rigid_sun_has_no_orbit",
     ),
     Fault(
@@ -2430,9 +2430,9 @@ FAULTS = (
     ),
     Fault(
         "rating: a spectrum of torques that were not solved has no rating, since it has no pictures of places",
-        "plots/rating.py",
-        "(shown or not picture.of_places)",
-        "(shown or picture.of_places)",
+        "plots/safety.py",
+        "bool(is_shown(rating).any())",
+        "True",
         "rating/test_spectrum.py::test_pictures_of_places_are_left_out_where_no_bin_was_solved",
     ),
     Fault(
