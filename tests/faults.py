@@ -2451,7 +2451,7 @@ FAULTS = (
     ),
     Fault(
         "ratings: pictures of an older rating stay beside a new one that has none of them",
-        "output/other_results.py",
+        "output/result_files.py",
         "{*outdated} - {*files}",
         "set()",
         "test_cli_rating.py::test_command_rates_a_result_again_under_a_spectrum",
@@ -2711,9 +2711,9 @@ FAULTS = (
     ),
     Fault(
         "stages: the rating of an older stage stays beside a new one that has none",
-        "output/other_results.py",
-        "{**result.contents(), **tables, **more}, outdated)",
-        "{**result.contents(), **tables, **more})",
+        "cli/commands.py",
+        "stage_figures(result), of_rating)",
+        "stage_figures(result))",
         "test_cli_rating.py::test_stage_is_rated_as_it_is_analysed",
     ),
     Fault(

@@ -180,6 +180,8 @@ class DoubleHelicalResult(JoinedResult):
     COORDINATES: ClassVar = ("torque", "pinion_angle")
     FIGURES: ClassVar = FIGURES
     FILE: ClassVar = PAIR_FILE
+    JSON: ClassVar = "double_helical.json"
+    TABLES: ClassVar = {"double_helical.csv": "positions"}
     PARTS: ClassVar = {"half_a": "half_a.nc", "half_b": "half_b.nc"}
 
     scene: DoubleHelicalScene
@@ -227,6 +229,10 @@ class DoubleHelicalResult(JoinedResult):
                         "its flanks is larger than the deflection of the other half"
                     )
         return (*sentences, *self.notes_of_places())
+
+    def beside_figures(self) -> dict[str, Any]:
+        """Notes and warnings."""
+        return {"notes": self.notes(), **super().beside_figures()}
 
     def notes_of_places(self) -> list[str]:
         """Sentences on torques under which the mesh cycles of both halves are those of another place or other loads."""

@@ -28,18 +28,22 @@ from loaded_tca.double_helical.laws import gears_of
 from loaded_tca.double_helical.result import FIGURES, NUMBERS, in_the_scene
 from loaded_tca.effort import Effort
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 from loaded_tca.results.declared import Number
 from loaded_tca.results.figure import Figure
 from loaded_tca.results.files import HALVES_OVER_TURNS
 from loaded_tca.results.result import JoinedResult
 from loaded_tca.results.revolution import FIGURES as OF_TURNS
-from loaded_tca.results.revolution import OverTurns, Revolution, Spectrum
+from loaded_tca.results.revolution import OverTurns, Revolution, Spectrum, orders_table
+from loaded_tca.results.tables import Columns
 from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
 from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import xarray
 
     from loaded_tca.results.revolution import UnderTorque
@@ -104,6 +108,8 @@ class DoubleHelicalRevolution(OverTurns, JoinedResult):
     COORDINATES: ClassVar = ("torque", "pinion_angle")
     FIGURES: ClassVar = HALVES_REVOLUTION_FIGURES
     FILE: ClassVar = HALVES_REVOLUTION_FILE
+    JSON: ClassVar = "double_helical_revolution.json"
+    TABLES: ClassVar = {"double_helical_revolution.csv": "positions", "double_helical_orders.csv": "orders"}
     PARTS: ClassVar = {"half_a": "half_a_revolution.nc", "half_b": "half_b_revolution.nc"}
 
     scene: DoubleHelicalScene
@@ -136,6 +142,18 @@ class DoubleHelicalRevolution(OverTurns, JoinedResult):
         Spectrum
         """
         return self.orders_of(MICROMETRES * self.axial_motion[torque])
+
+    def tables(self) -> dict[str, Callable[[], Columns]]:
+        """Tables of the revolution by their names; that of orders of the transmission error and the motion, too."""
+        return {**super().tables(), "orders": self._orders}
+
+    def _orders(self) -> Columns:
+        orders = orders_table(self)
+        motions = {
+            f"axial_motion_at_{plain(1e-3 * torque, 6)}_Nm_um": self.axial_spectrum(t).amplitude
+            for t, torque in enumerate(self.torque)
+        }
+        return orders._replace(values={**orders.values, **motions})
 
     @classmethod
     def parts_beside(cls, path: Path, subject: DoubleHelicalScene) -> dict[str, Any]:

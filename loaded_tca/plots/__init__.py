@@ -33,7 +33,7 @@ from loaded_tca.plots.sharing import (
     plot_mesh_stiffness,
     plot_path_pressure,
 )
-from loaded_tca.plots.style import chosen_torque, png_of, save_figure
+from loaded_tca.plots.style import chosen_torque, png_of, pngs_of, save_figure
 from loaded_tca.plots.supports import plot_bearing_loads, plot_face_load_on_supports, plot_misalignment
 from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -439,7 +439,7 @@ def plot_all(
         If the result has no such torque or position, or a file cannot be written.
     """
     figures = result_figures(result, torque=torque, position=position, more=more)
-    contents = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
+    contents = pngs_of(figures)
     return replace_together(directory, contents, {f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)} - {*contents})
 
 

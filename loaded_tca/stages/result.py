@@ -182,6 +182,8 @@ class StageResult(JoinedResult):
     COORDINATES: ClassVar = COORDINATES
     FIGURES: ClassVar = FIGURES
     FILE: ClassVar = STAGE_FILE
+    JSON: ClassVar = "stage.json"
+    TABLES: ClassVar = {"stage.csv": "positions"}
     PARTS: ClassVar = {"sun_mesh": "sun_mesh.nc", "ring_mesh": "ring_mesh.nc"}
     ABOUT: ClassVar = (*JoinedResult.ABOUT, "mesh_warnings")
 
@@ -254,6 +256,26 @@ class StageResult(JoinedResult):
         return tuple(sentences)
 
     notes = findings
+
+    def beside_figures(self) -> dict[str, Any]:
+        """Phases, orders, findings and warnings."""
+        orders = [
+            {
+                "order": order.order,
+                "stage_um": order.stage,
+                "one_path_um": order.one_path,
+                "cancelled_in_torsion": order.torsion_cancels,
+                "cancelled_in_translation": order.translation_cancels,
+            }
+            for order in self.orders()
+        ]
+        return {
+            "sun_mesh_phase": self.sun_mesh_phase.tolist(),
+            "ring_mesh_phase": self.ring_mesh_phase.tolist(),
+            "orders_under_the_last_torque": orders,
+            "findings": self.findings(),
+            **super().beside_figures(),
+        }
 
     @property
     def scope(self) -> str:
