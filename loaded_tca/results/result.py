@@ -337,9 +337,25 @@ class JoinedResult(AnalysisResult):
     ----------
     PARTS : mapping of str to str
         Attributes that are results -> names of their files.
+    PART : type
+        Kind of these.
     """
 
     PARTS: ClassVar[Mapping[str, str]]
+    PART: ClassVar[type[AnalysisResult]]
+
+    @classmethod
+    def parts_beside(cls, path: Path, subject: Any) -> dict[str, Any]:
+        """The parts, of the files beside that of the result."""
+        places = [path.parent / name for name in cls.PARTS.values()]
+        parts = [cls.PART.load(place) for place in places]
+        cls.require_parts(subject, places, parts)
+        return dict(zip(cls.PARTS, parts, strict=True))
+
+    @classmethod
+    @abstractmethod
+    def require_parts(cls, subject: Any, places: Sequence[Path], parts: Sequence[Any]) -> None:
+        """Refuse parts that are not those of what was analysed; InputError with the place of the file."""
 
     @checked
     def save(self, directory: FilePath) -> tuple[Path, ...]:
