@@ -1625,8 +1625,8 @@ FAULTS = (
     Fault(
         "stages: a sun that stays where it is has a picture of its orbit",
         "plots/stage.py",
-        "if moves or draw is not plot_stage_sun_orbit}",
-        "}",
+        "lambda result: bool(result.sun_motion.any()),",
+        "",
         "plots/test_stage.py::test_rigid_sun_has_no_orbit",
     ),
     Fault(
@@ -2430,9 +2430,9 @@ FAULTS = (
     ),
     Fault(
         "rating: a spectrum of torques that were not solved has no rating, since it has no pictures of places",
-        "plots/rating.py",
-        "(shown or not picture.of_places)",
-        "(shown or picture.of_places)",
+        "plots/safety.py",
+        "bool(is_shown(rating).any())",
+        "True",
         "rating/test_spectrum.py::test_pictures_of_places_are_left_out_where_no_bin_was_solved",
     ),
     Fault(
@@ -2451,7 +2451,7 @@ FAULTS = (
     ),
     Fault(
         "ratings: pictures of an older rating stay beside a new one that has none of them",
-        "output/other_results.py",
+        "output/result_files.py",
         "{*outdated} - {*files}",
         "set()",
         "test_cli_rating.py::test_command_rates_a_result_again_under_a_spectrum",
@@ -2711,9 +2711,9 @@ FAULTS = (
     ),
     Fault(
         "stages: the rating of an older stage stays beside a new one that has none",
-        "output/other_results.py",
-        "{**result.contents(), **tables, **more}, outdated)",
-        "{**result.contents(), **tables, **more})",
+        "cli/commands.py",
+        "stage_figures(result), of_rating)",
+        "stage_figures(result))",
         "test_cli_rating.py::test_stage_is_rated_as_it_is_analysed",
     ),
     Fault(

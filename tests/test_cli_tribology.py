@@ -7,8 +7,8 @@ import pytest
 import xarray
 from numpy.testing import assert_allclose
 
-from loaded_tca.output.other_results import TRIBOLOGY_FILES
 from loaded_tca.plots import TRIBOLOGY_PICTURES
+from loaded_tca.tribology import Tribology
 from tests.samples.tribology import ROUGHNESS, known, shared
 
 OIL = ("lubricant.viscosity_40_mm2_s=220", "lubricant.viscosity_100_mm2_s=19", "lubricant.oil_temperature_C=80")
@@ -45,7 +45,7 @@ def test_command_writes_what_the_call_finds(run, out):
     assert code == 0
     assert text.count("loss factor H_VL") == 2  # the summary of either speed
     assert text.index("pinion at 500 rpm") < text.index("pinion at 1500 rpm")
-    assert {*os.listdir(out)} == {"result.nc", *TRIBOLOGY_FILES, *(f"{name}.png" for name in TRIBOLOGY_PICTURES)}
+    assert {*os.listdir(out)} == {"result.nc", *Tribology.file_names(), *(f"{name}.png" for name in TRIBOLOGY_PICTURES)}
     expected = known(cycle(), pinion_speed_rpm=[500.0, 1500.0])
     with xarray.open_dataset(f"{out}/tribology.nc", engine="scipy") as file:
         assert_allclose(file["film_ratio"], expected.film_ratio)
@@ -62,7 +62,7 @@ def test_command_without_speed_or_oil_has_the_loss_factor_alone(run, out):
     code, text, _ = run("tribology", out, "--out", "alone")
     assert code == 0
     assert "needs pinion_speed_rpm" in text
-    assert {*os.listdir("alone")} == {*TRIBOLOGY_FILES}
+    assert {*os.listdir("alone")} == {*Tribology.file_names()}
     assert list(rows("alone/tribology.csv")[0]) == ["pinion_speed_rpm", "pinion_torque_Nm", "loss_factor"]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import NoReturn
 
@@ -32,7 +32,7 @@ All lengths are in mm."""
 COMPARE = """files in DIR:
   comparison.csv            one row per common torque and key figure: values, differences from the first result
   comparison.json           the same numbers, and the keys in which the scenes differ
-{comparison_pictures}
+{pictures}
 The pictures show one torque; 'loaded-tca report DIR DIR --out FILE' writes a page with them;
 docs/guide/comparing.md says more."""
 EASE_OFF = """The command prints the values at the corners, and the angles, crownings and twist of second order.
@@ -95,7 +95,7 @@ files in DIR:
   tribology.nc              everything, to be read by xarray
   tribology.csv             one row per speed and torque
   tribology_slices.csv      every slice of every contact, first speed, all torques
-{tribology_pictures}
+{pictures}
 Only the friction of the teeth is counted; docs/guide/efficiency_and_scuffing.md says more."""
 RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubricant] of the scene say what the gears
 are made of, what is required and how they run; a stage has [sun.strength], [planet.strength] and [ring.strength]. --set
@@ -106,7 +106,7 @@ shares.
 files in DIR:
   rating.json               safeties, damage, lives and every factor of each torque or bin, and of all bins together
   rating.csv                the same, one row per torque or bin
-{rating_pictures}
+{pictures}
 docs/guide/strong_enough.md says more."""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
@@ -155,10 +155,7 @@ REVOLUTION = """files in DIR:
   revolution.csv            one row per torque and position
   teeth.csv                 the largest share, force and pressure of every tooth of both gears
   orders.csv                amplitudes of all orders, mesh orders and sidebands named
-  revolution_error.png      transmission error over the revolution, rigid and under each torque
-  revolution_spectrum.png   its orders under the largest torque
-  revolution_shares.png     share of every tooth as a band, highest pressure of every tooth
-  revolution_waterfall.png  orders over the torque; with two torques or more
+{pictures}
 [pinion.pitch], [wheel.pitch] and [revolution] of the scene say where the teeth stand and which pitches follow each
 other; docs/guide/whole_revolutions.md says more. A double helical pair gives double_helical_revolution.nc, .json, .csv,
 double_helical_orders.csv, half_a_revolution.nc and half_b_revolution.nc, and halves_revolution_*.png."""
@@ -168,12 +165,7 @@ STAGE = """files in DIR:
                             of 'loaded-tca run', for 'loaded-tca plot' and the other commands
   stage.json                phases, key figures and orders
   stage.csv                 one row per torque and position
-  stage_phases.png          phases of the meshes of all planets
-  stage_shares.png          share of every planet, under the largest torque
-  stage_load_factor.png     K_gamma over the pin errors, all torques
-  stage_sun_orbit.png       motion of the sun's axis, all torques; if the sun is not held rigid
-  stage_error.png           transmission error of the stage beside that of one planet, under the largest torque
-  stage_orders.png          mesh orders of these transmission errors
+{pictures}
 and, with [rating] and its inputs, the files of 'loaded-tca rating'.
 Numbers have their units in their names; docs/guide/planetary_stages.md says more."""
 IMPORT = """MODEL is a REXS file of version 1.0 to 1.7: XML (.rexs), JSON (.rexsj) or zip (.rexsz). FILE is a scene of
@@ -514,14 +506,8 @@ class _Parser(argparse.ArgumentParser):
     """
 
     def format_help(self) -> str:
-        if self.epilog == FILES:
-            self.epilog = FILES.format(pictures=_list_of_pictures())
-        if self.epilog == COMPARE:
-            self.epilog = COMPARE.format(comparison_pictures=_list_of_comparison())
-        if self.epilog == TRIBOLOGY:
-            self.epilog = TRIBOLOGY.format(tribology_pictures=_list_of_tribology())
-        if self.epilog == RATING:
-            self.epilog = RATING.format(rating_pictures=_list_of_rating())
+        if self.epilog is not None and self.epilog in PICTURES_IN:
+            self.epilog = self.epilog.format(pictures=_list_of_pictures(PICTURES_IN[self.epilog]))
         return super().format_help()
 
     def error(self, message: str) -> NoReturn:
@@ -532,39 +518,32 @@ class _Parser(argparse.ArgumentParser):
         super().exit(status, message)
 
 
-def _list_of_pictures() -> str:
-    from loaded_tca.plots import ALWAYS, ON_REQUEST, ON_SUPPORTS, ROOTS, SHARED
+PICTURES_IN: dict[str, dict[str, str]] = {
+    FILES: {
+        "ALWAYS": "",
+        "SHARED": "and where tooth pairs share the load",
+        "ROOTS": "and with analysis.root_stress = true",
+        "ON_SUPPORTS": "and with sections for shafts or supports",
+        "ON_REQUEST": "and, only with 'plot --all'",
+    },
+    COMPARE: {"COMPARISON_PICTURES": ""},
+    TRIBOLOGY: {"TRIBOLOGY_PICTURES": ""},
+    RATING: {"RATING_PICTURES": ""},
+    REVOLUTION: {"REVOLUTION_PICTURES": ""},
+    STAGE: {"STAGE_PICTURES": ""},
+}
+"""Help -> names of the declarations of its pictures in ``loaded_tca.plots``, with the line before each."""
 
-    groups = (
-        (None, ALWAYS),
-        ("and where tooth pairs share the load", SHARED),
-        ("and with analysis.root_stress = true", ROOTS),
-        ("and with sections for shafts or supports", ON_SUPPORTS),
-        ("and, only with 'plot --all'", ON_REQUEST),
-    )
+
+def _list_of_pictures(groups: Mapping[str, str]) -> str:
+    """The files of all pictures with what they show."""
+    import loaded_tca.plots
+
     lines = []
-    for head, pictures in groups:
-        lines += [] if head is None else [head]
-        lines += [f"  {name + '.png':<24}  {one.line}" for name, one in pictures.items()]
+    for group, head in groups.items():
+        lines += [head] if head else []
+        lines += [f"  {name + '.png':<24}  {one.line}" for name, one in getattr(loaded_tca.plots, group).items()]
     return "\n".join(lines)
-
-
-def _list_of_comparison() -> str:
-    from loaded_tca.plots import COMPARISON_PICTURES
-
-    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in COMPARISON_PICTURES.items())
-
-
-def _list_of_tribology() -> str:
-    from loaded_tca.plots import TRIBOLOGY_PICTURES
-
-    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in TRIBOLOGY_PICTURES.items())
-
-
-def _list_of_rating() -> str:
-    from loaded_tca.plots import RATING_PICTURES
-
-    return "\n".join(f"  {name + '.png':<24}  {one.line}" for name, one in RATING_PICTURES.items())
 
 
 class _Version(argparse.Action):

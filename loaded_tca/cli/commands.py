@@ -35,9 +35,12 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult
     from loaded_tca.rating import Rating
     from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.results.result import Result
     from loaded_tca.scene import Scene
     from loaded_tca.scene.double_helical import DoubleHelicalScene
     from loaded_tca.stages import StageResult
@@ -133,9 +136,7 @@ def _run_scene(scene: Scene, directory: Path) -> None:
         again = f"'loaded-tca plot {directory}' draws them"
         error.add_note(f"{directory}: the numbers are new, all pictures are missing: {again}")
         raise
-    files, rating_text = _rated(result, directory)
-    summary = "\n\n".join(filter(None, (result.summary(), rating_text)))
-    print_summary(summary, [*report, *pictures, *files])
+    _show_rated(result, directory, [*report, *pictures])
 
 
 def _run_double_helical(scene: DoubleHelicalScene, directory: Path) -> None:
@@ -143,23 +144,19 @@ def _run_double_helical(scene: DoubleHelicalScene, directory: Path) -> None:
     from loaded_tca.double_helical import analyse_double_helical
     from loaded_tca.double_helical.analyse import expected_double_helical_effort
     from loaded_tca.double_helical.result import PAIR_FILE
-    from loaded_tca.output.other_results import RATING_FILES, write_double_helical
-    from loaded_tca.plots import double_helical_figures, png_of
+    from loaded_tca.plots import double_helical_figures
+    from loaded_tca.rating import Rating
 
     require_place_of(directory, PAIR_FILE)
     effort = expected_double_helical_effort(scene)
     with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
         result = analyse_double_helical(scene, progress=progress)
-    pictures = {f"{name}.png": png_of(figure) for name, figure in double_helical_figures(result).items()}
-    written = write_double_helical(result, directory, pictures, outdated=RATING_FILES)
-    files, rating_text = _rated(result, directory)
-    print_summary("\n\n".join(filter(None, (result.summary(), rating_text))), [*written, *files])
+    written = _written(result, directory, double_helical_figures(result), Rating.file_names())
+    _show_rated(result, directory, written)
 
 
 def revolution(options: argparse.Namespace) -> None:
     """Analyse a whole revolution, write everything into a directory, and show the summary."""
-    from loaded_tca.output.other_results import write_revolution
-    from loaded_tca.plots import png_of
     from loaded_tca.plots.revolution import revolution_figures
     from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
     from loaded_tca.scene.double_helical import DoubleHelicalScene
@@ -172,35 +169,39 @@ def revolution(options: argparse.Namespace) -> None:
     effort = expected_revolution_effort(scene)
     with progress_bar(effort, "states", effort.contacts // 2) as progress:
         result = analyse_revolution(scene, progress=progress)
-    pictures = {f"{name}.png": png_of(figure) for name, figure in revolution_figures(result).items()}
-    written = write_revolution(result, directory, pictures)
-    print_summary(result.summary(), written)
+    print_summary(result.summary(), _written(result, directory, revolution_figures(result)))
 
 
 def _double_helical_revolution(scene: DoubleHelicalScene, directory: Path) -> None:
     """Analyse a whole revolution of a double helical pair, write everything, and show the summary."""
     from loaded_tca.double_helical import analyse_double_helical_revolution
     from loaded_tca.double_helical.revolution import expected_halves_revolution_effort
-    from loaded_tca.output.other_results import write_halves_revolution
-    from loaded_tca.plots import halves_revolution_figures, png_of
+    from loaded_tca.plots import halves_revolution_figures
 
     effort = expected_halves_revolution_effort(scene)
     with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
         result = analyse_double_helical_revolution(scene, progress=progress)
-    pictures = {f"{name}.png": png_of(figure) for name, figure in halves_revolution_figures(result).items()}
-    print_summary(result.summary(), write_halves_revolution(result, directory, pictures))
+    print_summary(result.summary(), _written(result, directory, halves_revolution_figures(result)))
+
+
+def _written(
+    result: Result, directory: Path, figures: Mapping[str, Figure], outdated: Iterable[str] = ()
+) -> tuple[Path, ...]:
+    """Write the files of a result with its pictures."""
+    from loaded_tca.output import write_result
+    from loaded_tca.plots.style import pngs_of
+
+    return write_result(result, directory, pngs_of(figures), outdated)
 
 
 def tribology(options: argparse.Namespace) -> None:
     """Write loss, temperatures and films of a result at speeds, with tables and pictures, and show the summary."""
-    from loaded_tca.output.other_results import write_tribology
-    from loaded_tca.plots import png_of, tribology_figures
+    from loaded_tca.plots import tribology_figures
 
     speed = {} if options.speed is None else {"operation.pinion_speed_rpm": options.speed[0]}
     result, directory = _changed_result(options, "tribology", _is_of_tribology, OF_TRIBOLOGY, speed)
     evaluated = result.tribology(options.speed)
-    pictures = {f"{name}.png": png_of(figure) for name, figure in tribology_figures(evaluated).items()}
-    written = write_tribology(evaluated, directory, pictures)
+    written = _written(evaluated, directory, tribology_figures(evaluated))
     each = range(len(options.speed or [None]))
     print_summary("\n\n".join(evaluated.summary(speed=speed) for speed in each), written)
 
@@ -260,11 +261,9 @@ def _changed_joined(
 
 def _rating_files(rated: Rating | StageRating | DoubleHelicalRating, directory: Path) -> tuple[Path, ...]:
     """Write a rating with its pictures; those of an older one that it does not have go."""
-    from loaded_tca.output.other_results import write_rating
-    from loaded_tca.plots import RATING_PICTURES, png_of, rating_figures
+    from loaded_tca.plots import RATING_PICTURES, rating_figures
 
-    pictures = {f"{name}.png": png_of(figure) for name, figure in rating_figures(rated).items()}
-    return write_rating(rated, directory, pictures, outdated=[f"{name}.png" for name in RATING_PICTURES])
+    return _written(rated, directory, rating_figures(rated), [f"{name}.png" for name in RATING_PICTURES])
 
 
 def _rated(result: MeshCycle | StageResult | DoubleHelicalResult, directory: Path) -> tuple[list[Path], str]:
@@ -276,6 +275,14 @@ def _rated(result: MeshCycle | StageResult | DoubleHelicalResult, directory: Pat
     except InputError as error:
         return [], "\n".join(f"no rating: {problem}" for problem in error.problems)
     return [*_rating_files(rated, directory)], rated.summary()
+
+
+def _show_rated(
+    result: MeshCycle | StageResult | DoubleHelicalResult, directory: Path, written: Iterable[Path]
+) -> None:
+    """Rate a result whose scene or stage has [rating]; show its summary and that of the rating, and all files."""
+    files, rating_text = _rated(result, directory)
+    print_summary("\n\n".join(filter(None, (result.summary(), rating_text))), [*written, *files])
 
 
 def _changed_result(
@@ -333,8 +340,8 @@ def _is_of_tribology(key: str) -> bool:
 
 def stage(options: argparse.Namespace) -> None:
     """Analyse a planetary stage, write everything into a directory, and show the summary."""
-    from loaded_tca.output.other_results import RATING_FILES, write_stage
-    from loaded_tca.plots import RATING_PICTURES, png_of, stage_figures
+    from loaded_tca.plots import RATING_PICTURES, stage_figures
+    from loaded_tca.rating import Rating
     from loaded_tca.stages import analyse_stage
     from loaded_tca.stages.analyse import expected_stage_effort, states_of
     from loaded_tca.stages.result import STAGE_FILE
@@ -346,12 +353,8 @@ def stage(options: argparse.Namespace) -> None:
     states = states_of(asked)
     with progress_bar(expected_stage_effort(asked), "states of both meshes", states) as progress:
         result = analyse_stage(asked, progress=progress)
-    pictures = {f"{name}.png": png_of(figure) for name, figure in stage_figures(result).items()}
-    of_rating = *RATING_FILES, *(f"{name}.png" for name in RATING_PICTURES)
-    written = write_stage(result, directory, pictures, outdated=of_rating)
-    files, rating_text = _rated(result, directory)
-    summary = "\n\n".join(filter(None, (result.summary(), rating_text)))
-    print_summary(summary, [*written, *files])
+    of_rating = *Rating.file_names(), *(f"{name}.png" for name in RATING_PICTURES)
+    _show_rated(result, directory, _written(result, directory, stage_figures(result), of_rating))
 
 
 def plot(options: argparse.Namespace) -> None:
@@ -410,24 +413,24 @@ def _compare(
 ) -> None:
     """Write the comparison of results under names, with pictures at a torque and position, and show it."""
     from loaded_tca.output.tables import write_comparison
-    from loaded_tca.plots import COMPARISON_PICTURES, comparison_figures, png_of
+    from loaded_tca.plots import COMPARISON_PICTURES, comparison_figures
+    from loaded_tca.plots.style import pngs_of
 
     comparison = comparison_of(names, results)
     torque = None if torque_Nm is None else 1e3 * torque_Nm
     position = index_of_position(number, next(iter(comparison.results.values())))
     summary = comparison.summary(torque)
     figures = comparison_figures(comparison, torque, position)
-    pictures = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
     outdated = [f"{name}.png" for name in COMPARISON_PICTURES]
-    print_summary(summary, write_comparison(comparison, directory, pictures, outdated))
+    print_summary(summary, write_comparison(comparison, directory, pngs_of(figures), outdated))
 
 
 def sensitivities(options: argparse.Namespace) -> None:
     """Find what keys and their tolerances change in a result, and write tables and pictures of it."""
     from loaded_tca.double_helical.result import PAIR_FILE
     from loaded_tca.output.tables import sensitivities_text, write_sensitivities
-    from loaded_tca.plots import png_of
     from loaded_tca.plots.sensitivities import sensitivity_pictures
+    from loaded_tca.plots.style import pngs_of
     from loaded_tca.results.extremes import warn_of_positions
     from loaded_tca.results.idle_pairs import warn_of_pairs
     from loaded_tca.results.numbers import index_or_largest
@@ -448,10 +451,7 @@ def sensitivities(options: argparse.Namespace) -> None:
     warn_of_pairs(slopes, tolerances)
     text = sensitivities_text(slopes, tolerances, torque)
     pictures = sensitivity_pictures(slopes, tolerances, torque)
-    written = write_sensitivities(
-        slopes, tolerances, directory, {f"{name}.png": png_of(figure) for name, figure in pictures.items()}
-    )
-    print_summary(text, written)
+    print_summary(text, write_sensitivities(slopes, tolerances, directory, pngs_of(pictures)))
 
 
 def _sensitivities_of_halves(options: argparse.Namespace) -> None:
@@ -490,7 +490,7 @@ def dynamics(options: argparse.Namespace) -> None:
 def ease_off(options: argparse.Namespace) -> None:
     """Draw the ease-off of a scene."""
     from loaded_tca.flank_maps.ease_off_map import ease_off_map
-    from loaded_tca.output.other_results import ease_off_csv
+    from loaded_tca.output.other_tables import ease_off_csv
     from loaded_tca.plots import plot_ease_off, png_of
     from loaded_tca.results.files import replace_together
 
@@ -545,7 +545,7 @@ def measured(options: argparse.Namespace) -> None:
 def shaft(options: argparse.Namespace) -> None:
     """Show the forces on the bearings of a scene's shafts, and write how they bend, without contact."""
     from loaded_tca.loaded.shaft_lines import shaft_lines
-    from loaded_tca.output.other_results import bearings_csv, bearings_text, shaft_csv
+    from loaded_tca.output.other_tables import bearings_csv, bearings_text, shaft_csv
     from loaded_tca.plots import plot_shafts, png_of
     from loaded_tca.results.files import replace_together
 
@@ -570,7 +570,8 @@ def vh(options: argparse.Namespace) -> None:
 def study(options: argparse.Namespace) -> None:
     """Analyse what is missing of a study, write its tables and pictures, and show the summary."""
     from loaded_tca.output.tables import write_study
-    from loaded_tca.plots import plot_study, png_of
+    from loaded_tca.plots import plot_study
+    from loaded_tca.plots.style import pngs_of
     from loaded_tca.scene.keys import did_you_mean, nearest
     from loaded_tca.studies import read_study, run_study, study_summary
 
@@ -581,8 +582,7 @@ def study(options: argparse.Namespace) -> None:
     with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
         rows = run_study(study, executor, directory / STUDY_FILE, show, keep_maps=options.keep_maps)
     rank_by = options.rank_by if options.rank_by in rows else None  # another one is told once all is written
-    pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(rows, rank_by=rank_by).items()}
-    written = write_study(rows, directory, pictures, rank_by)
+    written = write_study(rows, directory, pngs_of(plot_study(rows, rank_by=rank_by)), rank_by)
     print_summary(study_summary(rows), [directory / STUDY_FILE, *written])
     failed = (rows["status"] != "ok").values
     hint = did_you_mean(nearest(options.rank_by or "", [str(name) for name in rows.data_vars]))

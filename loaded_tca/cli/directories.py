@@ -49,7 +49,6 @@ def require_place_of(directory: Path, main: str) -> None:
 
 def names_of_result() -> set[str]:
     """Names of all files that commands write of one result into its directory, but for the result's own."""
-    from loaded_tca.output.other_results import RATING_FILES, TRIBOLOGY_FILES
     from loaded_tca.output.surface_files import TEETH_FILES
     from loaded_tca.output.tables import (
         DYNAMICS,
@@ -62,13 +61,16 @@ def names_of_result() -> set[str]:
     from loaded_tca.plots import MORE_PICTURES, PICTURES, RATING_PICTURES
     from loaded_tca.plots.sensitivities import SENSITIVITY_PICTURES
     from loaded_tca.plots.tribology import TRIBOLOGY_PICTURES
+    from loaded_tca.rating import Rating
     from loaded_tca.results.subsurface import NAMES
+    from loaded_tca.tribology import Tribology
 
     tables = *(path.name for path in tables_at(Path(DYNAMICS))), SENSITIVITY_DATA, SENSITIVITIES
     pictures = *PICTURES, *MORE_PICTURES, *SENSITIVITY_PICTURES, *TRIBOLOGY_PICTURES, *RATING_PICTURES
     pictures += "teeth", *(f"subsurface_{quantity}" for quantity in NAMES)
     others = "at_a_glance.pdf", REPORT, INTERACTIVE_REPORT, STRESS_FIELDS, STRESS_TABLE
-    return {*tables, *TRIBOLOGY_FILES, *RATING_FILES, *TEETH_FILES, *others, *(f"{name}.png" for name in pictures)}
+    evaluated = *Tribology.file_names(), *Rating.file_names()
+    return {*tables, *evaluated, *TEETH_FILES, *others, *(f"{name}.png" for name in pictures)}
 
 
 REPORT, INTERACTIVE_REPORT = "report.html", "interactive.html"

@@ -169,14 +169,15 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
 def require_result(directory: Path, path: Path, command: str) -> None:
     """Refuse a directory without a result that holds something else, in words that say what to give instead."""
     from loaded_tca.double_helical.revolution import HALVES_REVOLUTION_FILE
-    from loaded_tca.output.other_results import REVOLUTION_FILES, TRIBOLOGY_FILES
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.output.tables import COMPARISON, COMPARISON_DATA
+    from loaded_tca.results import Revolution
+    from loaded_tca.tribology import Tribology
 
     if path.exists():
         return
     parts = [one.name for one in sorted(directory.iterdir()) if (one / RESULT).is_file()]
-    if (directory / REVOLUTION_FILES[0]).is_file() or (directory / HALVES_REVOLUTION_FILE).is_file():
+    if (directory / Revolution.FILE).is_file() or (directory / HALVES_REVOLUTION_FILE).is_file():
         raise InputError(
             f"{directory}: holds a whole revolution, which '{command}' does not take: the numbers are in "
             "revolution.json and the tables; give the directory of 'loaded-tca run'"
@@ -190,7 +191,7 @@ def require_result(directory: Path, path: Path, command: str) -> None:
             f"{COMPARISON} and {COMPARISON_DATA}; give the directory of one of the results, or of several to "
             "'loaded-tca report'"
         )
-    if any((directory / name).is_file() for name in TRIBOLOGY_FILES):
+    if any((directory / name).is_file() for name in Tribology.file_names()):
         raise InputError(
             f"{directory}: holds only tribology, without the result that it belongs to; give the directory of "
             "'loaded-tca run', whose report has tribology if the scene has [operation] or [lubricant]"

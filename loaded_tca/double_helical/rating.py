@@ -191,6 +191,14 @@ class DoubleHelicalSpectrumRating(OfSpectrum, DoubleHelicalRating):
             rows += [(f"  {label}", *cells) for label, *cells in rating.spectrum_rows()[1:]]
         return rows
 
+    def spectrum_figures(self) -> dict[str, Any]:
+        """What all bins do together: of the worse half, then of each."""
+        figures = super().spectrum_figures()
+        for name, rating in self.of_halves.items():
+            assert isinstance(rating, OfSpectrum)
+            figures[f"half_{name}"] = rating.spectrum_figures()
+        return figures
+
 
 def _of_half(name: str, figure: str) -> str:
     """Name of a figure of a half."""

@@ -158,8 +158,31 @@ FIGURES: dict[str, Figure] = {
 """Key figures by their names."""
 
 
+class OfHalves(JoinedResult):
+    """Result of a double helical pair that joins those of its halves."""
+
+    def along(self, axis: str) -> list[Any]:
+        """What counts along an axis: halves by their names, too."""
+        return [*HALVES] if axis == "half" else super().along(axis)
+
+    @classmethod
+    def require_parts(
+        cls, subject: DoubleHelicalScene, places: Sequence[Path], parts: Sequence[MeshCycle | Revolution]
+    ) -> None:
+        """Refuse results of halves that are not those of a scene, wherever the gear floats to and under any torques."""
+        for half, (place, cycle) in enumerate(zip(places, parts, strict=True)):
+            torques = [1e-3 * torque for torque in cycle.scene.torques]
+            expected, scene = subject.half_scenes(0.0, [torques, torques])[half], cycle.scene
+            assert isinstance(scene, CylindricalScene)  # half a pair
+            stands = replace(expected.mounting, axial_offset_mm=scene.mounting.axial_offset_mm)
+            expected = replace(expected, mounting=stands, load=scene.load, analysis=scene.analysis)
+            if _by_itself(scene, expected) != expected:
+                what = "mesh cycle" if isinstance(cycle, MeshCycle) else "revolution"
+                raise InputError(f"{place}: the {what} of another pair than {cls.FILE} beside it")
+
+
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class DoubleHelicalResult(JoinedResult):
+class DoubleHelicalResult(OfHalves):
     """Both halves of a double helical pair over one pitch, under each torque.
 
     Attributes
@@ -180,7 +203,10 @@ class DoubleHelicalResult(JoinedResult):
     COORDINATES: ClassVar = ("torque", "pinion_angle")
     FIGURES: ClassVar = FIGURES
     FILE: ClassVar = PAIR_FILE
+    JSON: ClassVar = "double_helical.json"
+    TABLES: ClassVar = {"double_helical.csv": "positions"}
     PARTS: ClassVar = {"half_a": "half_a.nc", "half_b": "half_b.nc"}
+    PART: ClassVar = MeshCycle
 
     scene: DoubleHelicalScene
     dataset: xarray.Dataset
@@ -195,10 +221,6 @@ class DoubleHelicalResult(JoinedResult):
     def halves(self) -> tuple[MeshCycle, MeshCycle]:
         """Mesh cycles of half a and half b."""
         return self.half_a, self.half_b
-
-    def along(self, axis: str) -> list[Any]:
-        """What counts along an axis: halves by their names, too."""
-        return [*HALVES] if axis == "half" else super().along(axis)
 
     @property
     def scope(self) -> str:
@@ -227,6 +249,10 @@ class DoubleHelicalResult(JoinedResult):
                         "its flanks is larger than the deflection of the other half"
                     )
         return (*sentences, *self.notes_of_places())
+
+    def beside_figures(self) -> dict[str, Any]:
+        """Notes and warnings."""
+        return {"notes": self.notes(), **super().beside_figures()}
 
     def notes_of_places(self) -> list[str]:
         """Sentences on torques under which the mesh cycles of both halves are those of another place or other loads."""
@@ -311,28 +337,6 @@ class DoubleHelicalResult(JoinedResult):
         sizes = {"half": len(HALVES), "torque": len(subject.torques), "position": subject.analysis.positions}
         require(*((file.sizes[name] == size, f"{name}: expected {size}") for name, size in sizes.items()))
         return {}
-
-    @classmethod
-    def parts_beside(cls, path: Path, subject: DoubleHelicalScene) -> dict[str, Any]:
-        """Both mesh cycles, of the files beside that of the pair."""
-        places = [path.parent / name for name in cls.PARTS.values()]
-        cycles = [MeshCycle.load(place) for place in places]
-        in_the_scene(subject, places, cycles, cls.FILE)
-        return dict(zip(cls.PARTS, cycles, strict=True))
-
-
-def in_the_scene(
-    subject: DoubleHelicalScene, places: Sequence[Path], halves: Sequence[MeshCycle | Revolution], beside: str
-) -> None:
-    """Refuse results of halves that are not those of a scene, wherever the gear floats to and under any torques."""
-    for half, (place, cycle) in enumerate(zip(places, halves, strict=True)):
-        torques = [1e-3 * torque for torque in cycle.scene.torques]
-        expected, found = subject.half_scenes(0.0, [torques, torques])[half], cycle.scene
-        assert isinstance(found, CylindricalScene)  # half a pair
-        stands = replace(expected.mounting, axial_offset_mm=found.mounting.axial_offset_mm)
-        if _by_itself(found, expected) != replace(expected, mounting=stands, load=found.load, analysis=found.analysis):
-            what = "mesh cycle" if isinstance(cycle, MeshCycle) else "revolution"
-            raise InputError(f"{place}: the {what} of another pair than {beside} beside it")
 
 
 def _by_itself(scene: CylindricalScene, expected: CylindricalScene) -> CylindricalScene:

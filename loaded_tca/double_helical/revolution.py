@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -25,21 +24,24 @@ from loaded_tca.double_helical.analyse import (
     settled,
 )
 from loaded_tca.double_helical.laws import gears_of
-from loaded_tca.double_helical.result import FIGURES, NUMBERS, in_the_scene
+from loaded_tca.double_helical.result import FIGURES, NUMBERS, OfHalves
 from loaded_tca.effort import Effort
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 from loaded_tca.results.declared import Number
 from loaded_tca.results.figure import Figure
 from loaded_tca.results.files import HALVES_OVER_TURNS
-from loaded_tca.results.result import JoinedResult
 from loaded_tca.results.revolution import FIGURES as OF_TURNS
-from loaded_tca.results.revolution import OverTurns, Revolution, Spectrum
+from loaded_tca.results.revolution import OverTurns, Revolution, Spectrum, orders_table
+from loaded_tca.results.tables import Columns
 from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
-from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
+from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.scene.pitch import Revolution as RevolutionSection
 from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import xarray
 
     from loaded_tca.results.revolution import UnderTorque
@@ -84,7 +86,7 @@ HALVES_REVOLUTION_FIGURES: dict[str, Figure] = {
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class DoubleHelicalRevolution(OverTurns, JoinedResult):
+class DoubleHelicalRevolution(OverTurns, OfHalves):
     """Both halves of a double helical pair over a whole revolution, under each torque.
 
     Attributes
@@ -104,7 +106,10 @@ class DoubleHelicalRevolution(OverTurns, JoinedResult):
     COORDINATES: ClassVar = ("torque", "pinion_angle")
     FIGURES: ClassVar = HALVES_REVOLUTION_FIGURES
     FILE: ClassVar = HALVES_REVOLUTION_FILE
+    JSON: ClassVar = "double_helical_revolution.json"
+    TABLES: ClassVar = {"double_helical_revolution.csv": "positions", "double_helical_orders.csv": "orders"}
     PARTS: ClassVar = {"half_a": "half_a_revolution.nc", "half_b": "half_b_revolution.nc"}
+    PART: ClassVar = Revolution
 
     scene: DoubleHelicalScene
     dataset: xarray.Dataset
@@ -118,10 +123,6 @@ class DoubleHelicalRevolution(OverTurns, JoinedResult):
     def halves(self) -> tuple[Revolution, Revolution]:
         """Revolutions of half a and half b."""
         return self.half_a, self.half_b
-
-    def along(self, axis: str) -> list[Any]:
-        """What counts along an axis: halves by their names, too."""
-        return [*HALVES] if axis == "half" else super().along(axis)
 
     def axial_spectrum(self, torque: int) -> Spectrum:
         """Amplitudes [um] of the axial motion of the floating gear over the orders of a gear, as ``spectrum`` has them.
@@ -137,13 +138,17 @@ class DoubleHelicalRevolution(OverTurns, JoinedResult):
         """
         return self.orders_of(MICROMETRES * self.axial_motion[torque])
 
-    @classmethod
-    def parts_beside(cls, path: Path, subject: DoubleHelicalScene) -> dict[str, Any]:
-        """Both revolutions, of the files beside that of the pair."""
-        places = [path.parent / name for name in cls.PARTS.values()]
-        halves = [Revolution.load(place) for place in places]
-        in_the_scene(subject, places, halves, cls.FILE)
-        return dict(zip(cls.PARTS, halves, strict=True))
+    def tables(self) -> dict[str, Callable[[], Columns]]:
+        """Tables of the revolution by their names; that of orders of the transmission error and the motion, too."""
+        return {**super().tables(), "orders": self._orders}
+
+    def _orders(self) -> Columns:
+        orders = orders_table(self)
+        motions = {
+            f"axial_motion_at_{plain(1e-3 * torque, 6)}_Nm_um": self.axial_spectrum(t).amplitude
+            for t, torque in enumerate(self.torque)
+        }
+        return orders._replace(values={**orders.values, **motions})
 
 
 @checked

@@ -5,10 +5,16 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.output.other_results import write_rating, write_revolution, write_stage, write_tribology
     from loaded_tca.output.overview import describe_scene
     from loaded_tca.output.result_fields import describe_results
-    from loaded_tca.output.result_files import write_report
+    from loaded_tca.output.result_files import (
+        write_rating,
+        write_report,
+        write_result,
+        write_revolution,
+        write_stage,
+        write_tribology,
+    )
     from loaded_tca.output.rexs import write_rexs
     from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
     from loaded_tca.output.tables import (
@@ -31,6 +37,7 @@ __all__ = [
     "write_dynamics",
     "write_rating",
     "write_report",
+    "write_result",
     "write_revolution",
     "write_rexs",
     "write_sensitivities",

@@ -138,7 +138,7 @@ def _bearing_rows(scene: Scene) -> Iterator[Row]:
     if not any(scene.have_shafts):
         return
     from loaded_tca.loaded.shaft_lines import shaft_lines  # loaded contacts: scenes without shafts do not need them
-    from loaded_tca.output.other_results import rolling_figures
+    from loaded_tca.output.other_tables import rolling_figures
 
     torques = torques_with_columns(scene.torques)
     by_gear: dict[str, list[ShaftLine]] = {gear: [] for gear in GEARS}

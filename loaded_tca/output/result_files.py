@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from loaded_tca.arguments import checked
 from loaded_tca.results.files import Buffer, FilePath, replace_together
-from loaded_tca.results.summary import without_rounding
+from loaded_tca.results.summary import known, without_rounding
 from loaded_tca.results.tables import contacts_table, positions_table
 
 if TYPE_CHECKING:
@@ -18,9 +18,54 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.results.result import Result
 
 RESULT, SUMMARY, POSITIONS, CONTACTS = "result.nc", "summary.json", "positions.csv", "contacts.csv"
 """Names of the files; the last one is there only where tooth pairs share the load."""
+
+
+@checked
+def write_result(
+    result: Result, directory: FilePath, more: Mapping[str, Buffer] = {}, outdated: Iterable[str] = ()
+) -> tuple[Path, ...]:
+    """Write the files of a result that is no mesh cycle, its key figures and its tables, all files or none.
+
+    Parameters
+    ----------
+    result : Revolution, StageResult, Tribology, Rating or another kind
+    directory : str or path
+        Made if it does not exist.
+    more : mapping of str to bytes
+        Contents of files to write with these, by their names: pictures.
+    outdated : iterable of str
+        Names of files of an older result to remove where this one has none of that name, as those of its rating.
+
+    Returns
+    -------
+    tuple of Path
+        ``revolution.nc``, ``stage.nc`` ... with the files of its parts, ``.json`` with the key figures of each torque,
+        ``.csv`` of each table, and those of ``more``. What is not known is null in JSON, as is a life that does not
+        end, which is inf in CSV.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    texts = {result.JSON: figures_json(result)} if result.JSON else {}
+    tables = result.tables()
+    texts |= {file: csv_table(tables[name]().values) for file, name in result.TABLES.items()}
+    files = {**result.contents(), **{name: text.encode() for name, text in texts.items()}, **more}
+    return replace_together(directory, files, {*outdated} - {*files})
+
+
+write_rating = write_revolution = write_stage = write_tribology = write_result
+
+
+def figures_json(result: Result) -> str:
+    """Return the title, the figures of each torque, null where one is not known, and more of a result as JSON."""
+    rows = [{name: known(value, name) for name, value in figures.items()} for figures in result.key_figures()]
+    return json_text({"title": result.title, "torques": rows, **result.beside_figures()})
 
 
 @checked
@@ -76,13 +121,6 @@ def summary_json(result: MeshCycle) -> str:
         ],
     }
     return json_text(content)
-
-
-def known(value: float, name: str) -> float | None:
-    """Return a number as JSON has it: without what is rounding; None if it is not known."""
-    if isinstance(value, bool | int):
-        return value
-    return without_rounding(value, name) if math.isfinite(value) else None
 
 
 def positions_csv(result: MeshCycle) -> str:

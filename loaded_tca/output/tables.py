@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.output.result_files import cell, csv_table, json_text, known
+from loaded_tca.output.result_files import cell, csv_table, json_text
 from loaded_tca.plain import plain
 from loaded_tca.results.dynamics import OVER_ORDERS, OVER_PITCH, PARTS
 from loaded_tca.results.figures import FIGURES, key_figures
 from loaded_tca.results.files import Buffer, FilePath, Part, netcdf_of, replace_together, variables_of
 from loaded_tca.results.quantities import MAP_PARTS, QUANTITIES
-from loaded_tca.results.summary import shown
+from loaded_tca.results.summary import known, shown
 from loaded_tca.results.tolerances import key_figure_slopes
 from loaded_tca.studies.ranking import main_figures, ranking
 from loaded_tca.studies.rating import safeties_of, shortfall

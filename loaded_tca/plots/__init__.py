@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,6 +14,7 @@ from loaded_tca.loaded.shaft_lines import shaft_lines
 from loaded_tca.plots.at_a_glance import plot_at_a_glance
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
+from loaded_tca.plots.picture import Picture, captions_of, figures_of
 from loaded_tca.plots.pressure_map import (
     plot_contact_patterns,
     plot_pressure_envelope,
@@ -33,7 +33,7 @@ from loaded_tca.plots.sharing import (
     plot_mesh_stiffness,
     plot_path_pressure,
 )
-from loaded_tca.plots.style import chosen_torque, png_of, save_figure
+from loaded_tca.plots.style import chosen_torque, png_of, pngs_of, save_figure
 from loaded_tca.plots.supports import plot_bearing_loads, plot_face_load_on_supports, plot_misalignment
 from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -222,53 +222,38 @@ class Shown(NamedTuple):
     torque: int
     position: int | None
 
-    def map_at(self, place: tuple[int, int] | None) -> Figure | None:
+    def map_at(self, place: tuple[int, int] | None) -> Figure:
         """The pressure map at a position and tooth pair."""
-        return None if place is None else plot_pressure_map(self.result, place[0], self.torque, place[1])
+        assert place is not None  # those without have no picture
+        return plot_pressure_map(self.result, place[0], self.torque, place[1])
 
-    def full_mesh(self) -> Figure | None:
-        """All pairs at one position, if anything is in contact."""
-        peak = self.result.peak_contact(self.torque)
-        return None if peak is None else plot_full_mesh(self.result, self.position, self.torque)
-
-    def map_of_peak(self) -> Figure | None:
-        """That of the peak pressure, or of the position asked for."""
+    @property
+    def peak(self) -> tuple[int, int] | None:
+        """Where the peak pressure is, or that of the position asked for."""
         if self.position is None:
-            return self.map_at(self.result.peak_contact(self.torque))
-        return self.map_at((self.position, int(self.result.peak_column[self.torque, self.position])))
+            return self.result.peak_contact(self.torque)
+        return self.position, int(self.result.peak_column[self.torque, self.position])
 
-    def map_of_edge(self) -> Figure | None:
-        """That of a higher pressure at an edge in another position."""
+    @property
+    def edge(self) -> tuple[int, int] | None:
+        """Where a higher pressure is at an edge in another position."""
         edge = self.result.edge_contact(self.torque)
-        return self.map_at(None if self.position is not None or edge == self.result.peak_contact(self.torque) else edge)
+        return None if self.position is not None or edge == self.result.peak_contact(self.torque) else edge
 
-    def map_of_hertz(self) -> Figure | None:
-        """That of the highest pressure where Hertz holds, unless it does at the peak."""
+    @property
+    def hertz(self) -> tuple[int, int] | None:
+        """Where the highest pressure is for which Hertz holds, unless it does at the peak."""
         peak = self.result.peak_contact(self.torque)
         holds = peak is not None and self.result.hertz_pressure[self.torque][peak] > 0.0
         smooth = self.result.peak_contact(self.torque, where_hertz_holds=True)
-        return self.map_at(None if self.position is not None or holds else smooth)
+        return None if self.position is not None or holds else smooth
 
 
-class Picture(NamedTuple):
-    """A picture of a result.
-
-    Attributes
-    ----------
-    line : str
-        Of the help of the command.
-    caption : str
-        How it is read, in reports.
-    draw : callable
-        None if the result does not have it.
-    """
-
-    line: str
-    caption: str
-    draw: Callable[[Shown], Figure | None]
+def _has_torques(shown: Shown) -> bool:
+    return len(shown.result.torque) > 1
 
 
-ALWAYS = {
+ALWAYS: dict[str, Picture[Shown]] = {
     "contact_path": Picture(
         "where the flanks carry pressure, under the largest torque",
         "Where the flanks carry pressure at some positions, and the unloaded contact points of all.",
@@ -289,21 +274,24 @@ ALWAYS = {
         "at the position of the peak pressure, under the largest torque",
         "At the position of the peak pressure, in the tangent plane. White: no pressure, grey: no "
         "material. The direction across is drawn larger.",
-        Shown.map_of_peak,
+        lambda one: one.map_at(one.peak),
+        lambda one: one.peak is not None,
     ),
     "pressure_map_edge": Picture(
         "only if a contact at another position has the highest edge pressure",
         "At the position of the highest pressure at an edge. At a sharp edge the pressure of single "
         "cells depends on the mesh.",
-        Shown.map_of_edge,
+        lambda one: one.map_at(one.edge),
+        lambda one: one.edge is not None,
     ),
     "pressure_map_hertz": Picture(
         "only if Hertz holds, but not where the peak pressure is",
         "At the highest peak pressure where Hertz holds, with the area after Hertz.",
-        Shown.map_of_hertz,
+        lambda one: one.map_at(one.hertz),
+        lambda one: one.hertz is not None,
     ),
 }
-SHARED = {
+SHARED: dict[str, Picture[Shown]] = {
     "at_a_glance": Picture(
         "pressure, load over the face, transmission error, orders, stress or shares on one sheet, largest torque",
         "What the other pictures show in full, under one torque.",
@@ -352,7 +340,7 @@ SHARED = {
         lambda one: plot_path_pressure(one.result),
     ),
 }
-ROOTS = {
+ROOTS: dict[str, Picture[Shown]] = {
     "root_stress": Picture(
         "over fillet and face of both gears, with its envelopes, under the largest torque",
         "Tangential stress over fillet and face: at the largest tension, and as envelopes over the mesh.",
@@ -361,55 +349,50 @@ ROOTS = {
     "root_stress_cycle": Picture(
         "tension and compression over the positions, all torques",
         "Largest tension and compression at the roots over the positions.",
-        lambda one: plot_root_stress_cycle(one.result) if len(one.result.path) > 1 else None,
+        lambda one: plot_root_stress_cycle(one.result),
+        lambda one: len(one.result.path) > 1,
     ),
     "root_stress_over_torque": Picture(
         "tension and compression over several torques",
         "Largest tension and compression at the roots over the torque.",
-        lambda one: plot_root_stress_over_torque(one.result) if len(one.result.torque) > 1 else None,
+        lambda one: plot_root_stress_over_torque(one.result),
+        _has_torques,
     ),
 }
-ON_SUPPORTS = {
+ON_SUPPORTS: dict[str, Picture[Shown]] = {
     "misalignment": Picture(
         "misalignment of cylindrical gears over the torque, with its band over the pitch",
         "Misalignment of both gears by their supports, counted as the misalignment of the mounting, which it does not "
         "contain.",
-        lambda one: (
-            plot_misalignment(one.result)
-            if len(one.result.torque) > 1 and np.isfinite(one.result.misalignment).any()
-            else None
-        ),
+        lambda one: plot_misalignment(one.result),
+        lambda one: _has_torques(one) and bool(np.isfinite(one.result.misalignment).any()),
     ),
     "bearing_loads": Picture(
         "forces of all elements around the rings of rolling bearings, under the largest torque",
         "Forces of rolling elements around their rings, the first of them on the x axis of the gear's own frame, and "
         "the basic reference rating life.",
-        lambda one: plot_bearing_loads(one.result, one.torque) if one.result.has_rolling_bearings else None,
+        lambda one: plot_bearing_loads(one.result, one.torque),
+        lambda one: one.result.has_rolling_bearings,
     ),
     "shaft": Picture(
         "shafts with gears and bearings, and their deflection in two planes, all torques",
         "Shafts under the normal force where the unloaded flanks touch, without contact.",
-        lambda one: (
-            plot_shafts(shaft_lines(one.result.scene), one.result.scene.title)
-            if any(one.result.scene.have_shafts)
-            else None
-        ),
+        lambda one: plot_shafts(shaft_lines(one.result.scene), one.result.scene.title),
+        lambda one: any(one.result.scene.have_shafts),
     ),
 }
-ON_REQUEST = {
+ON_REQUEST: dict[str, Picture[Shown]] = {
     "contact_patterns": Picture(
         "the highest pressure on the flanks under each of several torques, on one scale",
         "The pressure envelope under each torque, all on one scale of colours.",
-        lambda one: plot_contact_patterns(one.result) if len(one.result.torque) > 1 else None,
+        lambda one: plot_contact_patterns(one.result),
+        _has_torques,
     ),
     "full_mesh": Picture(
         "all tooth pairs at the position of pressure_map.png on the flanks",
         "All tooth pairs in contact at one position, with their shares of the torque.",
-        lambda one: (
-            None
-            if one.result.peak_contact(one.torque) is None
-            else plot_full_mesh(one.result, one.position, one.torque)
-        ),
+        lambda one: plot_full_mesh(one.result, one.position, one.torque),
+        lambda one: one.result.peak_contact(one.torque) is not None,
     ),
 }
 """Pictures that every result has; where tooth pairs share the load; with root stress; on supports; on request alone."""
@@ -417,9 +400,7 @@ PICTURES = (*ALWAYS, *SHARED, *ROOTS, *ON_SUPPORTS)
 """Names of the pictures that a result has, without their ending."""
 MORE_PICTURES = tuple(ON_REQUEST)
 """Names of those that are drawn on request."""
-CAPTIONS = {
-    name: one.caption for group in (ALWAYS, SHARED, ROOTS, ON_SUPPORTS, ON_REQUEST) for name, one in group.items()
-}
+CAPTIONS = captions_of({**ALWAYS, **SHARED, **ROOTS, **ON_SUPPORTS, **ON_REQUEST})
 """How each picture is read."""
 
 
@@ -458,7 +439,7 @@ def plot_all(
         If the result has no such torque or position, or a file cannot be written.
     """
     figures = result_figures(result, torque=torque, position=position, more=more)
-    contents = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
+    contents = pngs_of(figures)
     return replace_together(directory, contents, {f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)} - {*contents})
 
 
@@ -499,5 +480,4 @@ def result_figures(
         (ROOTS, result.has_root_stress),
         (ON_SUPPORTS, result.scene.is_supported),
     )
-    figures = {name: one.draw(shown) for group, wanted in groups if wanted for name, one in group.items()}
-    return {name: figure for name, figure in figures.items() if figure is not None}
+    return {name: figure for group, wanted in groups if wanted for name, figure in figures_of(group, shown).items()}

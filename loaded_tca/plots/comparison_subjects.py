@@ -6,9 +6,8 @@ All pictures of a comparison, by the names of their files.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -33,6 +32,7 @@ from loaded_tca.plots.comparison import (
     under_torque,
 )
 from loaded_tca.plots.flanks import draw_on_pinion, loaded_maps
+from loaded_tca.plots.picture import Picture, figures_of
 from loaded_tca.plots.pressure_map import draw_envelope
 from loaded_tca.plots.root_stress import COMPRESSION, TENSION
 from loaded_tca.plots.sharing import a_pitch_of
@@ -206,54 +206,33 @@ def _has_a_pitch(comparison: Comparison) -> bool:
     return a_pitch_of(*comparison.results.values())[0]
 
 
-class ComparedPicture(NamedTuple):
-    """A picture of a comparison.
-
-    Attributes
-    ----------
-    line : str
-        Of the help of the command.
-    caption : str
-        How it is read, in reports.
-    draw : callable
-        Of a comparison and a torque [N mm].
-    has : callable
-        Whether a comparison has it.
-    """
-
-    line: str
-    caption: str
-    draw: Callable[[Comparison, float | None], Figure]
-    has: Callable[[Comparison], bool] = lambda _: True
-
-
-COMPARISON_PICTURES = {
-    "comparison": ComparedPicture(
+COMPARISON_PICTURES: dict[str, Picture[Comparison]] = {
+    "comparison": Picture(
         "transmission error, its harmonics, stiffness, pressure and load share, over each other",
         "Transmission error absolute and less its mean, its orders, mesh stiffness; peak pressure and share of every "
         "tooth pair at the angle of its own teeth.",
         plot_comparison,
     ),
-    "compared_maps": ComparedPicture(
+    "compared_maps": Picture(
         "pressure maps side by side on one scale",
         "Each at the position of its own peak pressure, in the tangent plane, on one scale of colours and one of "
         "lengths. White: no pressure, grey: no material.",
         plot_compared_maps,
     ),
-    "compared_patterns": ComparedPicture(
+    "compared_patterns": Picture(
         "contact patterns on the pinion's flank side by side on one scale",
         "The highest pressure that each place of the pinion's flank sees over the mesh cycle, on one scale of colours "
         "and one of lengths. Beyond the scale lie pressures at edges, mesh-dependent at sharp ones.",
         plot_compared_patterns,
     ),
-    "compared_face_load": ComparedPicture(
+    "compared_face_load": Picture(
         "load over the face width with K_Hbeta; of two positions or more",
         "Normal force of all tooth pairs per face width, the mean over a pitch. Its largest value over its mean is "
         "K_Hβ.",
         plot_compared_face_load,
         _has_a_pitch,
     ),
-    "compared_root_stress": ComparedPicture(
+    "compared_root_stress": Picture(
         "root stress over the positions; where two results or more have it",
         "Largest tension (solid) and compression (dashed) at the roots over the positions.",
         plot_compared_root_stress,
@@ -286,6 +265,5 @@ def comparison_figures(results: Results, torque: float | None = None, position: 
         If there are fewer than two results, they do not share the torque, or the first has no such position.
     """
     comparison = results if isinstance(results, Comparison) else compare_results(results)
-    draw = {name: picture.draw for name, picture in COMPARISON_PICTURES.items() if picture.has(comparison)}
-    draw["compared_maps"] = partial(plot_compared_maps, position=position)
-    return {name: one(comparison, torque) for name, one in draw.items()}
+    maps = COMPARISON_PICTURES["compared_maps"]._replace(draw=partial(plot_compared_maps, position=position))
+    return figures_of(COMPARISON_PICTURES | {"compared_maps": maps}, comparison, torque)

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from loaded_tca.double_helical import DoubleHelicalResult, DoubleHelicalRevolution
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
-from loaded_tca.plots.revolution import plot_revolution_error, plot_revolution_spectrum
+from loaded_tca.plots.picture import Picture, captions_of, figures_of
+from loaded_tca.plots.revolution import REVOLUTION_PICTURES
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.double_helical import HALVES, SIGNS
 
@@ -140,20 +141,37 @@ def plot_halves_shares(result: DoubleHelicalResult, torque: int | None = None) -
     return _finished(figure, result, f"shares of the halves, pinion torque {shown_torque(result.torque[torque])}")
 
 
-DOUBLE_HELICAL_CAPTIONS = {
-    "halves_face_load": "Normal force per face width along the pinion, mean over a pitch, under the largest torque.",
-    "halves_shares": "Even where a gear floats freely; where both are held the half that stands nearer carries more.",
-    "halves_error": "What both halves excite together: a motion along the axis evens out what they do not share.",
-    "halves_axial_motion": "The mean is the place that the gear finds, the span shuttles with each tooth mesh.",
+def _floats(result: DoubleHelicalResult | DoubleHelicalRevolution) -> bool:
+    return result.scene.geometry.floating != "none"
+
+
+DOUBLE_HELICAL_PICTURES: dict[str, Picture[DoubleHelicalResult]] = {
+    "halves_face_load": Picture(
+        "load over both halves beside each other, under the largest torque; of two positions or more",
+        "Normal force per face width along the pinion, mean over a pitch, under the largest torque.",
+        plot_halves_face_load,
+        lambda result: result.dataset.sizes["position"] > 1,
+    ),
+    "halves_shares": Picture(
+        "shares of both halves over the pitch, under the largest torque",
+        "Even where a gear floats freely; where both are held the half that stands nearer carries more.",
+        plot_halves_shares,
+    ),
+    "halves_error": Picture(
+        "transmission error of both halves together less its mean, all torques",
+        "What both halves excite together: a motion along the axis evens out what they do not share.",
+        plot_halves_error,
+    ),
+    "halves_axial_motion": Picture(
+        "motion of the gear along its axis over the pitch, all torques; if a gear floats",
+        "The mean is the place that the gear finds, the span shuttles with each tooth mesh.",
+        plot_halves_axial_motion,
+        _floats,
+    ),
 }
+"""Pictures of ``loaded-tca run`` by the names of their files."""
+DOUBLE_HELICAL_CAPTIONS = captions_of(DOUBLE_HELICAL_PICTURES)
 """How each picture is read, in reports."""
-DOUBLE_HELICAL_PICTURES: dict[str, Callable[[DoubleHelicalResult], Figure]] = {
-    "halves_face_load": plot_halves_face_load,
-    "halves_shares": plot_halves_shares,
-    "halves_error": plot_halves_error,
-    "halves_axial_motion": plot_halves_axial_motion,
-}
-"""Name of the file of ``loaded-tca run`` -> how it is drawn."""
 
 
 def double_helical_figures(result: DoubleHelicalResult) -> dict[str, Figure]:
@@ -168,19 +186,20 @@ def double_helical_figures(result: DoubleHelicalResult) -> dict[str, Figure]:
     dict of str to matplotlib.figure.Figure
         By the names of ``DOUBLE_HELICAL_PICTURES``.
     """
-    without = {
-        "halves_axial_motion": result.scene.geometry.floating == "none",
-        "halves_face_load": result.dataset.sizes["position"] == 1,
-    }
-    return {name: draw(result) for name, draw in DOUBLE_HELICAL_PICTURES.items() if not without.get(name)}
+    return figures_of(DOUBLE_HELICAL_PICTURES, result)
 
 
-HALVES_REVOLUTION_PICTURES: dict[str, Callable[[DoubleHelicalRevolution], Figure]] = {
-    "halves_revolution_error": plot_revolution_error,
-    "halves_revolution_spectrum": plot_revolution_spectrum,
-    "halves_revolution_axial_motion": plot_halves_axial_motion,
+HALVES_REVOLUTION_PICTURES: dict[str, Picture[DoubleHelicalRevolution]] = {
+    "halves_revolution_error": REVOLUTION_PICTURES["revolution_error"],
+    "halves_revolution_spectrum": REVOLUTION_PICTURES["revolution_spectrum"],
+    "halves_revolution_axial_motion": Picture(
+        "motion of the gear along its axis over the revolution, all torques; if a gear floats",
+        "How far apex runout and pitch deviations make the floating gear shuttle.",
+        plot_halves_axial_motion,
+        _floats,
+    ),
 }
-"""Name of the file of ``loaded-tca revolution`` of a double helical pair -> how it is drawn."""
+"""Pictures of ``loaded-tca revolution`` of a double helical pair by the names of their files."""
 
 
 def halves_revolution_figures(revolution: DoubleHelicalRevolution) -> dict[str, Figure]:
@@ -195,6 +214,4 @@ def halves_revolution_figures(revolution: DoubleHelicalRevolution) -> dict[str, 
     dict of str to matplotlib.figure.Figure
         By the names of ``HALVES_REVOLUTION_PICTURES``.
     """
-    moves = revolution.scene.geometry.floating != "none"
-    pictures = HALVES_REVOLUTION_PICTURES.items()
-    return {name: draw(revolution) for name, draw in pictures if moves or draw is not plot_halves_axial_motion}
+    return figures_of(HALVES_REVOLUTION_PICTURES, revolution)

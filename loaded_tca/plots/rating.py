@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import methodcaller
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,11 +13,10 @@ from loaded_tca.arrays import Array
 from loaded_tca.double_helical.rating import DoubleHelicalRating
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
-from loaded_tca.plots.safety import SAFETY_PICTURES, RatingPicture
+from loaded_tca.plots.picture import Picture, figures_of
+from loaded_tca.plots.safety import SAFETY_PICTURES
 from loaded_tca.plots.style import DISTINCT_COLOURS, NO_MATERIAL
-from loaded_tca.rating import Rating
 from loaded_tca.rating.lives import Endurance
-from loaded_tca.rating.places import is_shown
 from loaded_tca.rating.rating import WORDS, OfCases
 from loaded_tca.rating.spectrum import OfSpectrum
 
@@ -171,22 +172,22 @@ def _finished(figure: Figure, panels: list[Axes], rating: OfCases, what: str) ->
     return figure
 
 
-RATING_PICTURES = {
+RATING_PICTURES: dict[str, Picture[OfCases]] = {
     **SAFETY_PICTURES,
-    "rating_sn_curves": RatingPicture(
+    "rating_sn_curves": Picture(
         "S-N curves with the load cases on them, a panel for each kind of failure",
         "S-N curves after ISO 6336-6 of all gears, with each load case at its load cycles in the required life and at "
         "its stress times the required safety: points above their curve use up more than the life. Where the strength "
         "differs from case to case, stresses are scaled to that of the curve.",
-        "damage",
         plot_sn_curves,
+        methodcaller("has", "damage"),
     ),
-    "rating_damage": RatingPicture(
+    "rating_damage": Picture(
         "damage of the load cases over their torques",
         "Damage of each load case in the required life at the required safeties. Under a load spectrum "
         "the damages add up, and 1 is the end of the life; without a load spectrum each torque stands for itself.",
-        "damage",
         plot_damage,
+        methodcaller("has", "damage"),
     ),
 }
 """Pictures of the command, by the names of their files."""
@@ -205,11 +206,4 @@ def rating_figures(rating: OfCases) -> dict[str, Figure]:
         By the names of ``RATING_PICTURES``; those of places where a case of a pair has these. Of a double helical pair
         none: its halves are ratings, which have them.
     """
-    if isinstance(rating, DoubleHelicalRating):
-        return {}
-    shown = isinstance(rating, Rating) and bool(is_shown(rating).any())
-    return {
-        name: picture.draw(rating)
-        for name, picture in RATING_PICTURES.items()
-        if rating.has(picture.needs) and (shown or not picture.of_places)
-    }
+    return {} if isinstance(rating, DoubleHelicalRating) else figures_of(RATING_PICTURES, rating)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from loaded_tca.errors import require
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
+from loaded_tca.plots.picture import Picture, figures_of
 from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.revolution import OverTurns, Revolution
 from loaded_tca.results.summary import shown_torque
@@ -21,8 +22,6 @@ MOST_ORDERS = 3.5
 """Mesh orders that are shown."""
 BESIDE_MESH = 0.3
 """Pitches before and after the mesh of a tooth pair that are shown."""
-WATERFALL = "revolution_waterfall"
-"""Picture that needs several torques."""
 LEAST_SHOWN = 1e-4
 """Amplitude [um] below which orders are not told from each other."""
 
@@ -225,11 +224,28 @@ def plot_revolution_waterfall(revolution: Revolution) -> Figure:
     return figure
 
 
-REVOLUTION_PICTURES: dict[str, Callable[[Revolution], Figure]] = {
-    "revolution_error": plot_revolution_error,
-    "revolution_spectrum": plot_revolution_spectrum,
-    "revolution_shares": plot_revolution_shares,
-    WATERFALL: plot_revolution_waterfall,
+REVOLUTION_PICTURES: dict[str, Picture[Any]] = {
+    "revolution_error": Picture(
+        "transmission error over the revolution, rigid and under each torque",
+        "Above without load; below under each torque, less its mean.",
+        plot_revolution_error,
+    ),
+    "revolution_spectrum": Picture(
+        "its orders under the largest torque",
+        "Orders of the rotation of both gears with their sidebands, and those of the tooth mesh.",
+        plot_revolution_spectrum,
+    ),
+    "revolution_shares": Picture(
+        "share of every tooth as a band, highest pressure of every tooth",
+        "The band holds the shares of all tooth pairs over their mesh.",
+        plot_revolution_shares,
+    ),
+    "revolution_waterfall": Picture(
+        "orders over the torque; with two torques or more",
+        "Orders of the transmission error under each torque.",
+        plot_revolution_waterfall,
+        lambda revolution: len(revolution.torque) > 1,
+    ),
 }
 """Pictures of the command, by the names of their files."""
 
@@ -246,5 +262,4 @@ def revolution_figures(revolution: Revolution) -> dict[str, Figure]:
     dict of str to matplotlib.figure.Figure
         By the names of ``REVOLUTION_PICTURES``.
     """
-    several = len(revolution.torque) > 1
-    return {name: draw(revolution) for name, draw in REVOLUTION_PICTURES.items() if several or name != WATERFALL}
+    return figures_of(REVOLUTION_PICTURES, revolution)

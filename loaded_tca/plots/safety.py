@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from operator import methodcaller
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib import colormaps
@@ -20,15 +22,24 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks
+from loaded_tca.plots.picture import Picture
 from loaded_tca.plots.pressure_map import FIELDS, POINTS_OF_A_FIELD
 from loaded_tca.plots.root_stress import GEAR_COLOURS
 from loaded_tca.plots.style import ACCENT, COLOURS, DISTINCT_COLOURS, load, torque_label
+from loaded_tca.rating import Rating
 from loaded_tca.rating.lives import COAST, FLANK, LOCAL_FLANK, LOCAL_ROOT, ROOT
-from loaded_tca.rating.places import FlankSafeties, RootSafeties, flank_safeties, root_safeties, torque_of, worst_case
+from loaded_tca.rating.places import (
+    FlankSafeties,
+    RootSafeties,
+    flank_safeties,
+    is_shown,
+    root_safeties,
+    torque_of,
+    worst_case,
+)
 from loaded_tca.rating.spectrum import OfSpectrum
 
 if TYPE_CHECKING:
-    from loaded_tca.rating import Rating
     from loaded_tca.rating.rating import OfCases
 
 BAR_COLOURS = (*GEAR_COLOURS, DISTINCT_COLOURS[5])
@@ -279,42 +290,32 @@ def _draw_fillets(axes: Axes, one: RootSafeties, scale: Normalize, colours: Colo
     _mark(axes, np.array([x, one.axial[at]]), float(one.safety[at]))
 
 
-class RatingPicture(NamedTuple):
-    """A picture of a rating: its line of the help, its caption in reports, a number that it needs, what draws it.
-
-    Pictures of places need a case that has them, too.
-    """
-
-    line: str
-    caption: str
-    needs: str
-    draw: Callable[[Any], Figure]
-    of_places: bool = False
+def _has_places(name: str, rating: OfCases) -> bool:
+    """Whether a case of a pair has places with this safety."""
+    return rating.has(name) and isinstance(rating, Rating) and bool(is_shown(rating).any())
 
 
-SAFETY_PICTURES = {
-    "safeties": RatingPicture(
+SAFETY_PICTURES: dict[str, Picture[OfCases]] = {
+    "safeties": Picture(
         "safeties of the standard and local safeties beside the required ones",
         "Of each gear the smallest safety of all cases, or the safety under all bins of a load spectrum together. "
         "Where the local safety is below that of the standard, the contact of the analysis carries its load less "
         "evenly than the standard assumes, or the local pressure lacks Z_eps.",
-        "flank_safety",
         plot_safeties,
+        methodcaller("has", "flank_safety"),
     ),
-    "flank_safety": RatingPicture(
+    "flank_safety": Picture(
         "local safety against pitting over both flanks, in the case that decides",
         "The smallest safety that each place of the flanks has over the mesh cycle.",
-        "local_flank_safety",
         plot_flank_safety,
-        of_places=True,
+        partial(_has_places, "local_flank_safety"),
     ),
-    "root_safety": RatingPicture(
+    "root_safety": Picture(
         "local safety against breakage over fillet and face of both gears, in the case that decides",
         "Safety with the extreme stresses of a whole turn at each place; below, its smallest values along the face of "
         "each gear.",
-        "local_root_safety",
         plot_root_safety,
-        of_places=True,
+        partial(_has_places, "local_root_safety"),
     ),
 }
 """Name -> picture of safeties that the command draws."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
+from loaded_tca.plots.picture import Picture, captions_of, figures_of
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.stages import StageResult, rebalanced
 
@@ -237,27 +236,44 @@ def plot_stage_orders(result: StageResult, torque: int | None = None) -> Figure:
     return _title(figure, result, shown)
 
 
-STAGE_CAPTIONS = {
-    "stage_phases": "Planets in phase have the same direction. Between both dials: how far the mesh of a planet with "
-    "the ring is ahead of its mesh with the sun.",
-    "stage_shares": "Share of every planet in the torque of the sun; the largest over an even share is K_gamma.",
-    "stage_load_factor": "K_gamma as pin errors grow. Where they make it more than 1 it falls with the torque: errors "
-    "stay, deflections grow. Three planets about a floating sun stay at 1, whatever the pins.",
-    "stage_sun_orbit": "How far the sun goes to even the shares out, in the frame of the carrier.",
-    "stage_error": "Where the phases cancel orders, the planets together excite less than one alone.",
-    "stage_orders": "Amplitudes of the stage and of one planet alone; unequal shares bring orders back that equal "
-    "planets cancel.",
+STAGE_PICTURES: dict[str, Picture[StageResult]] = {
+    "stage_phases": Picture(
+        "phases of the meshes of all planets",
+        "Planets in phase have the same direction. Between both dials: how far the mesh of a planet with "
+        "the ring is ahead of its mesh with the sun.",
+        plot_stage_phases,
+    ),
+    "stage_shares": Picture(
+        "share of every planet, under the largest torque",
+        "Share of every planet in the torque of the sun; the largest over an even share is K_gamma.",
+        plot_stage_shares,
+    ),
+    "stage_load_factor": Picture(
+        "K_gamma over the pin errors, all torques",
+        "K_gamma as pin errors grow. Where they make it more than 1 it falls with the torque: errors "
+        "stay, deflections grow. Three planets about a floating sun stay at 1, whatever the pins.",
+        plot_stage_load_factor,
+    ),
+    "stage_sun_orbit": Picture(
+        "motion of the sun's axis, all torques; if the sun is not held rigid",
+        "How far the sun goes to even the shares out, in the frame of the carrier.",
+        plot_stage_sun_orbit,
+        lambda result: bool(result.sun_motion.any()),
+    ),
+    "stage_error": Picture(
+        "transmission error of the stage beside that of one planet, under the largest torque",
+        "Where the phases cancel orders, the planets together excite less than one alone.",
+        plot_stage_error,
+    ),
+    "stage_orders": Picture(
+        "mesh orders of these transmission errors",
+        "Amplitudes of the stage and of one planet alone; unequal shares bring orders back that equal planets cancel.",
+        plot_stage_orders,
+    ),
 }
+"""Pictures of ``loaded-tca stage`` by the names of their files."""
+STAGE_CAPTIONS = captions_of(STAGE_PICTURES)
 """How each picture is read, in reports."""
-STAGE_PICTURES: dict[str, Callable[[StageResult], Figure]] = {
-    "stage_phases": plot_stage_phases,
-    "stage_shares": plot_stage_shares,
-    "stage_load_factor": plot_stage_load_factor,
-    "stage_sun_orbit": plot_stage_sun_orbit,
-    "stage_error": plot_stage_error,
-    "stage_orders": plot_stage_orders,
-}
-"""Name of the file of ``loaded-tca stage`` -> how it is drawn."""
 
 
 def stage_figures(result: StageResult) -> dict[str, Figure]:
@@ -272,5 +288,4 @@ def stage_figures(result: StageResult) -> dict[str, Figure]:
     dict of str to matplotlib.figure.Figure
         By the names of ``STAGE_PICTURES``.
     """
-    moves = bool(result.sun_motion.any())
-    return {name: draw(result) for name, draw in STAGE_PICTURES.items() if moves or draw is not plot_stage_sun_orbit}
+    return figures_of(STAGE_PICTURES, result)

@@ -10,7 +10,7 @@ import math
 import struct
 import textwrap
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -92,6 +92,11 @@ def png_of(figure: Figure, dots_per_inch: float = DOTS_PER_INCH, largest: int = 
     if len(content) <= largest:
         return content
     return _png_content(*_with_palette(pixels), dots_per_inch=dots_per_inch)
+
+
+def pngs_of(figures: Mapping[str, Figure]) -> dict[str, bytes]:
+    """PNG files of figures, by their names."""
+    return {f"{name}.png": png_of(figure) for name, figure in figures.items()}
 
 
 def _png_content(

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from collections.abc import Iterable
+from operator import methodcaller
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -17,6 +17,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks, draw_segments
+from loaded_tca.plots.picture import Picture, figures_of
 from loaded_tca.plots.sharing import OVER_THE_PATH, over_the_path
 from loaded_tca.plots.style import ACCENT, COLOURS, DISTINCT_COLOURS, load, loads, range_of_positions, torque_styles
 from loaded_tca.tribology import Tribology
@@ -271,20 +272,7 @@ def tribology_figures(tribology: Tribology) -> dict[str, Figure]:
     dict of str to matplotlib.figure.Figure
         By the names of ``TRIBOLOGY_PICTURES``.
     """
-    drawn = {}
-    for name, picture in TRIBOLOGY_PICTURES.items():
-        if tribology.knows(picture.needs):
-            drawn[name] = picture.draw(tribology)
-    return drawn
-
-
-class TribologyPicture(NamedTuple):
-    """A picture of a tribology: its line of the help, its caption in reports, a number that it needs, what draws it."""
-
-    line: str
-    caption: str
-    needs: str
-    draw: Callable[[Tribology], Figure]
+    return figures_of(TRIBOLOGY_PICTURES, tribology)
 
 
 def _chosen(tribology: Tribology, speed: int | None, *, fastest: bool) -> int:
@@ -366,54 +354,54 @@ def _labelled(label: str, unit: str) -> str:
     return label if unit == "1" else f"{label} [{unit}]"
 
 
-TRIBOLOGY_PICTURES: dict[str, TribologyPicture] = {
-    "contact_temperature": TribologyPicture(
+TRIBOLOGY_PICTURES: dict[str, Picture[Tribology]] = {
+    "contact_temperature": Picture(
         "contact temperature over the path of contact, bulk temperature, all torques",
         "The hottest slice at each place of the path of contact; dashed: bulk temperature.",
-        "contact_temperature",
         plot_contact_temperature,
+        methodcaller("knows", "contact_temperature"),
     ),
-    "film_ratio": TribologyPicture(
+    "film_ratio": Picture(
         "least film ratio over the path of contact with its limit, all torques",
         "Film thickness over the mean roughness, the least at each place of the path of contact.",
-        "film_ratio",
         plot_film_ratio,
+        methodcaller("knows", "film_ratio"),
     ),
-    "flank_flash_temperature": TribologyPicture(
+    "flank_flash_temperature": Picture(
         "flash temperature on both flanks, under the largest torque",
         "Flash temperature of the slices of all positions, where they lie on the flanks.",
-        "flash_temperature",
         lambda one: plot_over_flank(one, "flash_temperature"),
+        methodcaller("knows", "flash_temperature"),
     ),
-    "flank_film_thickness": TribologyPicture(
+    "flank_film_thickness": Picture(
         "film thickness on both flanks, under the largest torque",
         "Film thickness of the slices of all positions, the thinnest on top.",
-        "film_thickness",
         lambda one: plot_over_flank(one, "film_thickness"),
+        methodcaller("knows", "film_thickness"),
     ),
-    "flank_friction_power": TribologyPicture(
+    "flank_friction_power": Picture(
         "friction power on both flanks, under the largest torque",
         "Friction power per length of the contacts of all positions.",
-        "friction_power",
         lambda one: plot_over_flank(one, "friction_power"),
+        methodcaller("knows", "friction_power"),
     ),
-    "sliding_velocities": TribologyPicture(
+    "sliding_velocities": Picture(
         "rolling velocities of both gears and sliding velocity over the path of contact",
         "Velocities of both surfaces across the contact; they are alike at the pitch point.",
-        "sliding_velocity",
         plot_sliding_velocities,
+        methodcaller("knows", "sliding_velocity"),
     ),
-    "efficiency": TribologyPicture(
+    "efficiency": Picture(
         "efficiency of the mesh over speed and torque",
         "1 minus the ratio of the friction power of the teeth to the power at the pinion.",
-        "efficiency",
         plot_efficiency,
+        methodcaller("knows", "efficiency"),
     ),
-    "friction_power": TribologyPicture(
+    "friction_power": Picture(
         "friction power over the pitch, all torques",
         "Friction power of all tooth pairs together over the positions.",
-        "friction_power",
         plot_friction_power,
+        methodcaller("knows", "friction_power"),
     ),
 }
 """Name -> picture of a tribology that the command draws."""

@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -109,6 +109,8 @@ class OfCases(Result):
 
     KIND: ClassVar = RATING
     WHAT: ClassVar = "a rating"
+    JSON: ClassVar = "rating.json"
+    TABLES: ClassVar = {"rating.csv": "figures"}
     COORDINATES: ClassVar = ("torque",)
     MEMBERS: ClassVar[tuple[str, ...]] = GEARS
 
@@ -179,6 +181,10 @@ class OfCases(Result):
     def tables(self) -> dict[str, Callable[[], Columns]]:
         """The one table that there is, a row for each load case."""
         return {"figures": super().tables()["figures"]}
+
+    def beside_figures(self) -> dict[str, Any]:
+        """Notes and warnings."""
+        return {"notes": self.notes(), **super().beside_figures()}
 
     def stored(self) -> xarray.Dataset:
         """The dataset as files have it: gears by their place in ``MEMBERS``, from 0; kinds of failure likewise."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import nan
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS
 from loaded_tca.rating.rating import WORDS, OfCases, Rating, all_figures
 from loaded_tca.rating.roots import REVERSED
 from loaded_tca.results.figure import labelled
-from loaded_tca.results.summary import shown, summary_of
+from loaded_tca.results.summary import known, shown, summary_of
 
 if TYPE_CHECKING:
     from loaded_tca.rating.inputs import CommonInputs
@@ -112,6 +112,21 @@ class OfSpectrum(OfCases):
                     cells = (shown(number.factor(head) * value, head) for value in self.values(name)[:, n])
                     rows.append((labelled(head, f"{WORDS[mode]}: {number.text}"), *cells))
         return rows
+
+    def spectrum_figures(self) -> dict[str, Any]:
+        """What all bins do together: hours, and for each kind of failure of each gear its numbers; None: not known."""
+        rows = self.key_figures()[0]
+        heads = [number.head(name) for name, number in self.NUMBERS.items() if number.dims == OF_SPECTRUM]
+        together = {
+            f"{gear}_{mode}": {head: known(rows[f"{gear}_{mode}_{head}"], head) for head in heads}
+            for gear in self.MEMBERS
+            for mode in self.modes
+        }
+        return {"required_life_h": self.life_required, "bins": len(self.torque), **together}
+
+    def beside_figures(self) -> dict[str, Any]:
+        """All bins together, notes and warnings."""
+        return {"spectrum": self.spectrum_figures(), **super().beside_figures()}
 
     def most_damaging(self, count: int = MOST_SHOWN) -> list[int]:
         """Indices of the bins that have the largest parts of the damage of any kind, in their order."""

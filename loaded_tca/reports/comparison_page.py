@@ -10,6 +10,7 @@ import numpy as np
 
 from loaded_tca.plots import COMPARISON_PICTURES, comparison_figures
 from loaded_tca.plots.comparison import title_of
+from loaded_tca.plots.picture import captions_of
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of
 from loaded_tca.reports.result_page import explained
@@ -43,7 +44,6 @@ def comparison_content(comparison: Comparison, torque: float | None = None) -> d
     results, at = comparison.results, comparison.index_of(torque)
     title = title_of(results)
     warned = [f"{name}: {sentence}" for name, result in results.items() for sentence in result.warnings or ()]
-    captions = {name: picture.caption for name, picture in COMPARISON_PICTURES.items()}
     torques = _torques(comparison, at)
     return {
         "title": title,
@@ -61,7 +61,7 @@ def comparison_content(comparison: Comparison, torque: float | None = None) -> d
         "under": shown_torque(float(comparison.torque[at])),
         "unknown": [name for name, result in results.items() if result.warnings is None],
         "warnings": explained(warned),
-        "pictures": pictures_of(comparison_figures(comparison, torque), captions, title),
+        "pictures": pictures_of(comparison_figures(comparison, torque), captions_of(COMPARISON_PICTURES), title),
         "scene_toml": next(iter(results.values())).scene.to_toml(),
     }
 

@@ -209,7 +209,7 @@ PICTURES: dict[type[Result], Callable[[Any], Figure | None]] = {
     DoubleHelicalResult: plot_halves_shares,
     Rating: plot_safeties,
     Tribology: lambda tribology: next(
-        (one.draw(tribology) for one in TRIBOLOGY_PICTURES.values() if tribology.knows(one.needs)), None
+        (draw(tribology) for draw in TRIBOLOGY_PICTURES.values() if draw.has(tribology)), None
     ),
 }
 """Kind of result -> its picture."""

@@ -12,6 +12,7 @@ from loaded_tca.double_helical.rating import double_helical_rating_of
 from loaded_tca.errors import InputError
 from loaded_tca.plain import plain
 from loaded_tca.plots import RATING_PICTURES, rating_figures
+from loaded_tca.plots.picture import captions_of
 from loaded_tca.rating import rating_of
 from loaded_tca.rating.findings import ALL_FAILURES, findings, of_all_bins
 from loaded_tca.rating.quantities import OF_GEARS, OF_MODES, OF_SPECTRUM
@@ -111,7 +112,6 @@ def _of_stage(rating: StageRating) -> dict[str, Any]:
 
 def _told(rating: OfCases, decisive: tuple[str, ...], tables: Sequence[Table]) -> dict[str, Any]:
     """What templates take of a rating, with sentences on what decides."""
-    captions = {name: picture.caption for name, picture in RATING_PICTURES.items()}
     return {
         "refused": (),
         "about": rating.scope.rpartition("; ")[0],
@@ -120,7 +120,7 @@ def _told(rating: OfCases, decisive: tuple[str, ...], tables: Sequence[Table]) -
         "tables": tables,
         "notes": [note for note in rating.notes() if note not in decisive],
         "warnings": rating.warnings or (),
-        "pictures": pictures_of(rating_figures(rating), captions, rating.title),
+        "pictures": pictures_of(rating_figures(rating), captions_of(RATING_PICTURES), rating.title),
     }
 
 

@@ -19,6 +19,7 @@ from loaded_tca.plots import (
     stage_figures,
     tribology_figures,
 )
+from loaded_tca.plots.picture import captions_of
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
 from loaded_tca.reports.rating_page import rating_content, stage_rating_content
@@ -86,12 +87,11 @@ def _lubrication(result: MeshCycle) -> dict[str, Any] | None:
     tribology = tribology_of(result, warn=False)
     rows = tribology.rows(tribology.key_figures())
     lacking = (f"not known: {sentence}" for sentence in unknown_in_words(tribology))
-    captions = {name: picture.caption for name, picture in TRIBOLOGY_PICTURES.items()}
     return {
         "about": tribology.scope,
         "table": Table(tuple(rows[1:]), rows[0]),
         "notes": [*lacking, *tribology.warnings],
-        "pictures": pictures_of(tribology_figures(tribology), captions, result.scene.title),
+        "pictures": pictures_of(tribology_figures(tribology), captions_of(TRIBOLOGY_PICTURES), result.scene.title),
     }
 
 

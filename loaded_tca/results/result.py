@@ -65,6 +65,10 @@ class Result(InNotebooks, Numbers, ABC):
         First line of the summary of what has no title.
     SUBJECT : str
         Attribute that was analysed: its title, and its text in files.
+    FILE, JSON : str
+        Names of its own file and of that of its key figures in a directory; none of what has no such file.
+    TABLES : mapping of str to str
+        Names of the files of its tables there -> names of ``tables``.
     FIGURES : mapping
         Key figures by their names; numbers under a torque that have a label follow them.
     """
@@ -73,6 +77,9 @@ class Result(InNotebooks, Numbers, ABC):
     WHAT: ClassVar[str]
     TITLE: ClassVar[str]
     SUBJECT: ClassVar[str] = "scene"
+    FILE: ClassVar[str] = ""
+    JSON: ClassVar[str] = ""
+    TABLES: ClassVar[Mapping[str, str]] = {}
     FIGURES: ClassVar[Mapping[str, Figure]] = {}
 
     @property
@@ -152,7 +159,8 @@ class Result(InNotebooks, Numbers, ABC):
         table : str, optional
             ``"figures"``: key figures, a row for each torque; ``"positions"``: a row for each torque and position,
             the default where the result has them. Mesh cycles with load sharing have ``"contacts"``, a row for each
-            tooth pair under load, too; revolutions ``"teeth"`` and ``"orders"``, tribology ``"slices"``.
+            tooth pair under load, too; revolutions ``"teeth"`` and ``"orders"``, those of double helical pairs
+            ``"orders"``, tribology ``"slices"``.
 
         Returns
         -------
@@ -243,6 +251,19 @@ class Result(InNotebooks, Numbers, ABC):
         """The dataset as files have it."""
         return self.dataset
 
+    def contents(self) -> dict[str, Buffer]:
+        """Names and contents of the files in a directory from which the result is read again."""
+        return {self.FILE: self.to_netcdf()} if self.FILE else {}
+
+    @classmethod
+    def file_names(cls) -> tuple[str, ...]:
+        """Names of its own file, of that of its key figures and of those of its tables."""
+        return tuple(filter(None, (cls.FILE, cls.JSON, *cls.TABLES)))
+
+    def beside_figures(self) -> dict[str, Any]:
+        """What the file of the key figures has beside them; None: not known."""
+        return {"warnings": self.warnings or ()}
+
 
 class AnalysisResult(Result):
     """Result of an analysis, which its file holds whole, with the text of what was analysed.
@@ -314,14 +335,27 @@ class JoinedResult(AnalysisResult):
 
     Attributes
     ----------
-    FILE : str
-        Name of its own file.
     PARTS : mapping of str to str
         Attributes that are results -> names of their files.
+    PART : type
+        Kind of these.
     """
 
-    FILE: ClassVar[str]
     PARTS: ClassVar[Mapping[str, str]]
+    PART: ClassVar[type[AnalysisResult]]
+
+    @classmethod
+    def parts_beside(cls, path: Path, subject: Any) -> dict[str, Any]:
+        """The parts, of the files beside that of the result."""
+        places = [path.parent / name for name in cls.PARTS.values()]
+        parts = [cls.PART.load(place) for place in places]
+        cls.require_parts(subject, places, parts)
+        return dict(zip(cls.PARTS, parts, strict=True))
+
+    @classmethod
+    @abstractmethod
+    def require_parts(cls, subject: Any, places: Sequence[Path], parts: Sequence[Any]) -> None:
+        """Refuse parts that are not those of what was analysed; InputError with the place of the file."""
 
     @checked
     def save(self, directory: FilePath) -> tuple[Path, ...]:
@@ -336,9 +370,7 @@ class JoinedResult(AnalysisResult):
 
     def contents(self) -> dict[str, Buffer]:
         """Names and contents of the files that ``save`` writes."""
-        return {self.FILE: self.to_netcdf()} | {
-            file: getattr(self, name).to_netcdf() for name, file in self.PARTS.items()
-        }
+        return super().contents() | {file: getattr(self, name).to_netcdf() for name, file in self.PARTS.items()}
 
     @classmethod
     @checked

@@ -309,6 +309,9 @@ class Revolution(OverTurns):
     KIND: ClassVar = REVOLUTION
     WHAT: ClassVar = "a whole revolution"
     TITLE: ClassVar = "Whole revolution"
+    FILE: ClassVar = "revolution.nc"
+    JSON: ClassVar = "revolution.json"
+    TABLES: ClassVar = {"revolution.csv": "positions", "teeth.csv": "teeth", "orders.csv": "orders"}
     NUMBERS: ClassVar = REVOLUTION_QUANTITIES
     COORDINATES: ClassVar = COORDINATES
     FIGURES: ClassVar = FIGURES

@@ -130,6 +130,13 @@ def without_rounding(value: float, name: str) -> float:
     return value if exact or not abs(value) < ROUNDING else 0.0
 
 
+def known(value: float, name: str) -> float | None:
+    """Return a number as JSON has it: without what is rounding; None if it is not known."""
+    if isinstance(value, bool | int):
+        return value
+    return without_rounding(value, name) if math.isfinite(value) else None
+
+
 def shown(value: float, name: str) -> str:
     """Return a figure as summaries show it: four digits, all those before the point; a dash for what is not known.
 

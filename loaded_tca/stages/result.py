@@ -182,7 +182,10 @@ class StageResult(JoinedResult):
     COORDINATES: ClassVar = COORDINATES
     FIGURES: ClassVar = FIGURES
     FILE: ClassVar = STAGE_FILE
+    JSON: ClassVar = "stage.json"
+    TABLES: ClassVar = {"stage.csv": "positions"}
     PARTS: ClassVar = {"sun_mesh": "sun_mesh.nc", "ring_mesh": "ring_mesh.nc"}
+    PART: ClassVar = MeshCycle
     ABOUT: ClassVar = (*JoinedResult.ABOUT, "mesh_warnings")
 
     stage: Stage
@@ -255,6 +258,26 @@ class StageResult(JoinedResult):
 
     notes = findings
 
+    def beside_figures(self) -> dict[str, Any]:
+        """Phases, orders, findings and warnings."""
+        orders = [
+            {
+                "order": order.order,
+                "stage_um": order.stage,
+                "one_path_um": order.one_path,
+                "cancelled_in_torsion": order.torsion_cancels,
+                "cancelled_in_translation": order.translation_cancels,
+            }
+            for order in self.orders()
+        ]
+        return {
+            "sun_mesh_phase": self.sun_mesh_phase.tolist(),
+            "ring_mesh_phase": self.ring_mesh_phase.tolist(),
+            "orders_under_the_last_torque": orders,
+            "findings": self.findings(),
+            **super().beside_figures(),
+        }
+
     @property
     def scope(self) -> str:
         """Teeth, places of the planets and positions, in words."""
@@ -324,12 +347,9 @@ class StageResult(JoinedResult):
         return {}
 
     @classmethod
-    def parts_beside(cls, path: Path, subject: Stage) -> dict[str, Any]:
-        """Both mesh cycles, of the files beside that of the stage."""
-        places = [path.parent / name for name in cls.PARTS.values()]
-        cycles = [MeshCycle.load(place) for place in places]
-        for place, cycle, scene in zip(places, cycles, (subject.sun_scene, subject.ring_scene), strict=True):
+    def require_parts(cls, subject: Stage, places: Sequence[Path], parts: Sequence[MeshCycle]) -> None:
+        """Refuse mesh cycles of another stage, whatever their strengths and cells."""
+        for place, cycle, scene in zip(places, parts, (subject.sun_scene, subject.ring_scene), strict=True):
             gears = {gear: replace(getattr(cycle.scene, gear), strength=None) for gear in GEARS}  # of rating alone
             if replace(cycle.scene, analysis=scene.analysis, **gears) != scene:
                 raise InputError(f"{place}: the mesh cycle of another stage than {STAGE_FILE} beside it")
-        return dict(zip(cls.PARTS, cycles, strict=True))

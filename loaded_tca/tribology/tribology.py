@@ -79,6 +79,8 @@ class Tribology(Result):
     KIND: ClassVar = TRIBOLOGY
     WHAT: ClassVar = "tribology"
     TITLE: ClassVar = "Tribology"
+    FILE: ClassVar = "tribology.nc"
+    TABLES: ClassVar = {"tribology.csv": "figures", "tribology_slices.csv": "slices"}
     NUMBERS: ClassVar = NUMBERS
 
     result: CycleNumbers

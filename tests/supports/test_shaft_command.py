@@ -13,7 +13,7 @@ from loaded_tca import read_scene
 from loaded_tca.cli import main
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.shaft_lines import shaft_lines
-from loaded_tca.output.other_results import shaft_csv
+from loaded_tca.output.other_tables import shaft_csv
 from loaded_tca.plots import plot_shafts
 
 SCENE = "examples/scenes/helical_on_shafts.toml"
