@@ -138,7 +138,12 @@ class DoubleHelicalRevolution(OverTurns, JoinedResult):
         return self.orders_of(MICROMETRES * self.axial_motion[torque])
 
     @classmethod
-    def parts_beside(cls, path: Path, subject: DoubleHelicalScene) -> dict[str, Any]:
+    def parts_beside(
+        cls,
+        path: Path,
+        subject: DoubleHelicalScene,
+        dataset: xarray.Dataset,  # noqa: ARG003
+    ) -> dict[str, Any]:
         """Both revolutions, of the files beside that of the pair."""
         places = [path.parent / name for name in cls.PARTS.values()]
         halves = [Revolution.load(place) for place in places]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loaded_tca.arguments import checked
@@ -18,7 +19,6 @@ from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
-    from pathlib import Path
 
     from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult, DoubleHelicalRevolution
     from loaded_tca.flank_maps.ease_off_map import EaseOffMap
@@ -255,8 +255,8 @@ def write_double_helical(
     Returns
     -------
     tuple of Path
-        ``double_helical.nc``, ``half_a.nc``, ``half_b.nc``, ``double_helical.json``, ``double_helical.csv``, and those
-        of ``more``.
+        ``double_helical.nc``, ``half_a.nc``, ``half_b.nc``, those of both halves under other torques
+        (``half_a_under_400_Nm.nc``), ``double_helical.json``, ``double_helical.csv``, and those of ``more``.
 
     Raises
     ------
@@ -266,7 +266,9 @@ def write_double_helical(
     text = figures_json(result, notes=result.notes(), warnings=result.warnings or ())
     table = csv_table(result.to_table())
     files = {"double_helical.json": text.encode(), "double_helical.csv": table.encode()}
-    return replace_together(directory, {**result.contents(), **files, **more}, outdated)
+    return replace_together(
+        directory, {**result.contents(), **files, **more}, {*outdated, *result.outdated(Path(directory))}
+    )
 
 
 @checked

@@ -285,7 +285,7 @@ class AnalysisResult(Result):
         about = {name: str(file.attrs[name]) for name in cls.ABOUT if name in file.attrs}
         added = {name: file.variables[name] for name in file.data_vars if name not in {**there, **cls.BESIDE}}
         dataset = cls.dataset_of(arrays, **about).assign(added)
-        whole = {cls.SUBJECT: subject, "dataset": dataset, **parts, **cls.parts_beside(Path(path), subject)}
+        whole = {cls.SUBJECT: subject, "dataset": dataset, **parts, **cls.parts_beside(Path(path), subject, dataset)}
         return cls(**whole)
 
     @staticmethod
@@ -304,7 +304,7 @@ class AnalysisResult(Result):
         return {}
 
     @classmethod
-    def parts_beside(cls, path: Path, subject: Any) -> dict[str, Any]:  # noqa: ARG003
+    def parts_beside(cls, path: Path, subject: Any, dataset: xarray.Dataset) -> dict[str, Any]:  # noqa: ARG003
         """What else the result consists of, of files beside its own."""
         return {}
 
@@ -332,13 +332,19 @@ class JoinedResult(AnalysisResult):
         InputError
             If they cannot be written.
         """
-        return replace_together(directory, self.contents())
+        return replace_together(directory, self.contents(), self.outdated(Path(directory)))
+
+    def parts(self) -> dict[str, AnalysisResult]:
+        """The results that it joins, by the names of their files."""
+        return {file: getattr(self, name) for name, file in self.PARTS.items()}
 
     def contents(self) -> dict[str, Buffer]:
         """Names and contents of the files that ``save`` writes."""
-        return {self.FILE: self.to_netcdf()} | {
-            file: getattr(self, name).to_netcdf() for name, file in self.PARTS.items()
-        }
+        return {self.FILE: self.to_netcdf()} | {file: part.to_netcdf() for file, part in self.parts().items()}
+
+    def outdated(self, directory: Path) -> set[str]:  # noqa: ARG002
+        """Names of files in a directory that belong to another result of the kind, and that ``save`` removes."""
+        return set()
 
     @classmethod
     @checked

@@ -324,7 +324,7 @@ class StageResult(JoinedResult):
         return {}
 
     @classmethod
-    def parts_beside(cls, path: Path, subject: Stage) -> dict[str, Any]:
+    def parts_beside(cls, path: Path, subject: Stage, dataset: xarray.Dataset) -> dict[str, Any]:  # noqa: ARG003
         """Both mesh cycles, of the files beside that of the stage."""
         places = [path.parent / name for name in cls.PARTS.values()]
         cycles = [MeshCycle.load(place) for place in places]
