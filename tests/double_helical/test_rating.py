@@ -11,6 +11,7 @@ from loaded_tca import InputError
 from loaded_tca.cli import main
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
+from loaded_tca.rating.places import is_shown
 from loaded_tca.reports.rating_page import halves_rating_content
 from loaded_tca.studies import double_helical as studies
 from loaded_tca.studies import figures as all_figures
@@ -316,8 +317,9 @@ def test_bins_add_up_over_mesh_cycles_of_other_torques(under_both, under_each):
 def test_mesh_cycles_of_all_torques_come_back_and_old_ones_go(under_both, rating_under_both, under_each, tmp_path):
     paths = under_both.save(tmp_path)
     assert [path.name for path in paths[3:]] == ["half_a_under_800_Nm.nc", "half_b_under_800_Nm.nc"]
-    again = DoubleHelicalResult.load(tmp_path).rating()
-    assert again.dataset.identical(rating_under_both.dataset)
+    again = DoubleHelicalResult.load(tmp_path)
+    assert again.dataset.identical(under_both.dataset)
+    assert again.rating().dataset.identical(rating_under_both.dataset)
     paths[-1].rename(tmp_path / "kept.nc")
     with pytest.raises(InputError, match=r"half_b_under_800_Nm\.nc"):
         DoubleHelicalResult.load(tmp_path)
@@ -345,3 +347,12 @@ def test_what_ratings_of_several_mesh_cycles_do_not_have_is_refused(under_both, 
         InputError, match=r"half a: analysis\.torques_Nm: the half carries no more under 1600 N m of both"
     ):
         falling.rating()
+
+
+def test_places_are_those_of_the_torque_whose_mesh_cycle_is_shown(rating_under_both):
+    half = rating_under_both.half_a
+    solved = half.result.dataset.assign_coords(torque=("torque", [1.0, *half.torque]))  # as if each had been solved
+    shown = replace(half, result=replace(half.result, dataset=solved, states=None))
+    parts = [(shown.result if part is half.result else part, of) for part, of in half.inputs.duty.parts]
+    shown = replace(shown, inputs=replace(half.inputs, duty=replace(half.inputs.duty, parts=parts)))
+    assert is_shown(shown).tolist() == [False, True]
