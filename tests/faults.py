@@ -3298,8 +3298,8 @@ FAULTS = (
     Fault(
         "double helical: a half without load is rated",
         "double_helical/rating.py",
-        "_under(scene, cycle, of_half) if of_half.any() else None",
-        "_under(scene, cycle, of_half)",
+        "_under(scene, result.halves[half], of_half, parts) if of_half.any() else None",
+        "_under(scene, result.halves[half], of_half, parts)",
         "double_helical/test_rating.py::test_half_without_load_under_all_torques_is_not_rated",
     ),
     Fault(
