@@ -2452,7 +2452,7 @@ FAULTS = (
     Fault(
         "ratings: pictures of an older rating stay beside a new one that has none of them",
         "output/result_files.py",
-        "{*outdated} - {*files}",
+        "older - {*files}",
         "set()",
         "test_cli_rating.py::test_command_rates_a_result_again_under_a_spectrum",
     ),
@@ -3298,8 +3298,8 @@ FAULTS = (
     Fault(
         "double helical: a half without load is rated",
         "double_helical/rating.py",
-        "_under(scene, cycle, of_half) if of_half.any() else None",
-        "_under(scene, cycle, of_half)",
+        "_under(scene, result.halves[half], of_half, parts) if of_half.any() else None",
+        "_under(scene, result.halves[half], of_half, parts)",
         "double_helical/test_rating.py::test_half_without_load_under_all_torques_is_not_rated",
     ),
     Fault(
@@ -3649,6 +3649,41 @@ FAULTS = (
         "plane = np.stack(np.broadcast_arrays(x, y), axis=-1) @ self.grid.axes[:2]\n"
         "        of_pinion, of_wheel = self.flanks.pair.on_flanks((self.grid.origin + plane)[None])",
         "separation/test_flank_places.py::test_cells_without_material_are_those_beyond_an_edge",
+    ),
+    Fault(
+        "rating of halves on shafts: every torque has the mesh cycles of the largest",
+        "double_helical/rating.py",
+        "    if not result.elsewhere:\n        return []\n",
+        "    return []\n",
+        "double_helical/test_rating.py::test_torque_in_a_list_is_rated_by_the_mesh_cycles_under_it",
+    ),
+    Fault(
+        "rating of halves on shafts: an analysed torque has no error within its mesh cycles",
+        "rating/interpolation.py",
+        "    if inputs.nearest is None:\n",
+        "    if True:\n",
+        "double_helical/test_rating.py::test_bins_add_up_over_mesh_cycles_of_other_torques",
+    ),
+    Fault(
+        "double helical result: mesh cycles of an older result stay beside it",
+        "results/result.py",
+        "self.contents(), self.outdated(Path(directory)))",
+        "self.contents())",
+        "double_helical/test_rating.py::test_mesh_cycles_of_all_torques_come_back_and_old_ones_go",
+    ),
+    Fault(
+        "picture of local safeties: a half shows the mesh cycle of another torque",
+        "rating/places.py",
+        "        solved &= np.isin(rating.torque, np.concatenate([*of_result, np.zeros(0)]))\n",
+        "",
+        "double_helical/test_rating.py::test_places_are_those_of_the_torque_whose_mesh_cycle_is_shown",
+    ),
+    Fault(
+        "check of a double helical pair on shafts: bores are rigid",
+        "output/double_helical_overview.py",
+        "    if not shafts:\n",
+        "    if shafts:\n",
+        "double_helical/test_shafts.py::test_check_has_the_bearing_forces_of_both_halves_and_says_what_bends",
     ),
 )
 

@@ -140,9 +140,13 @@ def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None 
     """
     over_a_pitch = HalfAnalysis(analyse, lambda half: half.analysis.positions)
     places = settled(scene, scene.mounting.axial_offset_mm, StatesDone(progress), over_a_pitch)
-    dataset = joined(DoubleHelicalResult, scene, places, [_arrays(place) for place in places])
-    half_a, half_b = largest_place(places).cycles
-    return DoubleHelicalResult(scene=scene, dataset=dataset, half_a=half_a, half_b=half_b)
+    places = sorted(places, key=lambda place: max(place.scene.torques))
+    places = [places[-1], *places[:-1]]
+    parts = [_arrays(place) | {"place": np.full(len(place.scene.torques), n)} for n, place in enumerate(places)]
+    dataset = joined(DoubleHelicalResult, scene, places, parts)
+    (half_a, half_b), *others = [place.cycles for place in places]
+    elsewhere = tuple((first, second) for first, second in others)
+    return DoubleHelicalResult(scene=scene, dataset=dataset, half_a=half_a, half_b=half_b, elsewhere=elsewhere)
 
 
 def settled(scene: DoubleHelicalScene, axial: float, shown: StatesDone, way: HalfAnalysis) -> list[Place]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from loaded_tca.arrays import GEARS, Array
+from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.double_helical.laws import balance_of
 from loaded_tca.errors import InputError, give_accuracy_warning, named
 from loaded_tca.plain import plain
@@ -66,6 +66,10 @@ PAIR_SPECTRUM_NUMBERS: dict[str, Number] = {
 """Names in the datasets of both kinds: of both halves the worse one."""
 LARGEST = "damage", "miner_sum", "interpolation_error"
 """Numbers of which the larger of both halves counts."""
+Part = tuple[MeshCycle, Array]
+"""A mesh cycle of a half with the torques of the half [N mm] that it stands for."""
+SAME = 1e-9
+"""Difference of torques that are one, through N m."""
 UNEVEN = 0.01
 """Of the share of a half over a pitch, over its mean: from which on a note says that it is rated under the largest."""
 
@@ -225,15 +229,19 @@ def double_helical_rating_of(result: DoubleHelicalResult, *, warn: bool = True) 
         raise InputError(problems)
     bins = scene.load.case
     torques = np.asarray(result.torque if bins is None else [1e3 * case.pinion_torque_Nm for case in bins])
+    torques = _as_analysed(torques, result.torque)
     shares = _largest_shares(result, torques)
     of_halves = torques * shares.T
+    analysed = result.torque * result.torque_share.max(axis=1).T
     ratings: list[Rating | None] = []
-    for name, cycle, of_half in zip(HALVES, result.halves, of_halves, strict=True):
+    for half, (name, of_half) in enumerate(zip(HALVES, of_halves, strict=True)):
         with named(f"half {name}"):
-            ratings.append(_under(scene, cycle, of_half) if of_half.any() else None)
+            parts = _parts_of(result, np.full(len(result.torque), half), analysed[half])
+            ratings.append(_under(scene, result.halves[half], of_half, parts) if of_half.any() else None)
     face = _face_load_factor(shares, ratings)
     more = int(of_halves.max(axis=1).argmax())  # its mesh cycle goes up to the even share and more
-    whole = _under(scene, result.halves[more], 0.5 * torques, 2.0 * shares.max(axis=1), face)
+    parts = _parts_of(result, analysed.argmax(axis=0), 0.5 * result.torque)
+    whole = _under(scene, result.halves[more], 0.5 * torques, parts, 2.0 * shares.max(axis=1), face)
     kind = DoubleHelicalRating if bins is None else DoubleHelicalSpectrumRating
     loaded = {name: rating for name, rating in zip(HALVES, ratings, strict=True) if rating is not None}
     arrays = {name: _worse(name, loaded.values()) for name in kind.NUMBERS if whole.has(name)}
@@ -251,17 +259,52 @@ def double_helical_rating_of(result: DoubleHelicalResult, *, warn: bool = True) 
 def _largest_shares(result: DoubleHelicalResult, torques: Array) -> Array:
     """Largest shares (c, half) over the pitch under torques (c,) of both halves [N mm]; even under none.
 
-    On shafts the mesh cycles are those under the largest torque, and shares lie between those of the torques analysed.
+    Where each torque has mesh cycles of its own, shares lie between those of the torques analysed.
     """
     loaded = torques > 0.0
     shares = np.full((len(torques), len(HALVES)), 0.5)
-    if result.scene.is_supported:
+    if result.scene.is_supported or result.elsewhere:
         order, largest = result.torque.argsort(), result.torque_share.max(axis=1)
         columns = [np.interp(torques, result.torque[order], of_half[order]) for of_half in largest.T]
         return np.where(loaded[:, None], np.stack(columns, axis=-1), shares)
     force = balance_of(result.scene, result.halves, torques[loaded]).force
     shares[loaded] = (force / force.sum(axis=-1, keepdims=True)).max(axis=1)
     return shares
+
+
+def _as_analysed(torques: Array, analysed: Array) -> Array:
+    """Torques (c,), with those that were analysed as these are to the last digit."""
+    nearest = analysed[np.abs(torques[:, None] - analysed).argmin(axis=1)]
+    return np.where(np.isclose(torques, nearest, rtol=SAME, atol=0.0), nearest, torques)
+
+
+def _parts_of(result: DoubleHelicalResult, halves: Indices, torques: Array) -> list[Part]:
+    """Mesh cycles of a half, each with the torques of the half that it stands for; none: one stands for all.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+    halves : (t,) array of int
+        Half whose mesh cycle counts under each torque of the result.
+    torques : (t,) array [N mm]
+        What that half carries, 0 where it carries nothing.
+    """
+    if not result.elsewhere:
+        return []
+    _, rows = np.unique(result.torque, return_index=True)
+    rows = rows[torques[rows] > 0.0]
+    falls = np.flatnonzero(np.diff(torques[rows]) <= 0.0)
+    if falls.size:
+        less, more = (shown_torque(float(result.torque[row])) for row in rows[falls[0] : falls[0] + 2])
+        raise InputError(
+            f"analysis.torques_Nm: the half carries no more under {more} of both halves than under {less}, and a "
+            "rating takes torques under which it does; analyse and rate each of them by itself"
+        )
+    parts = []
+    for place, half in sorted({*zip(result.place_of_torque[rows].tolist(), halves[rows].tolist(), strict=True)}):
+        of_part = rows[(result.place_of_torque[rows] == place) & (halves[rows] == half)]
+        parts.append((result.halves_by_place[place][half], torques[of_part]))
+    return parts
 
 
 def _face_load_factor(shares: Array, ratings: Sequence[Rating | None]) -> Array:
@@ -280,6 +323,7 @@ def _under(
     scene: DoubleHelicalScene,
     cycle: MeshCycle,
     torques: Array,
+    parts: Sequence[Part] = (),
     load_factor: Array | float = 1.0,
     face_factor: Array | None = None,
 ) -> Rating:
@@ -287,24 +331,35 @@ def _under(
 
     What a share exceeds the largest torque that was solved by, a thousandth at most, multiplies loads as K_gamma.
     """
-    largest = float(cycle.torque.max())
-    within = np.minimum(torques, largest)
+    solved = [(part, np.minimum(of_part, part.torque.max())) for part, of_part in parts]
+    within = np.minimum(torques, max(float(most.max()) for _, most in solved or [(cycle, cycle.torque)]))
+    for (_, of_part), (_, most) in zip(parts, solved, strict=True):
+        for torque, largest in zip(of_part, most, strict=True):
+            within = np.where(torques == torque, largest, within)
     more = load_factor * np.divide(torques, within, out=np.ones_like(torques), where=within > 0.0)
+    rated = _rated(scene, cycle, within)
+    cases = replace(cases_of(rated.scene, within), torque=within)  # to the last digit, as they were solved
+    of_parts = [(rated if part is cycle else _rated(scene, part, within), most) for part, most in solved]
+    duty = Duty(cases=cases, case_mesh_load_factor=more, case_face_load_factor=face_factor, parts=of_parts)
+    return rating_of(rated, duty=duty, warn=False)
+
+
+def _rated(scene: DoubleHelicalScene, cycle: MeshCycle, torques: Array) -> MeshCycle:
+    """Mesh cycle of a half whose scene is rated as that of the pair, under torques (c,) [N mm] of bins."""
     half, bins = cycle.scene, scene.load.case
     sections = {name: getattr(scene, name) for name in ("operation", "lubricant")}
     gears = {gear: replace(getattr(half, gear), strength=getattr(scene, gear).strength) for gear in GEARS}
     load = half.load
     if bins is not None:
-        highest = max(half.analysis.torques_Nm or (1e-3 * largest,))  # as its scene has it
-        of_half = (min(1e-3 * torque, highest) for torque in within.tolist())
+        highest = max(half.analysis.torques_Nm or (1e-3 * float(cycle.torque.max()),))  # as its scene has it
+        of_half = (min(1e-3 * torque, highest) for torque in torques.tolist())
         load = replace(
             load,
             pinion_torque_Nm=None,
             case=tuple(replace(case, pinion_torque_Nm=part) for case, part in zip(bins, of_half, strict=True)),
         )
     rated = replace(half, **gears, **sections, load=load, rating=scene.rating if bins else scene.rating_of_halves)
-    duty = Duty(cases=cases_of(rated, within), case_mesh_load_factor=more, case_face_load_factor=face_factor)
-    return rating_of(replace(cycle, scene=rated, states=None), duty=duty, warn=False)
+    return replace(cycle, scene=rated, states=None)
 
 
 def _worse(name: str, ratings: Iterable[Rating]) -> Array:
@@ -335,4 +390,8 @@ def _of_pair(rating: DoubleHelicalRating) -> Iterator[str]:
         )
     if any(case.reversed for case in scene.load.case or ()):
         yield "the halves share reversed bins as they share the same torques that are not reversed"
-    yield from (f"{note}; stresses here are those of half_a and half_b" for note in result.notes_of_places())
+    if result.elsewhere:
+        yield (
+            "load factors and stresses under each torque that was analysed are those of the mesh cycles under it, "
+            "between the torques of the half that these have; under other torques they lie between"
+        )

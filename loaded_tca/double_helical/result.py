@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -10,15 +11,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from loaded_tca.arrays import GEARS, Array
+from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.errors import InputError, require
-from loaded_tca.plain import plain
+from loaded_tca.plain import apart, plain
 from loaded_tca.results import MeshCycle, Revolution
 from loaded_tca.results.declared import CYCLE, Asked, Number, Row, numbers
 from loaded_tca.results.figure import Figure
 from loaded_tca.results.files import DOUBLE_HELICAL
 from loaded_tca.results.quantities import BEARING_QUANTITIES, SHAFT_ASKED
-from loaded_tca.results.result import JoinedResult, figures_of
+from loaded_tca.results.result import AnalysisResult, JoinedResult, figures_of
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from loaded_tca.double_helical.rating import DoubleHelicalRating
     from loaded_tca.double_helical.sensitivities import DoubleHelicalSensitivities
 
+OF_TORQUE = re.compile(r"half_[ab]_under_[^/]*_Nm\.nc")
+"""Names of files of mesh cycles under other torques than the largest."""
 PAIR_FILE = "double_helical.nc"
 """Name of the file of both halves together."""
 FACES = 1e-3
@@ -78,6 +81,15 @@ NUMBERS = numbers(
         ),
         "face_load": Number(
             (*HALF, "strip"), "N/mm", "normal force per face width in each strip, mean over the pitch", columns=()
+        ),
+        "place": Number(
+            TORQUE,
+            "1",
+            "mesh cycles of both halves under the torque: 0 half_a and half_b, from 1 on those of elsewhere",
+            columns=(),
+            asked=Asked(
+                lambda scene, _: len(scene.torques) > 1, "the file does not say which mesh cycles each torque has"
+            ),
         ),
         "share_factor": Number(
             TORQUE,
@@ -193,7 +205,10 @@ class DoubleHelicalResult(OfHalves):
         Numbers of ``NUMBERS`` with their units, over torque [N mm], position (``pinion_angle`` [rad]) and half.
     half_a, half_b : MeshCycle
         Of each half, with z from the groove outwards, under the torques between which its shares lie; where a floating
-        gear stands apart under several torques, those where it stands under the largest.
+        gear stands apart under several torques, or on shafts, those under the largest.
+    elsewhere : tuple of (MeshCycle, MeshCycle)
+        The same under the other torques: where ``place`` of a torque is 1, the first two. In files named by the largest
+        torque of a place, ``half_a_under_400_Nm.nc``.
     """
 
     KIND: ClassVar = DOUBLE_HELICAL
@@ -212,6 +227,7 @@ class DoubleHelicalResult(OfHalves):
     dataset: xarray.Dataset
     half_a: MeshCycle
     half_b: MeshCycle
+    elsewhere: tuple[tuple[MeshCycle, MeshCycle], ...] = ()
 
     def __repr__(self) -> str:
         sizes = self.dataset.sizes
@@ -221,6 +237,27 @@ class DoubleHelicalResult(OfHalves):
     def halves(self) -> tuple[MeshCycle, MeshCycle]:
         """Mesh cycles of half a and half b."""
         return self.half_a, self.half_b
+
+    @property
+    def halves_by_place(self) -> tuple[tuple[MeshCycle, MeshCycle], ...]:
+        """Mesh cycles of both halves at each ``place``."""
+        return (self.halves, *self.elsewhere)
+
+    @property
+    def place_of_torque(self) -> Indices:
+        """``place`` (torque,) as indices of ``halves_by_place``."""
+        return self.place.astype(int) if self.has("place") else np.zeros(len(self.torque), dtype=int)
+
+    def parts(self) -> dict[str, AnalysisResult]:
+        """Mesh cycles of both halves under all torques, by the names of their files."""
+        names = _files_elsewhere(self.dataset)
+        both = zip(names, self.elsewhere, strict=True)
+        return {**super().parts(), **{file: cycle for files, of in both for file, cycle in zip(files, of, strict=True)}}
+
+    def outdated(self, directory: Path) -> set[str]:
+        """Names of mesh cycles under other torques that an older result has in a directory."""
+        there = directory.glob("half_*_Nm.nc") if directory.is_dir() else ()
+        return {path.name for path in there if OF_TORQUE.fullmatch(path.name)} - {*self.parts()}
 
     @property
     def scope(self) -> str:
@@ -258,16 +295,19 @@ class DoubleHelicalResult(OfHalves):
         """Sentences on torques under which the mesh cycles of both halves are those of another place or other loads."""
         places = self.axial_motion.mean(axis=1)
         largest = int(self.torque.argmax())
+        files = {n: " and ".join(names) for n, names in enumerate(_files_elsewhere(self.dataset), start=1)}
         on_shafts = [
             f"half_a and half_b hold the mesh cycles under {shown_torque(self.torque[largest])}, with the loads that "
-            "both halves have on the shafts under it: for mesh cycles under another torque, analyse it by itself"
+            f"both halves have on the shafts under it; those under other torques are in {', '.join(files.values())}"
         ]
         return (on_shafts if self.scene.is_supported and len(self.torque) > 1 else []) + [
             f"under {shown_torque(torque)} the {self.scene.geometry.floating} stands {plain(way, 3)} mm along its axis "
             f"from its place under {shown_torque(self.torque[largest])}, for which half_a and half_b hold the mesh "
-            f"cycles: for mesh cycles at its place under {shown_torque(torque)}, analyse this torque by itself"
-            for torque, way in zip(self.torque.tolist(), (places - places[largest]).tolist(), strict=True)
-            if abs(way) > FACES * self.scene.narrow_half
+            f"cycles; those at its place under {shown_torque(torque)} are in {files[place]}"
+            for torque, way, place in zip(
+                self.torque.tolist(), (places - places[largest]).tolist(), self.place_of_torque.tolist(), strict=True
+            )
+            if place and abs(way) > FACES * self.scene.narrow_half
         ]
 
     def rating(self) -> DoubleHelicalRating:
@@ -337,6 +377,22 @@ class DoubleHelicalResult(OfHalves):
         sizes = {"half": len(HALVES), "torque": len(subject.torques), "position": subject.analysis.positions}
         require(*((file.sizes[name] == size, f"{name}: expected {size}") for name, size in sizes.items()))
         return {}
+
+    @classmethod
+    def parts_beside(cls, path: Path, subject: DoubleHelicalScene, dataset: xarray.Dataset) -> dict[str, Any]:
+        """Mesh cycles of both halves under all torques, of the files beside that of the pair."""
+        elsewhere = tuple(cls.read_parts(path, subject, names) for names in _files_elsewhere(dataset))
+        return {**super().parts_beside(path, subject, dataset), "elsewhere": elsewhere}
+
+
+def _files_elsewhere(dataset: xarray.Dataset) -> list[tuple[str, ...]]:
+    """Names of the files of both halves at each place from 1 on, by the largest torque there."""
+    if "place" not in dataset:  # of one torque, from earlier files
+        return []
+    place, torques = dataset["place"].to_numpy().astype(int), dataset["torque"].to_numpy()
+    largest = [1e-3 * float(torques[place == n].max()) for n in range(1, int(place.max()) + 1)]
+    return [tuple(f"half_{half}_under_{text}_Nm.nc" for half in HALVES) for text in apart(largest)]
+
 
 
 def _by_itself(scene: CylindricalScene, expected: CylindricalScene) -> CylindricalScene:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.double_helical.analyse import expected_double_helical_effort
 from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.output.overview import scene_sections, spectrum_rows, torques_with_columns
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 OF_EACH = "mounting errors, edges and modifications", "flanks described by points"
 """Subjects of an overview that each half has of its own; the others are those of half a."""
 HELD = "Each half is a gear of its own on a rigid bore: rim, web and groove between the halves do not bend or twist."
-"""What a double helical pair does not model."""
+"""What a double helical pair without shafts does not model."""
 
 
 def describe_double_helical(scene: DoubleHelicalScene) -> str:
@@ -49,9 +50,21 @@ def overview_of_double_helical(scene: DoubleHelicalScene) -> Overview:
         {f"{name}, z from the groove outwards": sections for name, sections, _ in halves},
         {"seconds": seconds},
         ("analysis of even shares, about [s]", seconds),
-        [HELD],
+        [held_in_words(scene)],
         [f"{name}: {sentence}" for name, _, sentences in halves for sentence in sentences],
     )
+
+
+def held_in_words(scene: DoubleHelicalScene) -> str:
+    """What bends and twists under both halves, and what does not."""
+    shafts = [name for name in GEARS if getattr(scene, name).shaft is not None]
+    if not shafts:
+        return HELD
+    of_gears = "The shafts of both gears bend and twist"
+    if len(shafts) == 1:
+        of_gears = f"The shaft of the {shafts[0]} bends and twists"
+    rigid = "".join(f", and the {name} has a rigid bore" for name in GEARS if name not in shafts)
+    return f"Each half is a gear of its own. {of_gears} under and between the halves; rims and webs do not{rigid}."
 
 
 def geometry_of_halves(scene: DoubleHelicalScene) -> list[tuple[str, dict[str, list[Row]], list[str]]]:

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loaded_tca.arguments import checked
@@ -15,7 +16,6 @@ from loaded_tca.results.tables import contacts_table, positions_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-    from pathlib import Path
 
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.results.result import Result
@@ -56,7 +56,8 @@ def write_result(
     tables = result.tables()
     texts |= {file: csv_table(tables[name]().values) for file, name in result.TABLES.items()}
     files = {**result.contents(), **{name: text.encode() for name, text in texts.items()}, **more}
-    return replace_together(directory, files, {*outdated} - {*files})
+    older = {*outdated, *result.outdated(Path(directory))}
+    return replace_together(directory, files, older - {*files})
 
 
 write_rating = write_revolution = write_stage = write_tribology = write_result

@@ -20,7 +20,7 @@ from loaded_tca.rating.interpolation import interpolation_error
 from loaded_tca.rating.lives import Endurances, lives_of
 from loaded_tca.rating.quantities import UNDER_LOAD
 from loaded_tca.rating.rating import WORDS, Rating
-from loaded_tca.rating.solved import solved_loads
+from loaded_tca.rating.solved import SolvedLoads, solved_loads
 from loaded_tca.rating.spectrum import SpectrumRating, of_spectrum
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.results.warnings import accuracy_of_edge, highest_edges
@@ -61,7 +61,8 @@ def rating_of(
             error = interpolation_error(inputs, endurances, _evaluated)
     arrays |= lives_of(inputs.cases, endurances, inputs.cycles_per_hour)
     arrays |= {name: _loaded(inputs.torque, arrays[name]) for name in UNDER_LOAD if name in arrays}
-    sentences = [*_edges_left_out([result] if coast is None else [result, coast]), *_above_static(inputs, endurances)]
+    results = [part for part, _ in duty.parts] or [result]
+    sentences = [*_edges_left_out([*results, *filter(None, [coast])]), *_above_static(inputs, endurances)]
     kind: type[Rating] = Rating
     if inputs.cases.is_spectrum:
         kind = SpectrumRating
@@ -80,9 +81,16 @@ def _loaded(torque: Array, values: Array) -> Array:
 
 
 def _solved_inputs(result: CycleNumbers, duty: Duty) -> CommonInputs:
-    """What a rating takes of a result, with its solved loads."""
+    """What a rating takes of a result, with its solved loads, or those of the parts of the duty."""
     with_factors = bevel_inputs_of(result) if isinstance(result.scene, SpiralScene) else inputs_of(result, duty)
-    return replace(with_factors, solved=solved_loads(with_factors))
+    if not duty.parts:
+        return replace(with_factors, solved=solved_loads(with_factors))
+    parts = [(solved_loads(inputs_of(part, duty)), torques) for part, torques in duty.parts]
+    return replace(
+        with_factors,
+        solved=SolvedLoads.joined([solved.at(torques) for solved, torques in parts]),
+        nearest=SolvedLoads.joined([solved.by_nearest(torques) for solved, torques in parts]),
+    )
 
 
 def _edges_left_out(results: Sequence[CycleNumbers]) -> Iterator[str]:

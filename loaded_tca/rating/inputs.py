@@ -60,6 +60,9 @@ class Duty:
         The gear whose torque sentences name, and that torque over the one of the pinion.
     case_mesh_load_factor, case_face_load_factor : array (c,), optional
         K_gamma and K_Hbeta under the cases; default: as the torques of the result have them, and as the scene asks.
+    parts : sequence of (MeshCycle, array (k,))
+        Results of the mesh, each with the torques [N mm] that it stands for, where none stands for all; empty: the
+        result stands for all. No torque twice.
     """
 
     mesh_load_factor: Array | float = 1.0
@@ -71,6 +74,7 @@ class Duty:
     torque_of: tuple[str, float] = ("pinion", 1.0)
     case_mesh_load_factor: Array | None = None
     case_face_load_factor: Array | None = None
+    parts: Sequence[tuple[CycleNumbers, Array]] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,8 +92,10 @@ class CommonInputs(ABC):
     lubricant : LubricantSection
     cases : Cases
     solved : SolvedLoads
-        Under the torques of the result.
+        Under the torques of the result, or those of the parts of the duty.
     duty : Duty
+    nearest : SolvedLoads, optional
+        Of parts of the duty, under the same torques: as solved under the nearest one that each part has.
     """
 
     result: CycleNumbers
@@ -101,6 +107,7 @@ class CommonInputs(ABC):
     cases: Cases
     solved: SolvedLoads
     duty: Duty = field(default=Duty(), kw_only=True)
+    nearest: SolvedLoads | None = field(default=None, kw_only=True)
     of_bevels: ClassVar[bool] = False
     """Whether ISO 10300 counts, not ISO 6336."""
 

@@ -38,7 +38,20 @@ def interpolation_error(inputs: CommonInputs, endurances: Endurances, evaluate: 
       below the smallest torque, this is left out, too.
     - the change where solved loads scatter: each torque alone by the scatter of all, since one scatters independently
       of the other, and the root of the sum of their squares.
+
+    Where several results have the torques, the change is added where each torque has the stresses of the nearest one
+    that its result was solved for, rather than those between.
     """
+    error = _between_torques(inputs, endurances, evaluate)
+    if inputs.nearest is None:
+        return error
+    damage = damages_of(endurances)
+    _, nearest, _ = evaluate(replace(inputs, solved=inputs.nearest))
+    return error + _part_of(damage, _changes(damage, damages_of(nearest)).sum(axis=0))
+
+
+def _between_torques(inputs: CommonInputs, endurances: Endurances, evaluate: Evaluate) -> Array:
+    """The two errors (gear, mode) of bins between torques that were solved."""
     solved, torques = inputs.solved, inputs.cases.factor_torque
     between = inputs.cases.between(solved.torque)
     damage = damages_of(endurances)
@@ -51,7 +64,11 @@ def interpolation_error(inputs: CommonInputs, endurances: Endurances, evaluate: 
     changes = np.maximum(*(_changes(damage, damages_of(one)) for one in (coarse, _mirrored(endurances, coarse))))
     raised = _changes(damage, damages_of(_raised(inputs, endurances)))
     by_scatter = _by_node(raised[between], solved.torque, torques[between])
-    together = changes.sum(axis=0) + np.sqrt(np.sum(by_scatter**2, axis=0))
+    return _part_of(damage, changes.sum(axis=0) + np.sqrt(np.sum(by_scatter**2, axis=0)))
+
+
+def _part_of(damage: Array, together: Array) -> Array:
+    """Errors (gear, mode) over the damage (c, gear, mode) of all bins, or over 1 where there is none."""
     total = damage.sum(axis=0)
     with np.errstate(invalid="ignore"):  # both without end: a bin above the static strength, whatever the others do
         part = together / np.where(total == 0.0, 1.0, total)

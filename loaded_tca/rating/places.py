@@ -153,6 +153,9 @@ def root_safeties(rating: Rating, case: int, gear: int) -> RootSafeties:
 def is_shown(rating: Rating) -> Mask:
     """Whether the torque of each case (c,) was solved and loads the flanks that are analysed: others have no places."""
     solved = np.isin(rating.torque, rating.result.torque)
+    if parts := rating.inputs.duty.parts:
+        of_result = [torques for part, torques in parts if part is rating.result]
+        solved &= np.isin(rating.torque, np.concatenate([*of_result, np.zeros(0)]))
     return np.asarray(solved & ~rating.inputs.cases.reversed)
 
 

@@ -343,6 +343,11 @@ class Rating(OfCases):
 
         if COAST[FLANK] in self.endurances:
             raise InputError("coast: a rating of both sides has no derivatives; rate the result of each side by itself")
+        if self.inputs.duty.parts:
+            raise InputError(
+                "sensitivities: the torques of this rating have results of their own, and derivatives of all together "
+                "are not available; analyse and rate each torque by itself"
+            )
         if self.inputs.cases.is_spectrum and TORQUE in keys:
             raise InputError(f"{TORQUE}: a load spectrum has the torques of its bins; allowed are other keys")
         return rating_slopes(self, self.result.sensitivities(keys))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from math import nan
 from typing import TYPE_CHECKING, Any
@@ -111,6 +112,24 @@ class SolvedLoads:
             },
             **parts,
         )
+
+    def by_nearest(self, torques: Array) -> SolvedLoads:
+        """The same under other torques (c,), each as solved under the nearest one, over the powers of the torque."""
+        return SolvedLoads.joined(
+            [self._of(row[None]).at(torque[None]) for row, torque in zip(self._nearest(torques), torques, strict=True)]
+        )
+
+    @classmethod
+    def joined(cls, parts: Sequence[SolvedLoads]) -> SolvedLoads:
+        """Loads under the torques of all parts, ascending; a number that a part does not have is left out."""
+        order = np.argsort(np.concatenate([part.torque for part in parts]))
+        values: dict[str, Any] = {}
+        for name in (each.name for each in fields(cls) if each.name != "excitation"):
+            columns = [getattr(part, name) for part in parts]
+            known = all(column is not None for column in columns)
+            values[name] = np.concatenate(columns, axis=int(name in OVER_GEARS)) if known else None
+        excitation = {name: np.concatenate([part.excitation[name] for part in parts]) for name in parts[0].excitation}
+        return cls(**values, excitation=excitation)._of(order)
 
     def every_second(self, first: int = 0) -> SolvedLoads:
         """The same with every second torque left out, from the ``first`` on, but for the last."""

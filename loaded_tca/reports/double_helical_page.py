@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from loaded_tca.output.double_helical_overview import HELD, geometry_of_halves, pair_rows
+from loaded_tca.output.double_helical_overview import geometry_of_halves, held_in_words, pair_rows
 from loaded_tca.plots import DOUBLE_HELICAL_CAPTIONS, double_helical_figures
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
@@ -29,13 +29,13 @@ def double_helical_content(result: DoubleHelicalResult) -> dict[str, Any]:
     return {
         "title": scene.title or result.TITLE,
         "analysed_by": result.version,
-        "held": HELD,
+        "held": held_in_words(scene),
         "scope": result.scope,
         **halves_geometry(scene),
         "key_figures": [_figures(result, part) for part in parts_of(result.torque.tolist(), MOST_TORQUES)],
         "notes": result.notes(),
         "rating": halves_rating_content(result),
-        "files": [*result.PARTS.values()],
+        "files": [*result.parts()],
         "warnings": explained(result.warnings or ()),
         "pictures": pictures_of(double_helical_figures(result), DOUBLE_HELICAL_CAPTIONS, scene.title),
     }

@@ -243,7 +243,7 @@ def stage_content(result: StageResult) -> dict[str, Any]:
         "shares": _shares(result),
         "findings": result.findings(),
         "orders": _orders(result),
-        "files": [*result.PARTS.values()],
+        "files": [*result.parts()],
         "warnings": explained(result.warnings or ()),
         "pictures": pictures_of(stage_figures(result), STAGE_CAPTIONS, result.stage.title),
         "rating": stage_rating_content(result),

@@ -30,7 +30,7 @@ from loaded_tca.scene import parse_scene
 from loaded_tca.units import without_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     import pandas
     import xarray
@@ -255,6 +255,10 @@ class Result(InNotebooks, Numbers, ABC):
         """Names and contents of the files in a directory from which the result is read again."""
         return {self.FILE: self.to_netcdf()} if self.FILE else {}
 
+    def outdated(self, directory: Path) -> set[str]:  # noqa: ARG002
+        """Names of files in a directory that belong to another result of the kind, which writing this one removes."""
+        return set()
+
     @classmethod
     def file_names(cls) -> tuple[str, ...]:
         """Names of its own file, of that of its key figures and of those of its tables."""
@@ -306,7 +310,7 @@ class AnalysisResult(Result):
         about = {name: str(file.attrs[name]) for name in cls.ABOUT if name in file.attrs}
         added = {name: file.variables[name] for name in file.data_vars if name not in {**there, **cls.BESIDE}}
         dataset = cls.dataset_of(arrays, **about).assign(added)
-        whole = {cls.SUBJECT: subject, "dataset": dataset, **parts, **cls.parts_beside(Path(path), subject)}
+        whole = {cls.SUBJECT: subject, "dataset": dataset, **parts, **cls.parts_beside(Path(path), subject, dataset)}
         return cls(**whole)
 
     @staticmethod
@@ -325,7 +329,7 @@ class AnalysisResult(Result):
         return {}
 
     @classmethod
-    def parts_beside(cls, path: Path, subject: Any) -> dict[str, Any]:  # noqa: ARG003
+    def parts_beside(cls, path: Path, subject: Any, dataset: xarray.Dataset) -> dict[str, Any]:  # noqa: ARG003
         """What else the result consists of, of files beside its own."""
         return {}
 
@@ -345,12 +349,17 @@ class JoinedResult(AnalysisResult):
     PART: ClassVar[type[AnalysisResult]]
 
     @classmethod
-    def parts_beside(cls, path: Path, subject: Any) -> dict[str, Any]:
+    def parts_beside(cls, path: Path, subject: Any, dataset: xarray.Dataset) -> dict[str, Any]:  # noqa: ARG003
         """The parts, of the files beside that of the result."""
-        places = [path.parent / name for name in cls.PARTS.values()]
-        parts = [cls.PART.load(place) for place in places]
+        return dict(zip(cls.PARTS, cls.read_parts(path, subject, cls.PARTS.values()), strict=True))
+
+    @classmethod
+    def read_parts(cls, path: Path, subject: Any, names: Iterable[str]) -> tuple[Any, ...]:
+        """Parts of the files of these names beside that of the result; those of something else are refused."""
+        places = [path.parent / name for name in names]
+        parts = tuple(cls.PART.load(place) for place in places)
         cls.require_parts(subject, places, parts)
-        return dict(zip(cls.PARTS, parts, strict=True))
+        return parts
 
     @classmethod
     @abstractmethod
@@ -366,11 +375,15 @@ class JoinedResult(AnalysisResult):
         InputError
             If they cannot be written.
         """
-        return replace_together(directory, self.contents())
+        return replace_together(directory, self.contents(), self.outdated(Path(directory)))
+
+    def parts(self) -> dict[str, AnalysisResult]:
+        """The results that it joins, by the names of their files."""
+        return {file: getattr(self, name) for name, file in self.PARTS.items()}
 
     def contents(self) -> dict[str, Buffer]:
         """Names and contents of the files that ``save`` writes."""
-        return super().contents() | {file: getattr(self, name).to_netcdf() for name, file in self.PARTS.items()}
+        return super().contents() | {file: part.to_netcdf() for file, part in self.parts().items()}
 
     @classmethod
     @checked

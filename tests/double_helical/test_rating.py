@@ -11,6 +11,7 @@ from loaded_tca import InputError
 from loaded_tca.cli import main
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
+from loaded_tca.rating.places import is_shown
 from loaded_tca.reports.rating_page import halves_rating_content
 from loaded_tca.studies import double_helical as studies
 from loaded_tca.studies import figures as all_figures
@@ -235,3 +236,123 @@ def test_studies_have_the_safeties_of_all_bins(under_bins, without_analysis):
     figures = studies.halves_figures(under_bins.scene)
     flank = under_bins.spectrum_safety[:, under_bins.modes.index("flank")].min()
     assert_array_equal(figures["S_H"], np.full(len(under_bins.result.torque), flank))
+
+
+UNDER = {800.0: (1.3, 1.2), 1600.0: (1.0, 1.0)}  # N m: factors of K_Hbeta and of pressures, as if shafts bent
+ALL_HOURS = {"rating.life_hours": None, "rating.required_flank_safety": 2.0}
+
+
+def halves_under(scene, torque):
+    """Mesh cycles of both halves that only count under one torque of the pair."""
+    face, pressure = UNDER[torque]
+    cycle = samples.half_over_a_pitch()
+    maps = [
+        [[one and replace(one, pressure=one.pressure * pressure) for one in row] for row in rows] for rows in cycle.maps
+    ]
+    dataset = cycle.dataset.assign(face_load_factor=face * cycle.dataset.face_load_factor)
+    scenes = scene.half_scenes(0.0, 2 * [cycle.scene.analysis.torques_Nm])
+    halves = [replace(cycle, scene=half, dataset=dataset, maps=maps, states=None) for half in scenes]
+    return [analyses._Half(half, []) for half in halves]
+
+
+def result_under(*torques, **load):
+    """Result whose torques have mesh cycles of their own, as on shafts."""
+    grid = {"analysis.positions": 5, "analysis.cells": [8, 8], "analysis.torques_Nm": [*torques]}
+    scene = samples.equal_halves().with_changes({**grid, **RATED, **SLOPES, **HELD, **load})
+    settled, places = analyses.settled, []
+    with pytest.MonkeyPatch.context() as patch:
+        for row, torque in enumerate(torques):
+            patch.setattr(analyses, "_analysed", lambda *_, under=torque: halves_under(scene, under))
+            places += settled(analyses._under(scene, np.array([row])), 0.0, None, None)
+        patch.setattr(analyses, "settled", lambda *_: places)
+        return analyse_double_helical(scene)
+
+
+@pytest.fixture(scope="module")
+def under_both():
+    return result_under(*UNDER)
+
+
+@pytest.fixture(scope="module")
+def under_each():
+    return [result_under(torque) for torque in UNDER]
+
+
+@pytest.fixture(scope="module")
+def rating_under_both(under_both):
+    return under_both.rating()
+
+
+def bins_of(result, *bins):
+    cases = [{"pinion_torque_Nm": torque, "hours": hours} for torque, hours in bins]
+    return replace(result, scene=result.scene.with_changes({**ALL_HOURS, "load": {"case": cases}})).rating()
+
+
+def test_torque_in_a_list_is_rated_by_the_mesh_cycles_under_it(rating_under_both, under_each):
+    """Halves on shafts have other load distributions under each torque."""
+    both, alone = rating_under_both, [result.rating() for result in under_each]
+    for of in ("half_a", "half_b", "whole"):
+        for name, values in getattr(both, of).dataset.items():
+            ones = np.concatenate([getattr(rating, of).values(name) for rating in alone])
+            assert_allclose(values, ones, rtol=ROUNDING, err_msg=f"{of}, {name}")  # nothing else is in them
+    assert both.half_a.K_Hbeta[0] > 1.2 * both.half_a.K_Hbeta[1]
+    assert any("are those of the mesh cycles under it" in note for note in both.notes())
+
+
+def test_bins_add_up_over_mesh_cycles_of_other_torques(under_both, under_each):
+    low, high = (800.0, 50.0), (1600.0, 1e-3)
+    one, other = (bins_of(result, each) for result, each in zip(under_each, (low, high), strict=True))
+    both = bins_of(under_both, high, low)
+    flank = both.modes.index("flank")
+    for half in range(2):
+        sums = [rating.halves[half].miner_sum[:, flank] for rating in (one, other, both)]
+        assert (sums[0] > 0.0).all()
+        assert_allclose(sums[2], sums[0] + sums[1], rtol=1e-7)  # exponents multiply rounding
+    # each half carries what lies between two torques of its mesh cycles
+    assert (both.interpolation_error[:, flank] > 0.0).all()
+    between = bins_of(under_both, (1200.0, 1.0), low, high)
+    assert (np.diff(between.half_a.K_Hbeta[[2, 0, 1]]) > 0.0).all()
+
+
+def test_mesh_cycles_of_all_torques_come_back_and_old_ones_go(under_both, rating_under_both, under_each, tmp_path):
+    paths = under_both.save(tmp_path)
+    assert [path.name for path in paths[3:]] == ["half_a_under_800_Nm.nc", "half_b_under_800_Nm.nc"]
+    again = DoubleHelicalResult.load(tmp_path)
+    assert again.dataset.identical(under_both.dataset)
+    assert again.rating().dataset.identical(rating_under_both.dataset)
+    paths[-1].rename(tmp_path / "kept.nc")
+    with pytest.raises(InputError, match=r"half_b_under_800_Nm\.nc"):
+        DoubleHelicalResult.load(tmp_path)
+    under_each[1].save(tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "double_helical.nc",
+        "half_a.nc",
+        "half_b.nc",
+        "kept.nc",
+    ]
+
+
+def test_file_that_does_not_say_which_mesh_cycles_a_torque_has_is_refused(under_both, tmp_path):
+    replace(under_both, dataset=under_both.dataset.drop_vars("place"), elsewhere=()).save(tmp_path)
+    with pytest.raises(InputError, match="place"):
+        DoubleHelicalResult.load(tmp_path)
+
+
+def test_what_ratings_of_several_mesh_cycles_do_not_have_is_refused(under_both, rating_under_both):
+    with pytest.raises(InputError, match="sensitivities: the torques of this rating have results of their own"):
+        rating_under_both.half_a.sensitivities(["mounting.misalignment_um"])
+    share = under_both.dataset.torque_share.copy(data=[[[0.6, 0.4]] * 5, [[0.2, 0.8]] * 5])
+    falling = replace(under_both, dataset=under_both.dataset.assign(torque_share=share))
+    with pytest.raises(
+        InputError, match=r"half a: analysis\.torques_Nm: the half carries no more under 1600 N m of both"
+    ):
+        falling.rating()
+
+
+def test_places_are_those_of_the_torque_whose_mesh_cycle_is_shown(rating_under_both):
+    half = rating_under_both.half_a
+    solved = half.result.dataset.assign_coords(torque=("torque", [1.0, *half.torque]))  # as if each had been solved
+    shown = replace(half, result=replace(half.result, dataset=solved, states=None))
+    parts = [(shown.result if part is half.result else part, of) for part, of in half.inputs.duty.parts]
+    shown = replace(shown, inputs=replace(half.inputs, duty=replace(half.inputs.duty, parts=parts)))
+    assert is_shown(shown).tolist() == [False, True]

@@ -21,7 +21,7 @@ from loaded_tca.double_helical.laws import half_law
 from loaded_tca.double_helical.rating import _largest_shares
 from loaded_tca.double_helical.shafts import OnShafts, Stations, loads_at_first, mean_over_pitch
 from loaded_tca.material import Material
-from loaded_tca.output.double_helical_overview import bearing_rows_of_halves
+from loaded_tca.output.double_helical_overview import bearing_rows_of_halves, held_in_words
 from loaded_tca.scene.half_shafts import MIRRORED, HalfLoads
 from loaded_tca.supports import Bearing, Shaft, ShaftLoad, ShaftSection, shafts_of
 from loaded_tca.supports.support import rotation
@@ -151,12 +151,16 @@ def test_first_loads_are_those_of_the_torque_at_the_pitch_point(stepped):
     assert_allclose(half_a[0].loads[0, :3], -half_a[1].loads[0, :3] * [-1.0, -1.0, 1.0], rtol=1e-2)  # x to each other
 
 
-def test_check_tells_the_bearing_forces_of_both_halves():
-    rows = dict(bearing_rows_of_halves(samples.equal_halves().with_changes({"pinion.shaft": shaft(torque_at=0.0)})))
+def test_check_has_the_bearing_forces_of_both_halves_and_says_what_bends():
+    scene = samples.equal_halves().with_changes({"pinion.shaft": shaft(torque_at=0.0)})
+    rows = dict(bearing_rows_of_halves(scene))
     mesh = samples.equal_halves().mesh()
     # axial forces cancel, each bearing takes the transverse force of a half
     force = 0.5e3 * 1600.0 / mesh.pinion.base_radius
     assert [float(cell) for cell in rows.values()] == pytest.approx([force, force], rel=1e-3)
+    held = held_in_words(scene)
+    assert "shaft of the pinion bends and twists under and between the halves" in held
+    assert held.endswith("the wheel has a rigid bore.")
     assert list(rows) == [f"pinion, bearing {n} at {z} mm: force [N]" for n, z in enumerate((-90, 90))]
 
 

@@ -26,6 +26,7 @@ class Inputs:
     solved: SolvedLoads
     cases: Cases
     rating: ClassVar = SimpleNamespace(face_load_factor=1.0, transverse_load_factor=1.0)
+    nearest: SolvedLoads | None = None
 
     @property
     def loads(self):
