@@ -61,6 +61,13 @@ ROUNDED_EDGE = Kind(
     "read `edge_pressure` together with its error; use a larger radius, give the sharp edge a radius, too, or use a "
     "parabolic relief",
 )
+EDGE_UNSOLVED = Kind(
+    "the pressure at a rounded edge is not known: its columns of cells are left with a residual of {residual:.1e}, "
+    "above {tolerance:.0e}",
+    "the contact that is solved once more along the edge, for `edge_pressure` alone, did not converge. Its edge "
+    "pressure is missing, and the largest one is that of the other contacts. All other numbers stand",
+    "another number of `cells`, or a slightly different radius of the edge: both make other columns",
+)
 RELIEF_START = Kind(
     "the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent",
     "a linear relief starts within the contact, and the slope of the flank jumps there",
