@@ -65,6 +65,9 @@ STEPS_TO_EDGE = 2
 """From a cell to where an arc begins: the second leaves what bends on a cell's length, to the fourth power."""
 SIDES = {EDGE_NAMES.index("lower side"), EDGE_NAMES.index("upper side")}
 """Numbers of the ends of the face among the edges of a gear."""
+LEAST_RADIUS = 0.4
+"""Radius of flush ends over the half width of a contact, below which the law of free edges does not resolve what a
+rounding changes: it is smooth over a length across the contact, 0.4 of the half width that it stands for."""
 PARALLEL = 0.1
 """Sine of the angle between two edges below which they are those of both gears at one end."""
 
@@ -213,6 +216,8 @@ class PeakAtEdge:
         Whether the place is a corner with a sharp edge, where the pressure has no limit.
     unsolved : float
         Residual of the contact conditions where the solver did not reach its tolerance, else zero.
+    narrow : bool
+        Whether free ends of both gears lie there, of a radius below ``LEAST_RADIUS`` of the contact's half width.
     """
 
     pressure: float
@@ -221,6 +226,7 @@ class PeakAtEdge:
     bound: float
     ends_sharp: bool = False
     unsolved: float = 0.0
+    narrow: bool = False
 
 
 NOT_REACHED = PeakAtEdge(math.nan, (math.nan, math.nan), math.nan, 0.0)
@@ -356,7 +362,9 @@ def pressure_at_rounded_edge(
             solved = contact.solved(lines, enough)
         except ConvergenceError as failed:
             return replace(NOT_REACHED, bound=max(edge.limit for edge in edges), unsolved=failed.last.residual)
-        peak = _largest([contact.turned_back(one, left) for one in solved])
+        peak = replace(
+            _largest([contact.turned_back(one, left) for one in solved]), narrow=contact.has_narrow_ends(edges, lines)
+        )
         best, error = max(best, peak, key=_by_pressure), math.inf if peak.ends_sharp else error
     return replace(best, error=max(best.error, error))
 
@@ -424,6 +432,13 @@ class _ContactAlongEdge:
         pressed, (dx, dy) = self.loaded.solution.pressure > 0.0, self.loaded.separation.spacing
         width, length = dx * np.count_nonzero(pressed.any(axis=1)), dy * np.count_nonzero(pressed.any(axis=0))
         return bool(abs(self.turn[1, 1]) * length < width)
+
+    def has_narrow_ends(self, edges: list[ReachedArc], lines: list[RoundedEdge]) -> bool:
+        """Whether free ends of both gears are among some lines, rounded less than the law of free edges resolves."""
+        pressed, dx = self.loaded.solution.pressure > 0.0, self.loaded.separation.spacing[0]
+        width = 0.5 * dx * int(pressed.sum(axis=0).max())
+        flush = [line for edge in edges if len(edge.lines) > 1 for line in edge.lines if line in lines]
+        return self.free_edges and not self._lies_along and any(line.radius < LEAST_RADIUS * width for line in flush)
 
     def _turned(self, place: tuple[float, float]) -> tuple[float, float]:
         """A place or a direction, of the contact's axes, in those along the edge."""

@@ -15,6 +15,7 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array, Mask
 from loaded_tca.contact.rounded_edge import LARGE_ERROR, TOLERANCE
 from loaded_tca.edges.places import edge_distances
+from loaded_tca.edges.rounded import LEAST_RADIUS
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.plain import plain, signed
@@ -82,12 +83,15 @@ def warn_of_accuracy(
     torques, maps = np.asarray(carried.torque, dtype=float), []
     limit = LARGE_ERROR * (1.0 + ROUNDING)
     large = {place: peak.error for place, peak in at_rounded_edges.items() if peak.error > limit}
+    narrow = {place for place, peak in at_rounded_edges.items() if peak.narrow and peak.pressure > 0.0}
     unsolved = {place: peak.unsolved for place, peak in at_rounded_edges.items() if peak.unsolved > 0.0}
     for t, (torque, rows) in enumerate(zip(torques.tolist(), carried.contacts, strict=True)):
         for n, (angle, row) in enumerate(zip(carried.path.pinion_angle.tolist(), rows, strict=True)):
             for k, (number, loaded) in enumerate(zip(carried.pairs.tolist(), row, strict=True)):
                 if loaded is not None:
                     reasons = reasons_of(pair, grid, loaded)
+                    if (t, n, k) in narrow:
+                        reasons.append(kinds.NARROW_ENDS.sentence(part=LEAST_RADIUS))
                     error, residual = (of.get((t, n, k), 0.0) for of in (large, unsolved))
                     place = place_of(torque, angle, number) if reasons or error or residual else ""
                     maps.append((torque, place, loaded.solution.load, (error, residual), reasons))

@@ -283,6 +283,18 @@ def test_edges_that_cross_are_solved_together_whatever_one_of_them_can_come_to()
     assert again.error == peak.error
 
 
+def test_flush_free_ends_rounded_less_than_the_contact_is_wide_are_uncertain():
+    """The law of free edges has one length across the contact; what bends over less is not resolved."""
+    pair, one = loaded(free_edges=True)
+    pressed = (one.solution.pressure > 0.0).sum(axis=0).max() * one.separation.spacing[0]
+    (reached, *_) = reached_arcs(pair, one)
+    cases = (0.3, True, 2, True), (0.3, False, 2, False), (0.5, True, 2, False), (0.3, True, 1, False)
+    for part, free_edges, gears, narrow in cases:
+        lines = [replace(line, radius=part * 0.5 * pressed) for line in reached.lines[:gears]]
+        contact = _ContactAlongEdge(pair, one, lines[0], None, 0, free_edges)
+        assert contact.has_narrow_ends([ReachedArc(tuple(lines), 1e4)], lines) is narrow
+
+
 def test_bound_is_that_of_a_narrow_rounding_on_coarse_cells():
     """Of a flat punch, whose pressure beside a sharp end is P/(pi sqrt(2 a s)); 1.80 is the limit of small radii."""
     punch = RoundedPunch(0.1, 0.02, 0.1005, 113187.0)
