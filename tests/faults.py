@@ -3685,6 +3685,27 @@ FAULTS = (
         "    if shafts:\n",
         "double_helical/test_shafts.py::test_check_has_the_bearing_forces_of_both_halves_and_says_what_bends",
     ),
+    Fault(
+        "slices beyond the end of the material keep what the law of slices says of them",
+        "contact/rounded_edge.py",
+        "np.where(there[:, None] & there, slices, 0.0)",
+        "np.where(there[:, None] | ~there, slices, 0.0)",
+        "contact/test_rounded_edge.py::test_slices_without_material_have_no_compliance",
+    ),
+    Fault(
+        "an edge pressure that did not converge is missing without a warning",
+        "edges/rounded.py",
+        "unsolved=failed.last.residual)",
+        "unsolved=0.0)",
+        "edges/test_rounded.py::test_edge_pressure_that_does_not_converge_is_missing_and_the_mesh_cycle_stands",
+    ),
+    Fault(
+        "flush ends rounded less than the law of free edges resolves are not told",
+        "edges/rounded.py",
+        "any(line.radius < LEAST_RADIUS * width for line in flush)",
+        "any(line.radius < 0.0 * width for line in flush)",
+        "edges/test_rounded.py::test_flush_free_ends_rounded_less_than_the_contact_is_wide_are_uncertain",
+    ),
 )
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array, count_problems, numbers, real
+from loaded_tca.arrays import Array, Mask, count_problems, numbers, real
 from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width, whole_cells
 from loaded_tca.contact.edges import ALIGNED, SHARPEST, FreeEdge, RoundedEdge
 from loaded_tca.contact.graded import guess, solve_graded
@@ -281,7 +281,7 @@ def edge_pressures(
         Cap on the pressure.
     slice_compliance : callable, optional
         ``slice_compliance(middles, widths)``: displacement [mm/N] of slices of these places and widths, both (n,),
-        under a unit force on each, (n, n).
+        under a unit force on each, (n, n). Slices without material have none, whatever it says of them.
     slice_axis : {1, 0}
         Axis along which slices follow each other: columns if 1, rows if 0.
     cells_on_arc : float
@@ -389,9 +389,10 @@ class _Contact:
         dx, y = float(self.high[0] - self.low[0]) / rows, 0.5 * (borders[1:] + borders[:-1])
         x = self.low[0] + dx * (np.arange(rows) + 0.5)
         slices, place = None, (y, np.diff(borders)) if self.slice_axis == 1 else (x, np.full(rows, dx))
-        if self.slice_compliance is not None:
-            slices = self.slice_compliance(*place)
         heights, free = numbers("gap", self.gap(x, y)), self.wedges.free
+        if self.slice_compliance is not None:
+            slices = numbers("slice_compliance", self.slice_compliance(*place))
+            slices = _of_material(slices, np.asarray(np.isfinite(heights).any(axis=1 - self.slice_axis)))
         problem = GradedProblem(heights, dx, borders, *self.demand, slices, self.slice_axis, free)
         start = None if before is None else _carried(before, self.low[0], x, y)
         if free:
@@ -406,6 +407,17 @@ class _Contact:
         widest = float(self.high[1] - self.low[1]) / fewest[1]
         rows = max(arc.rows(on_arc, float(self.high[0] - self.low[0])) for arc in arcs)
         return max(fewest[0], rows), column_borders(self.low[1], self.high[1], zones, widest)
+
+
+def _of_material(slices: Array, there: Mask) -> Array:
+    """Compliance of slices (n, n), zero for those without material (n,).
+
+    Those carry nothing. But a law for slices of a tooth, continued beyond its free end, can make K indefinite, and the
+    preconditioner and the coarser columns have all slices in them.
+    """
+    if slices.shape != (there.size, there.size):
+        return slices
+    return np.where(there[:, None] & there, slices, 0.0)
 
 
 @dataclass(frozen=True, eq=False)

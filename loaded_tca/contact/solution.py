@@ -6,7 +6,7 @@ import enum
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 
@@ -157,6 +157,8 @@ class Solution:
         What was solved.
     """
 
+    WAY_OUT: ClassVar = "try a larger tolerance (in scenes: analysis.tolerance), or on_failure='return' to look at it"
+
     pressure: Array
     gap: Array
     approach: float
@@ -204,8 +206,7 @@ class Solution:
         """Error that tells of a contact that is not solved to its tolerance."""
         return ConvergenceError(
             f"{name} not converged: residual {self.residual:.1e} > tolerance {tolerance:.1e} after "
-            f"{self.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
-            "on_failure='return' to look at it",
+            f"{self.iterations} iterations; {self.WAY_OUT}",
             last=self,
         )
 
@@ -214,6 +215,7 @@ class Solution:
 class GradedSolution(Solution):
     """Pressure and gap on columns of unlike widths; iterations are those on the columns given."""
 
+    WAY_OUT: ClassVar = "try a larger tolerance or other cells; `last` of this error is the last iterate"
     problem: GradedProblem
 
 

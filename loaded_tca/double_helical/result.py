@@ -394,7 +394,6 @@ def _files_elsewhere(dataset: xarray.Dataset) -> list[tuple[str, ...]]:
     return [tuple(f"half_{half}_under_{text}_Nm.nc" for half in HALVES) for text in apart(largest)]
 
 
-
 def _by_itself(scene: CylindricalScene, expected: CylindricalScene) -> CylindricalScene:
     """The scene of a half without the loads of the other half, which ``expected`` has not."""
     for name in GEARS:

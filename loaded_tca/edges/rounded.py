@@ -40,7 +40,7 @@ from loaded_tca.edges.places import (
     lengths_past_tangents,
     relief_start_distances,
 )
-from loaded_tca.errors import InputError
+from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import Arc, material_cosines
 from loaded_tca.loaded.cycle import CycleSolution, told_where
@@ -72,6 +72,9 @@ STEPS_TO_EDGE = 2
 """From a cell to where an arc begins: the second leaves what bends on a cell's length, to the fourth power."""
 SIDES = {EDGE_NAMES.index("lower side"), EDGE_NAMES.index("upper side")}
 """Numbers of the ends of the face among the edges of a gear."""
+LEAST_RADIUS = 0.4
+"""Radius of flush ends over the half width of a contact, below which the law of free edges does not resolve what a
+rounding changes: it is smooth over a length across the contact, 0.4 of the half width that it stands for."""
 PARALLEL = 0.1
 """Sine of the angle between two edges below which they are those of both gears at one end."""
 
@@ -206,7 +209,8 @@ class PeakAtEdge:
     Attributes
     ----------
     pressure : float [MPa]
-        NaN where the contact ends before every rounding, and where only the bound is known.
+        NaN where the contact ends before every rounding, where only the bound is known, and where the solver did not
+        reach its tolerance.
     place : (float, float) [mm]
         Across and along the contact, from the contact point.
     error : float
@@ -216,6 +220,10 @@ class PeakAtEdge:
         What no rounded edge of the contact exceeds: the pressure, where that is known, zero where none is reached.
     ends_sharp : bool
         Whether the place is a corner with a sharp edge, where the pressure has no limit.
+    unsolved : float
+        Residual of the contact conditions where the solver did not reach its tolerance, else zero.
+    narrow : bool
+        Whether free ends of both gears lie there, of a radius below ``LEAST_RADIUS`` of the contact's half width.
     """
 
     pressure: float
@@ -223,6 +231,8 @@ class PeakAtEdge:
     error: float
     bound: float
     ends_sharp: bool = False
+    unsolved: float = 0.0
+    narrow: bool = False
 
 
 NOT_REACHED = PeakAtEdge(math.nan, (math.nan, math.nan), math.nan, 0.0)
@@ -252,7 +262,7 @@ class Columns:
 
     @property
     def with_material(self) -> Mask:
-        """All of them: those beyond the end of a flank carry nothing."""
+        """All of them: of those beyond the end of a flank :func:`edge_pressures` takes nothing."""
         return np.ones(self.y.size, dtype=bool)
 
 
@@ -277,12 +287,8 @@ def pressures_at_rounded_edges(
     -------
     dict
         By the indices of torque, position and tooth pair: of all that reach a rounding. Of those that were not solved
-        once more, and those whose pressure is below ``SURELY_LESS`` of the largest one, a bound.
-
-    Raises
-    ------
-    ConvergenceError
-        If the solver does not reach its tolerance.
+        once more, and those whose pressure is below ``SURELY_LESS`` of the largest one, a bound. Where the solver does
+        not reach its tolerance the pressure is NaN: the loads of the mesh cycle stand without it.
     """
     peaks_at: dict[tuple[int, int, int], PeakAtEdge] = {}
     for t, positions in enumerate(carried.contacts):
@@ -306,7 +312,8 @@ def pressures_at_rounded_edges(
             largest = max(largest, _by_pressure(peaks[place]))
         for place, (_, edges) in reached.items():
             peak = peaks.get(place, NOT_REACHED)
-            can_be_largest = _by_pressure(peak) >= SURELY_LESS * largest or peak.error == math.inf
+            no_limit = peak.error == math.inf or peak.unsolved > 0.0
+            can_be_largest = no_limit or _by_pressure(peak) >= SURELY_LESS * largest
             below = replace(NOT_REACHED, bound=min(edges[0].bound, largest))
             peaks_at[place] = peak if every or can_be_largest else below
     return peaks_at
@@ -339,6 +346,11 @@ def pressure_at_rounded_edge(
     free_edges : bool
     at_least : float [MPa]
         Pressures that are surely less need not be found closely, but for those without a limit.
+
+    Returns
+    -------
+    PeakAtEdge
+        Unsolved where the columns of one edge are: what another edge has may be less.
     """
     crossing = _crossing_within(loaded, [line for edge in edges for line in edge.lines])
     together = [(edge.limit, [*edge.lines]) for edge in edges if not crossing.issuperset(edge.lines)]
@@ -352,7 +364,13 @@ def pressure_at_rounded_edge(
         contact = _ContactAlongEdge(pair, loaded, lines[0], bending, number, free_edges)
         left = LEFT_BESIDE_CROSSING if crossing.issuperset(lines) else LEFT_BY_CELLS
         enough = 0.0 if limit == math.inf else max(at_least, _by_pressure(best))
-        peak = _largest([contact.turned_back(one, left) for one in contact.solved(lines, enough)])
+        try:
+            solved = contact.solved(lines, enough)
+        except ConvergenceError as failed:
+            return replace(NOT_REACHED, bound=max(edge.limit for edge in edges), unsolved=failed.last.residual)
+        peak = replace(
+            _largest([contact.turned_back(one, left) for one in solved]), narrow=contact.has_narrow_ends(edges, lines)
+        )
         best, error = max(best, peak, key=_by_pressure), math.inf if peak.ends_sharp else error
     return replace(best, error=max(best.error, error))
 
@@ -420,6 +438,13 @@ class _ContactAlongEdge:
         pressed, (dx, dy) = self.loaded.solution.pressure > 0.0, self.loaded.separation.spacing
         width, length = dx * np.count_nonzero(pressed.any(axis=1)), dy * np.count_nonzero(pressed.any(axis=0))
         return bool(abs(self.turn[1, 1]) * length < width)
+
+    def has_narrow_ends(self, edges: list[ReachedArc], lines: list[RoundedEdge]) -> bool:
+        """Whether free ends of both gears are among some lines, rounded less than the law of free edges resolves."""
+        pressed, dx = self.loaded.solution.pressure > 0.0, self.loaded.separation.spacing[0]
+        width = 0.5 * dx * int(pressed.sum(axis=0).max())
+        flush = [line for edge in edges if len(edge.lines) > 1 for line in edge.lines if line in lines]
+        return self.free_edges and not self._lies_along and any(line.radius < LEAST_RADIUS * width for line in flush)
 
     def _turned(self, place: tuple[float, float]) -> tuple[float, float]:
         """A place or a direction, of the contact's axes, in those along the edge."""

@@ -6,14 +6,16 @@ Findings name the edges that contacts reach.
 from __future__ import annotations
 
 import math
+from itertools import compress
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS, Array, Mask
-from loaded_tca.contact.rounded_edge import LARGE_ERROR
+from loaded_tca.contact.rounded_edge import LARGE_ERROR, TOLERANCE
 from loaded_tca.edges.places import edge_distances
+from loaded_tca.edges.rounded import LEAST_RADIUS
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.plain import plain, signed
@@ -49,7 +51,7 @@ MOST_STIFFENED = 0.05
 """Part by which rigid bores make a mesh stiffer from which they are warned of."""
 AT_MAPS = "pressure maps; the first: "
 """In sentences on contacts, before the torque and the place of the first."""
-OF_THE_LARGEST = (kinds.ROUNDED_EDGE, kinds.BODY_TWIST, kinds.RIGID_BORES, kinds.DEFLECTION)
+OF_THE_LARGEST = (kinds.ROUNDED_EDGE, kinds.EDGE_UNSOLVED, kinds.BODY_TWIST, kinds.RIGID_BORES, kinds.DEFLECTION)
 """Kinds whose sentences say how large it becomes under any torque."""
 
 
@@ -82,24 +84,31 @@ def warn_of_accuracy(
     torques, maps = np.asarray(carried.torque, dtype=float), []
     limit = LARGE_ERROR * (1.0 + ROUNDING)
     large = {place: peak.error for place, peak in at_rounded_edges.items() if peak.error > limit}
+    narrow = {place for place, peak in at_rounded_edges.items() if peak.narrow and peak.pressure > 0.0}
+    unsolved = {place: peak.unsolved for place, peak in at_rounded_edges.items() if peak.unsolved > 0.0}
     for t, (torque, rows) in enumerate(zip(torques.tolist(), carried.contacts, strict=True)):
         for n, (angle, row) in enumerate(zip(carried.path.pinion_angle.tolist(), rows, strict=True)):
             for k, (number, loaded) in enumerate(zip(carried.pairs.tolist(), row, strict=True)):
                 if loaded is not None:
                     reasons = reasons_of(pair, grid, loaded)
-                    error = large.get((t, n, k), 0.0)
-                    place = place_of(torque, angle, number) if reasons or error else ""
-                    maps.append((torque, place, loaded.solution.load, error, reasons))
+                    if (t, n, k) in narrow:
+                        reasons.append(kinds.NARROW_ENDS.sentence(part=LEAST_RADIUS))
+                    error, residual = (of.get((t, n, k), 0.0) for of in (large, unsolved))
+                    place = place_of(torque, angle, number) if reasons or error or residual else ""
+                    maps.append((torque, place, loaded.solution.load, (error, residual), reasons))
 
     def under(largest: float) -> dict[str, str]:
         """Sentences on the contacts under torques up to the largest, by what all of one reason have in common."""
         some = [one for one in maps if one[0] <= largest]
-        worst = max((error for *_, error, _ in some), default=0.0)
+        worst, residual = (max((of_edge[k] for *_, of_edge, _ in some), default=0.0) for k in range(2))
         size = "without a limit" if worst == math.inf else f"{worst:.0%} at the most"
-        at_rounding = kinds.ROUNDED_EDGE.sentence(limit=LARGE_ERROR, size=size)
+        at_rounding = (
+            kinds.ROUNDED_EDGE.sentence(limit=LARGE_ERROR, size=size),
+            kinds.EDGE_UNSOLVED.sentence(residual=residual, tolerance=TOLERANCE),
+        )
         places: dict[str, list[str]] = {}
-        for _, place, _, error, reasons in some:
-            for reason in [*([at_rounding] if error else []), *reasons]:
+        for _, place, _, of_edge, reasons in some:
+            for reason in [*compress(at_rounding, of_edge), *reasons]:
                 places.setdefault(reason, []).append(place)
         sentences = [
             kinds.NO_TORQUE.sentence(torque=1e-3 * torque)
@@ -318,7 +327,8 @@ def _edges_of_pressure(result: CycleNumbers, torque: int, position: int, column:
         return reached
     place = np.array([result.edge_radius[torque, position, column], result.edge_axial[torque, position, column]])
     away = np.hypot(np.hypot(one.points[..., 0], one.points[..., 1]) - place[0], one.points[..., 2] - place[1])
-    distances = edge_distances(pair, *FlankPlaces(pair, one).of(away == away.min()))[0]
+    across, along = np.unravel_index(away.argmin(), away.shape)
+    distances = edge_distances(pair, *FlankPlaces(pair, one).at(one.x[[across]], one.y[[along]]))[0]
     return np.asarray(reached & (distances <= distances[reached].min() + 2.0 * max(one.spacing)))
 
 

@@ -149,6 +149,26 @@ def test_bending_takes_load_from_the_end():
     assert peak(slice_compliance=slices).pressure < 0.95 * peak().pressure
 
 
+def test_slices_without_material_have_no_compliance():
+    """A law of slices that is not positive definite beyond the end of the material: what is there carries nothing."""
+
+    def ending(x, y):
+        return face_end(x, y) + np.where(y > 2.0 + RADIUS, np.inf, 0.0)
+
+    def law(beyond):
+        def slices(y, _):
+            outside = y > 2.0 + RADIUS
+            return np.where(outside[:, None] | outside, beyond, 2e-5 * np.exp(-np.abs(y[:, None] - y)))
+
+        return slices
+
+    box = (BOX[0], (-2.0, 4.0))
+    peaks = [peak(ending, box, slice_compliance=law(beyond)) for beyond in (-1e-3, 0.0)]
+    assert_allclose(peaks[0].pressure, peaks[1].pressure, rtol=ROUNDING)
+    laws = peaks[0].solution.problem.slice_compliance
+    assert np.linalg.eigvalsh(laws).min() > -ROUNDING * laws.max()
+
+
 def test_slices_along_the_edge_have_the_rows():
     seen = []
 

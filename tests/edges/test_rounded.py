@@ -1,6 +1,7 @@
 """Contacts at rounded edges solved once more: the force, symmetry, order of the edges, cap, ends, what is left out."""
 
 import math
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -19,7 +20,7 @@ from loaded_tca.edges.rounded import (
     pressure_at_rounded_edge,
     reached_arcs,
 )
-from loaded_tca.errors import ConvergenceError
+from loaded_tca.errors import AccuracyWarning
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.loaded.load_sharing import share_load
@@ -32,6 +33,7 @@ from loaded_tca.scene import read_scene
 from loaded_tca.separation import sample_separation
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import trace_contact, trace_teeth
+from loaded_tca.warning_kinds import EDGE_UNSOLVED, kind_of
 from tests.samples.gear_pairs import NONE, gear_pair
 from tests.samples.results import FLANKS_ALONE, SCENES
 
@@ -281,6 +283,18 @@ def test_edges_that_cross_are_solved_together_whatever_one_of_them_can_come_to()
     assert again.error == peak.error
 
 
+def test_flush_free_ends_rounded_less_than_the_contact_is_wide_are_uncertain():
+    """The law of free edges has one length across the contact; what bends over less is not resolved."""
+    pair, one = loaded(free_edges=True)
+    pressed = (one.solution.pressure > 0.0).sum(axis=0).max() * one.separation.spacing[0]
+    (reached, *_) = reached_arcs(pair, one)
+    cases = (0.3, True, 2, True), (0.3, False, 2, False), (0.5, True, 2, False), (0.3, True, 1, False)
+    for part, free_edges, gears, narrow in cases:
+        lines = [replace(line, radius=part * 0.5 * pressed) for line in reached.lines[:gears]]
+        contact = _ContactAlongEdge(pair, one, lines[0], None, 0, free_edges)
+        assert contact.has_narrow_ends([ReachedArc(tuple(lines), 1e4)], lines) is narrow
+
+
 def test_bound_is_that_of_a_narrow_rounding_on_coarse_cells():
     """Of a flat punch, whose pressure beside a sharp end is P/(pi sqrt(2 a s)); 1.80 is the limit of small radii."""
     punch = RoundedPunch(0.1, 0.02, 0.1005, 113187.0)
@@ -304,10 +318,16 @@ def test_contacts_left_out_do_not_change_the_largest_pressure():
     assert_allclose(np.nanmax(largest.edge_pressure), np.nanmax(every.edge_pressure), rtol=1e-9)
 
 
-def test_solver_that_does_not_converge_stops_the_analysis_and_tells_where(monkeypatch):
+def test_edge_pressure_that_does_not_converge_is_missing_and_the_mesh_cycle_stands(monkeypatch):
     monkeypatch.setattr("loaded_tca.contact.graded.MOST_ITERATIONS", 1)
     scene = read_scene(SCENES / "misaligned.toml").with_changes(
         {**FLANKS_ALONE, "analysis.load_sharing": False, "analysis.positions": 1, "pinion.side_rounding_mm": 0.2}
     )
-    with pytest.raises(ConvergenceError, match=r"^[0-9.]+ N m at pinion angle 0 deg: contact on graded columns not"):
-        analyse(scene)
+    with pytest.warns(AccuracyWarning) as caught:
+        result = analyse(scene)
+    (sentence,) = (str(one.message) for one in caught if kind_of(str(one.message)) is EDGE_UNSOLVED)
+    assert re.search(r"residual of [0-9.]+e[-+][0-9]+, above 1e-05 \(at 1 of 1 pressure maps", sentence), sentence
+    assert np.isnan(result.edge_pressure).all()
+    assert np.isnan(result.edge_pressure_error).all()
+    assert_allclose(result.load_share.sum(axis=-1), 1.0, rtol=1e-12)  # the only pair
+    assert result.peak_pressure.max() > 0.0
