@@ -3598,6 +3598,27 @@ FAULTS = (
         "start - margin + 1), min(stop + margin - 1, count)",
         "contact/test_levels.py::test_grids_in_parts_are_those_in_one",
     ),
+    Fault(
+        "rating of one side: loads of the other flanks do not press the fillets that this side draws",
+        "rating/cases.py",
+        "return np.where(others > 0.0, part, 0.0)",
+        "return np.where(self.reversed, part, 0.0)",
+        "rating/test_spectrum.py::test_reversed_bins_load_the_other_flanks_and_bend_roots_both_ways",
+    ),
+    Fault(
+        "rating of a stage: reversed bins do not press the fillets of planets more than their mates do",
+        "rating/roots.py",
+        "highest = under_loads_of_both_flanks(inputs, highest)",
+        "highest = np.where(inputs.cases.reversed, under_loads_of_both_flanks(inputs, highest), highest)",
+        "stages/test_stage_spectrum.py::test_local_roots_of_planets_add_up_the_bins_that_draw_each_fillet_by_hand",
+    ),
+    Fault(
+        "map of root safeties: places without tension have the largest number there is, which overflows",
+        "plots/safety.py",
+        "np.where(np.isposinf(fields), scale.vmax, fields)",
+        "np.where(np.isposinf(fields), np.finfo(float).max, fields)",
+        "rating/test_places.py::test_places_of_roots_without_tension_have_the_colour_of_safe_ones",
+    ),
 )
 
 
