@@ -38,6 +38,23 @@ def plain(value: float, digits: int = 4, sign: str = "") -> str:
     return f"{mantissa}e{int(power)}" if exponent else mantissa
 
 
+def table_cell(value: object) -> str:
+    """Cell of a table: a number with four digits, a dash where it is not known (NaN), a word as it is.
+
+    Parameters
+    ----------
+    value : object
+
+    Examples
+    --------
+    >>> table_cell(0.25), table_cell(float("nan")), table_cell("right")
+    ('0.25', '-', 'right')
+    """
+    if isinstance(value, float):
+        return "-" if math.isnan(value) else plain(value)
+    return str(value)
+
+
 def apart(values: Sequence[float], digits: int = 6) -> list[str]:
     """Numbers of one sentence with some significant digits, or as many as tell different ones apart.
 

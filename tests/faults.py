@@ -3515,7 +3515,7 @@ FAULTS = (
     Fault(
         "map of the root safety: places without tension are white",
         "plots/safety.py",
-        "        fields = np.where(np.isposinf(fields), np.finfo(float).max, fields)\n",
+        "        fields = np.where(np.isposinf(fields), scale.vmax, fields)\n",
         "",
         "rating/test_places.py::test_places_of_roots_without_tension_have_the_colour_of_safe_ones",
     ),
@@ -3705,6 +3705,41 @@ FAULTS = (
         "any(line.radius < LEAST_RADIUS * width for line in flush)",
         "any(line.radius < 0.0 * width for line in flush)",
         "edges/test_rounded.py::test_flush_free_ends_rounded_less_than_the_contact_is_wide_are_uncertain",
+    ),
+    Fault(
+        "rating of one side: loads of the other flanks do not press the fillets that this side draws",
+        "rating/cases.py",
+        "return np.where(others > 0.0, part, 0.0)",
+        "return np.where(self.reversed, part, 0.0)",
+        "rating/test_spectrum.py::test_reversed_bins_load_the_other_flanks_and_bend_roots_both_ways",
+    ),
+    Fault(
+        "rating of a stage: reversed bins do not press the fillets of planets more than their mates do",
+        "rating/roots.py",
+        "highest = under_loads_of_both_flanks(inputs, highest)",
+        "highest = np.where(inputs.cases.reversed, under_loads_of_both_flanks(inputs, highest), highest)",
+        "stages/test_stage_spectrum.py::test_local_roots_of_planets_add_up_the_bins_that_draw_each_fillet_by_hand",
+    ),
+    Fault(
+        "map of root safeties: places without tension have the largest number there is, which overflows",
+        "plots/safety.py",
+        "np.where(np.isposinf(fields), scale.vmax, fields)",
+        "np.where(np.isposinf(fields), np.finfo(float).max, fields)",
+        "rating/test_places.py::test_places_of_roots_without_tension_have_the_colour_of_safe_ones",
+    ),
+    Fault(
+        "rankings in pictures and reports print nan for what is not known",
+        "plain.py",
+        'return "-" if math.isnan(value) else plain(value)',
+        "return plain(value)",
+        "plots/test_study.py::test_ranking_of_few_samples_has_dashes_where_its_table_has_nothing",
+    ),
+    Fault(
+        "finding at a tip: the tip of the mating gear is not named",
+        "results/warnings.py",
+        'if any("tip" in name for name in edges) else ""',
+        'if any("top" in name for name in edges) else ""',
+        "results/test_reached_edges.py::test_finding_at_a_tip_says_that_the_mating_tip_may_need_relief_too",
     ),
 )
 

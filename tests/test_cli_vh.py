@@ -27,6 +27,8 @@ def test_vh_writes_a_row_for_each_pair_of_errors(run):
     *table, _, written = out.splitlines()
     assert written == "Written to out: vh_check.csv, vh_check.png"
     assert table[1] == "V mounting.in_plane_deg, H mounting.out_of_plane_deg"
+    assert table[3].startswith("point on edge: part of the pitch in which the unloaded contact point lies on the edge")
+    assert [table[4].split()[-1], table[5].split()[-2:]] == ["point", ["on", "edge"]]
     rows = list(csv.DictReader(Path("out", "vh_check.csv").read_text(encoding="utf-8").splitlines()))
     assert [float(row["mounting.out_of_plane_deg"]) for row in rows] == [-0.02, 0.0, 0.02]
     scene = read_scene(SCENES / "spur.toml")

@@ -41,8 +41,9 @@ def vh_text(check: VHCheck, keys: tuple[str, str]) -> str:
     ]
     heads = "along", "profile", "along", "profile", "along", "profile", "on edge"
     units = (*("[mm]",) * 6, "[%]")
-    above = "centre", "", "shift", "", "size", "", ""
-    return _table_of_errors(on, check.frame, keys, (above, heads, units), rows)
+    above = "centre", "", "shift", "", "size", "", "point"
+    edge = "point on edge: part of the pitch in which the unloaded contact point lies on the edge of a flank"
+    return _table_of_errors(on, check.frame, keys, (above, heads, units), rows, edge)
 
 
 def loaded_vh_text(
@@ -79,14 +80,15 @@ def _table_of_errors(
     keys: tuple[str, str],
     heads: Sequence[tuple[str, ...]],
     rows: Iterable[Sequence[float]],
+    *more: str,
 ) -> str:
-    """A table over V and H with heads in three lines, and what its places are."""
+    """A table over V and H with heads in three lines, what its places are, and lines with more about its columns."""
     errors = (("V", "H"), ("", ""), tuple(f"[{unit_of(key)}]" for key in keys))
     lines = [(*error, *head) for error, head in zip(errors, heads, strict=True)]
     lines += [tuple(_cells(row)) for row in rows]
     about = f"V {keys[0]}, H {keys[1]}", f"along: {frame.labels[0]}; profile: {frame.labels[1]}"
     table = ("".join(f"{cell:>12}" for cell in line).rstrip() for line in lines)
-    return "\n".join([title, *about, *table])
+    return "\n".join([title, *about, *more, *table])
 
 
 def _cells(row: Sequence[float]) -> list[str]:

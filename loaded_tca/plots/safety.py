@@ -275,12 +275,12 @@ def _mark(axes: Axes, at: Array, value: float) -> None:
 def _draw_fillets(axes: Axes, one: RootSafeties, scale: Normalize, colours: Colormap) -> None:
     """Both sides of a tooth, the back mirrored to the left; a field between nodes has the least of its four.
 
-    Fields that nothing draws have the last colour, as all safe ones: an infinite value would leave them white.
+    Fields that nothing draws have the last colour of the scale, as all safe ones: infinite values would be white.
     """
     for side, sign in ((0, 1.0), (1, -1.0)):
         nodes = one.safety[side]
         fields = np.fmin.reduce([nodes[:-1, :-1], nodes[1:, :-1], nodes[:-1, 1:], nodes[1:, 1:]])
-        fields = np.where(np.isposinf(fields), np.finfo(float).max, fields)
+        fields = np.where(np.isposinf(fields), scale.vmax, fields)
         angle = sign * np.degrees(one.tangent_angle[side])
         axes.pcolormesh(angle, one.axial[side], fields, cmap=colours, norm=scale, rasterized=True)
     axes.axvspan(-10.0, 10.0, color=style.NO_MATERIAL)

@@ -22,7 +22,7 @@ from matplotlib.transforms import Bbox
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import InputError
-from loaded_tca.plain import plain
+from loaded_tca.plain import plain, table_cell
 from loaded_tca.plots import style
 from loaded_tca.plots.style import ACCENT, COLOURS, MARKERS, MOST_LABELS, NOT_REACHED, label_of, wrapped_label_of
 from loaded_tca.results.summary import shown_torque
@@ -248,7 +248,7 @@ def plot_study_ranking(
     order_of = ranking(study, by, torque, largest_is_best)
     ranked = order_of[order_of["rank"].notna()]
     columns = [name for name in order_of.columns if name not in ("status", "reason", "note")]
-    cells = [[_cell(value) for value in row] for row in ranked[columns].head(MOST_ROWS).to_numpy().tolist()]
+    cells = [[table_cell(value) for value in row] for row in ranked[columns].head(MOST_ROWS).to_numpy().tolist()]
     heads = [wrapped_label_of(name) for name in columns]
     highest = max(head.count("\n") for head in heads) + 1
     width, height = 1.0 + 1.25 * len(columns), LINE * (highest + max(2, len(cells)))
@@ -299,7 +299,3 @@ def _why_unranked(variants: pandas.DataFrame) -> list[str]:
         len(counted) > MOST_REASONS
     )
     return [f"without a rank: {len(status)} of {len(variants)} variants", *lines, *more]
-
-
-def _cell(value: object) -> str:
-    return plain(value) if isinstance(value, float) else str(value)

@@ -53,7 +53,6 @@ def rating_of(
     inputs, error = _solved_inputs(result, duty), np.zeros(0)
     if coast is not None:
         beside = _solved_inputs(as_coast_side(coast, result), duty)
-        inputs = replace(inputs, cases=inputs.cases.of_both_sides())
         (arrays, endurances, notes), error = evaluated_together(inputs, beside, _evaluated)
     else:
         arrays, endurances, notes = _evaluated(inputs)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,9 +45,6 @@ class Cases:
         How often the hours of the bins follow each other in that life; 1 of shares.
     elsewhere : (c,) array of bool, or None
         Which cases load flanks that are not those of the result; None: those that are reversed.
-    other_side : (c,) array, or None
-        Largest torque on the other flanks of the teeth over that of each case, up to 1; None: 1 of those that are
-        reversed, else 0.
     """
 
     torque: Array
@@ -58,22 +55,18 @@ class Cases:
     is_spectrum: bool = False
     repeated: float = 1.0
     elsewhere: Mask | None = None
-    other_side: Array | None = None
 
     @property
     def press_on_back(self) -> Array:
-        """Loads of the other flanks of the teeth over that of each case (c,), up to 1: what presses its fillets."""
-        return self.reversed.astype(float) if self.other_side is None else self.other_side
+        """Largest torque on the other flanks of the teeth over that of each case (c,), up to 1: it presses its fillets.
 
-    def of_both_sides(self) -> Cases:
-        """The same where flanks of both sides are rated: the largest torque of each side presses the other's fillets.
-
-        ISO 6336-3, annex B, has the smaller load of both flanks over the larger one in the stress ratio.
+        ISO 6336-3, annex B, has the smaller load of both flanks over the larger one in the stress ratio. It follows
+        from torques alone, whether the flanks of one side are rated or those of both; 0 where no case loads the others.
         """
         tops = [self.torque[side].max(initial=0.0) for side in (self.reversed, ~self.reversed)]
         others = np.where(self.reversed, tops[1], tops[0])
         part = np.divide(others, self.torque, out=np.ones(len(self.torque)), where=self.torque > others)
-        return replace(self, other_side=np.where(others > 0.0, part, 0.0))
+        return np.where(others > 0.0, part, 0.0)
 
     @property
     def on_other_flanks(self) -> Mask:

@@ -12,7 +12,7 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import named
 from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurance, Endurances
 from loaded_tca.rating.loads import load_factors
-from loaded_tca.rating.roots import asked_ratio, local_root_factors, root_of
+from loaded_tca.rating.roots import local_root_factors, root_of, under_loads_of_both_flanks
 from loaded_tca.rating.solved import OF_FLANK, OF_ROOT
 from loaded_tca.rating.vibration import vibration
 from loaded_tca.reference import iso6336, iso6336_1, iso6336_2, iso6336_3
@@ -193,7 +193,8 @@ def _of_root(inputs: RatingInputs, loads: Arrays, place: int) -> OfRoot:
 def of_root(inputs: CommonInputs, loads: Arrays, place: int, stress: Array) -> OfRoot:
     """Strength and safety of the root of one gear (c,) with sigma_F, and by the computed root tension."""
     made_of, common = root_of(inputs, place)
-    cycles, ratio = inputs.cycles[:, place], asked_ratio(inputs, place)
+    cycles = inputs.cycles[:, place]
+    ratio = under_loads_of_both_flanks(inputs, inputs.strengths[place].root_stress_ratio)
     factors = iso6336_3.root_factors(made_of, cycles=cycles, stress_ratio=ratio, **common)
     arrays = {
         name: np.asarray(value, dtype=float)

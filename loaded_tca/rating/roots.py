@@ -43,10 +43,10 @@ def local_root_factors(
     """
     made_of, common = root_of(inputs, place)
     cycles, of_mates = inputs.cycles[case, place], inputs.loads.mate_stress_ratios
-    highest = asked_ratio(inputs, place)
+    highest = np.full(len(inputs.torque), inputs.strengths[place].root_stress_ratio)
     if of_mates is not None:
-        by_mesh = np.isnan(of_mates[:, place]) | inputs.cases.reversed
-        highest = np.where(by_mesh, highest, of_mates[:, place])
+        highest = np.where(np.isnan(of_mates[:, place]), highest, of_mates[:, place])
+    highest = under_loads_of_both_flanks(inputs, highest)
     ratio = np.clip(np.minimum(ratio, highest[case]), REVERSED, 0.0)
     try:
         return ratio, iso6336_3.root_factors(made_of, cycles=cycles, stress_ratio=ratio, **common), ()
@@ -55,10 +55,10 @@ def local_root_factors(
         return ratio, iso6336_3.root_factors(made_of, cycles=cycles, **common), (note,)
 
 
-def asked_ratio(inputs: CommonInputs, place: int) -> Array:
-    """Stress ratio R of the root of a gear that the scene asks for (c,), and that of loads on both flanks if less."""
-    asked, part = inputs.strengths[place].root_stress_ratio, inputs.cases.press_on_back
-    return np.where(part > 0.0, np.minimum(REVERSED * part, asked), asked)
+def under_loads_of_both_flanks(inputs: CommonInputs, ratio: Array | float) -> Array:
+    """Stress ratio R of roots (c,), and that of loads on both flanks of their teeth where it is less."""
+    part = inputs.cases.press_on_back
+    return np.where(part > 0.0, np.minimum(REVERSED * part, ratio), ratio)
 
 
 def largest_places(inputs: CommonInputs, gear: int) -> tuple[Array, Array]:

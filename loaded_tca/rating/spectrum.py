@@ -75,21 +75,21 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
         bins = f"reversed bins ({cases.reversed.sum()} of {len(between)})"
         if of_both_sides:
             yield f"{bins} load the flanks of the coast side and the roots as the analysis of the coast side has it"
-            yield (
-                f"roots under loads on both flanks have Y_M of R = {plain(REVERSED, 6)} times the largest torque on "
-                "the other flank over that of the bin, at most 1, where root_stress_ratio is not less"
-            )
         else:
             yield (
                 f"{bins} load the other flanks, which are not analysed: damage of the other flanks is not counted; "
                 "with the result of the coast side 'loaded-tca rating DIR --coast OTHER' rates both, and 'loaded-tca "
                 "report DIR --coast OTHER' reports it"
             )
-            yield f"{bins} stress the roots as much as the same torques that are not reversed"
             yield (
-                f"{bins} have Y_M of R = {plain(REVERSED, 6)}; other bins have Y_M by root_stress_ratio: safeties of "
-                "roots depend on which side is analysed; a rating with the result of the coast side does not"
+                f"{bins} stress the roots as much as the same torques that are not reversed, with load factors and "
+                "local stresses of the side that is analysed"
             )
+        yield (
+            f"roots under loads on both flanks have Y_M of R = {plain(REVERSED, 6)} times the largest torque on "
+            "the other flank over that of the bin, at most 1, where neither root_stress_ratio nor the computed ratio "
+            "is less"
+        )
     if abs(cases.repeated - 1.0) > ROUNDING:
         together = f"{plain(cases.life_hours / cases.repeated, 6)} h"
         yield f"the bins, together {together}, follow each other {plain(cases.repeated)} times"

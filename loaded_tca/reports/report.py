@@ -17,7 +17,7 @@ import numpy as np
 from loaded_tca.arguments import checked
 from loaded_tca.double_helical import DoubleHelicalResult
 from loaded_tca.errors import InputError, require
-from loaded_tca.plain import plain
+from loaded_tca.plain import plain, table_cell
 from loaded_tca.plots import plot_before_and_after, plot_peak_to_peak_over_torque, plot_study
 from loaded_tca.plots.style import label_of
 from loaded_tca.reports import page
@@ -265,7 +265,7 @@ def _shortfall(study: xarray.Dataset) -> Table | None:
     rows = [
         (
             SAFETIES[row["figure"]],
-            *(_cell(row[key]) for key in (*keys, torque)),
+            *(table_cell(row[key]) for key in (*keys, torque)),
             plain(row["required"]),
             plain(row["median"]),
             plain(row["least"]),
@@ -284,7 +284,8 @@ def _varied(study: xarray.Dataset) -> Table:
     for key in varied_keys(study):
         values = study[key].values
         known = np.unique(values)
-        span = f"{_cell(known[0])} to {_cell(known[-1])}" if known.dtype.kind in "fiu" else ", ".join(map(str, known))
+        ends = table_cell(known[0]), table_cell(known[-1])
+        span = " to ".join(ends) if known.dtype.kind in "fiu" else ", ".join(map(str, known))
         way = WAYS.get(study[key].attrs.get("sampling", "table"), "")
         way += f", {study[key].attrs['distribution']}" if "distribution" in study[key].attrs else ""
         rows.append((label_of(key), key, way, f"{len(known)}", span))
@@ -325,7 +326,8 @@ def _best_and_worst(study: xarray.Dataset, by: str | None, combinations: pandas.
         columns["as the scene"] = ranking[ranking["sample"] == nominal].iloc[0]
     names = _columns(study, by) if combinations is None else [*combinations.columns[1:].drop("note")]
     rows = [
-        (head, *(_cell(one[name]) for one in columns.values())) for name, head in zip(names, _heads(names), strict=True)
+        (head, *(table_cell(one[name]) for one in columns.values()))
+        for name, head in zip(names, _heads(names), strict=True)
     ]
     return Table(tuple(rows), ("", *columns))
 
@@ -337,7 +339,7 @@ def _ranking(study: xarray.Dataset, by: str | None, combinations: pandas.DataFra
     columns = (
         ["rank", *_columns(study, by), "warnings"] if combinations is None else [*combinations.columns.drop("note")]
     )
-    rows = [tuple(_cell(value) for value in row) for row in ranked[columns].to_numpy().tolist()]
+    rows = [tuple(table_cell(value) for value in row) for row in ranked[columns].to_numpy().tolist()]
     return Table(tuple(rows), tuple(_heads(columns))) if rows else None
 
 
@@ -348,11 +350,6 @@ def _columns(study: xarray.Dataset, by: str | None) -> list[str]:
 
 def _heads(columns: Sequence[str]) -> Iterator[str]:
     return (label_of(name) if name != "sample" else "variant" for name in columns)
-
-
-def _cell(value: Any) -> str:
-    """A number as tables have it, a word as it is."""
-    return plain(value) if isinstance(value, float) else str(value)
 
 
 DIFFERENCE = "largest difference of the transmission errors of both [um]"

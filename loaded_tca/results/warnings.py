@@ -356,29 +356,44 @@ def accuracy_of_edge(result: CycleNumbers, at: tuple[int, int, int]) -> str:
     return f"solved on columns of cells, with an estimated error of {error:.1%}"
 
 
-def _edge_finding(result: CycleNumbers, torque: int) -> str:
-    """The largest pressure at an edge of pairs that carry a thousandth of the torque: where, and what would remove it.
+def _remedy(result: CycleNumbers, at: tuple[int, int, int], edges: Sequence[str]) -> str:
+    """What would take the load off the edges of a contact, in words.
 
     An edge carries no load where the flank lacks as much there as the pair deflects that carries most beside it: its
     contact deformation and the deflection of its teeth along the normal. A pair that just begins to carry deflects by
-    less, but would touch there at another position. An edge pressure that the peak pressure exceeds is none.
+    less, but would touch there at another position. What the flanks lack there already, by crowning, counts; the load
+    that leaves the edge deflects the mesh by a little more, and presses on what is left of the contact.
     """
-    if torque not in (places := highest_edges(result)):
-        return ""
-    at = torque, n, k = torque, *places[torque]
-    edges = [name for name, one in zip(EDGES, _edges_of_pressure(result, *at), strict=True) if one]
-    cap, accuracy = float(result.max_pressure), accuracy_of_edge(result, at)
-    elastic = "elastic" if math.isnan(cap) else f"capped at {plain(cap, 6)} MPa"
+    torque, n, k = at
     remedies = [
         f"{relief} on the {' or '.join(dict.fromkeys(name.split()[0] for name in edges if where in name))}"
         for relief, where in (("end relief", "side"), ("tip relief", "tip"), ("root relief", "root"))
         if any(where in name for name in edges)
     ]
     deflections = np.nansum([result.contact_deformation[torque, n], result.tooth_deflection[torque, n]], axis=0)
-    amount = f"{plain(1e3 * float(deflections.max()), 2)} um, the deflection of the mesh there"
+    amount = f"{plain(1e3 * float(deflections.max()), 2)} um at the edge itself, the deflection of the mesh there"
     if result.paths[k].edges[n].any():
         amount = f"more than {amount}, since the pair first touches at this edge even without load"
-    remedy = f"to unload this edge, use {' or '.join(remedies) or 'a relief'} of {amount}"
+    else:
+        amount = f"up to about {amount}"
+    mating = ", and the tip of the mating gear may need relief, too" if any("tip" in name for name in edges) else ""
+    return (
+        f"to unload this edge, use {' or '.join(remedies) or 'a relief'} of {amount}; analyse again with some starts "
+        f"and amounts: a short relief presses where it starts, other edges take load from this one{mating}"
+    )
+
+
+def _edge_finding(result: CycleNumbers, torque: int) -> str:
+    """The largest pressure at an edge of pairs that carry a thousandth of the torque: where, and what would remove it.
+
+    An edge pressure that the peak pressure exceeds is none.
+    """
+    if torque not in (places := highest_edges(result)):
+        return ""
+    at = torque, *places[torque]
+    edges = [name for name, one in zip(EDGES, _edges_of_pressure(result, *at), strict=True) if one]
+    cap, accuracy = float(result.max_pressure), accuracy_of_edge(result, at)
+    elastic = "elastic" if math.isnan(cap) else f"capped at {plain(cap, 6)} MPa"
     share = f"{plain(100.0 * result.load_share[at], 3)} % of the torque"
     largest = float(np.nanmax(result.edge_pressure[torque]))
     beyond = (
@@ -391,7 +406,7 @@ def _edge_finding(result: CycleNumbers, torque: int) -> str:
         f"edge pressure {plain(result.edge_pressure[at])} MPa at {plain(1e-3 * result.torque[torque], 6)} N m on "
         f"{' + '.join(edges)} (pinion diameter {plain(2.0 * result.edge_radius[at])} mm, axial "
         f"{plain(result.edge_axial[at])} mm), where the pair carries {share}; this pressure is {elastic} and "
-        f"{accuracy}; {remedy}{beyond}"
+        f"{accuracy}; {_remedy(result, at, edges)}{beyond}"
     )
 
 

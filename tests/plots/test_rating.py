@@ -27,7 +27,7 @@ def test_curves_have_every_load_case_at_its_load_cycles():
 
 def test_bins_of_another_strength_stand_on_their_side_of_the_curve():
     """Damage is above 1 where a stress is above its strength: by the lives, which the picture does not use."""
-    bins = [{"pinion_torque_Nm": 200.0, "hours": 1.0, "reversed": side} for side in (False, True)]
+    bins = [{"pinion_torque_Nm": 200.0 if side else 100.0, "hours": 1.0, "reversed": side} for side in (False, True)]
     one = rated(**{"load.case": bins, "analysis.torques_Nm": (100.0, 200.0), "rating.required_root_safety": 1.9})
     damage = one.damage[:, 0, 1]
     assert damage[0] < 1.0 < damage[1]

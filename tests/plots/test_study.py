@@ -19,6 +19,7 @@ from loaded_tca.plots import (
     png_of,
 )
 from loaded_tca.plots.style import label_of
+from loaded_tca.studies import rank_combinations
 from tests.refusals import refused_calls
 from tests.samples.pictures import told
 from tests.samples.study_datasets import LEAD, MISALIGNMENT, SCENE, TIP, dataset, grid, sampled
@@ -307,6 +308,16 @@ def test_ranking_with_distributions_is_of_designs_by_their_quantile():
     figure = plot_study_ranking(designs(), SPAN, largest_is_best=True)
     assert "5 % quantile over the samples" in title(figure)
     assert figure.axes[0].tables[0][1, 2].get_text().get_text() == "2"  # 5 % of the least: 3.05 and 0.925
+
+
+def test_ranking_of_few_samples_has_dashes_where_its_table_has_nothing():
+    """Of fewer than 20 samples there is no standard error of the quantile."""
+    study = designs().isel(sample=slice(0, None, 2))
+    assert rank_combinations(study, SPAN)["standard_error_um"].isna().all()
+    table = cells(plot_study_ranking(study, SPAN))
+    (column,) = [n for (row, n), text in table.items() if row == 0 and text.startswith("standard error")]
+    assert [table[row, column] for row in (1, 2)] == ["-", "-"]
+    assert "nan" not in table.values()
 
 
 def test_each_design_has_its_band_over_the_torque():

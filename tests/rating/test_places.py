@@ -127,6 +127,8 @@ def test_places_of_roots_without_tension_have_the_colour_of_safe_ones(monkeypatc
     monkeypatch.setattr("loaded_tca.plots.safety.root_safeties", lambda *_: replace(places, safety=pressed))
     meshes = plot_root_safety(rated).axes[0].collections[:2]
     assert [np.ma.count_masked(mesh.get_array()) for mesh in meshes] == [0, 0]
+    colours = meshes[1].to_rgba(meshes[1].get_array())
+    assert (colours == meshes[1].cmap(1.0)).all()
 
 
 def test_maps_of_both_gears_have_one_scale():
