@@ -17,6 +17,7 @@ from loaded_tca.cli.inputs import (
     check_place,
     comparison_of,
     directory_of,
+    directory_of_part,
     executor_of,
     file_of_report,
     index_of_position,
@@ -466,9 +467,7 @@ def _sensitivities_of_halves(options: argparse.Namespace) -> None:
     path = result_file(options.result)
     result = DoubleHelicalResult.load(path)
     torque = index_or_largest(result.torque, index_of_torque(options.torque, result))
-    part = "" if options.torque is None else f"torque_{plain(options.torque, 6)}_Nm"
-    directory = options.out or directory_of(path) / part
-    check_place(directory)
+    directory = directory_of_part(options, path)
     tolerances = tolerances_of(options, result.scene)
     slopes = result.sensitivities([*tolerances])
     text = sensitivities_of_halves_text(slopes, tolerances, torque)

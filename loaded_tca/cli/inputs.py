@@ -136,14 +136,18 @@ def result_of(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None,
     path = result_file(options.result)
     result = MeshCycle.load(path)
     torque = index_of_torque(options.torque, result)
-    given = getattr(options, "position", None)
-    position = index_of_position(given, result)
-    chosen = {"torque_{:g}_Nm": options.torque, "position_{}": given}
-    chosen |= {"pair_{}": getattr(options, "pair", None), "below_{}": getattr(options, "gear", None)}
+    position = index_of_position(getattr(options, "position", None), result)
+    return result, directory_of_part(options, path), torque, position
+
+
+def directory_of_part(options: argparse.Namespace, file: Path) -> Path:
+    """Where the files go that a command makes of a part of a result: they do not replace those of the whole."""
+    keys = {"torque_{:g}_Nm": "torque", "position_{}": "position", "pair_{}": "pair", "below_{}": "gear"}
+    chosen = {name: getattr(options, key, None) for name, key in keys.items()}
     names = [name.format(value) for name, value in chosen.items() if value not in (None, "pinion")]
-    directory = options.out or directory_of(path) / "_".join(names)  # files of a part do not replace those of the whole
+    directory: Path = options.out or directory_of(file) / "_".join(names)
     check_place(directory)
-    return result, directory, torque, position
+    return directory
 
 
 def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]:

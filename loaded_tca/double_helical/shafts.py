@@ -28,7 +28,7 @@ from loaded_tca.loaded.standing import CLOSE
 from loaded_tca.results.supports import loads_of_stations
 from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
 from loaded_tca.scene.half_shafts import MIRRORED, HalfLoads
-from loaded_tca.supports import Support, shafts_of, support_compliance, supports_of
+from loaded_tca.supports import shafts_of, support_compliance, supports_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,7 +51,8 @@ def loads_at_first(
             supports = support_compliance(half, pair := half.pair())
             assert supports is not None
             loads = loads_at_first_contact(supports, at_rest(pair, supports), max(half.torques))
-        every.append([_half_loads(support, load) for support, load in zip(supports.supports, loads, strict=True)])
+        of_gears = zip(supports.supports, loads, strict=True)
+        every.append([HalfLoads(support.places, load.reshape(-1, 6)) for support, load in of_gears])
     return every
 
 
@@ -77,11 +78,6 @@ def first_bearing_forces(scene: DoubleHelicalScene, axial: float, torque: float)
             bearings = len(getattr(scene, name).shaft.bearings)
             forces[name] = solved.on_bearings[:bearings] @ np.append(of_half, 1.0)
     return forces
-
-
-def _half_loads(support: Support, load: Array) -> HalfLoads:
-    """Loads (6 m,) of the stations of a support."""
-    return HalfLoads(support.places, load.reshape(-1, 6))
 
 
 class Stations(NamedTuple):

@@ -18,6 +18,7 @@ from loaded_tca.contact import ContactProblem, ContactSolution
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.patch import ends_at_material, values_at_ends
+from loaded_tca.edges.places import has_relief_starts
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import LoadedContact
@@ -278,6 +279,8 @@ def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Sep
     """Whether the start of a linear relief, of either flank, runs through the contact, whose ends lie within cells."""
     if contact.on_relief_start:
         return True
+    if not has_relief_starts(pair):
+        return False
     pressed = pressure > 0.0
     border = border_of(pressed)  # a start that runs through a contact crosses its border
     for past in past_relief_starts(pair, separation, border):
@@ -299,6 +302,8 @@ def _reaches_arc(on_arc: Mask, pressure: Array) -> bool:
 
 def _ends_on_arc(on_arc: Mask, pressure: Array) -> bool:
     """Whether an end slice of a contact, at its largest pressure, or what comes next along it lies on an arc."""
+    if not on_arc.any():
+        return False
     carrying = np.flatnonzero(pressure.any(axis=0))
     ends = [(carrying[0], carrying[0] - 1), (carrying[-1], carrying[-1] + 1)] if carrying.size else []
     return any(

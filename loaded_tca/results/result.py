@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -96,6 +96,11 @@ class Result(InNotebooks, Numbers, ABC):
 
     def key_figures(self) -> tuple[dict[str, float], ...]:
         """Return the figures for each torque, by names that end in their unit; NaN: not known."""
+        return tuple({**row} for row in self._key_figures)
+
+    @cached_property
+    def _key_figures(self) -> tuple[dict[str, float], ...]:
+        """Those of :meth:`key_figures`, which tables, summaries and reports all ask for."""
         rows = (self.under(torque) for torque in range(self.dataset["torque"].size))
         return tuple({name: figure.of(row) for name, figure in self.figures.items()} for row in rows)
 

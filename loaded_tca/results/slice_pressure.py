@@ -27,7 +27,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.patch import peak_pressure, reaches_border, top_weights
-from loaded_tca.edges.places import dilated
+from loaded_tca.edges.places import dilated, has_relief_starts
 from loaded_tca.loaded.line_load import SliceLoads, stretch_parts
 from loaded_tca.separation import Separation
 from loaded_tca.separation.arcs import arcs_beside
@@ -136,8 +136,9 @@ def _rough_cells(pair: GearPair, separation: Separation, pressure: Array) -> Mas
     rough = dilated(separation.cover < 1.0)
     if pair.sharp is not pair:
         rough |= dilated(arcs_beside(pair, separation, pressure > 0.0).any(axis=-1))
-    for past in past_relief_starts(pair, separation, dilated(pressure > 0.0)):
-        rough |= dilated(past > 0.0) & dilated(past <= 0.0)
+    if has_relief_starts(pair):
+        for past in past_relief_starts(pair, separation, dilated(pressure > 0.0)):
+            rough |= dilated(past > 0.0) & dilated(past <= 0.0)
     return rough
 
 

@@ -14,7 +14,7 @@ from loaded_tca.separation.flank_places import CellGrid, FlankPlaces, border_of
 def cells_on_arcs(pair: GearPair, grid: CellGrid, cells: Mask) -> Mask:
     """Edges (nx, ny, 8) on whose arcs some cells (nx, ny) of the grid of a contact lie; none of its other cells."""
     on_arcs = np.zeros((*cells.shape, 2 * len(EDGE_NAMES)), dtype=bool)
-    if pair.sharp is not pair and cells.any():
+    if cells.any():
         on_arcs[cells] = lengths_past_tangents(pair, *FlankPlaces(pair, grid).of(cells)) > 0.0
     return on_arcs
 
@@ -24,4 +24,4 @@ def arcs_beside(pair: GearPair, grid: CellGrid, pressed: Mask) -> Mask:
 
     None of the cells within: a contact that lies on an arc has its outermost cells there.
     """
-    return cells_on_arcs(pair, grid, border_of(pressed))
+    return cells_on_arcs(pair, grid, np.zeros_like(pressed) if pair.sharp is pair else border_of(pressed))

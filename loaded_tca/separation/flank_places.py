@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from loaded_tca.arrays import Array, Mask
-from loaded_tca.edges.places import dilated, has_relief_starts, relief_start_distances
+from loaded_tca.edges.places import dilated, relief_start_distances
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded.path import angles_through
@@ -63,7 +63,7 @@ def past_relief_starts(pair: GearPair, grid: CellGrid, cells: Mask) -> Array:
 
     Empty where no flank has a linear relief, and without cells.
     """
-    if not (cells.any() and has_relief_starts(pair)):
+    if not cells.any():
         return np.empty((0, *cells.shape))
     past = relief_start_distances(pair, *FlankPlaces(pair, grid).of(cells))
     distances = np.full((past.shape[-1], *cells.shape), np.nan)
