@@ -6,6 +6,9 @@ has the error; its traceback goes to the error output, and the other cases are r
 
 ``--save rows.json`` keeps the numbers, ``--compare rows.json`` tells which have moved since: what a change of the code
 did to them. Cases that are named run alone.
+
+Cases that compare the package with itself (finer grids, invariances, differences of analyses) have one scene of each
+kind in the table; ``--whole`` runs them on all their scenes, grids and seeds, an hour on two cores.
 """
 
 import argparse
@@ -112,6 +115,13 @@ def main() -> int:
     parser.add_argument("--save", metavar="FILE", type=Path, help="keep the rows as JSON")
     parser.add_argument("--compare", metavar="FILE", type=Path, help="list the rows that differ from kept ones")
     parser.add_argument("--processes", metavar="N", type=int, default=2, help="cases that run at a time (default: 2)")
+    parser.add_argument(
+        "--whole",
+        action="store_const",
+        const="whole_rows",
+        default="rows",
+        help="every scene, grid and seed of cases that compare the package with itself: an hour",
+    )
     options = parser.parse_args()
     if options.processes < 1:
         parser.error(f"--processes: {options.processes} is not positive")
@@ -119,7 +129,7 @@ def main() -> int:
         parser.error(f"no case {', '.join(unknown)}; there are {', '.join((*CASES, *LONG))}")
     wanted = options.cases or (*CASES, *LONG)
     start = time.perf_counter()
-    outcomes = run_cases(sorted(wanted, key=lambda case: case not in LONG), options.processes)
+    outcomes = run_cases(sorted(wanted, key=lambda case: case not in LONG), options.processes, options.whole)
     rows = [row for case in wanted for row in outcomes[case].rows]
     print(render(rows))
     print(f"\n{times(outcomes)}")

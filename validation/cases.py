@@ -37,12 +37,12 @@ class Outcome:
     traceback: str = ""
 
 
-def run_case(case: str, short: bool = False) -> Outcome:
-    """Rows of one case, or its short rows where it has them."""
+def run_case(case: str, which: str = "rows") -> Outcome:
+    """Rows of one case, or its ``short_rows`` or ``whole_rows`` where it has them."""
     start = time.perf_counter()
     try:
         module = import_module(f"validation.{case}")
-        rows = list((getattr(module, "short_rows", module.rows) if short else module.rows)())
+        rows = list(getattr(module, which, module.rows)())
     except Exception as error:  # whatever a case raises is a result of that case
         return _failed(case, error, time.perf_counter() - start)
     return Outcome(rows, time.perf_counter() - start)
@@ -54,7 +54,7 @@ def _failed(case: str, error: BaseException, seconds: float = 0.0) -> Outcome:
     return Outcome([row], seconds, "".join(traceback.format_exception(error)))
 
 
-def run_cases(cases: Sequence[str], processes: int = 1) -> dict[str, Outcome]:
+def run_cases(cases: Sequence[str], processes: int = 1, which: str = "rows") -> dict[str, Outcome]:
     """Outcomes of cases in their order; each is reported on the error output when it ends, with rows that fail.
 
     Parameters
@@ -63,9 +63,11 @@ def run_cases(cases: Sequence[str], processes: int = 1) -> dict[str, Outcome]:
         They begin in this order.
     processes : int
         Of more than one each keeps to one core.
+    which : str
+        ``rows``, or ``whole_rows``.
     """
     outcomes: dict[str, Outcome] = {}
-    for case, outcome in _one_by_one(cases) if processes == 1 else _at_a_time(cases, processes):
+    for case, outcome in _one_by_one(cases, which) if processes == 1 else _at_a_time(cases, processes, which):
         outcomes[case] = outcome
         beyond = [row for row in outcome.rows if not row.holds]
         words = f"{len(outcome.rows)} rows, {len(beyond)} beyond the tolerance, {outcome.seconds:.1f} s"
@@ -74,14 +76,14 @@ def run_cases(cases: Sequence[str], processes: int = 1) -> dict[str, Outcome]:
     return {case: outcomes[case] for case in cases}
 
 
-def _one_by_one(cases: Sequence[str]) -> Iterator[tuple[str, Outcome]]:
-    return ((case, run_case(case)) for case in cases)
+def _one_by_one(cases: Sequence[str], which: str) -> Iterator[tuple[str, Outcome]]:
+    return ((case, run_case(case, which)) for case in cases)
 
 
-def _at_a_time(cases: Sequence[str], processes: int) -> Iterator[tuple[str, Outcome]]:
+def _at_a_time(cases: Sequence[str], processes: int, which: str) -> Iterator[tuple[str, Outcome]]:
     """Cases and their outcomes as they end; a case whose process dies has failed."""
     with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
-        futures = {pool.submit(_on_one_core, case): case for case in cases}
+        futures = {pool.submit(_on_one_core, case, which): case for case in cases}
         try:
             for future in as_completed(futures):
                 error = future.exception()
@@ -90,9 +92,9 @@ def _at_a_time(cases: Sequence[str], processes: int) -> Iterator[tuple[str, Outc
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _on_one_core(case: str) -> Outcome:
+def _on_one_core(case: str, which: str) -> Outcome:
     with one_thread():
-        return run_case(case)
+        return run_case(case, which)
 
 
 def times(outcomes: Mapping[str, Outcome]) -> str:

@@ -32,7 +32,7 @@ LEAST |= {"loaded.root_face_load": 5, "calculix.mesh_cycle": 14, "calculix.helic
 """Rows of cases that have none, or fewer, where a kept table or a part of them is missing."""
 
 
-short_rows = cache(partial(run_case, short=True))
+short_rows = cache(partial(run_case, which="short_rows"))
 
 
 DEAR = {
@@ -90,13 +90,27 @@ def test_validation_rows_hold(case):
     assert len(outcome.rows) >= LEAST.get(case, 1)
 
 
-def test_tests_take_the_short_rows_where_a_case_has_them(monkeypatch):
-    all_rows, few = ([Row("case", "source", name, 1.0, 1.0, None)] for name in ("all", "few"))
-    long, plain = SimpleNamespace(rows=lambda: all_rows, short_rows=lambda: few), SimpleNamespace(rows=lambda: all_rows)
-    for name, module in (("long", long), ("plain", plain)):
+def test_short_and_whole_rows_are_those_of_the_table_where_a_case_has_no_others(monkeypatch):
+    some, few, all_rows = ([Row("case", "source", name, 1.0, 1.0, None)] for name in ("some", "few", "all"))
+    long = SimpleNamespace(rows=lambda: some, short_rows=lambda: few, whole_rows=lambda: all_rows)
+    for name, module in (("long", long), ("plain", SimpleNamespace(rows=lambda: some))):
         monkeypatch.setitem(sys.modules, f"validation.{name}", module)
-    assert run_case("long", short=True).rows == few
-    assert run_case("plain", short=True).rows == run_case("long").rows == all_rows
+    assert run_case("long", "short_rows").rows == few
+    assert run_case("long", "whole_rows").rows == all_rows
+    for which in ("rows", "short_rows", "whole_rows"):
+        assert run_case("plain", which).rows == run_case("long").rows == some
+        assert run_cases(["plain"], which=which)["plain"].rows == some
+
+
+def test_command_runs_the_whole_cases_when_asked(monkeypatch, capsys):
+    some, all_rows = ([Row("case", "source", name, 1.0, 1.0, None)] for name in ("a few seeds", "every seed"))
+    monkeypatch.setitem(sys.modules, "validation.long", SimpleNamespace(rows=lambda: some, whole_rows=lambda: all_rows))
+    monkeypatch.setattr(programme, "CASES", ("long",))
+    monkeypatch.setattr(programme, "LONG", ())
+    for options, what in (([], "a few seeds"), (["--whole"], "every seed")):
+        monkeypatch.setattr(sys, "argv", ["validation", "--processes", "1", *options])
+        assert programme.main() == 0
+        assert what in capsys.readouterr().out
 
 
 def test_case_that_raises_among_its_rows_has_failed(monkeypatch):

@@ -25,7 +25,8 @@ from validation.random_scenes import random_scene
 from validation.table import Row
 
 CASE, SOURCE = "derivatives of random scenes", "differences of whole analyses with two steps"
-SCENES = 20
+SCENES, ALL_SCENES = 9, 20
+"""Of the table: each family in turn."""
 GRID = {"positions": 5, "cells": (48, 96), "accuracy": None}
 STEP, LEAST, CLEAN, NEAR = 0.1, 1e-2, 0.05, 0.05
 """Narrower step over the usual tolerance of a key; least size of a slope over the figure, for that tolerance; scatter
@@ -45,12 +46,12 @@ class Comparison(NamedTuple):
 
 
 @cache
-def comparisons() -> dict[str, list[Comparison]]:
-    """By figure, those of all scenes and keys."""
+def comparisons(scenes: int) -> dict[str, list[Comparison]]:
+    """By figure, those of so many scenes and all keys."""
     found: dict[str, list[Comparison]] = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # contacts on edges are wanted
-        for seed in range(SCENES):
+        for seed in range(scenes):
             for figure, one in _of_scene(seed):
                 found.setdefault(figure, []).append(one)
     return found
@@ -58,8 +59,17 @@ def comparisons() -> dict[str, list[Comparison]]:
 
 def rows() -> list[Row]:
     """Parts of the comparisons that are off, by figure, and the median of all errors."""
+    return _rows(SCENES)
+
+
+def whole_rows() -> list[Row]:
+    """The same of all scenes."""
+    return _rows(ALL_SCENES)
+
+
+def _rows(scenes: int) -> list[Row]:
     found = []
-    for figure, every in comparisons().items():
+    for figure, every in comparisons(scenes).items():
         clean = [one for one in every if one.scatter < CLEAN]
         off = [one for one in clean if one.error > NEAR]
         worst = max(clean, key=lambda one: one.error)

@@ -39,7 +39,7 @@ from loaded_tca.reference.iso6336_3 import RootSection, root_section
 from loaded_tca.tooth.fillet import polar
 from validation.calculix import plane_ring
 from validation.calculix.tables import RINGS_FILE, read_table
-from validation.loaded.root_stress_families import rows as family_rows
+from validation.loaded.root_stress_families import whole_rows as family_rows
 from validation.loaded.root_stress_models import CASE, FINER, finer, line_on, model_of, spur_pair_gear
 from validation.page import SCENES, Page, machine, medians, peak_memory, table, take_times, timed, write_page
 from validation.table import Row
