@@ -7,8 +7,7 @@ of its figure: a slope that changes it by less than 1 % over the usual tolerance
 
 import math
 import warnings
-from collections.abc import Iterator
-from functools import cache
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -25,8 +24,8 @@ from validation.random_scenes import random_scene
 from validation.table import Row
 
 CASE, SOURCE = "derivatives of random scenes", "differences of whole analyses with two steps"
-SCENES, ALL_SCENES = 9, 20
-"""Of the table: each family in turn."""
+SEEDS, ALL_SEEDS = (0, 3, 5, 8), range(20)
+"""Seeds of the table are a helical, a spur, a straight bevel and a face-milled pair; teeth of two of them bend."""
 GRID = {"positions": 5, "cells": (48, 96), "accuracy": None}
 STEP, LEAST, CLEAN, NEAR = 0.1, 1e-2, 0.05, 0.05
 """Narrower step over the usual tolerance of a key; least size of a slope over the figure, for that tolerance; scatter
@@ -45,13 +44,12 @@ class Comparison(NamedTuple):
     scatter: float
 
 
-@cache
-def comparisons(scenes: int) -> dict[str, list[Comparison]]:
-    """By figure, those of so many scenes and all keys."""
+def comparisons(seeds: Iterable[int]) -> dict[str, list[Comparison]]:
+    """By figure, those of all keys of some scenes."""
     found: dict[str, list[Comparison]] = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # contacts on edges are wanted
-        for seed in range(scenes):
+        for seed in seeds:
             for figure, one in _of_scene(seed):
                 found.setdefault(figure, []).append(one)
     return found
@@ -59,17 +57,17 @@ def comparisons(scenes: int) -> dict[str, list[Comparison]]:
 
 def rows() -> list[Row]:
     """Parts of the comparisons that are off, by figure, and the median of all errors."""
-    return _rows(SCENES)
+    return _rows(SEEDS)
 
 
 def whole_rows() -> list[Row]:
     """The same of all scenes."""
-    return _rows(ALL_SCENES)
+    return _rows(ALL_SEEDS)
 
 
-def _rows(scenes: int) -> list[Row]:
+def _rows(seeds: Iterable[int]) -> list[Row]:
     found = []
-    for figure, every in comparisons(scenes).items():
+    for figure, every in comparisons(seeds).items():
         clean = [one for one in every if one.scatter < CLEAN]
         off = [one for one in clean if one.error > NEAR]
         worst = max(clean, key=lambda one: one.error)
