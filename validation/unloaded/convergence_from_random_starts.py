@@ -33,6 +33,8 @@ from validation.unloaded.random_starts import (
 CHOICES = ("y, z", "x, z")
 """Components of the normals; x and y are singular together for parallel axes."""
 STATED_STARTS = 1000
+ONE = 1.0 / 5000.0
+"""Start that rounding may decide over on another machine; none was seen to fail."""
 _SPUR, _HELICAL = Draw("-0.1 to 0.6 rad", -0.1, 0.6, True), Draw("-0.065 to 0.335 rad", -0.065, 0.335, True)
 _WHOLE_TURN = Draw("within pi (not stated)", -math.pi, math.pi, True)
 STATED: dict[str, tuple[tuple[Draw, float], ...]] = {
@@ -115,7 +117,7 @@ def rows() -> list[Row]:
     return [
         *found,
         *_stated_rows(),
-        Row(spur.name, computed, f"{label}, phi2 within 0.2 rad: converged [%]", 100.0, near.percentage, 1e-3, assumed),
+        Row(spur.name, computed, f"{label}, phi2 within 0.2 rad: converged [%]", 100.0, near.percentage, ONE, assumed),
         Row(spur.name, computed, f"{label}, phi2 within pi/2: converged [%]", 27.74, wide.percentage, 0.1, sampled),
         Row(spur.name, printed, f"{label}, phi2 within pi/2: converged [%]", 27.32, wide.percentage, 0.1, sampled),
         Row(spur.name, printed, f"{label}, phi2 within pi/2: mean steps", 5.53, wide.steps, None, sampled),
