@@ -9,7 +9,7 @@
 - ``bending_line``: a helical pair whose pressure leaves the axis of its grid, beside repeated analyses;
 - ``jumps``, ``error_estimates``: what grids do to the transmission error, and what estimates of peak pressures are
   worth, over random scenes of all families, in minutes;
-- ``face_ends``: K_Hbeta of half-spaces at sharp face ends, beside fine cells, in minutes;
+- ``face_ends``: K_Hbeta of half-spaces at sharp face ends, beside fine cells;
 - ``face_ends_space``: line load up to the free ends of the face, aligned and misaligned, beside finite elements in
   space of its own;
 - ``local_term``: how far the local term of a tooth reaches along the face;
