@@ -8,7 +8,7 @@ has the error; its traceback goes to the error output, and the other cases are r
 did to them. Cases that are named run alone.
 
 Cases that compare the package with itself (finer grids, invariances, differences of analyses) have one scene of each
-kind in the table; ``--whole`` runs them on all their scenes, grids and seeds, an hour on two cores.
+kind in the table; ``--whole`` runs them on all their scenes, grids and seeds, which takes three times as long.
 """
 
 import argparse
@@ -91,18 +91,18 @@ CASES = (
 
 LONG = (
     "loaded.sensitivities",
-    "studies.robust_design",
-    "loaded.rounded_edges",
-    "loaded.root_stress_families",
     "loaded.jumps",
+    "loaded.rounded_edges",
+    "studies.robust_design",
     "loaded.random_sensitivities",
-    "loaded.random_scenes",
     "loaded.moving_edges",
+    "loaded.random_scenes",
+    "loaded.root_stress_families",
+    "unloaded.rounded_edges",
     "loaded.bending_line",
     "loaded.face_ends",
-    "unloaded.rounded_edges",
 )
-"""Cases of minutes, which the tests leave out; the longest first.
+"""Dear cases, which the tests leave out; the longest first.
 
 Of other cases the tests have the ``short_rows``, where a module has them.
 """
@@ -120,7 +120,7 @@ def main() -> int:
         action="store_const",
         const="whole_rows",
         default="rows",
-        help="every scene, grid and seed of cases that compare the package with itself: an hour",
+        help="every scene, grid and seed of cases that compare the package with itself: three times as long",
     )
     options = parser.parse_args()
     if options.processes < 1:
