@@ -1,9 +1,9 @@
 """Whole revolutions: alike teeth, flanks that are really turned, eccentric axes, slopes to single teeth.
 
 - Teeth that are alike: the transmission error of the analysis of one pitch, which has other functions for its contacts.
-  Tolerance 1e-6 um: the balances end where rotations agree, 2e-8 um is seen.
+  Tolerance 1e-7 um: the balances end where rotations agree, 2e-8 um is seen.
 - Rigid: at every position the two flanks of each pair are turned about their axes by their index deviations, and the
-  contact of the pair of turned flanks is found anew. To rounding, 1e-12 mm.
+  contact of the pair of turned flanks is found anew. To rounding, 2e-13 mm: 4e-14 mm is seen.
 - Eccentric axis: the whole wheel is displaced, and each position is another mounting; right to e^2 over the base
   radius. Of involutes the closed form r_b2 TE = -(e_x sin alpha_wt + e_y cos alpha_wt), to rounding.
 - Slope of the loaded transmission error to the deviation of one tooth. Of flanks alone it is the tangent stiffness of
@@ -47,7 +47,7 @@ PAIRS = {
     "planet and ring": ("planet_ring.toml", {"analysis.torques_Nm": [1000.0]}),
     "face-milled": ("face_milled_19x62_matched.toml", {"analysis.torques_Nm": [50.0]}),
 }
-PER_PITCH, ALIKE_um, ROUNDING_mm = 4, 1e-6, 1e-12
+PER_PITCH, ALIKE_um, ROUNDING_mm = 4, 1e-7, 2e-13
 ECCENTRICITY, PHASE = 0.01, 0.7  # mm, rad
 SLOPE, STEP_um, LOAD_STEP = 2e-3, 0.2, 2e-3
 SCATTER = 0.004  # mm, of random index deviations
