@@ -101,7 +101,7 @@ RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubr
 are made of, what is required and how they run; a stage has [sun.strength], [planet.strength] and [ring.strength]. --set
 gives or changes these, and the load spectrum: load.spectrum=FILE, with torques up to the largest that was solved.
 Without a load spectrum each torque is rated by itself. Both halves of a double helical pair are rated under their
-shares.
+shares, and have pictures of their own: half_a_safeties.png ...
 
 files in DIR:
   rating.json               safeties, damage, lives and every factor of each torque or bin, and of all bins together

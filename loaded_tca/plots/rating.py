@@ -19,6 +19,7 @@ from loaded_tca.plots.style import DISTINCT_COLOURS, NO_MATERIAL
 from loaded_tca.rating.lives import Endurance
 from loaded_tca.rating.rating import WORDS, OfCases
 from loaded_tca.rating.spectrum import OfSpectrum
+from loaded_tca.scene.double_helical import HALVES
 
 SHOWN_CYCLES = 1e2, 1e11
 """Of the axis of load cycles, at least."""
@@ -193,6 +194,22 @@ RATING_PICTURES: dict[str, Picture[OfCases]] = {
 """Pictures of the command, by the names of their files."""
 
 
+def _of_half(name: str, picture: Picture[OfCases]) -> Picture[DoubleHelicalRating]:
+    """A picture of the rating of one half of a double helical pair, which has it where the half is rated."""
+    return Picture(
+        f"half {name}: {picture.line}",
+        f"Half {name}: {picture.caption}",
+        lambda rating: picture.draw(rating.of_halves[name]),
+        lambda rating: name in rating.of_halves and picture.has(rating.of_halves[name]),
+    )
+
+
+HALVES_RATING_PICTURES: dict[str, Picture[DoubleHelicalRating]] = {
+    f"half_{name}_{file}": _of_half(name, picture) for name in HALVES for file, picture in RATING_PICTURES.items()
+}
+"""The same of both halves of a double helical pair, each under its share of the torque."""
+
+
 def rating_figures(rating: OfCases) -> dict[str, Figure]:
     """Draw every picture that a rating has.
 
@@ -204,6 +221,8 @@ def rating_figures(rating: OfCases) -> dict[str, Figure]:
     -------
     dict of str to matplotlib.figure.Figure
         By the names of ``RATING_PICTURES``; those of places where a case of a pair has these. Of a double helical pair
-        none: its halves are ratings, which have them.
+        those of each half that carries load, by the names of ``HALVES_RATING_PICTURES``.
     """
-    return {} if isinstance(rating, DoubleHelicalRating) else figures_of(RATING_PICTURES, rating)
+    if isinstance(rating, DoubleHelicalRating):
+        return figures_of(HALVES_RATING_PICTURES, rating)
+    return figures_of(RATING_PICTURES, rating)
