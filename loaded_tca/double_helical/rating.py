@@ -14,7 +14,7 @@ from loaded_tca.errors import InputError, give_accuracy_warning, named
 from loaded_tca.plain import plain
 from loaded_tca.rating import Rating, rating_of
 from loaded_tca.rating.cases import cases_of, problems_of_cases
-from loaded_tca.rating.inputs import Duty, missing_sections
+from loaded_tca.rating.inputs import Duty, by_itself, missing_sections
 from loaded_tca.rating.quantities import CASE, NUMBERS, OF_GEARS, SPECTRUM_NUMBERS
 from loaded_tca.rating.rating import NOT_COUNTED, OfCases, all_figures, rows_of
 from loaded_tca.rating.spectrum import OfSpectrum
@@ -340,7 +340,8 @@ def _under(
     rated = _rated(scene, cycle, within)
     cases = replace(cases_of(rated.scene, within), torque=within)  # to the last digit, as they were solved
     of_parts = [(rated if part is cycle else _rated(scene, part, within), most) for part, most in solved]
-    duty = Duty(cases=cases, case_mesh_load_factor=more, case_face_load_factor=face_factor, parts=of_parts)
+    factors = {"case_mesh_load_factor": more, "case_face_load_factor": face_factor}
+    duty = Duty(cases=cases, **factors, other_flanks=by_itself(scene.load), parts=of_parts)
     return rating_of(rated, duty=duty, warn=False)
 
 

@@ -178,6 +178,8 @@ def test_summary_of_a_spectrum_has_both_halves_and_what_is_assumed(under_bins):
     text = under_bins.summary()
     assert text.count("half b, under its share") >= 2  # all bins together, and bin by bin
     assert "the halves share reversed bins as they share the same torques" in text
+    assert "with pair.driving or pair.sense changed, and reversed the other way in every bin, rates them" in text
+    assert "--coast" not in text
 
 
 def test_command_and_report_rate_both_halves(tmp_path, monkeypatch, capsys, held, under_bins):
