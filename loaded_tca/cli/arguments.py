@@ -459,6 +459,8 @@ def _add_studies(command: Command) -> None:
         metavar="FIGURE",
         help="figure of study.csv by which variants are ranked, best first; default: peak-to-peak TE",
     )
+    axes = "keys with given values that heat maps have to the right and upwards; default: the first two"
+    study.add_argument("--axes", metavar="KEY", nargs=2, help=axes)
     study.add_argument(
         "--keep-maps",
         metavar="N,N,...",
@@ -488,6 +490,7 @@ def _add_studies(command: Command) -> None:
         metavar="FIGURE",
         help="for a study: figure by which variants are ranked, best first; default: peak-to-peak TE",
     )
+    report.add_argument("--axes", metavar="KEY", nargs=2, help=f"for a study: {axes}")
 
 
 def _add_engine(parser: argparse.ArgumentParser) -> None:

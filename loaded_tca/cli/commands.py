@@ -574,6 +574,7 @@ def study(options: argparse.Namespace) -> None:
     """Analyse what is missing of a study, write its tables and pictures, and show the summary."""
     from loaded_tca.output.tables import write_study
     from loaded_tca.plots import plot_study
+    from loaded_tca.plots.study import are_steps, require_axes
     from loaded_tca.plots.style import pngs_of
     from loaded_tca.scene.keys import did_you_mean, nearest
     from loaded_tca.studies import read_study, run_study, study_summary
@@ -581,11 +582,14 @@ def study(options: argparse.Namespace) -> None:
     study, directory = read_study(options.study), options.out
     check_place(directory)
     require_place_of(directory, STUDY_FILE)
+    if options.axes is not None:
+        in_steps = (key for key, values in study.table.items() if are_steps(values, len(study)))
+        require_axes(options.axes, [*in_steps, *study.factors])
     say_cost(study, options.workers or 1)
     with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
         rows = run_study(study, executor, directory / STUDY_FILE, show, keep_maps=options.keep_maps)
     rank_by = options.rank_by if options.rank_by in rows else None  # another one is told once all is written
-    written = write_study(rows, directory, pngs_of(plot_study(rows, rank_by=rank_by)), rank_by)
+    written = write_study(rows, directory, pngs_of(plot_study(rows, rank_by=rank_by, axes=options.axes)), rank_by)
     print_summary(study_summary(rows), [directory / STUDY_FILE, *written])
     failed = (rows["status"] != "ok").values
     hint = did_you_mean(nearest(options.rank_by or "", [str(name) for name in rows.data_vars]))
@@ -621,7 +625,7 @@ def report(options: argparse.Namespace) -> None:
     subject = subject_of_report(path)
     date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
     date = getattr(subject, "date", "") or date
-    ways = {"date": date, "rank_by": options.rank_by, "interactive": options.interactive}
+    ways = {"date": date, "rank_by": options.rank_by, "axes": options.axes, "interactive": options.interactive}
     print_files([write_html_report(subject, out, coast=coast, **ways)])
 
 
@@ -632,6 +636,7 @@ def _report_comparison(options: argparse.Namespace) -> None:
     require(
         (options.out is not None, "--out: missing; several results have no directory in common, give a file"),
         (options.rank_by is None, "--rank-by: only for a study; a comparison has no ranking"),
+        (options.axes is None, "--axes: only for a study; a comparison varies no keys"),
         (options.coast is None, "--coast: only for one result; a comparison has no rating"),
     )
     paths = [options.result, *options.others]
