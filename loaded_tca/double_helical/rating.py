@@ -340,8 +340,13 @@ def _under(
     rated = _rated(scene, cycle, within)
     cases = replace(cases_of(rated.scene, within), torque=within)  # to the last digit, as they were solved
     of_parts = [(rated if part is cycle else _rated(scene, part, within), most) for part, most in solved]
-    factors = {"case_mesh_load_factor": more, "case_face_load_factor": face_factor}
-    duty = Duty(cases=cases, **factors, other_flanks=by_itself(scene.load), parts=of_parts)
+    duty = Duty(
+        cases=cases,
+        case_mesh_load_factor=more,
+        case_face_load_factor=face_factor,
+        other_flanks=by_itself(scene.load),
+        parts=of_parts,
+    )
     return rating_of(rated, duty=duty, warn=False)
 
 

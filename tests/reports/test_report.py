@@ -535,8 +535,8 @@ def test_report_of_a_study_is_ranked_by_the_figure_that_is_asked_for(written):
 
 
 def test_axes_are_those_of_the_pictures_of_a_study(tmp_path, monkeypatch):
-    asked = []
-    monkeypatch.setattr("loaded_tca.reports.report.plot_study", lambda _, **ways: asked.append(ways) or {"study_ranking": None})
+    asked, ranking = [], {"study_ranking": None}
+    monkeypatch.setattr("loaded_tca.reports.report.plot_study", lambda _, **ways: asked.append(ways) or dict(ranking))
     write_html_report(grid(), tmp_path / "report.html", axes=(TIP, LEAD))
     assert asked[0]["axes"] == (TIP, LEAD)
     with pytest.raises(InputError, match=r"axes: \('a', 'b'\); a MeshCycle varies no keys"):
