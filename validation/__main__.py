@@ -94,6 +94,7 @@ LONG = (
     "loaded.jumps",
     "loaded.random_sensitivities",
     "loaded.random_scenes",
+    "rating.speed",
     "loaded.moving_edges",
     "loaded.bending_line",
     "loaded.face_ends",

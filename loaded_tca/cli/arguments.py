@@ -319,7 +319,7 @@ def _add_rating(command: Command) -> None:
     """Add the command that rates a result."""
     text = "show safeties and lives of flanks and roots of a result, after ISO 6336 or 10300 and by its local stresses"
     reader = command("rating", run_by.rating, text, RATING)
-    text = "result.nc, or stage.nc of a stage, or the directory that holds it"
+    text = "result.nc, stage.nc of a stage or double_helical.nc, or the directory that holds it"
     reader.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     reader.add_argument("--coast", metavar="DIR|FILE", type=_path, help=COAST)
     text = "another value of a key, for instance rating.life_hours=5000; may be given again for other keys"

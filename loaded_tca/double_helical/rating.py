@@ -145,6 +145,10 @@ class DoubleHelicalRating(OfCases):
         """Speed, hours and what is required, in words."""
         return f"two halves, {self.whole.scope}"
 
+    def safety_alone(self, mode: str) -> Array:
+        """Smaller safety of both halves of each case alone (c, gear); NaN where it loads the other flanks."""
+        return np.asarray(np.fmin.reduce([rating.safety_alone(mode) for rating in self.halves]))
+
     def figure_arrays(self) -> dict[str, Array]:
         """Return the figures (case,) of the pair, and of its halves, which begin with their names."""
         columns = super().figure_arrays()

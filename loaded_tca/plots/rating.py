@@ -14,7 +14,7 @@ from loaded_tca.double_helical.rating import DoubleHelicalRating
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.picture import Picture, figures_of
-from loaded_tca.plots.safety import SAFETY_PICTURES
+from loaded_tca.plots.safety import SAFETY_PICTURES, plot_safeties
 from loaded_tca.plots.style import DISTINCT_COLOURS, NO_MATERIAL
 from loaded_tca.rating.lives import Endurance
 from loaded_tca.rating.rating import WORDS, OfCases
@@ -205,9 +205,15 @@ def _of_half(name: str, picture: Picture[OfCases]) -> Picture[DoubleHelicalRatin
 
 
 HALVES_RATING_PICTURES: dict[str, Picture[DoubleHelicalRating]] = {
-    f"half_{name}_{file}": _of_half(name, picture) for name in HALVES for file, picture in RATING_PICTURES.items()
+    "safeties": Picture(
+        "the smaller safeties of both halves beside the required ones",
+        "Of each gear the smallest safety of both halves and all cases, or the smaller one under all bins of a load "
+        "spectrum together; below, the same of each half.",
+        plot_safeties,
+    ),
+    **{f"half_{name}_{file}": _of_half(name, picture) for name in HALVES for file, picture in RATING_PICTURES.items()},
 }
-"""The same of both halves of a double helical pair, each under its share of the torque."""
+"""The same of a double helical pair: the smaller safeties, and all pictures of each half under its share."""
 
 
 def rating_figures(rating: OfCases) -> dict[str, Figure]:
@@ -221,7 +227,7 @@ def rating_figures(rating: OfCases) -> dict[str, Figure]:
     -------
     dict of str to matplotlib.figure.Figure
         By the names of ``RATING_PICTURES``; those of places where a case of a pair has these. Of a double helical pair
-        those of each half that carries load, by the names of ``HALVES_RATING_PICTURES``.
+        by the names of ``HALVES_RATING_PICTURES``, those of each half that carries load.
     """
     if isinstance(rating, DoubleHelicalRating):
         return figures_of(HALVES_RATING_PICTURES, rating)

@@ -146,11 +146,12 @@ def _of_halves(rating: DoubleHelicalRating) -> dict[str, Any]:
 
 
 def _pictures_of_halves(rating: DoubleHelicalRating) -> Iterator[Picture]:
-    """Pictures of both halves, each without the title of its own scene."""
+    """Pictures of the pair and of both halves, each without the title of its own scene."""
     captions, figures = captions_of(HALVES_RATING_PICTURES), rating_figures(rating)
-    for name, half in rating.of_halves.items():
-        of_half = {file: figure for file, figure in figures.items() if file.startswith(f"half_{name}_")}
-        yield from pictures_of(of_half, captions, half.title)
+    titles = {"safeties": rating.title} | {f"half_{name}_": half.title for name, half in rating.of_halves.items()}
+    for start, title in titles.items():
+        own = {file: figure for file, figure in figures.items() if file.startswith(start)}
+        yield from pictures_of(own, captions, title)
 
 
 def _all_tables(rating: OfCases, cases: Sequence[int]) -> list[Table]:
