@@ -2240,8 +2240,8 @@ FAULTS = (
     Fault(
         "the largest tension decides of a root, whatever its stress ratio",
         "rating/roots.py",
-        "use[some] = largest[some] / local_root_factors(inputs, gear, ratio[some], some[0])[1].strength",
-        "use[some] = largest[some]",
+        "use[case, node] = tension[some] / local_root_factors(inputs, gear, ratio[some], case)[1].strength",
+        "use[case, node] = tension[some]",
         "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
     ),
     Fault(
@@ -2635,8 +2635,8 @@ FAULTS = (
     Fault(
         "rating: places of less tension that are reversed more are left out",
         "rating/roots.py",
-        "tops * (bounds[0] / bounds[1])",
-        "tops * (bounds[1] / bounds[1])",
+        "some = tension > reached[case] * strength[level, case]",
+        "some = tension > reached[case] * of_top[case]",
         "rating/test_places.py::test_root_that_decides_has_the_least_safety_of_all_places",
     ),
     Fault(
@@ -2712,7 +2712,7 @@ FAULTS = (
     Fault(
         "stages: the rating of an older stage stays beside a new one that has none",
         "cli/commands.py",
-        "stage_figures(result), of_rating)",
+        "stage_figures(result), files_of_ratings())",
         "stage_figures(result))",
         "test_cli_rating.py::test_stage_is_rated_as_it_is_analysed",
     ),

@@ -42,6 +42,19 @@ def test_study_goes_into_no_directory_of_a_result(study, tmp_path, capsys):
     assert not os.path.exists("study.nc")
 
 
+def test_axes_of_heat_maps_are_checked_before_any_variant_and_drawn(study, capsys, monkeypatch):
+    tip = "pinion.modifications.tip_relief_um"
+    file = study([2.0, 6.0], f"{tip} = [0.0, 10.0]\n")
+    assert cli.main(["study", file, "--out", "out", "--axes", tip, "mounting.misalignment_um"]) == 2
+    told = f"axes: mounting.misalignment_um: not a key with given values in the study; it has {CROWNING}, {tip}"
+    assert told in capsys.readouterr().err
+    assert not os.path.exists("out")
+    asked = []
+    monkeypatch.setattr("loaded_tca.plots.plot_study", lambda _, **ways: asked.append(ways["axes"]) or {})
+    assert cli.main(["study", file, "--out", "out", "--axes", tip, CROWNING]) == 0
+    assert asked == [[tip, CROWNING]]
+
+
 def test_study_writes_figures_table_and_summary(study, capsys):
     assert cli.main(["study", study([2.0, -1.0, 6.0]), "--out", "out", "--keep-maps", "2"]) == 0
     text = capsys.readouterr().out

@@ -95,6 +95,7 @@ LONG = (
     "loaded.rounded_edges",
     "studies.robust_design",
     "loaded.random_sensitivities",
+    "rating.speed",
     "loaded.moving_edges",
     "loaded.random_scenes",
     "loaded.root_stress_families",

@@ -101,7 +101,7 @@ RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubr
 are made of, what is required and how they run; a stage has [sun.strength], [planet.strength] and [ring.strength]. --set
 gives or changes these, and the load spectrum: load.spectrum=FILE, with torques up to the largest that was solved.
 Without a load spectrum each torque is rated by itself. Both halves of a double helical pair are rated under their
-shares.
+shares, and have pictures of their own: half_a_safeties.png ...
 
 files in DIR:
   rating.json               safeties, damage, lives and every factor of each torque or bin, and of all bins together
@@ -319,7 +319,7 @@ def _add_rating(command: Command) -> None:
     """Add the command that rates a result."""
     text = "show safeties and lives of flanks and roots of a result, after ISO 6336 or 10300 and by its local stresses"
     reader = command("rating", run_by.rating, text, RATING)
-    text = "result.nc, or stage.nc of a stage, or the directory that holds it"
+    text = "result.nc, stage.nc of a stage or double_helical.nc, or the directory that holds it"
     reader.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     reader.add_argument("--coast", metavar="DIR|FILE", type=_path, help=COAST)
     text = "another value of a key, for instance rating.life_hours=5000; may be given again for other keys"
@@ -459,6 +459,8 @@ def _add_studies(command: Command) -> None:
         metavar="FIGURE",
         help="figure of study.csv by which variants are ranked, best first; default: peak-to-peak TE",
     )
+    axes = "keys with given values that heat maps have to the right and upwards; default: the first two"
+    study.add_argument("--axes", metavar="KEY", nargs=2, help=axes)
     study.add_argument(
         "--keep-maps",
         metavar="N,N,...",
@@ -488,6 +490,7 @@ def _add_studies(command: Command) -> None:
         metavar="FIGURE",
         help="for a study: figure by which variants are ranked, best first; default: peak-to-peak TE",
     )
+    report.add_argument("--axes", metavar="KEY", nargs=2, help=f"for a study: {axes}")
 
 
 def _add_engine(parser: argparse.ArgumentParser) -> None:

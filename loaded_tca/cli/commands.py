@@ -9,7 +9,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from loaded_tca.cli.directories import INTERACTIVE_REPORT, REPORT, outdated_files, remove_empty_parts, require_place_of
+from loaded_tca.cli.directories import (
+    INTERACTIVE_REPORT,
+    REPORT,
+    files_of_ratings,
+    outdated_files,
+    remove_empty_parts,
+    require_place_of,
+)
 from loaded_tca.cli.inputs import (
     STUDY_FILE,
     changes_of,
@@ -146,13 +153,12 @@ def _run_double_helical(scene: DoubleHelicalScene, directory: Path) -> None:
     from loaded_tca.double_helical.analyse import expected_double_helical_effort
     from loaded_tca.double_helical.result import PAIR_FILE
     from loaded_tca.plots import double_helical_figures
-    from loaded_tca.rating import Rating
 
     require_place_of(directory, PAIR_FILE)
     effort = expected_double_helical_effort(scene)
     with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
         result = analyse_double_helical(scene, progress=progress)
-    written = _written(result, directory, double_helical_figures(result), Rating.file_names())
+    written = _written(result, directory, double_helical_figures(result), files_of_ratings())
     _show_rated(result, directory, written)
 
 
@@ -262,9 +268,9 @@ def _changed_joined(
 
 def _rating_files(rated: Rating | StageRating | DoubleHelicalRating, directory: Path) -> tuple[Path, ...]:
     """Write a rating with its pictures; those of an older one that it does not have go."""
-    from loaded_tca.plots import RATING_PICTURES, rating_figures
+    from loaded_tca.plots import rating_figures
 
-    return _written(rated, directory, rating_figures(rated), [f"{name}.png" for name in RATING_PICTURES])
+    return _written(rated, directory, rating_figures(rated), files_of_ratings())
 
 
 def _rated(result: MeshCycle | StageResult | DoubleHelicalResult, directory: Path) -> tuple[list[Path], str]:
@@ -341,8 +347,7 @@ def _is_of_tribology(key: str) -> bool:
 
 def stage(options: argparse.Namespace) -> None:
     """Analyse a planetary stage, write everything into a directory, and show the summary."""
-    from loaded_tca.plots import RATING_PICTURES, stage_figures
-    from loaded_tca.rating import Rating
+    from loaded_tca.plots import stage_figures
     from loaded_tca.stages import analyse_stage
     from loaded_tca.stages.analyse import expected_stage_effort, states_of
     from loaded_tca.stages.result import STAGE_FILE
@@ -354,8 +359,7 @@ def stage(options: argparse.Namespace) -> None:
     states = states_of(asked)
     with progress_bar(expected_stage_effort(asked), "states of both meshes", states) as progress:
         result = analyse_stage(asked, progress=progress)
-    of_rating = *Rating.file_names(), *(f"{name}.png" for name in RATING_PICTURES)
-    _show_rated(result, directory, _written(result, directory, stage_figures(result), of_rating))
+    _show_rated(result, directory, _written(result, directory, stage_figures(result), files_of_ratings()))
 
 
 def plot(options: argparse.Namespace) -> None:
@@ -570,6 +574,7 @@ def study(options: argparse.Namespace) -> None:
     """Analyse what is missing of a study, write its tables and pictures, and show the summary."""
     from loaded_tca.output.tables import write_study
     from loaded_tca.plots import plot_study
+    from loaded_tca.plots.study import are_steps, require_axes
     from loaded_tca.plots.style import pngs_of
     from loaded_tca.scene.keys import did_you_mean, nearest
     from loaded_tca.studies import read_study, run_study, study_summary
@@ -577,11 +582,14 @@ def study(options: argparse.Namespace) -> None:
     study, directory = read_study(options.study), options.out
     check_place(directory)
     require_place_of(directory, STUDY_FILE)
+    if options.axes is not None:
+        in_steps = (key for key, values in study.table.items() if are_steps(values, len(study)))
+        require_axes(options.axes, [*in_steps, *study.factors])
     say_cost(study, options.workers or 1)
     with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
         rows = run_study(study, executor, directory / STUDY_FILE, show, keep_maps=options.keep_maps)
     rank_by = options.rank_by if options.rank_by in rows else None  # another one is told once all is written
-    written = write_study(rows, directory, pngs_of(plot_study(rows, rank_by=rank_by)), rank_by)
+    written = write_study(rows, directory, pngs_of(plot_study(rows, rank_by=rank_by, axes=options.axes)), rank_by)
     print_summary(study_summary(rows), [directory / STUDY_FILE, *written])
     failed = (rows["status"] != "ok").values
     hint = did_you_mean(nearest(options.rank_by or "", [str(name) for name in rows.data_vars]))
@@ -617,7 +625,7 @@ def report(options: argparse.Namespace) -> None:
     subject = subject_of_report(path)
     date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
     date = getattr(subject, "date", "") or date
-    ways = {"date": date, "rank_by": options.rank_by, "interactive": options.interactive}
+    ways = {"date": date, "rank_by": options.rank_by, "axes": options.axes, "interactive": options.interactive}
     print_files([write_html_report(subject, out, coast=coast, **ways)])
 
 
@@ -628,6 +636,7 @@ def _report_comparison(options: argparse.Namespace) -> None:
     require(
         (options.out is not None, "--out: missing; several results have no directory in common, give a file"),
         (options.rank_by is None, "--rank-by: only for a study; a comparison has no ranking"),
+        (options.axes is None, "--axes: only for a study; a comparison varies no keys"),
         (options.coast is None, "--coast: only for one result; a comparison has no rating"),
     )
     paths = [options.result, *options.others]

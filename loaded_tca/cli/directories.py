@@ -58,19 +58,26 @@ def names_of_result() -> set[str]:
         STRESS_TABLE,
         tables_at,
     )
-    from loaded_tca.plots import MORE_PICTURES, PICTURES, RATING_PICTURES
+    from loaded_tca.plots import MORE_PICTURES, PICTURES
     from loaded_tca.plots.sensitivities import SENSITIVITY_PICTURES
     from loaded_tca.plots.tribology import TRIBOLOGY_PICTURES
-    from loaded_tca.rating import Rating
     from loaded_tca.results.subsurface import NAMES
     from loaded_tca.tribology import Tribology
 
     tables = *(path.name for path in tables_at(Path(DYNAMICS))), SENSITIVITY_DATA, SENSITIVITIES
-    pictures = *PICTURES, *MORE_PICTURES, *SENSITIVITY_PICTURES, *TRIBOLOGY_PICTURES, *RATING_PICTURES
+    pictures = *PICTURES, *MORE_PICTURES, *SENSITIVITY_PICTURES, *TRIBOLOGY_PICTURES
     pictures += "teeth", *(f"subsurface_{quantity}" for quantity in NAMES)
     others = "at_a_glance.pdf", REPORT, INTERACTIVE_REPORT, STRESS_FIELDS, STRESS_TABLE
-    evaluated = *Tribology.file_names(), *Rating.file_names()
+    evaluated = *Tribology.file_names(), *files_of_ratings()
     return {*tables, *evaluated, *TEETH_FILES, *others, *(f"{name}.png" for name in pictures)}
+
+
+def files_of_ratings() -> tuple[str, ...]:
+    """Names of all files that a rating of a pair, of a stage or of a double helical pair may have."""
+    from loaded_tca.plots import HALVES_RATING_PICTURES, RATING_PICTURES
+    from loaded_tca.rating import Rating
+
+    return *Rating.file_names(), *(f"{name}.png" for name in (*RATING_PICTURES, *HALVES_RATING_PICTURES))
 
 
 REPORT, INTERACTIVE_REPORT = "report.html", "interactive.html"

@@ -14,7 +14,7 @@ from loaded_tca.errors import InputError, give_accuracy_warning, named
 from loaded_tca.plain import plain
 from loaded_tca.rating import Rating, rating_of
 from loaded_tca.rating.cases import cases_of, problems_of_cases
-from loaded_tca.rating.inputs import Duty, missing_sections
+from loaded_tca.rating.inputs import Duty, by_itself, missing_sections
 from loaded_tca.rating.quantities import CASE, NUMBERS, OF_GEARS, SPECTRUM_NUMBERS
 from loaded_tca.rating.rating import NOT_COUNTED, OfCases, all_figures, rows_of
 from loaded_tca.rating.spectrum import OfSpectrum
@@ -144,6 +144,10 @@ class DoubleHelicalRating(OfCases):
     def scope(self) -> str:
         """Speed, hours and what is required, in words."""
         return f"two halves, {self.whole.scope}"
+
+    def safety_alone(self, mode: str) -> Array:
+        """Smaller safety of both halves of each case alone (c, gear); NaN where it loads the other flanks."""
+        return np.asarray(np.fmin.reduce([rating.safety_alone(mode) for rating in self.halves]))
 
     def figure_arrays(self) -> dict[str, Array]:
         """Return the figures (case,) of the pair, and of its halves, which begin with their names."""
@@ -340,7 +344,13 @@ def _under(
     rated = _rated(scene, cycle, within)
     cases = replace(cases_of(rated.scene, within), torque=within)  # to the last digit, as they were solved
     of_parts = [(rated if part is cycle else _rated(scene, part, within), most) for part, most in solved]
-    duty = Duty(cases=cases, case_mesh_load_factor=more, case_face_load_factor=face_factor, parts=of_parts)
+    duty = Duty(
+        cases=cases,
+        case_mesh_load_factor=more,
+        case_face_load_factor=face_factor,
+        other_flanks=by_itself(scene.load),
+        parts=of_parts,
+    )
     return rating_of(rated, duty=duty, warn=False)
 
 

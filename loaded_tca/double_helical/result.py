@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -18,9 +18,11 @@ from loaded_tca.results import MeshCycle, Revolution
 from loaded_tca.results.declared import CYCLE, Asked, Number, Row, numbers
 from loaded_tca.results.figure import Figure
 from loaded_tca.results.files import DOUBLE_HELICAL
+from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.quantities import BEARING_QUANTITIES, SHAFT_ASKED
 from loaded_tca.results.result import AnalysisResult, JoinedResult, figures_of
 from loaded_tca.results.summary import shown_torque
+from loaded_tca.results.tables import FORCES, Columns
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
 from loaded_tca.scene.half_shafts import without_other_half
@@ -121,6 +123,10 @@ def _root(half: int, gear: int, row: Row) -> float:
     return float(row.root_tension[half, gear])
 
 
+def _on_bearing(name: str, row: Row) -> float:
+    return float(np.linalg.norm(getattr(row, name)[..., :3], axis=-1).max())
+
+
 FIGURES: dict[str, Figure] = {
     **figures_of({"torque": NUMBERS["torque"]}),
     "transmission_error_peak_to_peak_um": Figure(
@@ -165,6 +171,14 @@ FIGURES: dict[str, Figure] = {
         )
         for half, name in enumerate(HALVES)
         for number, gear in enumerate(GEARS)
+    },
+    **{
+        f"{gear}_bearing_force_N": Figure(
+            of=partial(_on_bearing, f"{gear}_bearing_force"),
+            label=f"largest force on a bearing, {gear}",
+            needs=f"{gear}_bearing_force",
+        )
+        for gear in GEARS
     },
 }
 """Key figures by their names."""
@@ -219,7 +233,7 @@ class DoubleHelicalResult(OfHalves):
     FIGURES: ClassVar = FIGURES
     FILE: ClassVar = PAIR_FILE
     JSON: ClassVar = "double_helical.json"
-    TABLES: ClassVar = {"double_helical.csv": "positions"}
+    TABLES: ClassVar = {"double_helical.csv": "positions", "double_helical_bearings.csv": "bearings"}
     PARTS: ClassVar = {"half_a": "half_a.nc", "half_b": "half_b.nc"}
     PART: ClassVar = MeshCycle
 
@@ -247,6 +261,25 @@ class DoubleHelicalResult(OfHalves):
     def place_of_torque(self) -> Indices:
         """``place`` (torque,) as indices of ``halves_by_place``."""
         return self.place.astype(int) if self.has("place") else np.zeros(len(self.torque), dtype=int)
+
+    def tables(self) -> dict[str, Callable[[], Columns]]:
+        """Figures, positions, and where gears are on shafts the forces on their bearings."""
+        of_bearings = {"bearings": self._of_bearings} if self.scene.is_supported else {}
+        return {**super().tables(), **of_bearings}
+
+    def _of_bearings(self) -> Columns:
+        """A row for each gear, torque and bearing: means of forces and moments over a pitch, and the largest force."""
+        rows = []
+        for gear in filter(lambda name: self.has(f"{name}_bearing_force"), GEARS):
+            bearings = getattr(self.scene, gear).shaft.bearings
+            for torque, forces in zip(self.torque, self.values(f"{gear}_bearing_force"), strict=True):
+                means = np.apply_along_axis(mean_over_a_pitch, 0, forces) * np.repeat([1.0, 1e-3], 3)
+                largest = np.linalg.norm(forces[..., :3], axis=-1).max(axis=0)
+                rows += [
+                    (gear, 1e-3 * torque, n, bearing.at_mm, *means[n], largest[n]) for n, bearing in enumerate(bearings)
+                ]
+        heads = "gear", "pinion_torque_Nm", "bearing", "axial_mm", *FORCES, "largest_force_N"
+        return Columns(dict(zip(heads, zip(*rows, strict=True), strict=True)), heads[:3])
 
     def parts(self) -> dict[str, AnalysisResult]:
         """Mesh cycles of both halves under all torques, by the names of their files."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from loaded_tca.output.result_files import csv_table
 from loaded_tca.plain import lasting, plain
+from loaded_tca.results.tables import FORCES
 from loaded_tca.supports import RollingBearing
 from loaded_tca.units import MICROMETRES
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from loaded_tca.flank_maps.ease_off_map import EaseOffMap
     from loaded_tca.loaded.shaft_lines import ShaftLine
 
-FORCES = "force_x_N", "force_y_N", "force_z_N", "moment_x_Nm", "moment_y_Nm", "moment_z_Nm"
 MOTIONS = "x_um", "y_um", "z_um", "about_x_rad", "about_y_rad", "about_z_rad"
 INSIDE = "element_force_N", "element_pressure_MPa", "life_Mrev"
 """Columns of rolling bearings."""

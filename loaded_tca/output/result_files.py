@@ -44,8 +44,8 @@ def write_result(
     -------
     tuple of Path
         ``revolution.nc``, ``stage.nc`` ... with the files of its parts, ``.json`` with the key figures of each torque,
-        ``.csv`` of each table, and those of ``more``. What is not known is null in JSON, as is a life that does not
-        end, which is inf in CSV.
+        ``.csv`` of each table that it has, and those of ``more``. What is not known is null in JSON, as is a life that
+        does not end, which is inf in CSV.
 
     Raises
     ------
@@ -54,9 +54,9 @@ def write_result(
     """
     texts = {result.JSON: figures_json(result)} if result.JSON else {}
     tables = result.tables()
-    texts |= {file: csv_table(tables[name]().values) for file, name in result.TABLES.items()}
+    texts |= {file: csv_table(tables[name]().values) for file, name in result.TABLES.items() if name in tables}
     files = {**result.contents(), **{name: text.encode() for name, text in texts.items()}, **more}
-    older = {*outdated, *result.outdated(Path(directory))}
+    older = {*outdated, *result.TABLES, *result.outdated(Path(directory))}
     return replace_together(directory, files, older - {*files})
 
 

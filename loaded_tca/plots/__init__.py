@@ -61,7 +61,13 @@ if TYPE_CHECKING:  # those of other results than mesh cycles, with all that they
     from loaded_tca.plots.first_look import plot_first_look
     from loaded_tca.plots.first_order import plot_first_order_scatter
     from loaded_tca.plots.mesh import plot_teeth_in_mesh
-    from loaded_tca.plots.rating import RATING_PICTURES, plot_damage, plot_sn_curves, rating_figures
+    from loaded_tca.plots.rating import (
+        HALVES_RATING_PICTURES,
+        RATING_PICTURES,
+        plot_damage,
+        plot_sn_curves,
+        rating_figures,
+    )
     from loaded_tca.plots.revolution import (
         REVOLUTION_PICTURES,
         plot_revolution_error,
@@ -115,6 +121,7 @@ __all__ = [
     "COMPARISON_PICTURES",
     "DOUBLE_HELICAL_CAPTIONS",
     "DOUBLE_HELICAL_PICTURES",
+    "HALVES_RATING_PICTURES",
     "MORE_PICTURES",
     "PICTURES",
     "RATING_PICTURES",

@@ -14,11 +14,12 @@ from loaded_tca.double_helical.rating import DoubleHelicalRating
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.picture import Picture, figures_of
-from loaded_tca.plots.safety import SAFETY_PICTURES
+from loaded_tca.plots.safety import SAFETY_PICTURES, plot_safeties
 from loaded_tca.plots.style import DISTINCT_COLOURS, NO_MATERIAL
 from loaded_tca.rating.lives import Endurance
 from loaded_tca.rating.rating import WORDS, OfCases
 from loaded_tca.rating.spectrum import OfSpectrum
+from loaded_tca.scene.double_helical import HALVES
 
 SHOWN_CYCLES = 1e2, 1e11
 """Of the axis of load cycles, at least."""
@@ -193,6 +194,28 @@ RATING_PICTURES: dict[str, Picture[OfCases]] = {
 """Pictures of the command, by the names of their files."""
 
 
+def _of_half(name: str, picture: Picture[OfCases]) -> Picture[DoubleHelicalRating]:
+    """A picture of the rating of one half of a double helical pair, which has it where the half is rated."""
+    return Picture(
+        f"half {name}: {picture.line}",
+        f"Half {name}: {picture.caption}",
+        lambda rating: picture.draw(rating.of_halves[name]),
+        lambda rating: name in rating.of_halves and picture.has(rating.of_halves[name]),
+    )
+
+
+HALVES_RATING_PICTURES: dict[str, Picture[DoubleHelicalRating]] = {
+    "safeties": Picture(
+        "the smaller safeties of both halves beside the required ones",
+        "Of each gear the smallest safety of both halves and all cases, or the smaller one under all bins of a load "
+        "spectrum together; below, the same of each half.",
+        plot_safeties,
+    ),
+    **{f"half_{name}_{file}": _of_half(name, picture) for name in HALVES for file, picture in RATING_PICTURES.items()},
+}
+"""The same of a double helical pair: the smaller safeties, and all pictures of each half under its share."""
+
+
 def rating_figures(rating: OfCases) -> dict[str, Figure]:
     """Draw every picture that a rating has.
 
@@ -204,6 +227,8 @@ def rating_figures(rating: OfCases) -> dict[str, Figure]:
     -------
     dict of str to matplotlib.figure.Figure
         By the names of ``RATING_PICTURES``; those of places where a case of a pair has these. Of a double helical pair
-        none: its halves are ratings, which have them.
+        by the names of ``HALVES_RATING_PICTURES``, those of each half that carries load.
     """
-    return {} if isinstance(rating, DoubleHelicalRating) else figures_of(RATING_PICTURES, rating)
+    if isinstance(rating, DoubleHelicalRating):
+        return figures_of(HALVES_RATING_PICTURES, rating)
+    return figures_of(RATING_PICTURES, rating)

@@ -155,7 +155,7 @@ def plot_safeties(rating: OfCases) -> Figure:
 
     Parameters
     ----------
-    rating : Rating or StageRating
+    rating : Rating, StageRating or DoubleHelicalRating
 
     Returns
     -------

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from loaded_tca.arrays import Array, Indices
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.study_panels import (
@@ -68,6 +68,7 @@ def plot_study(
     figures: Sequence[str] | None = None,
     rank_by: str | None = None,
     largest_is_best: bool | None = None,
+    axes: Sequence[str] | None = None,
 ) -> dict[str, Figure]:
     """Return the pictures that fit what a study varies, by the names of their files without the ending.
 
@@ -85,6 +86,9 @@ def plot_study(
         Figure that ranks the variants; default: the first of the figures.
     largest_is_best : bool, optional
         Whether its largest value is the best one; default: as in :func:`loaded_tca.studies.rank_variants`.
+    axes : (str, str), optional
+        Keys with given values: heat maps have the first to the right and the second upwards, lines run over the first,
+        one for each value of the second; default: the first two of the study.
 
     Returns
     -------
@@ -94,23 +98,25 @@ def plot_study(
     Raises
     ------
     InputError
-        If the study has no such figure.
+        If the study has no such figure, or no two such axes.
     """
+    stepped = [key for key in varied_keys(study) if _is_stepped(study, key)]
+    if axes is not None:
+        require_axes(axes, stepped)
     if not main_figures(study):
         return {"study_ranking": plot_study_ranking(study)}
     figures = main_figures(study) if figures is None else list(figures)
     rank_by = rank_by or next(iter(figures), None)
-    stepped = [key for key in varied_keys(study) if _is_stepped(study, key)]
     scattered = [key for key in varied_keys(study) if key not in stepped]
     if _is_short_table(study, scattered):
         stepped, scattered = stepped or [SAMPLE], []
-    pictures = {}
+    pictures, shown = {}, axes or stepped[:2]
     for name in figures:
         if stepped:
-            pictures[f"study_lines_{name}"] = plot_study_lines(study, name, *stepped[:2])
+            pictures[f"study_lines_{name}"] = plot_study_lines(study, name, *shown)
         if len(stepped) > 1:
             best = largest_is_best if name == rank_by else None
-            pictures[f"study_heat_map_{name}"] = plot_study_heat_map(study, name, *stepped[:2], largest_is_best=best)
+            pictures[f"study_heat_map_{name}"] = plot_study_heat_map(study, name, *shown, largest_is_best=best)
         if scattered:
             pictures[f"study_histogram_{name}"] = plot_study_histogram(study, name, stepped)
     over_torque = TRANSMISSION_ERROR if "stage_toml" not in study.attrs else rank_by
@@ -120,6 +126,17 @@ def plot_study(
         pictures["study_scatter_matrix"] = plot_study_scatter_matrix(study, figures[:2])
     pictures["study_ranking"] = plot_study_ranking(study, rank_by, largest_is_best=largest_is_best)
     return pictures
+
+
+def require_axes(axes: Sequence[str], allowed: Sequence[str]) -> None:
+    """Refuse axes of pictures of a study that are not two of the keys with given values."""
+    require(
+        (len({*axes}) == len(axes) == 2, f"axes: found {', '.join(axes) or 'none'}; allowed two different keys"),
+        *(
+            (key in allowed, f"axes: {key}: not a key with given values in the study; it has {', '.join(allowed)}")
+            for key in axes
+        ),
+    )
 
 
 def plot_study_lines(study: xarray.Dataset, figure: str, over: str | None = None, by: str | None = None) -> Figure:
@@ -287,10 +304,15 @@ def _draw_cells(drawing: Figure, axes: Axes, cells: Array, label: str, largest_i
     axes.add_patch(Rectangle((j - 0.5, i - 0.5), 1, 1, fill=False, edgecolor=ACCENT, linewidth=2.5, clip_on=False))
 
 
+def are_steps(values: Sequence[Any], variants: int) -> bool:
+    """Whether the values of a column of a table are so few that each of them stands for two variants or more."""
+    return 2 * len({*values}) <= variants
+
+
 def _is_stepped(study: xarray.Dataset, key: str) -> bool:
     """Whether a key takes given values; of a table, whether each of them stands for two variants or more."""
     sampling = study[key].attrs.get("sampling", "table")
-    few = 2 * len(np.unique(study[key].values)) <= study.sizes["sample"] or len(varied_keys(study)) == 1
+    few = are_steps(study[key].values.tolist(), study.sizes["sample"]) or len(varied_keys(study)) == 1
     return sampling == "factor" or (sampling == "table" and few)
 
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from loaded_tca.reference.iso6336_3 import RootSection
     from loaded_tca.results.numbers import CycleNumbers
     from loaded_tca.scene import Scene
+    from loaded_tca.scene.load import AnyLoad
     from loaded_tca.scene.sections import LubricantSection
     from loaded_tca.scene.standards import ContactStandard
 
@@ -36,6 +37,19 @@ NEEDED = {
     "lubricant": "the strength of flanks depends on viscosity_40_mm2_s",
 }
 """Sections of any rating, and why they are."""
+BY_COAST_SIDE = (
+    "with the result of the coast side 'loaded-tca rating DIR --coast OTHER' rates both, and 'loaded-tca report DIR "
+    "--coast OTHER' reports it"
+)
+"""How the flanks that reversed bins of a pair load are rated."""
+
+
+def by_itself(load: AnyLoad) -> str:
+    """How those of a stage and of a double helical pair are rated, whose ratings take one side alone."""
+    return (
+        f"another analysis, with {load.CASE.OTHER_WAY} changed, and reversed the other way in every bin, rates them by "
+        "itself"
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +74,8 @@ class Duty:
         The gear whose torque sentences name, and that torque over the one of the pinion.
     case_mesh_load_factor, case_face_load_factor : array (c,), optional
         K_gamma and K_Hbeta under the cases; default: as the torques of the result have them, and as the scene asks.
+    other_flanks : str
+        What a note says of how the other flanks are rated, which reversed bins load.
     parts : sequence of (MeshCycle, array (k,))
         Results of the mesh, each with the torques [N mm] that it stands for, where none stands for all; empty: the
         result stands for all. No torque twice.
@@ -74,6 +90,7 @@ class Duty:
     torque_of: tuple[str, float] = ("pinion", 1.0)
     case_mesh_load_factor: Array | None = None
     case_face_load_factor: Array | None = None
+    other_flanks: str = BY_COAST_SIDE
     parts: Sequence[tuple[CycleNumbers, Array]] = ()
 
 

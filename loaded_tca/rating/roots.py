@@ -64,13 +64,14 @@ def under_loads_of_both_flanks(inputs: CommonInputs, ratio: Array | float) -> Ar
 def largest_places(inputs: CommonInputs, gear: int) -> tuple[Array, Array]:
     """Tangent angle [rad] and axial coordinate [mm] of the largest root tension of a gear under each torque (t,)."""
     stress = inputs.result.root_stress[gear]
-    tension = np.nan_to_num(stress.largest, nan=-np.inf)  # NaN: not evaluated
-    place = np.unravel_index(tension.reshape(len(tension), -1).argmax(axis=1), tension.shape[1:])
+    tension = stress.largest.reshape(len(stress.largest), -1)
+    top = (tension == np.fmax.reduce(tension, axis=1)[:, None]).argmax(axis=1)  # NaN: not evaluated
+    place = np.unravel_index(top, stress.largest.shape[1:])
     return stress.tangent_angle[place], stress.point[(*place, 2)]
 
 
-LEAST_MEAN_STRESS_FACTOR = 0.45
-"""Y_M is above it for any material and R down to -1.2: less tension than this part of the largest never decides."""
+LEVELS = 13
+"""Of the stress ratio, from fully reversed to pulsating: between two of them strength is at least that of the lower."""
 
 
 ROUNDING = 1e-9
@@ -109,28 +110,35 @@ class Deciding(NamedTuple):
 def deciding_places(inputs: CommonInputs, gear: int) -> Deciding:
     """Places of the smallest strength over tension of the root of one gear.
 
-    That is not the largest tension where stress is reversed more beside it: strength falls with the stress ratio, so
-    that a place decides only where its tension, over the strength at the lowest ratio, comes up to the largest one's.
+    That is not the largest tension where stress is reversed more beside it: strength falls with the stress ratio. A
+    place decides only where its tension, over the strength at the level of the stress ratio below its own, comes up to
+    that of the largest tension: so the strength of few places is computed.
     """
     result, stress = inputs.result, inputs.result.root_stress[gear]
-    largest = np.where(stress.largest > 0.0, stress.largest, 0.0)  # NaN: not evaluated
-    tops = largest.reshape(len(largest), -1).max(axis=1)
-    ratio, every = stress_ratio(largest, stress.smallest), np.arange(len(tops))
-    tense = largest > LEAST_MEAN_STRESS_FACTOR * tops[:, None, None, None]
-    lowest = np.where(tense, ratio, 0.0).reshape(len(tops), -1).min(axis=1)
-    at_top = ratio.reshape(len(tops), -1)[every, largest.reshape(len(tops), -1).argmax(axis=1)]
-    bounds = local_root_factors(inputs, gear, np.array([lowest, at_top]), every)[1].strength
-    reached = tops * (bounds[0] / bounds[1]) * (1.0 - ROUNDING)
-    some = np.nonzero(tense & (largest >= reached[:, None, None, None]))
+    largest, smallest = (values.reshape(len(values), -1) for values in (stress.largest, stress.smallest))
+    tops = np.fmax.reduce(largest, axis=1, initial=0.0)  # NaN: not evaluated
+    every, top = np.arange(len(tops)), (largest == tops[:, None]).argmax(axis=1)
+    levels = np.linspace(REVERSED, 0.0, LEVELS)[:, None] + np.zeros(len(tops))
+    ratios = np.vstack([levels, stress_ratio(tops, smallest[every, top])])
+    factors = local_root_factors(inputs, gear, ratios, every)[1]
+    *_, of_top = strength = np.broadcast_to(factors.strength, ratios.shape)  # cast irons have one for all ratios
+    reached = tops / of_top * (1.0 - ROUNDING)
+    case, node = np.nonzero(largest > (reached * strength[0])[:, None])
+    tension = largest[case, node]
+    ratio = smallest[case, node] / tension
+    level = np.clip((LEVELS - 1) * (1.0 - ratio / REVERSED), 0, LEVELS - 2).astype(int)
+    some = tension > reached[case] * strength[level, case]
+    case, node = case[some], node[some]
     use = np.zeros(largest.shape)
-    use[some] = largest[some] / local_root_factors(inputs, gear, ratio[some], some[0])[1].strength
-    flat = use.reshape(len(use), -1).argmax(axis=1)
-    place = every, *np.unravel_index(flat, use.shape[1:])
+    use[case, node] = tension[some] / local_root_factors(inputs, gear, ratio[some], case)[1].strength
+    decides = use.argmax(axis=1)
+    there = np.fmax(largest[every, decides], 0.0)
+    place = np.unravel_index(decides, stress.largest.shape[1:])
     above = np.nanmax(result.root_tension[..., gear], axis=1) / tops
     return Deciding(
-        largest[place] * above,
-        ratio[place],
-        stress.tangent_angle[place[1:]],
-        stress.point[(*place[1:], 2)],
-        np.stack(place[1:], axis=-1),
+        there * above,
+        stress_ratio(there, smallest[every, decides]),
+        stress.tangent_angle[place],
+        stress.point[(*place, 2)],
+        np.stack(place, axis=-1),
     )

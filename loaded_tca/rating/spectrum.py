@@ -78,8 +78,7 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
         else:
             yield (
                 f"{bins} load the other flanks, which are not analysed: damage of the other flanks is not counted; "
-                "with the result of the coast side 'loaded-tca rating DIR --coast OTHER' rates both, and 'loaded-tca "
-                "report DIR --coast OTHER' reports it"
+                f"{inputs.duty.other_flanks}"
             )
             yield (
                 f"{bins} stress the roots as much as the same torques that are not reversed, with load factors and "

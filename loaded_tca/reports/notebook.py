@@ -13,7 +13,7 @@ from functools import partial, singledispatch
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from loaded_tca.double_helical import DoubleHelicalResult
+from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult
 from loaded_tca.errors import InputError, LoadedTCAError, noted_accuracy_warnings
 from loaded_tca.flank_maps.ease_off_map import ease_off_map
 from loaded_tca.output.double_helical_overview import geometry_of_halves, pair_rows
@@ -52,6 +52,7 @@ from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.stages import Stage, StageResult
+from loaded_tca.stages.rating import StageRating
 from loaded_tca.studies import DesignResult, Study, study_summary
 from loaded_tca.studies.stage import subject_of
 from loaded_tca.studies.study import told_distribution
@@ -208,6 +209,8 @@ PICTURES: dict[type[Result], Callable[[Any], Figure | None]] = {
     StageResult: plot_stage_shares,
     DoubleHelicalResult: plot_halves_shares,
     Rating: plot_safeties,
+    StageRating: plot_safeties,
+    DoubleHelicalRating: plot_safeties,
     Tribology: lambda tribology: next(
         (draw(tribology) for draw in TRIBOLOGY_PICTURES.values() if draw.has(tribology)), None
     ),

@@ -11,14 +11,14 @@ from loaded_tca.arrays import GEARS
 from loaded_tca.double_helical.rating import double_helical_rating_of
 from loaded_tca.errors import InputError
 from loaded_tca.plain import plain
-from loaded_tca.plots import RATING_PICTURES, rating_figures
+from loaded_tca.plots import HALVES_RATING_PICTURES, RATING_PICTURES, rating_figures
 from loaded_tca.plots.picture import captions_of
 from loaded_tca.rating import rating_of
 from loaded_tca.rating.findings import ALL_FAILURES, findings, of_all_bins
 from loaded_tca.rating.quantities import OF_GEARS, OF_MODES, OF_SPECTRUM
 from loaded_tca.rating.rating import WORDS, OfCases, rows_of
 from loaded_tca.rating.spectrum import OfSpectrum
-from loaded_tca.reports.page import Table, parts_of, pictures_of
+from loaded_tca.reports.page import Picture, Table, parts_of, pictures_of
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.summary import shown
 from loaded_tca.scene.rating import is_rated
@@ -141,8 +141,17 @@ def _of_halves(rating: DoubleHelicalRating) -> dict[str, Any]:
         "tables": tables,
         "notes": rating.notes(),
         "warnings": rating.warnings or (),
-        "pictures": (),
+        "pictures": (*_pictures_of_halves(rating),),
     }
+
+
+def _pictures_of_halves(rating: DoubleHelicalRating) -> Iterator[Picture]:
+    """Pictures of the pair and of both halves, each without the title of its own scene."""
+    captions, figures = captions_of(HALVES_RATING_PICTURES), rating_figures(rating)
+    titles = {"safeties": rating.title} | {f"half_{name}_": half.title for name, half in rating.of_halves.items()}
+    for start, title in titles.items():
+        own = {file: figure for file, figure in figures.items() if file.startswith(start)}
+        yield from pictures_of(own, captions, title)
 
 
 def _all_tables(rating: OfCases, cases: Sequence[int]) -> list[Table]:

@@ -66,6 +66,7 @@ def write_html_report(
     *,
     date: str | None = None,
     rank_by: str | None = None,
+    axes: Sequence[str] | None = None,
     torque: float | None = None,
     interactive: bool = False,
     coast: MeshCycle | None = None,
@@ -89,6 +90,9 @@ def write_html_report(
         Figure that ranks the variants of a study; default: the peak-to-peak transmission error. The least is best, of
         safeties, lives and films the largest. Where the study has distributions, combinations of its other values are
         ranked, by the 95 % quantile over their samples, or the 5 % quantile where the largest is best.
+    axes : (str, str), optional
+        Keys of a study that its heat maps have to the right and upwards, as :func:`loaded_tca.plots.plot_study` takes
+        them; default: the first two with given values.
     torque : float [N mm], optional
         Of the pictures of a comparison; default: the largest that all results have.
     interactive : bool
@@ -105,7 +109,8 @@ def write_html_report(
     Raises
     ------
     InputError
-        If the subject is none of these, no study with the figure that is to rank it, or no comparison under the torque;
+        If the subject is none of these, no study with the figure that is to rank it and the axes that are to show it,
+        or no comparison under the torque;
         if it cannot be rated with the coast side; if jinja2 is not installed, or
         the file cannot be written, which leaves what was there before.
 
@@ -126,10 +131,14 @@ def write_html_report(
     if interactive:
         from loaded_tca.reports.interactive import explore  # which shows tables of this module, too
 
+        require((axes is None, "axes: not allowed; the interactive page has its own choice of keys"))
         return explore(subject, date=date, rank_by=rank_by).save(path)
     page.require_jinja2()
     is_study = getattr(subject, "attrs", {}).get("kind") == STUDY
-    require((rank_by is None or is_study, f"rank_by: {rank_by!r:.60}; a {type(subject).__name__} has no ranking"))
+    require(
+        (rank_by is None or is_study, f"rank_by: {rank_by!r:.60}; a {type(subject).__name__} has no ranking"),
+        (axes is None or is_study, f"axes: {axes!r:.60}; a {type(subject).__name__} varies no keys"),
+    )
     is_compared = isinstance(subject, Comparison)
     require((torque is None or is_compared, f"torque: {torque!r:.60}; a {type(subject).__name__} has all torques"))
     with one_thread():  # sums of several threads differ in their last digits each time
@@ -147,7 +156,7 @@ def write_html_report(
             template, content = "stage.html.j2", stage_content(subject)
             date = date or subject.date
         elif is_study:
-            template, content = "study.html.j2", study_content(subject, rank_by)
+            template, content = "study.html.j2", study_content(subject, rank_by, axes)
         else:
             raise InputError(
                 f"report: found a {type(subject).__name__}; allowed a result, a comparison, a stage, a double "
@@ -175,7 +184,9 @@ STUDY_CAPTIONS = {
 """How the pictures are read whose names begin so."""
 
 
-def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str, Any]:
+def study_content(
+    study: xarray.Dataset, rank_by: str | None = None, axes: Sequence[str] | None = None
+) -> dict[str, Any]:
     """Return what the template of a study takes.
 
     Parameters
@@ -184,9 +195,11 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
         What :func:`loaded_tca.studies.run_study` returns.
     rank_by : str, optional
         As for :func:`loaded_tca.studies.rank_variants`.
+    axes : (str, str), optional
+        As for :func:`loaded_tca.plots.plot_study`.
     """
     tables = study_tables(study, rank_by)  # which reads the scene, and refuses one that names files
-    figures = plot_study(study, rank_by=rank_by if main_figures(study) else None)
+    figures = plot_study(study, rank_by=rank_by if main_figures(study) else None, axes=axes)
     figures.pop("study_ranking")  # a table of the page
     return {**tables, "pictures": pictures_of(figures, STUDY_CAPTIONS, tables["title"])}
 

@@ -30,19 +30,20 @@ STUDY, DESIGN, DOUBLE_HELICAL = "study", "design", "double helical pair"
 HALVES_OVER_TURNS = "double helical revolution"
 """Attribute ``kind`` of files that hold something else than the result of a mesh cycle."""
 KINDS = {
-    REVOLUTION: ("a whole revolution", "read it with Revolution.load"),
+    REVOLUTION: ("a whole revolution", "read it with loaded_tca.Revolution.load"),
     STAGE: (
         "a planetary stage",
-        "sun_mesh.nc and ring_mesh.nc beside it are such results; StageResult.load reads the stage",
+        "sun_mesh.nc and ring_mesh.nc beside it are such results; loaded_tca.stages.StageResult.load reads the stage",
     ),
     DOUBLE_HELICAL: (
         "a double helical pair",
-        "half_a.nc and half_b.nc beside it are such results; DoubleHelicalResult.load reads the pair",
+        "half_a.nc and half_b.nc beside it are such results; loaded_tca.double_helical.DoubleHelicalResult.load "
+        "reads the pair",
     ),
     HALVES_OVER_TURNS: (
         "a whole revolution of a double helical pair",
         "half_a_revolution.nc and half_b_revolution.nc beside it are revolutions of the halves; "
-        "DoubleHelicalRevolution.load reads the pair",
+        "loaded_tca.double_helical.DoubleHelicalRevolution.load reads the pair",
     ),
     TRIBOLOGY: ("tribology", "its numbers are read off a result again by result.tribology()"),
     RATING: ("a rating", "its numbers are read off a result again by result.rating()"),
@@ -290,7 +291,7 @@ def read_kind(path: FilePath, kind: str, what: str) -> xarray.Dataset:
     file = read_dataset(path)
     of_file = str(file.attrs.get("kind", ""))
     if of_file != kind:
-        found, reader = KINDS.get(of_file, ("", "read it with load_result"))
+        found, reader = KINDS.get(of_file, ("", "read it with loaded_tca.load_result"))
         raise InputError(f"{path}: {found + ', ' if found else ''}not {what}; {reader}")
     return file
 

@@ -164,8 +164,8 @@ class Result(InNotebooks, Numbers, ABC):
         table : str, optional
             ``"figures"``: key figures, a row for each torque; ``"positions"``: a row for each torque and position,
             the default where the result has them. Mesh cycles with load sharing have ``"contacts"``, a row for each
-            tooth pair under load, too; revolutions ``"teeth"`` and ``"orders"``, those of double helical pairs
-            ``"orders"``, tribology ``"slices"``.
+            tooth pair under load, too; double helical pairs on shafts ``"bearings"``; revolutions ``"teeth"`` and
+            ``"orders"``, those of double helical pairs ``"orders"``, tribology ``"slices"``.
 
         Returns
         -------

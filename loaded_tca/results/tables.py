@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from loaded_tca.results.files import Buffer
     from loaded_tca.results.mesh_cycle import MeshCycle
 
+FORCES = "force_x_N", "force_y_N", "force_z_N", "moment_x_Nm", "moment_y_Nm", "moment_z_Nm"
+"""Columns of forces and moments on bearings, axes of the gear's own frame."""
 MOST_ROWS = 1_048_576
 """Of a sheet of Excel, its head included."""
 WIDEST, NARROWEST = 60, 12

@@ -27,7 +27,7 @@ from loaded_tca.scene.build import (
 )
 from loaded_tca.scene.keys import Line, key
 from loaded_tca.scene.load import Load, life_is_given, within_solved
-from loaded_tca.scene.parse import scene_from_table, toml_lines
+from loaded_tca.scene.parse import scene_from_table, scenes_of, toml_lines
 from loaded_tca.scene.pitch import REVOLUTION_RULES, Revolution
 from loaded_tca.scene.rating import RatingSection
 from loaded_tca.scene.rows import Label, fixed
@@ -42,6 +42,7 @@ from loaded_tca.scene.section import (
     rule,
     subsection,
     told_as_written,
+    without_keys_of,
 )
 from loaded_tca.scene.sections import (
     Analysis,
@@ -461,7 +462,8 @@ class Scene(InNotebooks, WithStandards, ABC):
         Parameters
         ----------
         changes : mapping
-            Key as in a file, with dots (``"pinion.modifications.tip_relief_um"``) -> value; None: not given. Of keys
+            Key as in a file, with dots (``"pinion.modifications.tip_relief_um"``) -> value; None: not given, as of keys
+            that a scene of another kind does not have (``"wheel.height_mm"`` of a rack that becomes a wheel). Of keys
             that say the same in several ways (``file``, ``measurement`` of a flank; ``index_um``, ``single_um``,
             ``file``, ``tolerance_class`` of a pitch) the one that is changed takes the place of the others. Keys of
             drawings (``"pinion.face_width_in"``) are taken, too.
@@ -479,12 +481,15 @@ class Scene(InNotebooks, WithStandards, ABC):
         """
         changes, writings = in_keys(self, changes)
         # Sections without a change stay what they are, since they are checked; another family may have others.
-        table = contents(self) if _OF_FAMILIES.isdisjoint(changes) else as_table(self)
+        is_of_family = _OF_FAMILIES.isdisjoint(changes)
+        table = contents(self) if is_of_family else as_table(self)
         # What a file was read into, for one, gives way where another file is named.
         for path, value in (dict.fromkeys(replaced_by(type(self), changes)) | dict(changes)).items():
             *sections, name = path.split(".")
             place_at(table, sections)[name] = value
         with told_as_written(writings):
+            if not is_of_family:
+                without_keys_of(self, table, scenes_of(table), changes)
             return scene_from_table(table)
 
     def to_toml(self) -> str:

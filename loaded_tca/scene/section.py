@@ -7,7 +7,7 @@ new gear type is a new set of sections; nothing here needs to know it.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from textwrap import shorten
@@ -350,6 +350,32 @@ def place_at(table: dict[str, Any], sections: Sequence[str]) -> dict[str, Any]:
             inner = {str(n): one for n, one in enumerate(inner)}
         table[name] = table = dict(inner) if isinstance(inner, dict) else {}
     return table
+
+
+def without_keys_of(before: Section, table: dict[str, Any], section: type[Section], changed: Collection[str]) -> None:
+    """Take keys out of a table that a section does not know and that say nothing: None, or defaults of another section.
+
+    Parameters
+    ----------
+    before : Section
+        Which the table was made of, of another kind.
+    table : dict
+    section : type of Section
+    changed : collection of str
+        Paths, with dots, of keys in the table that are given: of these None alone says nothing.
+    """
+    known = entries(section)
+    for name, (_, entry) in entries(type(before)).items():
+        inner = [path.partition(".")[2] for path in changed if path.partition(".")[0] == name]
+        if name not in known:
+            is_default = isinstance(entry, Key) and not inner and table.get(name, entry.default) == entry.default
+            if is_default or table.get(name) is None:
+                table.pop(name, None)
+            continue
+        there = known[name][1]
+        own = contents(before)[name]
+        if isinstance(there, Subsection) and isinstance(own, Section) and isinstance(table.get(name), dict):
+            without_keys_of(own, table[name], there.section, inner)
 
 
 def replaced_by(section: type[Section], changes: Mapping[str, Any]) -> set[str]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
 from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
@@ -95,14 +96,16 @@ def as_measured(gear: GearType, own: MeasuredSection) -> GearType:
 
 
 def thickness_rows(mesh: CylindricalMesh | InternalMesh, balls: Sequence[float | None]) -> list[Row]:
-    """Tooth thickness of both gears and how it is measured; "-" where a span touches no flank."""
+    """Tooth thickness of both gears and how it is measured; "-" of a gear without a span, and below it why."""
     gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
     internal = isinstance(mesh, InternalMesh)
+    spans = [_span(gear) for gear in gears]
     alterations = (round(gear.tip_alteration / gear.normal_module, 4) for gear in gears)
     rows = [
         ("tip alteration coefficient k", *(fixed(one, 4) for one in alterations)),
         ("tooth thickness s_n [mm]", *(fixed(gear.normal_tooth_thickness, 4) for gear in gears)),
-        (Label(f"span W_k over k teeth{' (spaces)' if internal else ''} [mm]", "span"), *map(_span, gears)),
+        (Label(f"span W_k over k teeth{' (spaces)' if internal else ''} [mm]", "span"), *(span for span, _ in spans)),
+        *((f"  none of the {name}", why) for name, (_, why) in zip(GEARS, spans, strict=True) if why),
     ]
     if any(gear.thickness_allowance for gear in gears):
         rows[1:1] = [
@@ -115,11 +118,11 @@ def thickness_rows(mesh: CylindricalMesh | InternalMesh, balls: Sequence[float |
     return rows
 
 
-def _span(gear: CylindricalGear | RingGear) -> str:
-    """Span over the usual number of teeth, and that number."""
+def _span(gear: CylindricalGear | RingGear) -> tuple[str, str]:
+    """Span over the usual number of teeth with that number, or "-" and the reason."""
     teeth = gear.span_teeth
     try:
         span = gear.span_measurement(teeth)
-        return Cell(f"{span:z.4f} ({teeth})", {"W_k_mm": span, "k": teeth})
-    except InputError:
-        return "-"
+    except InputError as error:
+        return "-", "; ".join(problem.removeprefix(f"{gear.name}: ").partition(": ")[2] for problem in error.problems)
+    return Cell(f"{span:z.4f} ({teeth})", {"W_k_mm": span, "k": teeth}), ""

@@ -14,7 +14,8 @@ OF_HALVES = frozenset({"double_helical", "gap_mm", "apex_offset_mm", "floating",
 def has_halves(table: Mapping[str, Any]) -> bool:
     """Whether the section [pair] has a key of double helical pairs."""
     pair = table.get("pair")
-    return bool(OF_HALVES.intersection(contents(pair) if isinstance(pair, Section) else pair or ()))
+    keys = contents(pair) if isinstance(pair, Section) else pair
+    return isinstance(keys, Mapping) and any(keys.get(name) is not None for name in OF_HALVES)
 
 
 def has_ring(table: Mapping[str, Any]) -> bool:

@@ -19,7 +19,7 @@ from loaded_tca.plain import plain
 from loaded_tca.rating import Rating, rating_of
 from loaded_tca.rating.cases import Cases, load_cases, problems_of_cases
 from loaded_tca.rating.findings import of_all_bins
-from loaded_tca.rating.inputs import Duty, missing_sections
+from loaded_tca.rating.inputs import Duty, by_itself, missing_sections
 from loaded_tca.rating.lives import OfGears, lives_of
 from loaded_tca.rating.quantities import CASE, NUMBERS, OF_SPECTRUM, SPECTRUM_NUMBERS
 from loaded_tca.rating.rating import NOT_COUNTED, OfCases, all_figures, rows_of, shown_speeds
@@ -280,9 +280,10 @@ def _of_meshes(result: StageResult, cases: Cases, factor: Array) -> tuple[Rating
     ]
     at_sun, at_ring = _computed_ratios(*cycles) if stage.analysis.root_stress else (None, None)
     of_sun, of_ring = (("sun", 1.0 / share.of(np.ones(1)).item()) for share in shares)
+    others = by_itself(stage.load)
     duties = (
-        Duty(factor, (planets, 1), False, (None, mean), (None, at_sun), own[0], of_sun),
-        Duty(factor, (1, planets), True, (mean, None), (at_ring, None), own[1], of_ring),
+        Duty(factor, (planets, 1), False, (None, mean), (None, at_sun), own[0], of_sun, other_flanks=others),
+        Duty(factor, (1, planets), True, (mean, None), (at_ring, None), own[1], of_ring, other_flanks=others),
     )
     ratings = []
     for gears, cycle, duty in zip(MESHES.values(), cycles, duties, strict=True):

@@ -11,7 +11,10 @@ from loaded_tca import InputError
 from loaded_tca.cli import main
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
+from loaded_tca.plots import HALVES_RATING_PICTURES, plot_safeties, rating_figures
+from loaded_tca.plots.style import NOTE
 from loaded_tca.rating.places import is_shown
+from loaded_tca.reports import write_html_report
 from loaded_tca.reports.rating_page import halves_rating_content
 from loaded_tca.studies import double_helical as studies
 from loaded_tca.studies import figures as all_figures
@@ -175,6 +178,8 @@ def test_summary_of_a_spectrum_has_both_halves_and_what_is_assumed(under_bins):
     text = under_bins.summary()
     assert text.count("half b, under its share") >= 2  # all bins together, and bin by bin
     assert "the halves share reversed bins as they share the same torques" in text
+    assert "with pair.driving or pair.sense changed, and reversed the other way in every bin, rates them" in text
+    assert "--coast" not in text
 
 
 def test_command_and_report_rate_both_halves(tmp_path, monkeypatch, capsys, held, under_bins):
@@ -196,6 +201,65 @@ def test_command_and_report_rate_both_halves(tmp_path, monkeypatch, capsys, held
     captions = [table.caption for table in halves_rating_content(held)["tables"]]
     assert captions[:2] == ["Half a: safeties and lives", "Half a: Loads and load factors"]
     assert halves_rating_content(result_of(**{"pinion.strength": None})) is None
+
+
+OF_HELD_HALVES = ["safeties"] + [
+    f"half_{half}_{name}" for half in "ab" for name in ("safeties", "rating_sn_curves", "rating_damage")
+]
+
+
+def test_pictures_of_a_rating_are_those_of_both_halves():
+    floating = result_of().rating()
+    drawn = rating_figures(floating)
+    assert [*drawn] == [name for name in HALVES_RATING_PICTURES if not name.endswith("root_safety")]  # no root stress
+    for half in "ab":
+        (label,) = {text.get_text() for text in drawn[f"half_{half}_safeties"].texts if text.get_gid() == NOTE}
+        assert label.startswith(f"Double helical pair 29/87: half {half}; ")
+        bars = [bar.get_width() for bar in drawn[f"half_{half}_safeties"].axes[0].patches]
+        assert min(floating.of_halves[half].flank_safety[0]) in bars
+
+
+def test_safeties_of_a_pair_are_those_of_the_worse_half(held_rating, under_bins):
+    bars = {bar.get_width() for bar in plot_safeties(held_rating).axes[0].patches}
+    assert min(half.root_safety.min() for half in held_rating.halves) in bars
+    # strokes of single bins: reversed ones load no flank that is analysed, idle ones nothing
+    with pytest.MonkeyPatch.context() as patch:  # seconds, and the same figure
+        patch.setattr("loaded_tca.reports.notebook.png_of", lambda *_: b"drawn")
+        assert "<img" in held_rating._repr_html_()
+    strokes = [line for line in plot_safeties(under_bins).axes[0].lines if line.get_marker() == "|"]
+    assert_allclose(strokes[0].get_xdata(), under_bins.half_a.flank_safety[[0, 1], 0], rtol=ROUNDING)
+
+
+def test_pictures_of_held_halves_have_no_places(held_rating, under_bins):
+    """Torques of held halves lie between those that were analysed."""
+    for rating in (held_rating, under_bins):
+        assert [*rating_figures(rating)] == OF_HELD_HALVES
+
+
+def test_pictures_of_a_half_that_carries_nothing():
+    """Of a half without load under one torque the other torques are shown; one that is not rated has none."""
+    some = result_of(**{**HELD, "pair.apex_offset_mm": 0.02, "analysis.torques_Nm": [500.0, 800.0]}).rating()
+    axes = rating_figures(some)["half_b_safeties"].axes[0]
+    assert np.isfinite([bar.get_width() for bar in axes.patches]).all()
+    one = replace(some, half_b=None)
+    assert {name[:6] for name in rating_figures(one)} == {"safeti", "half_a"}
+
+
+def test_pictures_of_a_rating_stand_in_directory_and_report(tmp_path, monkeypatch, held):
+    held.save(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    old = [tmp_path / f"{name}.png" for name in ("half_a_flank_safety", "flank_safety")]
+    for path in old:  # of a rating that had them
+        path.touch()
+    assert main(["rating", "."]) == 0
+    pictures = {path.stem for path in tmp_path.glob("*.png")}
+    assert pictures == {*OF_HELD_HALVES}
+    shown = halves_rating_content(held)["pictures"]
+    assert [picture.caption[:7] for picture in shown[1:]] == 3 * ["Half a:"] + 3 * ["Half b:"]
+    assert shown[0].note.startswith("two halves, ISO 6336-2:2019")
+    assert shown[1].note.startswith("ISO 6336-2:2019")  # the caption says which half
+    page = write_html_report(held, tmp_path / "report.html").read_text(encoding="utf-8")
+    assert page.count("Half b: S-N curves after ISO 6336-6") == 1
 
 
 def test_rating_without_a_lubricant_is_refused():

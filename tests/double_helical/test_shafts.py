@@ -21,6 +21,7 @@ from loaded_tca.double_helical.laws import half_law
 from loaded_tca.double_helical.rating import _largest_shares
 from loaded_tca.double_helical.shafts import OnShafts, Stations, loads_at_first, mean_over_pitch
 from loaded_tca.material import Material
+from loaded_tca.output import write_result
 from loaded_tca.output.double_helical_overview import bearing_rows_of_halves, held_in_words
 from loaded_tca.scene.half_shafts import MIRRORED, HalfLoads
 from loaded_tca.supports import Bearing, Shaft, ShaftLoad, ShaftSection, shafts_of
@@ -162,6 +163,46 @@ def test_check_has_the_bearing_forces_of_both_halves_and_says_what_bends():
     assert "shaft of the pinion bends and twists under and between the halves" in held
     assert held.endswith("the wheel has a rigid bore.")
     assert list(rows) == [f"pinion, bearing {n} at {z} mm: force [N]" for n, z in enumerate((-90, 90))]
+
+
+def on_bearings(**forces):
+    """Unlike halves over two positions on shafts whose bearings carry given forces (position, bearing, 6)."""
+    result, _ = samples.analysed()
+    shafts = {f"{gear}.shaft": shaft(axial=100.0) for gear in forces}
+    arrays = {
+        f"{gear}_bearing_force": (("torque", "position", f"{gear}_bearing", "motion"), np.array([values]))
+        for gear, values in forces.items()
+    }
+    return replace(
+        result, scene=result.scene.with_changes({**HELD, **shafts}), dataset=result.dataset.assign(arrays), elsewhere=()
+    )
+
+
+FIRST = [[300.0, -400.0, 20.0, 1e3, 2e3, 0.0], [0.0, -100.0, 0.0, 0.0, 0.0, 0.0]]
+SECOND = [[500.0, 0.0, 40.0, 3e3, 2e3, 0.0], [0.0, -300.0, 0.0, 0.0, 0.0, 0.0]]
+
+
+def test_forces_on_bearings_stand_in_summary_and_tables(tmp_path):
+    """Means over both positions, in N and N m; the largest force is a vector's length, hypot(500, 40)."""
+    result = on_bearings(pinion=[FIRST, SECOND])
+    table = result.to_pandas("bearings")
+    assert list(table.index) == [("pinion", 1600.0, 0), ("pinion", 1600.0, 1)]
+    assert_allclose(table["axial_mm"], [-90.0, 90.0])
+    assert_allclose(table[["force_x_N", "force_y_N", "force_z_N"]], [[400.0, -200.0, 30.0], [0.0, -200.0, 0.0]])
+    assert_allclose(table[["moment_x_Nm", "moment_y_Nm", "moment_z_Nm"]], [[2.0, 2.0, 0.0], [0.0, 0.0, 0.0]])
+    assert_allclose(table["largest_force_N"], [math.hypot(500.0, 40.0), 300.0])
+    (figures,) = result.key_figures()
+    assert figures["pinion_bearing_force_N"] == table["largest_force_N"].max()
+    assert "wheel_bearing_force_N" not in figures  # it has no shaft
+    (line,) = [line for line in result.summary().splitlines() if "largest force on a bearing, pinion [N]" in line]
+    assert float(line.split()[-1]) == pytest.approx(501.6, abs=0.05)
+    files = [path.name for path in write_result(result, tmp_path)]
+    assert files[-2:] == ["double_helical.csv", "double_helical_bearings.csv"]
+    head, first, _ = (tmp_path / files[-1]).read_text().splitlines()
+    assert head.startswith("gear,pinion_torque_Nm,bearing,axial_mm,force_x_N")
+    assert first.startswith("pinion,1600,0,-90,400,-200,30,2,2,0,")
+    write_result(samples.analysed()[0], tmp_path)  # without shafts: the table of the earlier result goes
+    assert not (tmp_path / files[-1]).exists()
 
 
 def test_shares_of_bins_lie_between_those_of_the_torques_analysed(stepped):

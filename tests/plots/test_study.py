@@ -147,6 +147,34 @@ def test_many_lines_have_few_labels():
     assert len(figure.legends[0].texts) == 8
 
 
+def test_axes_choose_the_keys_of_heat_maps_and_lines_of_three():
+    keys = [[0.0, 6.0], [0.0, 10.0], [-4.0, 0.0, 4.0]]
+    lead, tip, tilt = np.array(list(itertools.product(*keys))).T
+    figures = {PRESSURE: 1000.0 + lead + 10.0 * tip + 100.0 * tilt}
+    study = dataset({LEAD: lead, TIP: tip, MISALIGNMENT: tilt}, figures)
+    for key in (LEAD, TIP, MISALIGNMENT):
+        study[key].attrs["sampling"] = "factor"
+    heat, lines = f"study_heat_map_{PRESSURE}", f"study_lines_{PRESSURE}"
+    usual, chosen = plot_study(study), plot_study(study, axes=(MISALIGNMENT, LEAD))
+    for pictures, across, upwards in ((usual, LEAD, TIP), (chosen, MISALIGNMENT, LEAD)):
+        axes = pictures[heat].axes[0]
+        assert (axes.get_xlabel(), axes.get_ylabel()) == (label_of(across), label_of(upwards))
+        assert pictures[lines].axes[0].get_xlabel() == label_of(across)
+    (cells,) = (one for one in chosen[heat].axes[0].collections if isinstance(one, QuadMesh))
+    # medians over the tip relief: 1000 + lead + 50 + 100 tilt
+    assert_allclose(cells.get_array(), 1050.0 + np.add.outer([0.0, 6.0], [-400.0, 0.0, 400.0]))
+
+
+test_axes_refuse = refused_calls(
+    (lambda: plot_study(grid(), axes=(LEAD, LEAD)), f"^axes: found {LEAD}, {LEAD}; allowed two different keys"),
+    (lambda: plot_study(grid(), axes=(LEAD,)), f"^axes: found {LEAD}; allowed two different keys"),
+    (
+        lambda: plot_study(grid(), axes=(LEAD, MISALIGNMENT)),
+        f"^axes: {MISALIGNMENT}: not a key with given values in the study; it has {LEAD}, {TIP}",
+    ),
+)
+
+
 def test_heat_map_has_the_first_key_to_the_right_and_the_second_upwards():
     """Given in falling order; the cells rise."""
     figure = plot_study_heat_map(grid(leads=(6.0, 0.0, 3.0), tips=(10.0, 0.0)), PRESSURE)

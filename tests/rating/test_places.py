@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import InputError
 from loaded_tca.plots import plot_flank_safety, plot_root_safety, plot_safeties, rating_figures
@@ -51,6 +51,22 @@ def test_root_that_decides_has_the_least_safety_of_all_places():
         assert 1.0 <= above < 1.01
         expected = rated.local_sigma_FG[1, gear] / rated.local_Y_M[1, gear] * mean / (above * stress.largest[1][tense])
         assert_allclose(places.safety[tense], expected, rtol=ROUNDING)
+
+
+CAST_IRON = HARD | {"material": None, "kind": "GG", "sigma_H_lim_MPa": 900.0, "sigma_F_lim_MPa": 300.0}
+CAST_IRON |= {"proof_stress_MPa": 400.0}
+
+
+@pytest.mark.parametrize("torques", [[0, 1], [1]])
+def test_root_of_cast_iron_decides_where_the_tension_is_largest(torques):
+    """The standard has no mean stress sensitivity of cast iron: Y_M is 1 everywhere, under one torque or several."""
+    whole = solved(**{"wheel.strength": CAST_IRON})
+    scene = whole.scene.with_changes({"analysis.torques_Nm": (1e-3 * whole.torque[torques]).tolist()})
+    maps = [whole.maps[torque] for torque in torques]
+    rated = replace(whole, scene=scene, dataset=whole.dataset.isel(torque=torques), maps=maps, states=None).rating()
+    assert_array_equal(rated.local_Y_M[:, 1], 1.0)
+    tension = np.nanmax(whole.root_tension[torques, :, 1], axis=1)
+    assert_allclose(rated.local_root_stress[:, 1], tension * rated.K_A * rated.K_gamma * rated.K_v, rtol=ROUNDING)
 
 
 def test_smallest_over_the_face_is_that_of_both_fillets():

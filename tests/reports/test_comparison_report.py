@@ -107,6 +107,10 @@ def test_command_writes_the_report_of_several_results(tmp_path, monkeypatch, cap
             ["old", "new", "--out", "a.html", "--rank-by", "x"],
             "--rank-by: only for a study; a comparison has no ranking",
         ),
+        (
+            ["old", "new", "--out", "a.html", "--axes", "x", "y"],
+            "--axes: only for a study; a comparison varies no keys",
+        ),
         (["old", "new", "--out", "a.html", "--coast", "b"], "--coast: only for one result; a comparison has no rating"),
         (["old", "--coast", "new", "--out", "new/result.nc"], "--out: new/result.nc: would replace the input"),
         (["old", "--coast", "new", "--interactive"], "coast: not allowed; the interactive page has no rating"),

@@ -31,7 +31,7 @@ from loaded_tca.results.summary import known_rows, shown
 from loaded_tca.studies.design import DesignResult
 from loaded_tca.warning_kinds import KINDS, kind_of
 from tests.samples.results import SCENES, changed, changed_scene, result
-from tests.samples.study_datasets import LEAD, MISALIGNMENT, dataset, grid, sampled
+from tests.samples.study_datasets import LEAD, MISALIGNMENT, TIP, dataset, grid, sampled
 
 ROOT = Path(__file__).parents[2]
 TORQUES = (20.0, 80.0, 130.0)
@@ -532,6 +532,17 @@ def test_report_of_a_study_is_ranked_by_the_figure_that_is_asked_for(written):
     ranking = next(table for table in page.tables if table[0][0] == "rank")
     assert [row[1] for row in ranking[1:]] == ["0", "1", "2", "3", "4", "5"]
     assert "ranked bypeak pressure [MPa], the least is best" in page.words.replace("ranked by ", "ranked by")
+
+
+def test_axes_are_those_of_the_pictures_of_a_study(tmp_path, monkeypatch):
+    asked, ranking = [], {"study_ranking": None}
+    monkeypatch.setattr("loaded_tca.reports.report.plot_study", lambda _, **ways: asked.append(ways) or dict(ranking))
+    write_html_report(grid(), tmp_path / "report.html", axes=(TIP, LEAD))
+    assert asked[0]["axes"] == (TIP, LEAD)
+    with pytest.raises(InputError, match=r"axes: \('a', 'b'\); a MeshCycle varies no keys"):
+        write_html_report(cycle(), tmp_path / "report.html", axes=("a", "b"))
+    with pytest.raises(InputError, match="axes: not allowed; the interactive page has its own choice of keys"):
+        write_html_report(grid(), tmp_path / "report.html", axes=(TIP, LEAD), interactive=True)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,6 @@
+import importlib
 import os
+import re
 import tracemalloc
 
 import numpy as np
@@ -8,9 +10,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
+from loaded_tca import load_result
 from loaded_tca.errors import InputError
 from loaded_tca.results.files import (
+    DESIGN,
+    DOUBLE_HELICAL,
     FORMAT_VERSION,
+    HALVES_OVER_TURNS,
+    KINDS,
+    REVOLUTION,
+    STAGE,
+    STUDY,
     arrays_of,
     netcdf_of,
     read_dataset,
@@ -322,3 +332,16 @@ test_files_refuse = refused_calls(
     ),
     (lambda tmp_path: remove(tmp_path), "cannot be removed"),
 )
+
+
+@pytest.mark.parametrize("kind", [REVOLUTION, STAGE, DOUBLE_HELICAL, HALVES_OVER_TURNS, STUDY, DESIGN])
+def test_file_of_another_kind_is_refused_with_the_call_that_reads_it(kind, tmp_path):
+    write_dataset(tmp_path / "other.nc", xarray.Dataset(attrs={"kind": kind}))
+    with pytest.raises(InputError, match=re.escape(KINDS[kind][0])) as refused:
+        load_result(tmp_path / "other.nc")
+    (package, *names), *others = re.findall(r"(loaded_tca(?:\.[a-z_]+)?)\.([A-Z]\w*)?\.?(load\w*)", str(refused.value))
+    assert not others
+    read = importlib.import_module(package)
+    for name in filter(None, names):
+        read = getattr(read, name)
+    assert callable(read)

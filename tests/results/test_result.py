@@ -72,7 +72,7 @@ def test_numbers_of_tribology_are_where_they_are_declared_to_be(tmp_path):
 
 def test_file_of_another_kind_is_named_with_its_reader(tmp_path):
     cycle().save(tmp_path / "result.nc")
-    with pytest.raises(InputError, match=r"result\.nc: not a whole revolution; read it with load_result"):
+    with pytest.raises(InputError, match=r"result\.nc: not a whole revolution; read it with loaded_tca\.load_result"):
         Revolution.load(tmp_path / "result.nc")
     write_dataset(tmp_path / "study.nc", read_dataset(tmp_path / "result.nc").assign_attrs(kind="study"))
     with pytest.raises(InputError, match=r"a study, not a whole revolution; read it with loaded_tca\.studies"):

@@ -100,6 +100,13 @@ def test_a_ring_with_halves_is_told_of_its_teeth(scene):
         scene.with_changes({"wheel.teeth": -60})
 
 
+def test_keys_of_halves_that_are_none_leave_a_pair_without_halves(scene):
+    keys = ("double_helical", "gap_mm", "apex_offset_mm", "floating", "axial_stiffness_N_per_um")
+    single = scene.with_changes({**{f"pair.{key}": None for key in keys}, "pinion.half_b": None})
+    assert type(single) is CylindricalScene
+    assert single.pinion.face_width_mm == scene.pinion.face_width_mm  # now without a groove
+
+
 def test_text_makes_the_scene_again_and_keys_of_halves_make_it_another_one(scene):
     assert parse_scene(scene.to_toml()) == scene
     keys = ["gap_mm", "apex_offset_mm", "floating", "axial_stiffness_N_per_um", "double_helical"]

@@ -12,6 +12,7 @@ import pytest
 
 from loaded_tca import MeshCycle, Scene, analyse, analyse_revolution, parse_scene, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
+from loaded_tca.scene import CylindricalScene
 
 EXAMPLE = read_scene(Path(__file__).parents[2] / "examples" / "scenes" / "rack_and_pinion.toml")
 SPUR = EXAMPLE.with_changes(
@@ -47,6 +48,34 @@ def with_wheel(teeth: int) -> dict[str, Any]:
     """Changes that put a wheel in the place of the rack."""
     wheel = {"teeth": teeth, "face_width_mm": 29.0}
     return {"pair": {"type": "cylindrical", "normal_module_mm": 3.0}, "wheel": wheel}
+
+
+OF_RACKS = {"wheel.height_mm": 26.0, "wheel.length_mm": 500.0}
+"""Keys that the wheel of a pair does not have."""
+
+
+def test_rack_becomes_a_wheel_and_a_wheel_a_rack_by_changes_alone() -> None:
+    """None takes the keys of a rack away; keys of a wheel that were never given do not stand in the way of a rack."""
+    wheel = EXAMPLE.with_changes({"wheel.teeth": 57} | dict.fromkeys(OF_RACKS))
+    assert type(wheel) is CylindricalScene
+    assert wheel.wheel.teeth == 57
+    assert wheel.wheel.modifications == EXAMPLE.wheel.modifications
+    assert wheel.with_changes({"wheel.teeth": "rack", **OF_RACKS}) == EXAMPLE
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"wheel.teeth": 57}, r"wheel\.height_mm: unknown key"),  # a value is not lost unasked
+        ({"wheel.teeth": 57, **OF_RACKS}, r"wheel\.length_mm: unknown key"),
+        ({"wheel.teeth": 57, **dict.fromkeys(OF_RACKS), "wheel.hight_mm": None}, r"wheel\.hight_mm: unknown key"),
+    ],
+)
+def test_keys_that_a_wheel_does_not_have_are_refused_with_values_and_unknown_ones_always(
+    changes: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        EXAMPLE.with_changes(changes)
 
 
 def solved(scene: Scene) -> MeshCycle:

@@ -66,7 +66,11 @@ def test_check_has_thickness_and_backlash_of_a_ring(thinned):
     at_working_circle = -THIN * mesh.wheel_working_radius / mesh.ring.reference_radius
     assert_allclose(mesh.backlash - scene().mesh().backlash, at_working_circle, rtol=1e-8)
     helical = scene(pair__helix_angle_deg=15.0, wheel__tip_diameter_mm=181.5)
-    assert {name: cells for name, *cells in helical.geometry_rows()}["span W_k over k teeth (spaces) [mm]"][1] == "-"
+    rows = {name: cells for name, *cells in helical.geometry_rows()}
+    assert rows["span W_k over k teeth (spaces) [mm]"][1] == "-"
+    assert rows["  none of the wheel"] == [
+        "no span touches the helical teeth of a ring, which are hollow; measure between balls"
+    ]
 
 
 def test_complete_teeth_and_form_factors_of_a_ring_follow_its_allowance(thinned):

@@ -1,5 +1,7 @@
 """Tooth thickness and tips of scenes as engineers give them: by allowance, span, balls or tip alteration."""
 
+from math import asin, cos, radians, sin
+
 import pytest
 from numpy.testing import assert_allclose
 
@@ -64,10 +66,20 @@ def test_check_tells_thickness_backlash_and_tips():
     assert "span W_k over k teeth [mm]" in plain
 
 
-def test_span_that_touches_no_flank_is_not_told():
-    narrow = {f"{gear}__face_width_mm": 5.0 for gear in ("pinion", "wheel")}
-    rows = {name: cells for name, *cells in scene(**narrow).geometry_rows()}
-    assert rows["span W_k over k teeth [mm]"] == ["-", "-"]
+def test_check_says_why_a_gear_has_no_span():
+    """A span of helical teeth must end on their face: W_k sin(beta_b) below b."""
+    narrow = scene(pinion__face_width_mm=5.0)
+    rows = {name: cells for name, *cells in narrow.geometry_rows()}
+    span, base_helix = scene().mesh().pinion.span_measurement(5), asin(sin(radians(15.0)) * cos(radians(20.0)))
+    assert rows["span W_k over k teeth [mm]"][0] == "-"
+    assert rows["  none of the pinion"] == [
+        f"a span over 5 teeth needs a face width above {span * sin(base_helix):.4g} mm"
+    ]
+    assert "  none of the wheel" not in rows
+    assert "  none of the pinion" not in {name for name, *_ in scene().geometry_rows()}
+    # teeth cut down below the place where the span would touch
+    low = {name: cells for name, *cells in scene(pinion__tip_diameter_mm=103.0).geometry_rows()}
+    assert "touches no flank: it would be at diameter" in low["  none of the pinion"][0]
 
 
 def test_tip_alteration_is_told_and_shortens():

@@ -117,6 +117,23 @@ def test_fillets_of_planets_are_drawn_by_both_meshes_where_bins_are_reversed():
     assert_allclose(rating.miner_sum[0, of_mode], rating.sun_mesh.damage[:, 0, of_mode].sum(), rtol=ROUNDING)
 
 
+def test_note_on_reversed_bins_of_a_stage_names_what_stages_have():
+    rating = under(bins((480.0, 1.0)) + bins((300.0, 3.0), reversed=True))
+    notes = [note for note in rating.notes() if "damage of the other flanks is not counted" in note]
+    assert len(notes) == 1  # of both meshes alike
+    assert "with stage.driving changed, and reversed the other way in every bin, rates them by itself" in notes[0]
+    assert "--coast" not in rating.summary()
+    # the same bins, turned round on the stage whose other flanks are in contact, load these flanks alone
+    turned = rating.stage.with_changes(
+        {
+            "stage.driving": "carrier",
+            "load.case": bins((480.0, 1.0), reversed=True) + bins((300.0, 3.0)),
+        }
+    )
+    assert turned.sun_scene.driving != rating.stage.sun_scene.driving
+    assert turned.sun_scene.sense == rating.stage.sun_scene.sense
+
+
 def test_planets_have_the_larger_damage_and_the_smaller_safety_of_both_sides():
     rating = under(bins((300.0, 1.0), (480.0, 1.0)))
     for name, worse in (("miner_sum", np.maximum), ("spectrum_safety", np.minimum), ("life_hours", np.minimum)):

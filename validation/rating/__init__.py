@@ -5,6 +5,7 @@
 - ``methods_part``: where the standard and the analysis part, and why; a page of the studies, no rows.
 - ``rings``: critical sections, nominal stresses and factors of planets and rings of two printed stages.
 - ``solved``: the whole way from a scene through its solved mesh to safeties that a report prints.
+- ``speed``: processor time of a rating under 500 bins beside that of the analysis of its dozen torques.
 - ``spectra``: damage under 500 bins of which a dozen torques are solved, against all of them solved.
 - ``stage_spectra``: Miner sums of a planetary stage, by hand of its single meshes, and of all torques solved.
 - ``stages``: two whole planetary stages, from stage files to safeties that reports print.

@@ -5,14 +5,10 @@ reaches the ends of the face from 195 N m on, so that K_Hbeta has a kink there. 
 with falling hours and any speeds: those of 5 N m that come near resonance have K_v up to 7, and do 9 % of the damage
 by local stresses. Solved pressures scatter by 0.1 to 0.4 % from torque to torque. The allowed difference of the damage
 is the error that the rating tells. One bin at the knee and two bins by hand are in ``tests/rating/test_spectrum.py``.
-
-The last rows have no verdict: processor time of the whole spectrum over that of its dozen torques, and of one more
-rating.
 """
 
 from dataclasses import replace
 from pathlib import Path
-from time import process_time
 
 import numpy as np
 
@@ -71,13 +67,7 @@ def short_rows() -> list[Row]:
 def _compared(asked: Scene) -> list[Row]:
     every = tuple(sorted({case.pinion_torque_Nm for case in asked.load.case or ()}))
     with noted_accuracy_warnings(given=False):  # contacts reach edges
-        begin = process_time()
         dozen = analyse(asked)
-        solved = process_time()
-        dozen.rating()
-        rated = process_time()
-        dozen.rating()
-        again = process_time()
         whole = analyse(asked.with_changes({"analysis.torques_Nm": every}))
         compared = []
         for changes, modes in (({}, ("flank",)), (LOCAL, ("local_flank",))):
@@ -91,9 +81,4 @@ def _compared(asked: Scene) -> list[Row]:
                     compared.append(
                         Row(CASE, SOURCE, f"{gear}: damage, {mode}, within what is told", expected, obtained, told)
                     )
-    time = "processor time over that of a dozen torques"
-    return [
-        *compared,
-        Row(CASE, "a dozen torques", time, 1.0, (rated - begin) / (solved - begin), None, note="no verdict on times"),
-        Row(CASE, "below 50 ms", "processor time of a second rating [s]", 0.05, again - rated, None, note="500 bins"),
-    ]
+    return compared
