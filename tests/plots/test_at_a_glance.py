@@ -35,7 +35,6 @@ def test_sheet_shows_root_stress_where_there_is_any():
     assert np.all(stress.lines[1].get_ydata() <= 0.0)
 
 
-@pytest.mark.thorough
 def test_nothing_of_the_sheet_covers_the_load_over_the_face():
     figure = plot_at_a_glance(result(**CYCLE))
     figure.canvas.draw()
