@@ -29,6 +29,7 @@ DEAR_EXAMPLES = (
     "loaded_tca.baselines.bidirectional.BidirectionalStart",
     "loaded_tca.baselines.conventional.solve_conventional",
     "loaded_tca.baselines.golden_section.search_golden_section",
+    "loaded_tca.compliance.body.solid_torsion",
     "loaded_tca.compliance.compliance.tooth_compliance",
     "loaded_tca.compliance.root_stress.root_stress_model",
     "loaded_tca.flanks.hypoid_synthesis.synthesised_gears",
@@ -75,6 +76,12 @@ def import_last_first(config):
     for path in sorted((path for folder in folders for path in folder.rglob("test_*.py")), reverse=True):
         with contextlib.suppress(Exception, pytest.skip.Exception):  # the collection says what is wrong
             importlib.import_module(".".join(path.relative_to(root).with_suffix("").parts))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collect_file():
+    """Of the files of tests, look for examples in no docstring: those of the package have them."""
+    return [collector for collector in (yield) if type(collector) is pytest.Module]
 
 
 @pytest.hookimpl(wrapper=True)

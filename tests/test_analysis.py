@@ -261,7 +261,7 @@ def test_peak_pressure_of_a_bevel_pair_is_that_of_hertz(name):
     assert 1000.0 < result.peak_pressure.max() < 1500.0
 
 
-@pytest.mark.quick_cases("spiral_bevel")
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
 def test_bevel_result_is_reopened_as_it_was(name, tmp_path):
     scene = read_scene(SCENES / f"{name}.toml").with_changes({"analysis.positions": 2, "analysis.cells": (16, 16)})

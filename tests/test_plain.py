@@ -59,8 +59,9 @@ FOR_PROGRAMS = 9
 
 def general_formats(source: str) -> Iterator[tuple[int, str]]:
     """Line and text of each field of a format string whose numbers would have exponents where people write none."""
-    tree = ast.parse(source)
-    for node in ast.walk(tree):
+    if "g}" not in source:  # the end of every such field: most modules need not be parsed
+        return
+    for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.FormattedValue) and node.format_spec is not None:
             parts = node.format_spec.values
             spec = "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in parts)

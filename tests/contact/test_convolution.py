@@ -139,6 +139,7 @@ def test_threads_of_one_process_do_not_disturb_each_other():
         assert_allclose(list(pool.map(_centre_displacement, sizes)), expected, rtol=DOUBLE)
 
 
+@pytest.mark.quick_cases("fork")
 @pytest.mark.parametrize("method", sorted(set(multiprocessing.get_all_start_methods()) & {"fork", "spawn"}))
 @pytest.mark.filterwarnings("ignore:This process .* is multi-threaded:DeprecationWarning")
 def test_workers_convolve_after_their_parent_used_threads(method):

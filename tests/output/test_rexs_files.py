@@ -67,6 +67,7 @@ def test_mesh_stiffness_is_that_of_the_whole_face(result) -> None:
     assert_allclose(attribute.value, expected, rtol=1e-9)
 
 
+@pytest.mark.quick_cases("1.1-N-False", "1.5-N / mm-True")
 @pytest.mark.parametrize(
     ("version", "unit", "stiffness"), [("1.1", "N", False), ("1.4", "N / mm", False), ("1.5", "N / mm", True)]
 )

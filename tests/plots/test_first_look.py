@@ -98,6 +98,7 @@ def test_active_part_of_an_undercut_pair_is_that_of_the_path_as_analysed():
     assert rows["end of active profile d_Na [mm]"][1] == f"{end:.4f}"
 
 
+@pytest.mark.thorough
 def test_legend_of_the_teeth_does_not_hide_the_line_of_action():
     figure = drawn("undercut_10x40")[1]
     figure.canvas.draw()

@@ -180,10 +180,7 @@ CASES = {
 }
 
 
-@pytest.mark.quick_cases(
-    "plot_tornado-one pair alone",
-    "plot_transmission_error_band-one position",
-)
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize(
     "plot", [plot_tornado, plot_sensitivity_curves, plot_transmission_error_band, plot_removal_weights]

@@ -29,7 +29,7 @@ def heights(figure, panel=0):
     return np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in figure.axes[panel].lines])
 
 
-@pytest.mark.quick_cases("mesh_cycle_spur")
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", FAMILIES)
 def test_all_pictures_of_every_family_are_drawn(name):
     assert set(tribology_figures(found(name, permissible_film_ratio=0.2))) == set(TRIBOLOGY_PICTURES)

@@ -719,6 +719,7 @@ def test_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
     assert old.read_text() == "old"
 
 
+@pytest.mark.thorough
 def test_templates_are_part_of_the_wheel(tmp_path):
     if shutil.which("hatchling") is None and not _has_hatchling():
         pytest.skip("hatchling is not installed")

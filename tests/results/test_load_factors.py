@@ -200,7 +200,7 @@ def crowned(out_of_plane_deg, cells=32):
         return analyse(scene)
 
 
-@pytest.mark.quick_cases("1.0")
+@pytest.mark.thorough
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_face_load_factor_rises_with_misalignment_on_both_sides(sign):
     factors = [crowned(sign * error).face_load_factor.item() for error in (0.0, 0.04, 0.08, 0.12)]

@@ -64,6 +64,7 @@ def test_root_stress_follows_the_torque_as_analyses_do():
         assert_allclose(found[4, ..., 0], slopes, rtol=0, atol=REAL_PAIRS * np.abs(slopes).max())
 
 
+@pytest.mark.quick_cases("mounting.axial_offset_mm-0.5")
 @pytest.mark.parametrize(
     ("key", "step"), [("mounting.axial_offset_mm", 0.5), ("mounting.centre_distance_error_mm", 0.1)]
 )

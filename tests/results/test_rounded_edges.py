@@ -240,6 +240,7 @@ def test_check_tells_which_pressures_at_rounded_edges_are_found():
     assert row.split()[-1] == "all"
 
 
+@pytest.mark.thorough
 def test_arcs_are_drawn_on_both_flanks():
     panels = [
         [sum(line.get_linestyle() == "--" for line in axes.lines) for axes in plot_contact_path(cycle).axes[:2]]

@@ -355,6 +355,7 @@ def test_transmission_error_of_teeth_that_bend_is_their_deflection(make, load_sh
     assert "teeth bend" in result.summary()
 
 
+@pytest.mark.thorough
 def test_bending_teeth_are_half_as_stiff_as_their_contacts():
     """The contact of steel flanks yields about as much as their teeth do: 12 to 20 N/(mm um) for a pair, ISO 6336-1."""
     alone = bending(False).mesh_stiffness
