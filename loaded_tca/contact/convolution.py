@@ -33,7 +33,7 @@ CACHE_BYTES = 256 * 2**20
 # Symbols in double precision that others are made of are kept up to this; larger ones would displace the others.
 MOST_BESIDE = 2**24
 # Work arrays of a transform that take more than this are made anew: they would displace symbols, which take longer.
-LARGEST_KEPT = 2**26
+LARGEST_KEPT = 2**24
 # Half-transformed data of more bytes are kept in blocks: that costs a tenth of the time where they fit the cache.
 LARGEST_WHOLE = 2**23
 # Rows that are written as columns together.

@@ -1,5 +1,6 @@
 """Projected, preconditioned conjugate gradients for a stack of contact problems on grids of one shape."""
 
+from functools import reduce
 from itertools import count
 from typing import Any, NamedTuple
 
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.convolution import ALL, Rows
 from loaded_tca.contact.grid import CELLS, Grids, Operator, total_of
-from loaded_tca.contact.levels import parts_of
+from loaded_tca.contact.levels import PART_CELLS, parts_of
 
 Single = NDArray[np.float32]
 
@@ -59,34 +60,54 @@ class Judgement(NamedTuple):
 def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = None) -> Judgement:
     """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place.
 
-    ``room``: an array like these to work in, new arrays of double precision being dear.
+    Twice through the cells, in parts that stay in the cache: for the approach, and for what the excess is beside it.
+    ``room``: an array like these to work in, new arrays being dear.
     """
-    inner = loaded = pressure > grids.slack
+    free = loaded = capped = pressure > grids.slack
     if grids.capped:
         capped = pressure >= grids.limit - grids.slack
-        inner = loaded & ~capped
-    room = np.empty(pressure.shape) if room is None else room
-    np.copyto(room, inner)
-    cells = total_of(room)
-    mean = dots(excess, room) / np.maximum(cells, 1.0)
-    approach = mean if grids.loaded else grids.approach
+        free = loaded & ~capped
+    parts = _in_parts(pressure, excess, free, capped)
+    room = np.empty(parts[0][0].shape) if room is None else room
+    counts, sums, worst, weighted = [], [], [], []
+    for _, beside, between, _ in parts:
+        ones = room[:, : between.shape[1]]
+        np.copyto(ones, between)
+        counts.append(total_of(ones))
+        sums.append(dots(beside, ones))
+    cells = reduce(np.add, counts)
+    approach = reduce(np.add, sums) / np.maximum(cells, 1.0) if grids.loaded else grids.approach
     for k in np.flatnonzero(cells == 0.0) if grids.loaded and grids.capped else ():
         # With every cell at a bound any value between two limits is right.
         lower, outside = float(excess[k][capped[k]].max()), excess[k][~loaded[k]]
         approach[k] = 0.5 * (lower + float(outside.min(initial=2.0 * np.abs(excess[k]).max() - lower)))
-    excess -= approach
-    free = inner | (excess < 0.0)
-    room *= excess
-    room -= excess  # but for its sign the excess where the pressure is zero, or at the cap
-    outside = np.where(capped, excess, room) if grids.capped else room
-    worst = np.maximum.reduce(outside, axis=CELLS, keepdims=True, initial=0.0)
-    np.abs(excess, out=room)
-    if grids.capped:
-        free = np.where(capped, excess > 0.0, free)
-        room *= inner
-    weighted = dots(pressure, room) / grids.sums(pressure)
-    residual = np.maximum(worst, weighted) / np.maximum(approach, LEAST_APPROACH)
+    for now, beside, between, at_cap in parts:
+        violation = room[:, : between.shape[1]]
+        beside -= approach
+        if len(parts) > 1:  # of a single one they are still there
+            np.copyto(violation, between)
+        violation *= beside
+        violation -= beside  # but for its sign the excess where the pressure is zero, or at the cap
+        if grids.capped:
+            np.copyto(violation, beside, where=at_cap)
+        worst.append(np.maximum.reduce(violation, axis=CELLS, keepdims=True, initial=0.0))
+        np.abs(beside, out=violation)
+        if grids.capped:
+            violation *= between
+        weighted.append(dots(now, violation))
+        between |= beside < 0.0
+        if grids.capped:
+            np.copyto(between, beside > 0.0, where=at_cap)
+    residual = np.maximum(reduce(np.maximum, worst), reduce(np.add, weighted) / grids.sums(pressure))
+    residual /= np.maximum(approach, LEAST_APPROACH)
     return Judgement(approach, np.maximum(residual, grids.residual_of_cells(pressure, excess)), free)
+
+
+def _in_parts(*arrays: NDArray[Any]) -> list[tuple[NDArray[Any], ...]]:
+    """Views of arrays (count, nx, ny) of one shape, in parts of the grid that fit the cache."""
+    if arrays[0][0].size <= PART_CELLS:
+        return [arrays]
+    return [tuple(array[:, part] for array in arrays) for part, _ in parts_of(arrays[0].shape)]
 
 
 class Descent:
@@ -157,7 +178,8 @@ class Descent:
             np.add(self._displacement, self._grids.gap, out=self._excess)
             state = judge(self._grids, self._now, self._excess, self._next)
             if step == 0:  # of the excess in single precision
-                self._scale = np.abs(self._excess).max(axis=CELLS, keepdims=True, initial=LEAST_APPROACH)
+                highest, lowest = (extreme(self._excess, axis=CELLS, keepdims=True) for extreme in (np.max, np.min))
+                self._scale = np.maximum(np.maximum(highest, -lowest), LEAST_APPROACH)
             ends = (state.residual[:, 0, 0] <= tolerance) | (step >= limit)
             if ends.any():
                 rows = self._rows[ends]

@@ -107,8 +107,9 @@ class Grids:
             for name in ("cover", "slice_compliance")
         )
         dx, forces = each(spacing[:, 0]), each(spacing[:, 1]) * modulus
-        gap = np.stack([problem.gap for problem in problems])
-        gap -= contact
+        gap = np.empty((len(problems), *first.cells))
+        for one, problem in zip(gap, problems, strict=True):
+            np.subtract(problem.gap, problem.first_contact, out=one)
         return cls(
             gap=gap,
             spacing=spacing,
@@ -182,6 +183,8 @@ class Grids:
         if not self.loaded:
             return self.approach
         most = self.farthest
+        if not self.capped and self.cover is None:
+            return np.asarray(self.gap.min(axis=CELLS, keepdims=True) + most)
         level = self.gap + (most if self.cover is None else most / np.maximum(self.cover, LEAST_COVER))
         reach = level.min(axis=CELLS, keepdims=True)
         for k in range(len(self)) if self.capped else ():
@@ -199,9 +202,10 @@ class Grids:
     def part(self, window: Window) -> Grids:
         """Return the problems on a window of the grid, their gaps cut where they are out of reach."""
         rows, columns = window
+        gap, most = self.gap[:, rows, columns], OUT_OF_REACH * self.reach
         return replace(
             self,
-            gap=np.minimum(self.gap[:, rows, columns], OUT_OF_REACH * self.reach),
+            gap=gap if (np.maximum.reduce(gap, axis=CELLS, keepdims=True) <= most).all() else np.minimum(gap, most),
             slices=None if self.slices is None else self.slices[:, columns, columns],
             start=(rows.start, columns.start),
             cover=None if self.cover is None else self.cover[:, rows, columns],
@@ -286,7 +290,8 @@ class Grids:
 
     def fitted(self, pressure: Array) -> Array:
         """Return pressures within the bounds and with the right sums, zero where no contact is possible; in place."""
-        np.minimum(pressure, self.limit, out=pressure)
+        if self.capped:
+            np.minimum(pressure, self.limit, out=pressure)
         pressure *= self.reachable
         if not self.loaded:
             return pressure

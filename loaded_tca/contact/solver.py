@@ -387,11 +387,13 @@ def _solve_on_finest(
         approach, residual = state.approach[:, 0, 0], state.residual[:, 0, 0]
         ended = (residual <= tolerance[rows]) | (iterations[rows] >= MOST_ITERATIONS) | (check == MOST_CHECKS - 1)
         for k in np.flatnonzero(ended).tolist():
-            problem, own = problems[rows[k]], pressure[k] / _unit(problems[rows[k]])
+            problem, own = problems[rows[k]], pressure[k]
+            own /= _unit(problem)
             if problem.max_pressure is not None:
                 own = with_cap(own, problem.cap)
             before = coarser[rows[k]]
-            gap = displacement[k] + grids.gap[k]
+            gap = displacement[k]
+            gap += grids.gap[k]
             gap -= approach[k]
             change = math.nan if before is None else abs(1.0 - before[1] / float(approach[k]))
             solutions[rows[k]] = ContactSolution(

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from loaded_tca.contact import descent, levels
 from loaded_tca.contact.convolution import Convolution
 from loaded_tca.contact.descent import Descent, dots, judge
 from loaded_tca.contact.grid import Grids, each, shifted_to_sum
@@ -105,6 +106,21 @@ def test_judgement_with_every_cell_at_a_bound():
     state = judge(grids, pressure, level)
     assert low <= state.approach[0] <= high
     assert state.residual[0] == 0.0
+
+
+@pytest.mark.parametrize("cap", [np.inf, 0.003])
+def test_judgement_in_parts_is_that_in_one(monkeypatch, cap):
+    grids = paraboloid(total=0.5, cap=cap)
+    pressure = grids.settled(np.maximum(0.1 - grids.gap, 0.0))
+    excess = displaced(grids, pressure) + grids.gap
+    whole = judge(grids, pressure, excess.copy())
+    for module in (descent, levels):
+        monkeypatch.setattr(module, "PART_CELLS", 5 * grids.shape[1])  # 24 rows: the last part is shorter
+    parts = judge(grids, pressure, excess.copy())
+    assert (parts.free == whole.free).all()
+    assert whole.free.any()
+    for name in ("approach", "residual"):  # sums of 576 cells in another order
+        assert_allclose(getattr(parts, name), getattr(whole, name), rtol=1e-12)
 
 
 def test_settled_pressure_has_the_sum_and_keeps_the_cap():

@@ -17,8 +17,8 @@ BASE = 512
 """Cells along an axis of the grid that others are compared with."""
 HEAD = "code | threads | grid | least time [s] | time per cell [us] | over that at 512 x 512 | memory per cell [bytes]"
 
-BEYOND = """Above 1024 x 1024 the fields exceed the cache of the processor; at 4096 x 4096 the coefficients exceed
-what is kept for the next solve (256 MiB), which computes them anew.
+BEYOND = """Above 1024 x 1024 the fields exceed the cache of the processor, and the system hands out the memory of the
+largest ones anew in every solve. The coefficients of all these grids fit what is kept for the next solve (256 MiB).
 """
 
 
