@@ -86,6 +86,7 @@ CASES = (
     "contact.free_block",
     "contact.wedge",
     "contact.rounded_edge",
+    "contact.rounded_ends",
     "calculix.rounded_tip",
 )
 

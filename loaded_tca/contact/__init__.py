@@ -6,7 +6,7 @@ from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
     from loaded_tca.contact.adaptive import solve_to_accuracy
-    from loaded_tca.contact.edges import FreeEdge, RoundedEdge, quarter_space_factor, wedge_factor
+    from loaded_tca.contact.edges import FreeEdge, RoundedEdge, factors_across, quarter_space_factor, wedge_factor
     from loaded_tca.contact.graded import solve_graded
     from loaded_tca.contact.problem import ContactProblem, GradedProblem
     from loaded_tca.contact.rounded_edge import EdgePressure, edge_pressures
@@ -30,6 +30,7 @@ __all__ = [
     "contact_stiffness",
     "depths_below",
     "edge_pressures",
+    "factors_across",
     "quarter_space_factor",
     "solve_contact",
     "solve_graded",

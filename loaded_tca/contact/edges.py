@@ -45,6 +45,8 @@ POWER = 1.07
 SHARPEST = math.radians(30.0)
 ALIGNED = 1e-3
 """Sine of the angle between an edge and the columns up to which their borders follow it."""
+VARIATION, MEAN_PLACE = 0.4, 0.9
+"""psi right across an edge of 90 deg is that of the mean place and VARIATION (S - MEAN_PLACE)."""
 MOST_FACTOR = 0.6
 """Of the image at the edge of a wedge, up to which the iteration converges: 103 deg of like materials."""
 # Part of a cell by which the place of an edge may miss half cells and count as there.
@@ -65,12 +67,16 @@ class FreeEdge:
         On which side of the position the bodies are; the cells beyond carry nothing.
     factor : float
         psi, not negative; see :func:`wedge_factor`. Zero: a half-space that merely carries nothing beyond.
+    across : (float, float), optional
+        psi of places right across the edge from each other, for S = 0 and for S = 1, on columns of unlike widths
+        alone; see :func:`factors_across`. ``factor`` is then that of places far apart along the edge.
     """
 
     axis: int
     position: float
     material: Literal["below", "above"]
     factor: float
+    across: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -206,6 +212,42 @@ def wedge_factor(angle: float, poisson_ratio: float, share: float = 1.0) -> floa
     return share * square * (extra_displacement(angle) / extra_displacement(0.5 * math.pi)) ** POWER
 
 
+def factors_across(angle: float, poisson_ratio: float, share: float = 1.0) -> tuple[float, float]:
+    r"""Factors psi of places right across an edge from each other, for S = 0 and for S = 1.
+
+    .. math:: \psi(S) = \psi_\omega \left(1 + \frac{0.4}{\psi_{90^\circ}} (S - 0.9)\right), \qquad
+              S = \frac{4 d d'}{(d + d')^2}
+
+    d and d' are the distances of both places from the edge. A quarter-space, solved slice by slice for Poisson's ratios
+    of 0 to 0.45, has this factor for a narrow line load across its edge. A place that is away by x along the edge, too,
+    has the factor psi(S) + (m - psi(S)) x^2/R^2, R^2 = x^2 + (d + d')^2, with m of :func:`extra_displacement`: a load
+    all along the edge then displaces as in plane strain, whose dependence on S is 0.38 to 0.40 S at 90 deg. The peak of
+    a contact that crosses the rounded ends of both bodies is within 5 % of that of a quarter-space for nu = 0.3
+    (``validation/contact/rounded_ends.py``).
+
+    Parameters
+    ----------
+    angle, poisson_ratio, share
+        As for :func:`wedge_factor`.
+
+    Returns
+    -------
+    (float, float)
+
+    Raises
+    ------
+    InputError
+        With every problem of the arguments.
+
+    Examples
+    --------
+    >>> [round(psi, 3) for psi in factors_across(0.5 * math.pi, 0.3)]
+    [1.385, 1.785]
+    """
+    psi, scale = wedge_factor(angle, poisson_ratio, share), VARIATION / quarter_space_factor(poisson_ratio)
+    return psi * (1.0 - scale * MEAN_PLACE), psi * (1.0 + scale * (1.0 - MEAN_PLACE))
+
+
 def extra_displacement(angle: float) -> float:
     r"""Displacement of a wedge beyond that of a half-space, over the latter, under a line load at the edge.
 
@@ -250,7 +292,19 @@ def check_edges(edges: Sequence[FreeEdge]) -> list[str]:
             problems.append(f'free_edges[{k}].material: {edge.material!r} is neither "below" nor "above"')
         if not 0.0 <= real(edge.factor) < math.inf:
             problems.append(f"free_edges[{k}].factor: {edge.factor} is negative or not finite")
+        across = edge.across
+        if across is not None and not (len(across) == 2 and all(0.0 <= real(psi) < math.inf for psi in across)):
+            problems.append(f"free_edges[{k}].across: {across!r:.60} are not two finite numbers from 0 on")
     return problems
+
+
+def check_even(edges: Sequence[FreeEdge]) -> list[str]:
+    """Problems of the free edges on an even grid, whose images have one factor."""
+    return [
+        f"free_edges[{k}].across: {edge.across} counts on columns of unlike widths alone"
+        for k, edge in enumerate(edges)
+        if edge.across is not None
+    ]
 
 
 def without_material_beyond(

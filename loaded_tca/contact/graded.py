@@ -12,7 +12,8 @@ in the pressure where the growth of the columns changes, however fine they are.)
 A free edge along the columns adds an image of the forces, as on even grids: coefficients at mirrored places. With a
 reference only the differences of what it adds are kept: there a force adds nothing to the displacement beneath it. So
 the surface tilts and curves beside the edge, and how far it gives way on the whole is left to the slices. What is left
-out would make K indefinite for forces far from the edge: like what is not symmetric it is put in by repeating.
+out would make K indefinite for forces far from the edge: like what is not symmetric it is put in by repeating. An edge
+with factors ``across`` has the image of a body in space, in full, whose factor is another for each pair of cells.
 
 The graded axis is y, always: for an edge along y, whose rounding is crossed along x, the caller hands in the transposed
 gap, and slices by ``slice_axis`` 0.
@@ -36,7 +37,14 @@ from loaded_tca.contact.descent import Descent, judge
 from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.contact.grid import CELLS, OUT_OF_REACH, Grids, Operator, each, with_cap
 from loaded_tca.contact.levels import coarsen, coarsening, merged, prolong
-from loaded_tca.contact.love import FAR_FIELD, column_coefficients, far_from, own_coefficient
+from loaded_tca.contact.love import (
+    FAR_FIELD,
+    TINY,
+    column_coefficients,
+    column_coefficients_across,
+    far_from,
+    own_coefficient,
+)
 from loaded_tca.contact.problem import GradedProblem
 from loaded_tca.contact.solution import (
     COARSE_FACTOR,
@@ -201,8 +209,11 @@ class Kernel:
         coefficients = column_coefficients(reach + 1, self.spacing, self.borders, far=self.far)
         for edge in self.edges:
             mirrored, nearest = self._mirrored(edge)
-            image = column_coefficients(reach + 1, self.spacing, self.borders, mirrored, far=self.far)
-            coefficients += edge.factor * image[:, nearest[:, None], nearest]
+            image = edge.factor * column_coefficients(reach + 1, self.spacing, self.borders, mirrored, far=self.far)
+            if edge.across is not None:
+                across = column_coefficients_across(reach + 1, self.spacing, self.borders, mirrored)
+                image -= (edge.factor - self._across(edge)) * across
+            coefficients += image[:, nearest[:, None], nearest]
         return np.asarray(scipy.fft.dct(coefficients, type=1, axis=0, overwrite_x=True))
 
     @cached_property
@@ -213,11 +224,21 @@ class Kernel:
             return []
         middles = 0.5 * (self.borders[1:] + self.borders[:-1])
         for edge in self.edges:
+            if edge.across is not None:
+                continue  # its image counts in full
             mirrored, nearest = self._mirrored(edge)
             k = int(nearest[np.abs(middles - reference).argmin()])
             own = column_coefficients(reach + 1, self.spacing, self.borders[k : k + 2], mirrored[k : k + 1])
             levels.append(edge.factor * scipy.fft.dct(own, type=1, axis=0))
         return levels
+
+    def _across(self, edge: FreeEdge) -> Array:
+        """Factors psi(S) (ny, ny) of columns right across an edge from each other."""
+        assert edge.across is not None
+        far, own = edge.across
+        distance = np.abs(0.5 * (self.borders[1:] + self.borders[:-1]) - self.borders[0] - edge.position)
+        both = np.maximum(distance[:, None] + distance, TINY)
+        return np.asarray(far + (own - far) * (4.0 * distance[:, None] * distance / both**2))
 
     def _mirrored(self, edge: FreeEdge) -> tuple[Array, Indices]:
         """Middles of the columns mirrored in an edge, and of each column the nearest one where the bodies are.

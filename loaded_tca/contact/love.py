@@ -122,6 +122,34 @@ def column_coefficients(
     return coefficients
 
 
+def column_coefficients_across(rows: int, spacing: float, borders: Array, places: Array) -> Array:
+    r"""The part y^2/R^2 of what :func:`column_coefficients` has, y the distance across the columns.
+
+    .. math:: \frac{1}{\pi w_n} \int\!\!\int \frac{y^2}{R^3}\, dx\, dy, \qquad
+              \int\!\!\int \frac{y^2}{R^3}\, dx\, dy = x\, \mathrm{arsinh} \frac{y}{|x|}
+
+    over the corners of the cells.
+
+    Parameters
+    ----------
+    rows, spacing, borders, places
+        As for :func:`column_coefficients`.
+
+    Returns
+    -------
+    (rows, ny, ny) array
+        Displaced columns before pressed ones.
+    """
+    offsets, coefficients = borders - places[:, None], np.empty((rows, places.size, borders.size - 1))
+    last = -0.5 * spacing * np.arcsinh(offsets / (0.5 * spacing))
+    for row in range(rows):
+        x = (row + 0.5) * spacing
+        corner = x * np.arcsinh(offsets / x)
+        coefficients[row] = np.diff(corner - last, axis=1) / (np.pi * np.diff(borders))
+        last = corner
+    return coefficients
+
+
 def far_from(tolerance: float) -> float:
     """Cells from which on the relative error of the series is below a tolerance, or that of rounding.
 

@@ -14,7 +14,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.contact import checks
 from loaded_tca.contact.cuts import limits
-from loaded_tca.contact.edges import FreeEdge, check_edges, without_material_beyond
+from loaded_tca.contact.edges import FreeEdge, check_edges, check_even, without_material_beyond
 from loaded_tca.contact.love import own_coefficient
 
 Spacing = tuple[float, float]
@@ -110,7 +110,7 @@ class ContactProblem(HalfSpaces):
         cover = None if cover is None else numbers("cover", cover)
         checks.raise_if(
             checks.check_grid(gap, self.spacing, self.contact_modulus)
-            + check_edges(self.free_edges)
+            + (check_edges(self.free_edges) or check_even(self.free_edges))
             + checks.check_slices(slices, gap.shape)
             + checks.check_cover(cover, gap)
         )
@@ -188,7 +188,7 @@ class GradedProblem(HalfSpaces):
         as the last one before the edge.
     reference : float, optional [mm]
         Place along the second axis, counted as the borders, where a force adds nothing to the displacement beneath it
-        by its image; images count in full if absent.
+        by its image; images count in full if absent, and those of edges with ``across``.
 
     Raises
     ------

@@ -11,7 +11,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask, count_problems, numbers, real
 from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width, whole_cells
-from loaded_tca.contact.edges import ALIGNED, SHARPEST, FreeEdge, RoundedEdge
+from loaded_tca.contact.edges import ALIGNED, SHARPEST, FreeEdge, RoundedEdge, check_edges
 from loaded_tca.contact.graded import guess, solve_graded
 from loaded_tca.contact.patch import top_between
 from loaded_tca.contact.problem import GradedProblem
@@ -243,6 +243,7 @@ def edge_pressures(
     max_pressure: float | None = None,
     slice_compliance: SliceCompliance | None = None,
     slice_axis: int = 1,
+    free_edges: Sequence[FreeEdge] = (),
     cells_on_arc: float = CELLS_ON_ARC,
     accuracy: float = ACCURACY,
     at_least: float = 0.0,
@@ -284,6 +285,9 @@ def edge_pressures(
         under a unit force on each, (n, n). Slices without material have none, whatever it says of them.
     slice_axis : {1, 0}
         Axis along which slices follow each other: columns if 1, rows if 0.
+    free_edges : sequence of FreeEdge
+        Ends of the bodies along the columns, with ``across``, their positions counted from the low end of the box along
+        y. Their images count in full, and ``slice_compliance`` is to be without them.
     cells_on_arc : float
         m, for edges along x; a quarter more for others.
     accuracy : float
@@ -318,6 +322,12 @@ def edge_pressures(
     """
     low, high = _checked(gap, box, edges, load, contact_modulus, cells, cells_on_arc)
     columns_are_slices = slice_compliance is not None and slice_axis == 1
+    problems = check_edges(free_edges) or [
+        f"free_edges[{k}].across: None are not two finite numbers from 0 on"
+        for k, edge in enumerate(free_edges)
+        if edge.across is None
+    ]
+    require(*((False, problem) for problem in problems))
     contact = _Contact(
         gap=gap,
         low=low,
@@ -328,6 +338,7 @@ def edge_pressures(
         slice_compliance=slice_compliance,
         slice_axis=slice_axis,
         wedges=_Wedges.of([] if columns_are_slices else edges, float(low[1])),
+        free_edges=free_edges,
         tolerance=tolerance,
     )
     arcs = [PressedArc.first(edge, low, high, load, contact_modulus) for edge in edges]
@@ -381,6 +392,7 @@ class _Contact:
     slice_compliance: SliceCompliance | None
     slice_axis: int
     wedges: _Wedges
+    free_edges: Sequence[FreeEdge]
     tolerance: float
 
     def solved(self, arcs: Sequence[PressedArc], on_arc: float, before: GradedSolution | None) -> GradedSolution:
@@ -389,13 +401,14 @@ class _Contact:
         dx, y = float(self.high[0] - self.low[0]) / rows, 0.5 * (borders[1:] + borders[:-1])
         x = self.low[0] + dx * (np.arange(rows) + 0.5)
         slices, place = None, (y, np.diff(borders)) if self.slice_axis == 1 else (x, np.full(rows, dx))
-        heights, free = numbers("gap", self.gap(x, y)), self.wedges.free
+        heights, tilted = numbers("gap", self.gap(x, y)), self.wedges.free
         if self.slice_compliance is not None:
             slices = numbers("slice_compliance", self.slice_compliance(*place))
             slices = _of_material(slices, np.asarray(np.isfinite(heights).any(axis=1 - self.slice_axis)))
+        free = [*self.free_edges, *tilted]
         problem = GradedProblem(heights, dx, borders, *self.demand, slices, self.slice_axis, free)
         start = None if before is None else _carried(before, self.low[0], x, y)
-        if free:
+        if tilted:
             expected = guess(problem) if start is None else start
             problem = replace(problem, reference=self.wedges.reference(_load_centre(problem, expected)))
         return solve_graded(problem, tolerance=self.tolerance, initial_pressure=start)

@@ -26,7 +26,7 @@ Hetenyi 1960, J. Appl. Mech. 27, 289-296; Guilbault 2011, J. Tribol. 133, 031402
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, Protocol, Self
@@ -35,9 +35,9 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.compliance.flexibility import depth_displacement, depth_displacement_slope
-from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
+from loaded_tca.contact.edges import MEAN_PLACE, VARIATION, quarter_space_factor, wedge_factor
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.base import outward_normal
+from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
@@ -48,13 +48,15 @@ DEPTH = 0.25 * math.pi
 REACHES = {0: 0.5, 2: 3.0 * DEPTH, 3: 3.0 * DEPTH}
 """Distance over the module from which on an edge of a flank counts no more: of the tip edge, where bending knows the
 tip from there on, and of both face ends. At the root a tooth goes on as the fillet."""
-VARIATION, MEAN_PLACE, PLACE_BELOW = 0.4, 0.9, 0.5
-"""psi(S) = psi + VARIATION (S - MEAN_PLACE), and the S that stands for all places in the middle of the tooth."""
+PLACE_BELOW = 0.5
+"""The S that stands for all places in the middle of the tooth."""
 WIDTH = 0.02
 """Distance across the contact that stands for its width, over the module. It is that of a half width of a twentieth
 module, and matters within such a length from the end."""
 PAIRS = 8192
 """Pairs of slices worked on at once; more do not fit the cache."""
+STEP = 1e-3
+"""Over the module: that by which distances of points tell the direction of an end."""
 ON_EDGE = 1e-9
 """Distance over the module at which a slice lies on an edge."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(3)
@@ -110,21 +112,30 @@ class Slices(ContactGrid, Protocol):
         """Which of them have material (ny,)."""
 
 
-def edge_compliances(pair: GearPair, grids: Sequence[Slices]) -> list[Array | InputError | None]:
-    """Return :func:`edge_compliance` of many grids, found together; an error stands in the place of what raises it."""
+def edge_compliances(
+    pair: GearPair, grids: Sequence[Slices], on_cells: Collection[int] = ()
+) -> list[Array | InputError | None]:
+    """Return :func:`edge_compliance` of many grids, found together; an error stands in the place of what raises it.
+
+    Of edges whose images the cells have, by the numbers of ``edges/places.py``, the slices have what is left to the
+    law: that images fade out, and what is taken off them in the middle of the tooth.
+    """
     if not grids:
         return []
     slices, problems = SliceRow.of(grids), dict[int, InputError]()
     compliances = np.zeros(sum(one.y.size**2 for one in grids))
     for line in edges_from_slices(pair, grids):
-        if (near := NearEdge.of(pair, line, slices)) is None:
+        images_on_cells = line.number in on_cells
+        if (near := NearEdge.of(pair, line, slices, everywhere=images_on_cells)) is None:
             continue
         for run, error in near.problems.items():
             problems.setdefault(int(slices.grid[near.near[near.first[run]]]), error)
         for at, under in near.pairs():
-            mean, place = near.image(at, under).mean, slices.row[near.near[at]] + slices.column[near.near[under]]
-            # no pair stands there twice
-            compliances[place] += mean * near.factor[near.run[at]] * near.faded[at] * near.faded[under]
+            image, place = near.image(at, under), slices.row[near.near[at]] + slices.column[near.near[under]]
+            mean = image.mean * near.faded[at] * near.faded[under]
+            if images_on_cells:
+                mean -= near.at_surface(image)
+            compliances[place] += mean * near.factor[near.run[at]]  # no pair stands there twice
     ends = np.cumsum([one.y.size**2 for one in grids])[:-1]
     matrices = [one.reshape(math.isqrt(one.size), -1) for one in np.split(compliances, ends)]
     return [problems.get(number, 0.5 * (one + one.T) if one.any() else None) for number, one in enumerate(matrices)]
@@ -149,14 +160,23 @@ class EdgeFromSlices(NamedTuple):
     in_z: Array
     distance: Array
 
+    @property
+    def number(self) -> int:
+        """Of the edge, among those of both gears."""
+        return len(EDGE_NAMES) * self.gear + self.edge
+
+    def angles(self, pair: GearPair, places: Indices) -> Array:
+        """Angles (k,) [rad] of the material at the edge, beside some of the places."""
+        flank, in_rho, in_z = (pair.pinion, pair.wheel)[self.gear].flank, self.in_rho[places], self.in_z[places]
+        normal = outward_normal(sharp(flank), self.rho[places], self.z[places])
+        cosine = (normal[:, 0] * in_rho + normal[:, 2] * in_z) / np.hypot(in_rho, in_z)
+        return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
     def factors(self, pair: GearPair, places: Indices) -> tuple[Array, dict[int, InputError]]:
         """Psi (k,) of the edge beside some of the places, zero where there is none and the reason."""
         gear, name = (pair.pinion, pair.wheel)[self.gear], ("pinion", "wheel")[self.gear]
-        in_rho, in_z = self.in_rho[places], self.in_z[places]
-        normal = outward_normal(sharp(gear.flank), self.rho[places], self.z[places])
-        cosine = (normal[:, 0] * in_rho + normal[:, 2] * in_z) / np.hypot(in_rho, in_z)
         factor, problems = np.zeros(places.size), dict[int, InputError]()
-        for number, angle in enumerate(np.arccos(np.clip(cosine, -1.0, 1.0)).tolist()):
+        for number, angle in enumerate(self.angles(pair, places).tolist()):
             try:
                 factor[number] = wedge_factor(angle, gear.material.poisson_ratio)
             except InputError as error:
@@ -167,7 +187,11 @@ class EdgeFromSlices(NamedTuple):
 
 def edges_from_slices(pair: GearPair, grids: Sequence[Slices]) -> list[EdgeFromSlices]:
     """Edges of both gears that add to the deflection of slices."""
-    points = np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in grids])
+    return _edges_from(pair, np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in grids]))
+
+
+def _edges_from(pair: GearPair, points: Array) -> list[EdgeFromSlices]:
+    """The same from points (n, 3) of the fixed frame [mm]."""
     flanks, lines = (pair.pinion.flank, pair.wheel.flank), []
     for gear, (flank, (rho, z)) in enumerate(zip(flanks, pair.on_flanks(points), strict=True)):
         jets = flank.edges(rho, z)
@@ -175,6 +199,41 @@ def edges_from_slices(pair: GearPair, grids: Sequence[Slices]) -> list[EdgeFromS
             in_rho, in_z = (np.broadcast_to(by, rho.shape) for by in (jets[edge].rho, jets[edge].z))
             lines.append(EdgeFromSlices(gear, edge, rho, z, in_rho, in_z, jets[edge].value / np.hypot(in_rho, in_z)))
     return lines
+
+
+class FreeEnd(NamedTuple):
+    """A free end of a gear, a straight line in the plane of a contact.
+
+    Attributes
+    ----------
+    number : int
+        Of the edge, among those of both gears.
+    distance : float [mm]
+        From a point to the end.
+    direction : (2,) array
+        Unit vector towards the end, along both axes of the plane.
+    angle : float [rad]
+        Of the material there.
+    material : Material
+    """
+
+    number: int
+    distance: float
+    direction: Array
+    angle: float
+    material: Material
+
+
+def free_ends(pair: GearPair, point: Array, axes: Array) -> list[FreeEnd]:
+    """Free ends of both gears within reach of a point (3,) of the fixed frame [mm], in the plane of two axes (2, 3)."""
+    step, ends = STEP * pair.module, []
+    for line in _edges_from(pair, point + step * np.concatenate([np.zeros((1, 3)), axes, -axes])):
+        distance, slope = float(line.distance[0]), (line.distance[3:] - line.distance[1:3]) / (2.0 * step)
+        if abs(distance) < REACHES[line.edge] * pair.module:
+            (angle,) = line.angles(pair, np.array([0])).tolist()
+            steepness, material = math.hypot(*slope), (pair.pinion, pair.wheel)[line.gear].material
+            ends.append(FreeEnd(line.number, distance / steepness, slope / steepness, angle, material))
+    return ends
 
 
 class SliceRow(NamedTuple):
@@ -251,10 +310,10 @@ class NearEdge:
     material: Material
 
     @classmethod
-    def of(cls, pair: GearPair, line: EdgeFromSlices, slices: SliceRow) -> NearEdge | None:
-        """Those near an edge; None if there are none."""
+    def of(cls, pair: GearPair, line: EdgeFromSlices, slices: SliceRow, *, everywhere: bool = False) -> NearEdge | None:
+        """Those near an edge, or all of them if asked; None if there are none."""
         distance, reach = line.distance, REACHES[line.edge] * pair.module
-        near = (slices.there & (np.abs(distance) < reach)).nonzero()[0]
+        near = (slices.there & (everywhere | (np.abs(distance) < reach))).nonzero()[0]
         if not near.size:
             return None
         _, first, size = np.unique(slices.grid[near], return_index=True, return_counts=True)
@@ -297,7 +356,7 @@ class NearEdge:
     @cached_property
     def faded(self) -> Array:
         """What counts (n,): from 1 at an edge to 0 at the end of its reach, without a kink."""
-        part = self.inside / self.reach
+        part = np.minimum(self.inside / self.reach, 1.0)
         return np.asarray(1.0 - part**2 * (3.0 - 2.0 * part))
 
     @cached_property
@@ -331,6 +390,10 @@ class NearEdge:
         middle = depth_displacement(np.asarray(DEPTH * self.module), np.sqrt(square), self.material)
         mean = (0.5 * WEIGHTS) @ (varied * surface * inverse - below * middle)
         return Image(mean, own, image, slope, half, apart, along, square, off, inverse, varied, below)
+
+    def at_surface(self, image: Image) -> Array:
+        """What images displace the surface by (p,), nothing taken off in the middle of the tooth."""
+        return np.asarray((0.5 * WEIGHTS) @ (image.varied * self.scales[1] * image.inverse))
 
 
 class Image(NamedTuple):

@@ -2,7 +2,10 @@ r"""Pressure at rounded edges of teeth: contacts that reach one, solved once mor
 
 The grid on which tooth pairs share the load resolves the contact, not the few micrometres of a rounding that are
 pressed. So the gap of the rounded flanks is sampled anew on columns of graded width that follow the edge, and the same
-force is spread over them, with teeth that bend, free edges and other tooth pairs as before.
+force is spread over them, with teeth that bend, free edges and other tooth pairs as before. Where the contact crosses
+free ends that lie along the edge, the images of the pressure in these ends are those of the cells, not of the slices:
+beside an end a slice does not give way as a whole. Slices keep what images lack: that they fade out, and what is
+taken off them in the middle of the tooth.
 
 What a contact can come to is told beforehand by its cell beside the edge. Beside a sharp edge pressure rises as
 :math:`K/\sqrt{s}`, so that a cell of the width h has the mean :math:`p = 2 K/\sqrt{h}`, and a rounding of the radius R
@@ -19,8 +22,9 @@ is no bound where a sharp edge ends a rounded one within the contact, or a relie
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 from typing import NamedTuple
 
@@ -30,9 +34,9 @@ import scipy
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact.columns import whole_cells
-from loaded_tca.contact.edges import RoundedEdge
+from loaded_tca.contact.edges import FreeEdge, RoundedEdge, extra_displacement, factors_across
 from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, edge_pressures
-from loaded_tca.edges.free import edge_compliances
+from loaded_tca.edges.free import FreeEnd, edge_compliances, free_ends
 from loaded_tca.edges.places import (
     arcs_of,
     dilated,
@@ -73,8 +77,8 @@ STEPS_TO_EDGE = 2
 SIDES = {EDGE_NAMES.index("lower side"), EDGE_NAMES.index("upper side")}
 """Numbers of the ends of the face among the edges of a gear."""
 LEAST_RADIUS = 0.4
-"""Radius of flush ends over the half width of a contact, below which the law of free edges does not resolve what a
-rounding changes: it is smooth over a length across the contact, 0.4 of the half width that it stands for."""
+"""Radius of flush ends over the half width of a contact, below which the law of free edges for slices does not resolve
+what a rounding changes: it is smooth over a length across the contact, 0.4 of the half width that it stands for."""
 PARALLEL = 0.1
 """Sine of the angle between two edges below which they are those of both gears at one end."""
 
@@ -440,11 +444,15 @@ class _ContactAlongEdge:
         return bool(abs(self.turn[1, 1]) * length < width)
 
     def has_narrow_ends(self, edges: list[ReachedArc], lines: list[RoundedEdge]) -> bool:
-        """Whether free ends of both gears are among some lines, rounded less than the law of free edges resolves."""
+        """Whether free ends of both gears are among some lines, rounded less than the law of slices resolves.
+
+        Where slices lie along the ends the cells have the images, which resolve any radius.
+        """
         pressed, dx = self.loaded.solution.pressure > 0.0, self.loaded.separation.spacing[0]
         width = 0.5 * dx * int(pressed.sum(axis=0).max())
         flush = [line for edge in edges if len(edge.lines) > 1 for line in edge.lines if line in lines]
-        return self.free_edges and not self._lies_along and any(line.radius < LEAST_RADIUS * width for line in flush)
+        by_slices = self.free_edges and self.slice_axis == 0 and not self._lies_along
+        return by_slices and any(line.radius < LEAST_RADIUS * width for line in flush)
 
     def _turned(self, place: tuple[float, float]) -> tuple[float, float]:
         """A place or a direction, of the contact's axes, in those along the edge."""
@@ -462,8 +470,10 @@ class _ContactAlongEdge:
     def solved(self, edges: list[RoundedEdge], at_least: float) -> list[EdgePressure]:
         """Pressures at edges, in a box that holds the contact."""
         turned = [replace(edge, place=self._turned(edge.place), normal=self._turned(edge.normal)) for edge in edges]
+        ends: list[FreeEnd] = []
         if not self._lies_along:
-            turned = [replace(edge, angle=None) for edge in turned]
+            turned, ends = [replace(edge, angle=None) for edge in turned], self._ends_beside(edges[0])
+        of_edges = partial(self.slice_compliance, on_cells=[end.number for end in ends])
         for margin in MARGIN * 2.0 ** np.arange(MOST_BOXES):
             box, cells = self._box(margin)
             peaks = edge_pressures(
@@ -474,8 +484,9 @@ class _ContactAlongEdge:
                 self.pair.contact_modulus,
                 cells=cells,
                 max_pressure=self.pair.max_pressure,
-                slice_compliance=self.slice_compliance,
+                slice_compliance=of_edges,
                 slice_axis=self.slice_axis,
+                free_edges=[self._image(end, turned[0], box[1][0]) for end in ends],
                 at_least=at_least,
             )
             pressed = peaks[0].solution.pressure > 0.0
@@ -506,8 +517,30 @@ class _ContactAlongEdge:
         displaced = self.coupling((y if self.slice_axis else x) / self.along)
         return np.asarray(heights + (displaced if self.slice_axis else displaced[:, None]))
 
-    def slice_compliance(self, middles: Array, widths: Array) -> Array:
-        """Deflection of slices under a unit force on each [mm/N], teeth and free edges together."""
+    def _ends_beside(self, edge: RoundedEdge) -> list[FreeEnd]:
+        """Free ends of both gears that lie along an edge, nearly, where the slices of the contact do, too."""
+        if not self.free_edges or self.slice_axis == 0:
+            return []
+        grid = self.loaded.separation
+        ends = free_ends(self.pair, grid.origin + np.array(edge.place) @ grid.axes[:2], grid.axes[:2])
+        return [end for end in ends if end.direction @ edge.direction > math.sqrt(1.0 - PARALLEL**2)]
+
+    def _image(self, end: FreeEnd, edge: RoundedEdge, low: float) -> FreeEdge:
+        """Image in a free end that lies along an edge, in turned axes, on columns from the low end of a box on."""
+        side, share = math.copysign(1.0, edge.normal[1]), self.pair.contact_modulus / end.material.plane_strain_modulus
+        return FreeEdge(
+            1,
+            edge.place[1] + side * end.distance - low,
+            "below" if side > 0.0 else "above",
+            share * extra_displacement(end.angle),
+            factors_across(end.angle, end.material.poisson_ratio, share),
+        )
+
+    def slice_compliance(self, middles: Array, widths: Array, on_cells: Collection[int] = ()) -> Array:
+        """Deflection of slices under a unit force on each [mm/N], teeth and free edges together.
+
+        Of edges whose images the cells have, only what images lack.
+        """
         grid = self.loaded.separation
         along = middles / self.along
         forces = np.interp(along, grid.y, grid.force_line)
@@ -515,7 +548,7 @@ class _ContactAlongEdge:
         compliance = np.zeros((middles.size, middles.size))
         if self.bending is not None:
             compliance += self.bending.within(self.number, slices)
-        ends = edge_compliances(self.pair, [slices])[0] if self.free_edges else None
+        ends = edge_compliances(self.pair, [slices], on_cells)[0] if self.free_edges else None
         if isinstance(ends, InputError):
             raise ends
         return compliance if ends is None else compliance + ends

@@ -193,10 +193,10 @@ def _numbers(
     """What a result has of one loaded contact, by the names of its dataset; the peak is ``rough`` if given."""
     solution = loaded.solution
     width, length = loaded.extent
+    peak, (radius, axial), error = solution.peak_pressure, loaded.peak_place, loaded.peak_error
     if rough is not None:
         peak, (radius, axial) = rough.pressure, one.place(*rough.place)
-    else:
-        peak, (radius, axial) = solution.peak_pressure, loaded.peak_place
+        error = float(np.maximum(error, rough.error))
     slope = abs(float(loaded.separation.axes[1] @ heelwards(pair, loaded.contact)))
     longest = pair.face_width / slope if slope > 0.0 else math.inf  # what of the contact's direction the face holds
     length = min(length, longest)
@@ -219,7 +219,7 @@ def _numbers(
         "on_relief_start": loaded.at_relief_start,
         "cells_across": solution.pressure.shape[0],
         "cells_along": solution.pressure.shape[1],
-        "discretisation_error": loaded.peak_error if solution.load > 0.0 else math.nan,
+        "discretisation_error": error if solution.load > 0.0 else math.nan,
         "iterations": solution.iterations,
         "residual": solution.residual,
     }

@@ -20,7 +20,7 @@ Johnson 1985, Contact Mechanics, eqs. 4.43 to 4.45.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 
     from loaded_tca.pairs.gear_pair import GearPair
 
+NEAREST = 1.5
+"""Slices from one that reaches an edge or a relief start, within which no cell tells what a finer grid could count."""
 ROUNDS, BETWEEN = 2, 17
 """How often places between those beside the largest pressure are tried, and how many."""
 
@@ -62,6 +64,8 @@ class SlicePeak:
     slices : SliceLoads
     curvature : (n,) array or None [1/mm]
         Across the contact, at the places of ``slices``; None where the pressure is at the cap, or there is none.
+    error : float
+        Relative change if cells counted from a slice nearer to the edge or the relief start on, or farther from it.
     """
 
     pressure: float
@@ -69,6 +73,7 @@ class SlicePeak:
     resolution: float
     slices: SliceLoads
     curvature: Array | None
+    error: float = 0.0
 
     @property
     def slopes(self) -> Array:
@@ -89,11 +94,14 @@ class InnerPeak:
         Across and along the contact, from the contact point.
     cells : (nx, ny) array [MPa]
         Pressure of these cells; zero in the others.
+    error : float
+        As of a :class:`SlicePeak`.
     """
 
     pressure: float
     place: tuple[float, float]
     cells: Array
+    error: float = 0.0
 
 
 def rough_peaks(pair: GearPair, contacts: Sequence[UnderPressure]) -> list[SlicePeak | InnerPeak]:
@@ -107,19 +115,37 @@ def rough_peaks(pair: GearPair, contacts: Sequence[UnderPressure]) -> list[Slice
     """
     of_slices = largest_slice_pressures(pair, contacts) if contacts else []
     return [
-        _inner_peak(pair, separation, pressure, peak) or peak
+        _with_inner_cells(pair, separation, pressure, peak)
         for (_, separation, pressure), peak in zip(contacts, of_slices, strict=True)
     ]
 
 
-def _inner_peak(pair: GearPair, separation: Separation, pressure: Array, of_slices: SlicePeak) -> InnerPeak | None:
-    """Top of the inner cells of a contact; None where that of its slices is as large, or they have none."""
+def _with_inner_cells(
+    pair: GearPair, separation: Separation, pressure: Array, of_slices: SlicePeak
+) -> SlicePeak | InnerPeak:
+    """The larger peak, of the slices or of the inner cells, and by how much it hangs on which cells are inner ones.
+
+    Where the contact reaches an edge is known to a slice: a finer grid may count cells from as much nearer on.
+    """
     if pressure.max() <= of_slices.pressure:
-        return None
-    reach = 0.5 * (of_slices.slices.length + separation.spacing[1])
+        return of_slices
+    step = separation.spacing[1]
     rough = separation.y[(_rough_cells(pair, separation, pressure) & (pressure > 0.0)).any(axis=0)]
     away = np.abs(separation.y[:, None] - rough).min(axis=1, initial=math.inf)
-    cells = np.where(away > reach, pressure, 0.0)
+    reach = 0.5 * (of_slices.slices.length + step)
+    nearer = min(reach, max(reach - step, NEAREST * step))
+    peak, *others = (
+        _inner_peak(pair, separation, pressure, of_slices, away > least) or of_slices
+        for least in (reach, nearer, reach + step)
+    )
+    return replace(peak, error=max(abs(other.pressure / peak.pressure - 1.0) for other in others))
+
+
+def _inner_peak(
+    pair: GearPair, separation: Separation, pressure: Array, of_slices: SlicePeak, inner: Mask
+) -> InnerPeak | None:
+    """Top of the cells in inner slices (ny,); None where that of the slices is as large, or they have none."""
+    cells = np.where(inner, pressure, 0.0)
     if cells.max() <= of_slices.pressure:
         return None
     across, along = np.unravel_index(int(cells.argmax()), cells.shape)

@@ -12,6 +12,7 @@ from loaded_tca.contact import (
     ContactStatus,
     FreeEdge,
     contact_stiffness,
+    factors_across,
     quarter_space_factor,
     solve_contact,
     solve_to_accuracy,
@@ -260,6 +261,15 @@ def test_wedge_of_a_right_angle_is_the_quarter_space_and_of_two_no_edge():
         assert_allclose(wedge_factor(math.pi, nu), 0.0, atol=1e-12)  # the sine of pi
 
 
+@pytest.mark.parametrize("nu", [0.0, 0.3])
+def test_factor_across_an_edge_has_its_mean_at_nine_tenths_and_falls_off_the_own_place(nu):
+    """psi(S) is psi at S = 0.9, and grows by 0.4 from S = 0 to 1 at a right angle, as fitted to the quarter-space."""
+    for angle in (0.5 * math.pi, 2.0):
+        far, own = factors_across(angle, nu, 0.5)
+        assert_allclose(far + 0.9 * (own - far), wedge_factor(angle, nu, 0.5), rtol=ROUNDING)
+    assert_allclose(np.ptp(factors_across(0.5 * math.pi, nu)), 0.4, rtol=ROUNDING)
+
+
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_factor_falls_with_the_angle_of_the_material(nu):
     factors = [wedge_factor(math.radians(angle), nu) for angle in range(30, 181, 5)]
@@ -310,6 +320,9 @@ test_edges_that_cannot_be_used_are_named = refusals(
     ({"material": "left"}, r"free_edges\[0\].material: 'left'"),
     ({"factor": -1.0}, r"free_edges\[0\].factor: -1.0"),
     ({"factor": math.inf}, r"free_edges\[0\].factor: inf"),
+    ({"across": (1.0, 1.0)}, r"free_edges\[0\].across: \(1.0, 1.0\) counts on columns of unlike widths alone"),
+    ({"across": (1.0,)}, r"free_edges\[0\].across: \(1.0,\) are not two finite numbers from 0 on"),
+    ({"across": (-1.0, 1.0)}, r"free_edges\[0\].across: \(-1.0, 1.0\) are not two"),
     ({"position": -1.0}, "free_edges: no cell within them holds material"),
 )
 test_factor_refuses = refusals(

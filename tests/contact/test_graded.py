@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+import scipy
 from numpy.testing import assert_allclose
 
-from loaded_tca.contact import ContactStatus, FreeEdge, GradedProblem, solve_contact, solve_graded
+from loaded_tca.contact import ContactStatus, FreeEdge, GradedProblem, factors_across, solve_contact, solve_graded
 from loaded_tca.contact.checks import BYTES_PER_PAIR, columns_memory_problem
 from loaded_tca.contact.columns import FineZone, column_borders
 from loaded_tca.contact.edges import extra_displacement
-from loaded_tca.contact.graded import GradedGrids
+from loaded_tca.contact.graded import GradedGrids, Kernel
 from loaded_tca.contact.love import column_coefficients, far_from, influence_coefficients
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.reference import hertz, wedge
@@ -375,6 +376,33 @@ def test_image_with_a_reference_tilts_the_surface_as_a_wedge(degrees):
     exact = 0.5 * wedge.extra_displacement(apart[places], apart[load], angle)
     exact -= 0.5 * wedge.extra_displacement(apart[load], apart[load], angle)
     assert_allclose(added[places, load], exact, atol=0.055 * np.ptp(exact))  # 105 deg: 5 %
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3])
+def test_image_of_a_body_in_space_is_that_of_plane_strain_under_a_load_all_along_the_edge(nu):
+    """Whatever Poisson's ratio, which plane strain does not know: 1 % of the range is left, by S in a straight line."""
+    angle, borders, load = 0.5 * np.pi, np.linspace(-2.0, 0.0, 201), 99  # the load stands 1.0 before the edge
+    edge = FreeEdge(1, 2.0, "below", 0.5 * extra_displacement(angle), factors_across(angle, nu, 0.5))
+    added = displacements(borders, [edge], None) - displacements(borders, [], None)
+    assert_allclose(added, added.T, atol=1e-4 * np.ptp(added))  # cells of the midpoint rule beside the edge
+    places = -middles(borders)
+    exact = 0.5 * wedge.extra_displacement(places, places[load], angle)
+    obtained = added[:, load] - added[load, load]
+    assert_allclose(obtained, exact - exact[load], atol=0.01 * np.ptp(exact))
+
+
+def test_image_of_a_body_in_space_has_the_factors_of_points_far_apart():
+    """By a unit force on one cell: right across the edge, and far apart along it."""
+    borders, edge = np.linspace(-2.0, 0.0, 81), FreeEdge(1, 2.0, "below", 0.9, (0.3, 0.5))
+    kernels = [Kernel(200, 0.025, borders, edges).whole for edges in ((edge,), ())]
+    added = scipy.fft.idct(kernels[0] - kernels[1], type=1, axis=0)
+    places = -middles(borders)
+    both = places[:, None] + places
+    across = added[0] * np.pi * both / 0.025
+    expected = 0.3 + 0.2 * 4.0 * places[:, None] * places / both**2
+    far = both > 12.0 * 0.025  # cells away, from where on forces on a cell are those of a point to 1/(24 12^2) a factor
+    assert_allclose(across[far], expected[far], rtol=2e-3)
+    assert_allclose(added[190, -1, -1] * np.pi * 190, 0.9, rtol=1e-4)
 
 
 @pytest.mark.parametrize("factor", [0.3, 0.6])

@@ -88,7 +88,7 @@ def quarter_spaces():
     curves = []
     for farthest, cells in ((80.0, 256), (160.0, 512)):
         with patch.multiple(free_edge, STEP=0.3, FARTHEST=farthest, CELLS_ALONG=cells):
-            space = free_edge.quarter_space(0.3)
+            space = free_edge.quarter_space(0.3, free_edge.graded(), 0.3)
         y, load, row, middle = space.y, np.zeros((space.y.size, cells)), 2, cells // 2
         load[row, middle] = 1.0
         added = space.displacement(load) - free_edge.convolved(space.own, load)

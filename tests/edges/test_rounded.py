@@ -36,6 +36,7 @@ from loaded_tca.unloaded import trace_contact, trace_teeth
 from loaded_tca.warning_kinds import EDGE_UNSOLVED, kind_of
 from tests.samples.gear_pairs import NONE, gear_pair
 from tests.samples.results import FLANKS_ALONE, SCENES
+from validation.contact import rounded_ends
 
 LOAD = 3000.0
 SIDE, BOTH, WIDE = EdgeRounding(side=0.2), EdgeRounding(tip=0.2, side=0.2), EdgeRounding(side=0.3)
@@ -284,7 +285,7 @@ def test_edges_that_cross_are_solved_together_whatever_one_of_them_can_come_to()
 
 
 def test_flush_free_ends_rounded_less_than_the_contact_is_wide_are_uncertain():
-    """The law of free edges has one length across the contact; what bends over less is not resolved."""
+    """The law of slices has one length across the contact; it counts where slices do not lie along the ends."""
     pair, one = loaded(free_edges=True)
     pressed = (one.solution.pressure > 0.0).sum(axis=0).max() * one.separation.spacing[0]
     (reached, *_) = reached_arcs(pair, one)
@@ -292,7 +293,26 @@ def test_flush_free_ends_rounded_less_than_the_contact_is_wide_are_uncertain():
     for part, free_edges, gears, narrow in cases:
         lines = [replace(line, radius=part * 0.5 * pressed) for line in reached.lines[:gears]]
         contact = _ContactAlongEdge(pair, one, lines[0], None, 0, free_edges)
-        assert contact.has_narrow_ends([ReachedArc(tuple(lines), 1e4)], lines) is narrow
+        arcs = [ReachedArc(tuple(lines), 1e4)]
+        assert not contact.has_narrow_ends(arcs, lines)
+        contact.slice_axis = 0
+        assert contact.has_narrow_ends(arcs, lines) is narrow
+
+
+def test_pressure_at_flush_ends_does_not_depend_on_a_small_radius():
+    """As beside quarter-spaces: a notch of the depth r has its intensity as sqrt(r), and the gap opens as r.
+
+    Half-spaces have 4^(1/3) times the pressure on a quarter of the radius.
+    """
+    peaks = {}
+    for radius in (0.01, 0.04):
+        pair, one = loaded(EdgeRounding(side=radius), 4.0 * LOAD, free_edges=True, cells=(24, 64))
+        peaks[radius] = [found(pair, one, free_edges=free).pressure for free in (True, False)]
+    pressed = 0.5 * (one.solution.pressure > 0.0).sum(axis=0).max() * one.separation.spacing[0]
+    quarter_spaces = [rounded_ends.exact_peak(radius / pressed, "both bodies", 0.3) for radius in peaks]
+    flush, half_spaces = np.array(peaks[0.01]) / np.array(peaks[0.04])
+    assert_allclose(flush, quarter_spaces[0] / quarter_spaces[1], rtol=0.06)  # twice 3 %, as ``validation`` has them
+    assert_allclose(half_spaces, 4.0 ** (1.0 / 3.0), rtol=0.1)
 
 
 def test_bound_is_that_of_a_narrow_rounding_on_coarse_cells():

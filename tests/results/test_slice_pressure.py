@@ -13,6 +13,7 @@ from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.loaded.line_load import SliceLoads, averaged_line_load
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.reference.hertz import point_contact
+from loaded_tca.results import slice_pressure
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures, rough_peaks
 from loaded_tca.separation.normal_gap import NormalGap
@@ -280,6 +281,30 @@ def test_peak_where_an_edge_runs_along_the_contact_is_that_of_slices():
     assert contact.at_edge
     of_slices, peak = (find(pair, [under_pressure(contact)])[0] for find in (largest_slice_pressures, rough_peaks))
     assert peak.pressure == of_slices.pressure
+
+
+@pytest.mark.parametrize(
+    ("slices_away", "of_length", "pressure", "error"),
+    [
+        (4, 8, 1000.0, 0.1),  # half the length and half a slice are 4.5: a slice nearer it counts
+        (5, 8, 1100.0, 1.0 / 11.0),  # a slice farther it does not
+        (8, 8, 1100.0, 0.0),
+        (1, 2, 1000.0, 0.0),  # beside the edge, where cells tell nothing
+    ],
+)
+def test_peak_whose_place_is_half_the_average_from_an_edge_has_the_error_of_a_slice(
+    slices_away, of_length, pressure, error, monkeypatch
+):
+    """A top of 1100 MPa in cells so many slices from the one at an edge, beside a slice pressure of 1000 MPa."""
+    x, y = 0.01 * np.arange(-2.0, 3.0), 0.1 * np.arange(24.0)
+    cells = 1100.0 * (1.0 - 0.05 * (x[:, None] / 0.02) ** 2) * (1.0 - 0.2 * (y / 0.1 - slices_away) ** 2 / 24.0**2)
+    at_edge = np.broadcast_to(y == 0.0, cells.shape)
+    monkeypatch.setattr(slice_pressure, "_rough_cells", lambda *_: at_edge)
+    pair, grid = SimpleNamespace(max_pressure=None), SimpleNamespace(x=x, y=y, spacing=(0.01, 0.1))
+    of_slices = SlicePeak(1000.0, (0.0, 0.0), 0.1, SimpleNamespace(length=0.1 * of_length), None)
+    peak = slice_pressure._with_inner_cells(pair, grid, cells, of_slices)
+    assert_allclose(peak.pressure, pressure, rtol=1e-9)
+    assert_allclose(peak.error, error, atol=1e-9)
 
 
 def test_derivative_of_a_peak_counts_what_forces_change_of_the_length_of_the_average():

@@ -39,6 +39,12 @@ class QuarterSpace:
     image: Array
     across: Array
 
+    def exact(self) -> Array:
+        """Exact coefficients (n, n, nx) of displacements (times E*) by pressure on cells of the top."""
+        across, mirrored = (np.moveaxis(rfft(part), -1, 0) for part in (self.across, self.own + self.image))
+        whole = mirrored @ np.linalg.inv(np.eye(len(self.y)) - across @ across)
+        return np.asarray(irfft(np.moveaxis(whole, 0, -1), len(self.x)))
+
     def displacement(self, pressure: Array) -> Array:
         """Exact displacement (times E*) of the top by a pressure (n, nx) on it."""
         across = np.moveaxis(rfft(self.across), -1, 0)
@@ -48,16 +54,20 @@ class QuarterSpace:
         return convolved(self.own, pressure) + convolved(self.image, pressure)
 
 
-def quarter_space(poisson_ratio: float) -> QuarterSpace:
-    """Coefficients for cells that are even beside the edge and grow away from it."""
+def graded() -> Array:
+    """Bounds of cells that are even beside the edge and grow away from it."""
     bounds = [STEP * k for k in range(EVEN_CELLS + 1)]
     while bounds[-1] < FARTHEST:
         bounds.append(bounds[-1] + GROWTH * (bounds[-1] - bounds[-2]))
-    edges = np.array(bounds)
+    return np.array(bounds)
+
+
+def quarter_space(poisson_ratio: float, edges: Array, step: float = STEP) -> QuarterSpace:
+    """Coefficients for cells with these bounds off the edge, and so long along it."""
     y = 0.5 * (edges[1:] + edges[:-1])
     k = np.arange(CELLS_ALONG)
-    distance = np.minimum(k, CELLS_ALONG - k) * STEP
-    near, far = distance - 0.5 * STEP, distance + 0.5 * STEP
+    distance = np.minimum(k, CELLS_ALONG - k) * step
+    near, far = distance - 0.5 * step, distance + 0.5 * step
 
     def love(sign: float) -> Array:
         v = y[:, None, None] - sign * edges[:, None]
@@ -66,7 +76,7 @@ def quarter_space(poisson_ratio: float) -> QuarterSpace:
     depth = y[:, None, None]
     stress = _side_stress(far, edges[:, None], depth, poisson_ratio)
     stress -= _side_stress(near, edges[:, None], depth, poisson_ratio)
-    x = (k - CELLS_ALONG // 2) * STEP
+    x = (k - CELLS_ALONG // 2) * step
     return QuarterSpace(x, y, love(1.0), love(-1.0), np.asarray(-np.diff(stress, axis=1) / np.pi))
 
 
@@ -102,7 +112,7 @@ def loads(space: QuarterSpace) -> dict[str, Array]:
 def rows() -> list[Row]:
     """Displacement weighted with the pressure, over that of a half-space: with the factor, without, with no mirror."""
     table = []
-    space, factor = quarter_space(POISSON_RATIO), quarter_space_factor(POISSON_RATIO)
+    space, factor = quarter_space(POISSON_RATIO, graded()), quarter_space_factor(POISSON_RATIO)
     for name, pressure in loads(space).items():
         own, image = convolved(space.own, pressure), convolved(space.image, pressure)
         half_space = float((own * pressure).sum())
