@@ -207,7 +207,7 @@ def _on_flank(flank: Flank, points: Array, normal: Array, origin: Array, enough:
         np.arctan2(origin[:, 1], origin[:, 0]) - flank.theta(np.hypot(origin[:, 0], origin[:, 1]), origin[:, 2]).value
     )
     for _ in range(NEWTON_STEPS):
-        (x, y, z), (nx, ny, nz) = np.moveaxis(moved[left], -1, 0), normal[left].T[..., None]
+        (x, y, z), (nx, ny, nz) = moved[left].transpose(2, 0, 1), normal[left].T[..., None]
         rho = np.hypot(x, y)
         theta = flank.theta(rho, z)
         off = np.arctan2(y, x) - theta.value - turned[left, None]

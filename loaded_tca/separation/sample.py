@@ -75,7 +75,8 @@ def force_line_under(separation: Separation, pressure: Array, module: float) -> 
     if not carrying.size:
         return separation.force_line
     places, force = separation.y[carrying], pressure.sum(axis=0)[carrying]
-    return np.interp(separation.y, places, smoothed(places, middles, force, LINE_SMOOTHED * module))
+    line = smoothed(places, middles, force, LINE_SMOOTHED * module)
+    return np.interp(separation.y, places, line)
 
 
 def smoothed(places: Array, values: Array, weights: Array, deviation: float) -> Array:
@@ -361,7 +362,7 @@ def _sampled(
     whole, cut = (np.where(there, heights, np.inf) for there in (distances.min(axis=0) >= 0.0, covers > 0.0))
     for k, (contact, curvature, (dx, dy)) in enumerate(zip(contacts, curvatures, spacings.tolist(), strict=True)):
         grid, origin = (whole[k].copy(), x[k], y[k], (dx, dy)), contact.point.copy()
-        along_axes, line = curvature.along_axes(axes[k]), np.zeros(y.shape[1])
+        along_axes, line = curvature.along_axes(boxes[k].axes), np.zeros(y.shape[1])
         material = covers[k].copy(), cut[k].copy()
         yield Separation(*grid, origin, axes[k], along_axes, *material, line, places[k].polynomials)
 
