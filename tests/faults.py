@@ -288,8 +288,8 @@ FAULTS = (
     Fault(
         "bending: forces act on the axis of the grid",
         "separation/sample.py",
-        "return replace(self, force_line=np.interp(self.y, places, line))",
-        "return self",
+        "return np.interp(separation.y, places, line)",
+        "return separation.force_line",
         "loaded/test_tooth_contact.py::test_forces_of_slices_bend_the_tooth_at_the_centres_of_their_pressure",
     ),
     Fault(

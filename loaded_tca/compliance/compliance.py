@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -33,8 +33,8 @@ so much of the module is the last one, as of helical teeth, whose contact lines 
 EVEN_PLACES = 9
 """Forces across the face that stand for an even one."""
 
-TOGETHER = 2**13
-"""Pairs of slices that are worked on together: more do not fit the cache of a core."""
+TOGETHER = 2**15
+"""Pairs of slices that are worked on together: the arrays of more leave the cache of a core."""
 
 _LINES: WeakKeyDictionary[ContactGrid, dict[int, tuple[FlankLine, FlankLine]]] = WeakKeyDictionary()
 """Lines of the grids, by the numbers of the tooth pairs, on pinion and wheel."""
@@ -55,7 +55,7 @@ class ToothCompliance:
     pinion: GearCompliance
     wheel: GearCompliance
 
-    @property
+    @cached_property
     def neighbours(self) -> int:
         """How many pitches two loaded tooth pairs may be apart."""
         return min(self.pinion.neighbours, self.wheel.neighbours)
@@ -107,7 +107,7 @@ class ToothCompliance:
         deflections: dict[int, Array] = {}
         for some in stacks_of([len(grid.y) for _, grid in contacts]):
             lines = self._lines([contacts[k] for k in some])
-            y, across = (np.stack([getattr(contacts[k][1], name) for k in some]) for name in ("y", "force_line"))
+            y, across = (np.array([getattr(contacts[k][1], name) for k in some]) for name in ("y", "force_line"))
             distance = np.hypot(y[..., None] - y[:, None], across[..., None] - across[:, None])
             on_pinion, on_wheel = (
                 gear.within_each([both[side] for both in lines], distance)
@@ -142,7 +142,7 @@ class ToothCompliance:
 
         The product of :meth:`between` with the forces, without the matrix.
         """
-        there, here = self.lines(*at), self.lines(*under)
+        (there,), (here,) = self._lines([at]), self._lines([under])
         return self.pinion.deflection(there[0], here[0], forces) + self.wheel.deflection(there[1], here[1], forces)
 
     def lines(self, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
@@ -154,10 +154,12 @@ class ToothCompliance:
 
     def _lines(self, contacts: Sequence[tuple[int, ContactGrid]]) -> list[tuple[FlankLine, FlankLine]]:
         """The same of several contacts with equally many slices."""
-        missing = [(number, grid) for number, grid in contacts if number not in _LINES.setdefault(grid, {})]
-        for (number, grid), lines in zip(missing, lines_of_each(self.pair, missing), strict=True):
-            _LINES[grid][number] = lines
-        return [_LINES[grid][number] for number, grid in contacts]
+        kept = [_LINES.setdefault(grid, {}) for _, grid in contacts]
+        missing = [k for k, (number, _) in enumerate(contacts) if number not in kept[k]]
+        if missing:
+            for k, lines in zip(missing, lines_of_each(self.pair, [contacts[k] for k in missing]), strict=True):
+                kept[k][contacts[k][0]] = lines
+        return [lines[number] for lines, (number, _) in zip(kept, contacts, strict=True)]
 
 
 def stacks_of(slices: Sequence[int]) -> list[list[int]]:
@@ -187,10 +189,8 @@ def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLi
 
 def lines_of_each(pair: GearPair, contacts: Sequence[tuple[int, ContactGrid]]) -> list[tuple[FlankLine, FlankLine]]:
     """Results of :func:`flank_lines` for the numbers and grids of contacts with equally many slices."""
-    if not contacts:
-        return []
     names = "origin", "axes", "force_line", "y"
-    origin, axes, across, along = (np.stack([getattr(grid, name) for _, grid in contacts]) for name in names)
+    origin, axes, across, along = (np.array([getattr(grid, name) for _, grid in contacts]) for name in names)
     points = origin[:, None] + across[..., None] * axes[:, None, 0] + along[..., None] * axes[:, None, 1]
     points = _on_flank(pair.pinion.nominal_flank, points, axes[:, 2], origin, NO_FURTHER * pair.module)
     rho, radius, axial = np.hypot(points[..., 0], points[..., 1]), *pair.on_wheel(points)
@@ -207,7 +207,7 @@ def _on_flank(flank: Flank, points: Array, normal: Array, origin: Array, enough:
         np.arctan2(origin[:, 1], origin[:, 0]) - flank.theta(np.hypot(origin[:, 0], origin[:, 1]), origin[:, 2]).value
     )
     for _ in range(NEWTON_STEPS):
-        (x, y, z), (nx, ny, nz) = np.moveaxis(moved[left], -1, 0), normal[left].T[..., None]
+        (x, y, z), (nx, ny, nz) = moved[left].transpose(2, 0, 1), normal[left].T[..., None]
         rho = np.hypot(x, y)
         theta = flank.theta(rho, z)
         off = np.arctan2(y, x) - theta.value - turned[left, None]

@@ -83,7 +83,7 @@ class GearCompliance:
     frame: ToothFrame
     table: ToothFlexibility
 
-    @property
+    @cached_property
     def neighbours(self) -> int:
         """Teeth on either side of a loaded one whose displacement is known."""
         return len(self.table.displacement) // 2
@@ -167,7 +167,7 @@ class GearCompliance:
 
     def within_each(self, lines: Sequence[FlankLine], distance: Array) -> Array:
         """Results (k, m, m) of :meth:`within` for k lines of m places each; none depends on the others."""
-        together = FlankLine(0, np.stack([line.rho for line in lines]), np.stack([line.z for line in lines]))
+        together = FlankLine(0, np.array([line.rho for line in lines]), np.array([line.z for line in lines]))
         displacements, places = self.within(together, distance), self._places(together)
         for k, line in enumerate(lines):
             _KEPT[line] = ref(self), places.of_line(k)

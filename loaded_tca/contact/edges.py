@@ -208,8 +208,9 @@ def wedge_factor(angle: float, poisson_ratio: float, share: float = 1.0) -> floa
         problems.append(f"share: {share} is not between 0 and 1")
     if problems:
         raise InputError(problems)
-    square = float(np.polynomial.polynomial.polyval(poisson_ratio, FACTOR))
-    return share * square * (extra_displacement(angle) / extra_displacement(0.5 * math.pi)) ** POWER
+    constant, linear, quadratic = FACTOR
+    square = constant + poisson_ratio * (linear + poisson_ratio * quadratic)
+    return share * square * (extra_displacement(angle) / AT_RIGHT_ANGLES) ** POWER
 
 
 def factors_across(angle: float, poisson_ratio: float, share: float = 1.0) -> tuple[float, float]:
@@ -276,6 +277,9 @@ def extra_displacement(angle: float) -> float:
     """
     sine, cosine = math.sin(angle), math.cos(angle)
     return max(0.0, math.pi * (angle + sine * cosine) / (angle * angle - sine * sine) - 1.0)
+
+
+AT_RIGHT_ANGLES = extra_displacement(0.5 * math.pi)
 
 
 def check_edges(edges: Sequence[FreeEdge]) -> list[str]:

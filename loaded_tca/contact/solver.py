@@ -292,7 +292,7 @@ def _stacks(
         approach = problem.approach
         if problem.load == 0.0 or (approach is not None and approach <= problem.first_contact):
             continue
-        given = (value is None for value in (start, approach, problem.slice_compliance, problem.cover))
+        given = start is None, approach is None, problem.slice_compliance is None, problem.cover is None
         edges = k if problem.free_edges else None
         key = problem.cells, tolerance < SINGLE_PRECISION, problem.cap_is_near, edges, *given
         alike.setdefault(key, []).append(k)

@@ -29,6 +29,7 @@ import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
@@ -436,12 +437,13 @@ def risen(values: Array, y: Array, before: Indices, after: Indices) -> Array:
 
 def _pairs(first: Indices, count: Indices) -> Iterator[tuple[Indices, Indices]]:
     """Every place (n,) of a row with each of the ``count`` ones from the ``first`` of its run on, in parts."""
-    ends = np.cumsum(count)
-    for part in np.split(np.arange(count.size), np.searchsorted(ends, np.arange(PAIRS, ends[-1], PAIRS))):
-        if part.size:
-            number = count[part]
-            begin = np.cumsum(number) - number
-            yield np.repeat(part, number), np.arange(number.sum()) + np.repeat(first[part] - begin, number)
+    ends = count.cumsum()
+    borders = [0, *ends.searchsorted(np.arange(PAIRS, ends[-1], PAIRS)).tolist(), count.size]
+    for start, stop in pairwise(borders):
+        if start < stop:
+            part, number = np.arange(start, stop), count[start:stop]
+            begin = number.cumsum() - number
+            yield part.repeat(number), np.arange(number.sum()) + (first[start:stop] - begin).repeat(number)
 
 
 class MovedSlices(NamedTuple):

@@ -109,7 +109,7 @@ class Jet:
 
     def shifted_scaled(self, origin: float, length: float) -> Jet:
         """(self - origin)/length."""
-        return (self + Jet(-origin)) * (1.0 / length)
+        return Jet(self.value - origin, self.rho, self.z, lambda: self.bends) * (1.0 / length)
 
 
 def _product(part: Any, factor: Any) -> Any:

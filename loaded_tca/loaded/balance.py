@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import sub
 from typing import NamedTuple
 
 import numpy as np
@@ -125,7 +126,7 @@ def balance(
     forces, change = [torque / sum(lever)] * len(pairs) if start is None else start.tolist(), math.inf
     for _ in range(MOST_STEPS):
         target = _newton_step(pairs, torque, forces, compliance, between)
-        before, change = change, max(abs(new - old) for new, old in zip(target, forces, strict=True)) / max(target)
+        before, change = change, max(map(abs, map(sub, target, forces))) / max(target)
         forces = target
         if change <= STEP_TOLERANCE or before <= change <= STALLED:
             found = np.array(forces)

@@ -19,6 +19,7 @@ from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.together import Bend, Steps, Task
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation
+from loaded_tca.separation.sample import force_line_under
 from loaded_tca.unloaded import ContactPoint
 
 EXACT = 1e-9
@@ -247,7 +248,7 @@ class LoadedContact:
         """Force on every slice of the grid, (ny,) [N]."""
         return np.asarray(self.solution.pressure.sum(axis=0) * self.solution.cell_area)
 
-    @property
+    @cached_property
     def slice_shares(self) -> Array:
         """Shares of the slices in the force, which must not be zero, (ny,)."""
         return np.asarray(self.slice_force / self.slice_force.sum())
@@ -260,7 +261,7 @@ class LoadedContact:
             return 0.0
         return float(force @ self.bending @ force / force.sum())
 
-    @property
+    @cached_property
     def contact_deformation(self) -> float:
         """Contact deformation [mm]: total deflection less bending, the mean over the force."""
         force, deflection = self.slice_force, self.solution.approach - self.own_tooth_deflection
@@ -273,28 +274,29 @@ class LoadedContact:
 
         Where they moved by less than ``LINE_KEPT``, it is returned as it is.
         """
-        separation = self._bending_lines(module)
-        if self.bending is not None and self._moved(separation) <= LINE_KEPT * module:
+        line = self._bending_line(module)
+        if self.bending is not None and self._moved(line) <= LINE_KEPT * module:
             return self
+        separation = replace(self.separation, force_line=line)
         return replace(self, separation=separation, bending=(yield Bend(bending, number, separation)))
 
     def line_error(self, module: float) -> float:
         """How far the forces that bend the teeth are from the centres of the pressure, the mean over the force [mm]."""
-        return self._moved(self._bending_lines(module))
+        return self._moved(self._bending_line(module))
 
-    def _bending_lines(self, module: float) -> Separation:
-        """The grid with its forces at the centres of the pressure; kept, as balance and next solution ask for it."""
+    def _bending_line(self, module: float) -> Array:
+        """Line (ny,) [mm] of the forces at the centres of the pressure; kept, as balance and solution ask for it."""
         if module not in self._lines_by_module:
-            self._lines_by_module[module] = self.separation.loaded_by(self.solution.pressure, module)
+            self._lines_by_module[module] = force_line_under(self.separation, self.solution.pressure, module)
         return self._lines_by_module[module]
 
     @cached_property
-    def _lines_by_module(self) -> dict[float, Separation]:
+    def _lines_by_module(self) -> dict[float, Array]:
         return {}
 
-    def _moved(self, other: Separation) -> float:
-        """Distance of the line of the forces of the same grid, the mean over the force [mm]."""
-        force, moved = self.slice_force, np.abs(other.force_line - self.separation.force_line)
+    def _moved(self, line: Array) -> float:
+        """Distance of another line of the forces (ny,) [mm], the mean over the force [mm]."""
+        force, moved = self.slice_force, np.abs(line - self.separation.force_line)
         return float(force @ moved / force.sum()) if force.any() else 0.0
 
     def at_load(self, load: float, coupling: Array | None = None) -> Steps[LoadedContact]:

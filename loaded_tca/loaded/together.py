@@ -7,7 +7,7 @@ returns its result. So it reads as if it were alone, and its numbers do not depe
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Callable, Generator, Sequence
 from functools import partial
 from itertools import islice
@@ -125,23 +125,25 @@ def run_stacked(
         The first one that a generator does not deal with.
     """
     results: dict[int, Result] = {}
-    asked: dict[int, Request] = {}
+    asked: defaultdict[object, dict[int, Any]] = defaultdict(dict)  # for each kind of request
 
     def advance(index: int, step: Callable[[], Request]) -> None:
         try:
-            asked[index] = step()
+            request = step()
         except StopIteration as end:
             results[index] = end.value
             if progress is not None:
                 progress(len(results))
+        else:
+            asked[request.problem.cells if isinstance(request, Task) else type(request)][index] = request
 
     waiting = iter(enumerate(all_steps))
     while len(results) < len(all_steps):
         leave_if_not_wanted()
-        for index, steps in islice(waiting, UNDER_WAY - len(asked)):
+        for index, steps in islice(waiting, UNDER_WAY - sum(map(len, asked.values()))):
             advance(index, partial(next, steps))
-        for index, answer in _answers(pair, asked).items() if asked else ():
-            del asked[index]
+        most = max(asked, key=lambda kind: len(asked[kind]), default=None)
+        for index, answer in _answers(pair, asked.pop(most)).items() if asked else ():
             steps = all_steps[index]
             failed = isinstance(answer, LoadedTCAError)
             advance(index, partial(steps.throw, answer) if failed else partial(steps.send, answer))
@@ -154,23 +156,19 @@ def run_alone(pair: GearPair, steps: Steps[Result]) -> Result:
 
 
 def _answers(
-    pair: GearPair, asked: dict[int, Request]
+    pair: GearPair, asked: dict[int, Any]
 ) -> dict[int, list[ContactPoint] | Separation | ExpectedLine | Array | ContactSolution | LoadedTCAError | None]:
-    """Answer what most ask for: contacts, gaps, lines, free edges, bending, or problems on one grid; or with errors."""
-    kinds = {
-        index: request.problem.cells if isinstance(request, Task) else type(request) for index, request in asked.items()
-    }
-    (most, _), *_ = Counter(kinds.values()).most_common(1)
-    chosen: Any = {index: asked[index] for index, kind in kinds.items() if kind == most}
-    if most in (Trace, Gap, Line, Ends, Bend):
+    """Answer requests of one kind: contacts, gaps, lines, free edges, bending, problems on one grid; or with errors."""
+    kind = type(next(iter(asked.values())))
+    if kind is not Task:
         alike: dict[int, dict[int, Any]] = {}
-        for index, request in chosen.items():
-            alike.setdefault(id(request.bending if most is Bend else request.gears), {})[index] = request
+        for index, request in asked.items():
+            alike.setdefault(id(request.bending if kind is Bend else request.gears), {})[index] = request
         return {index: answer for some in alike.values() for index, answer in _of_flanks(pair, some).items()}
-    solutions = solve_problems(*zip(*chosen.values(), strict=True), on_failure="return")
+    solutions = solve_problems(*zip(*asked.values(), strict=True), on_failure="return")
     return {
         index: solution.not_converged(task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution
-        for (index, task), solution in zip(chosen.items(), solutions, strict=True)
+        for (index, task), solution in zip(asked.items(), solutions, strict=True)
     }
 
 

@@ -309,7 +309,7 @@ def _cells_to_ends(ends: Array, cut: Mask, number: int) -> tuple[float, float]:
     if not cut.any():  # as far either way
         return 2.0 * float(ends[0]) / number, 0.5 * number
     below = 0.5 * number + np.arange(-(number // 2), number // 2 + 1)
-    inside = np.stack([below, number - below], axis=1) - cut
+    inside = np.array([below, number - below]).T - cut
     needed = np.divide(ends, inside, out=np.where(ends > 0.0, np.inf, np.zeros(inside.shape)), where=inside > 0.0)
     needed[inside < 0.0] = np.inf
     spacing = needed.max(axis=1)

@@ -31,7 +31,7 @@ FLATTEST = 1e-6
 """Change of theta along the normal, times the sum of the base radii, below which a flank bends away from it."""
 ON_EDGE = 1e-9
 """Distance from an edge, over the module, up to which a flank has not ended."""
-TOGETHER = 8_000
+TOGETHER = 16_000
 """Points that are sampled at once: arrays of more leave the cache, and their memory goes back to the system."""
 
 

@@ -64,9 +64,19 @@ def slice_middles(x: Array, pressure: Array) -> tuple[Indices, Array]:
     -------
     (n,) array of int, (n,) array [mm]
     """
-    carrying = np.flatnonzero(pressure.any(axis=0))
-    loaded = pressure[:, carrying]
-    return carrying, x @ loaded / loaded.sum(axis=0)
+    force = pressure.sum(axis=0)
+    carrying = force.nonzero()[0]
+    return carrying, x @ pressure[:, carrying] / force[carrying]
+
+
+def force_line_under(separation: Separation, pressure: Array, module: float) -> Array:
+    """Line (ny,) [mm] of the forces of a grid at the centres of a pressure; see :meth:`Separation.loaded_by`."""
+    carrying, middles = slice_middles(separation.x, pressure)
+    if not carrying.size:
+        return separation.force_line
+    places, force = separation.y[carrying], pressure.sum(axis=0)[carrying]
+    line = smoothed(places, middles, force, LINE_SMOOTHED * module)
+    return np.interp(separation.y, places, line)
 
 
 def smoothed(places: Array, values: Array, weights: Array, deviation: float) -> Array:
@@ -177,12 +187,8 @@ class Separation:
         scatters the centres in turn. Slices without pressure take the place of the nearest ones between or beside which
         they lie.
         """
-        carrying, middles = slice_middles(self.x, pressure)
-        if not carrying.size:
-            return self
-        places, force = self.y[carrying], pressure[:, carrying].sum(axis=0)
-        line = smoothed(places, middles, force, LINE_SMOOTHED * module)
-        return replace(self, force_line=np.interp(self.y, places, line))
+        line = force_line_under(self, pressure, module)
+        return self if line is self.force_line else replace(self, force_line=line)
 
     def __repr__(self) -> str:
         nx, ny = self.gap.shape
@@ -356,7 +362,7 @@ def _sampled(
     whole, cut = (np.where(there, heights, np.inf) for there in (distances.min(axis=0) >= 0.0, covers > 0.0))
     for k, (contact, curvature, (dx, dy)) in enumerate(zip(contacts, curvatures, spacings.tolist(), strict=True)):
         grid, origin = (whole[k].copy(), x[k], y[k], (dx, dy)), contact.point.copy()
-        along_axes, line = curvature.along_axes(axes[k]), np.zeros(y.shape[1])
+        along_axes, line = curvature.along_axes(boxes[k].axes), np.zeros(y.shape[1])
         material = covers[k].copy(), cut[k].copy()
         yield Separation(*grid, origin, axes[k], along_axes, *material, line, places[k].polynomials)
 
@@ -401,7 +407,8 @@ def _covers(distances: Array, spacings: Array) -> Array:
     met = np.where(np.isfinite(ends), ends, np.nan)
     for lines, sums in ((met, growth), (met.swapaxes(1, 2), growth.swapaxes(1, 2))):
         if lines.shape[1] > 1:
-            steps = np.pad(np.abs(np.diff(lines, axis=1)), ((0, 0), (1, 1), (0, 0)), constant_values=np.nan)
+            steps = np.full((len(lines), lines.shape[1] + 1, lines.shape[2]), np.nan)
+            np.abs(lines[:, 1:] - lines[:, :-1], out=steps[:, 1:-1])
             before, after = steps[:, :-1], steps[:, 1:]
             sums += np.where(np.isfinite(before + after), 0.5 * (before + after), np.fmax(before, after))
     parts = np.divide(ends, growth, out=np.copysign(1.0, ends), where=growth > 0.0)

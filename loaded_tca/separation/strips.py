@@ -70,17 +70,17 @@ def strip_pressure(gap: Array, spacing: tuple[float, float], load: float, modulu
     """
     (dx, dy), floor = spacing, gap.min(axis=0)
     depth = gap - np.where(np.isfinite(floor), floor, 0.0)
-    sums, cells = np.cumsum(np.sort(floor))[None], np.array(gap.shape)
+    sums, (across, along) = np.sort(floor).cumsum()[None], gap.shape
     for _ in range(2):  # first as long and wide as the grid
-        stiffness = _stiffness(cells[0] * dx, cells[1] * dy, modulus)
+        stiffness = _stiffness(across * dx, along * dy, modulus)
         penetration = np.maximum(_water_level(sums, np.array([load / (stiffness * dy)]))[0] - floor, 0.0)
         pressure = np.sqrt(np.maximum(2.0 * stiffness / (math.pi * modulus) * penetration - depth, 0.0))
-        cells = np.maximum([np.count_nonzero(pressure, axis=0).max(), np.count_nonzero(penetration)], 1)
+        across, along = max(1, int((pressure > 0.0).sum(axis=0).max())), max(1, np.count_nonzero(penetration))
     sum_across = dx * pressure.sum(axis=0)
     return pressure * np.divide(penetration, sum_across, out=np.zeros(floor.shape), where=sum_across > 0.0)
 
 
-def _stiffness(width: Array, length: Array, modulus: float) -> Array:
+def _stiffness(width: Array | float, length: Array | float, modulus: float) -> Array:
     """Line load of a strip over its penetration [MPa], in contacts of such widths and lengths."""
     slenderness = np.log(4.0 * np.maximum(length / width, 1.0)) - 1.0
     return np.asarray(0.5 * math.pi * modulus / np.maximum(slenderness, 0.25 * math.pi))
