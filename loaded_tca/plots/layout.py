@@ -6,26 +6,20 @@ panels shrink. Measuring takes a third of the time of a picture, and the first p
 Matplotlib places the ticks of an axis and measures their labels up to ten times in a drawing, for the axis, its label,
 the title and each side of the frame: here once where the panel lies. It lays a text out whenever it measures or draws
 it: here once. It makes each tick from what its axis was given, and then copies what the first one was given by itself:
-here ticks are copies of the first one from the beginning. It scales and turns the font anew for each letter of a text:
-here once for all of them.
+here ticks are copies of the first one from the beginning.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from copy import copy
-from functools import partial
 from typing import Any
 
-import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis, Tick
-from matplotlib.backends import backend_agg
 from matplotlib.figure import Figure
-from matplotlib.ft2font import FT2Font
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
@@ -42,11 +36,6 @@ of axes, which ask for ticks by these two. A later Matplotlib that has none of t
 """
 LAYOUT_OF_TEXT = "_get_layout"
 """Method by which Matplotlib lays out a text, wherever it measures or draws it: no public one does only that."""
-LETTERS, OF_FONT = "_draw_text_glyphs_and_boxes", ("_set_transform", "_render_glyph")
-"""Method by which Matplotlib draws the letters of a text one by one, and those of its fonts that the method calls. A
-Matplotlib without them, as that before 3.11, draws as it does by itself."""
-FIXED, PIXEL = 0x10000, 0x40
-"""Units of the numbers with a fixed point in which fonts take a matrix and a place."""
 TICKS = (("majorTicks", "get_major_ticks", "get_majorticklocs"), ("minorTicks", "get_minor_ticks", "get_minorticklocs"))
 """Of an axis: the lists of its ticks, the methods that make as many as are asked for, and those of their places."""
 PARTS_OF_TICK = "tick1line", "tick2line", "gridline", "label1", "label2"
@@ -90,63 +79,6 @@ def estimated_at_first(figure: Figure) -> Iterator[None]:
                     for names in TICKS:
                         _copy_ticks(axis, names, replace)
         yield
-
-
-@contextmanager
-def turned_once(renderer: Any) -> Iterator[None]:
-    """Let texts drawn inside scale and turn their font once, not for each letter: a fifteenth of the time of a picture.
-
-    Pixels are those without it, to the last one.
-
-    Parameters
-    ----------
-    renderer : matplotlib.backends.backend_agg.RendererAgg
-    """
-    by_letters = getattr(renderer, LETTERS, None)
-    if by_letters is None or not all(hasattr(FT2Font, name) for name in OF_FONT):
-        yield
-        return
-    setattr(renderer, LETTERS, partial(_draw_letters, renderer, by_letters))
-    try:
-        yield
-    finally:
-        delattr(renderer, LETTERS)
-
-
-def _draw_letters(
-    renderer: Any,
-    by_letters: Callable[..., None],
-    graphics: Any,
-    x: float,
-    y: float,
-    angle: float,
-    letters: Iterable[tuple[Any, ...]],
-    boxes: Sequence[Any],
-) -> None:
-    """Draw the letters of a text from x, y [px], y downwards; with Matplotlib's own method what is more than letters.
-
-    Parameters as that method has them, as it names letters (font, size, index, slant, extent, dx, dy).
-    """
-    letters = list(letters)
-    plain_letters = all(slant == 0 and extent == 1 for _, _, _, slant, extent, _, _ in letters)
-    if boxes or not plain_letters or not graphics.get_antialiased():
-        by_letters(graphics, x, y, angle, letters, boxes)
-        return
-    cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    matrix = (FIXED * np.array([[cos, -sin], [sin, cos]])).round().astype(int)
-    agg: Any = backend_agg
-    flags, normal, height = agg.get_hinting_flag(), agg.RenderMode.NORMAL, renderer.height
-    last: tuple[Any, float] | None = None
-    for font, size, index, _, _, dx, dy in letters:
-        if last is None or font is not last[0] or size != last[1]:
-            font.set_size(size, renderer.dpi)
-            last = font, size
-        place = x + dx * cos - dy * sin, height - y + dx * sin + dy * cos
-        font._set_transform(matrix, [round(PIXEL * along) for along in place])
-        bitmap = font._render_glyph(index, flags, normal)
-        shape = bitmap.buffer
-        top = int(height) - bitmap.top + shape.shape[0]
-        renderer._renderer.draw_text_image(shape, bitmap.left, top, 0, graphics)
 
 
 def _measure_once(axis: Axis, name: str, replace: Replace) -> None:

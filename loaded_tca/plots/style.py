@@ -29,7 +29,7 @@ from loaded_tca.errors import require
 from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.input_files import is_place
 from loaded_tca.plain import plain, signed
-from loaded_tca.plots.layout import estimated_at_first, turned_once
+from loaded_tca.plots.layout import estimated_at_first
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.files import FilePath, replace_file
 from loaded_tca.results.numbers import CycleNumbers
@@ -84,7 +84,7 @@ def png_of(figure: Figure, dots_per_inch: float = DOTS_PER_INCH, largest: int = 
     shown = figure.get_dpi()
     canvas: Any = FigureCanvasAgg(figure)
     figure.set_dpi(dots_per_inch)
-    with estimated_at_first(figure), turned_once(canvas.get_renderer()), rc_context(FAST_TEXT):
+    with estimated_at_first(figure), rc_context(FAST_TEXT):
         canvas.draw()  # once: savefig would draw the figure to lay it out, and then again
     figure.set_dpi(shown)
     pixels = np.asarray(canvas.buffer_rgba())[..., :3]  # figures let nothing shine through

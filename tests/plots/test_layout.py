@@ -1,7 +1,5 @@
 """Layout whose first pass goes by estimates: near what is measured, and pictures as of two measured passes."""
 
-import warnings
-
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -9,7 +7,7 @@ from matplotlib.figure import Figure
 from numpy.testing import assert_array_equal
 
 from loaded_tca.plots import layout
-from loaded_tca.plots.layout import estimated_at_first, estimated_box, turned_once
+from loaded_tca.plots.layout import estimated_at_first, estimated_box
 
 PIXEL = 1.0
 NEAR = 14.0
@@ -120,37 +118,3 @@ def test_figures_measure_as_before_afterwards():
     methods = [method for _, method, _ in layout.TICKS]
     replaced = "get_tightbbox", layout.LAYOUT_OF_TEXT, *layout.MEASURED_AGAIN, *methods
     assert not any(name in vars(artist) for artist in figure.findobj() for name in replaced)
-
-
-def drawn(turned):
-    """Pixels of texts: turned, of several sizes and fonts, with letters that no font has, and as formulas."""
-    figure = Figure(figsize=(4.0, 3.0), dpi=120)
-    figure.text(0.1, 0.8, "share of the torque [%] µ φ", rotation=90.0, va="top")
-    figure.text(0.2, 0.5, "turned by thirty\nin two lines", rotation=30.0, fontsize=7.3, family="serif", style="italic")
-    figure.text(0.5, 0.1, "\N{CJK UNIFIED IDEOGRAPH-9F7F} beside", fontsize="large", weight="bold")
-    figure.text(0.5, 0.8, r"$\frac{\sigma_F}{2 \pi}$ and words", antialiased=True)
-    figure.text(0.5, 0.3, "rough", antialiased=False)
-    canvas = FigureCanvasAgg(figure)
-    with warnings.catch_warnings(action="ignore"):  # of the letter that no font has
-        if turned:
-            with turned_once(canvas.get_renderer()):
-                canvas.draw()
-        else:
-            canvas.draw()
-    return np.asarray(canvas.buffer_rgba())
-
-
-def test_letters_turned_together_are_those_turned_one_by_one(monkeypatch):
-    pixels = drawn(turned=False)
-    assert pixels[..., 0].min() == 0
-    assert_array_equal(drawn(turned=True), pixels)
-    monkeypatch.setattr(layout, "LETTERS", "of another Matplotlib")
-    assert_array_equal(drawn(turned=True), pixels)
-
-
-def test_renderers_draw_letters_as_before_afterwards():
-    renderer = FigureCanvasAgg(Figure()).get_renderer()
-    before = set(vars(renderer))
-    with pytest.raises(RuntimeError), turned_once(renderer):
-        raise RuntimeError
-    assert set(vars(renderer)) == before
