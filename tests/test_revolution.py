@@ -202,7 +202,7 @@ def test_revolution_comes_back_from_its_file(tmp_path):
     assert back.dataset.equals(turn.dataset)
     assert back.summary() == turn.summary()
     assert back.scene == turn.scene
-    with pytest.raises(InputError, match=r"a whole revolution, .* Revolution\.load"):
+    with pytest.raises(InputError, match=r"a whole revolution, .* loaded_tca\.Revolution\.load"):
         load_result(tmp_path / "turn.nc")
 
 
