@@ -3770,6 +3770,20 @@ FAULTS = (
         "results/test_slice_pressure.py::"
         "test_peak_whose_place_is_half_the_average_from_an_edge_has_the_error_of_a_slice",
     ),
+    Fault(
+        "stages: the planet's profile shift follows from another mesh than the sun's where that of the sun is given",
+        "stages/sections.py",
+        "planet = of_sun - sun if sun is not None else of_ring - (ring or 0.0)",
+        "planet = of_ring - (ring or 0.0)",
+        "stages/test_profile_shifts.py::test_shifts_that_follow_leave_no_backlash",
+    ),
+    Fault(
+        "stages: a profile shift that follows is of each mesh alone, and a planet two gears",
+        "stages/sections.py",
+        "replace(self.planet, profile_shift=planet_shift, strength=None)",
+        "replace(self.planet, strength=None)",
+        "stages/test_profile_shifts.py::test_planet_is_one_gear_in_both_meshes",
+    ),
 )
 
 

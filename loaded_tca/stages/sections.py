@@ -12,11 +12,13 @@ from typing import Any, ClassVar, Literal
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears import CylindricalMesh, InternalMesh
+from loaded_tca.gears.involute import profile_shift_sum
 from loaded_tca.notebooks import InNotebooks
 from loaded_tca.pairs.gear_pair import Driving
 from loaded_tca.plain import plain
 from loaded_tca.scene import cylindrical
 from loaded_tca.scene.blank import OTHER
+from loaded_tca.scene.build import arguments_by_keys
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.equivalents import OF_HELICAL
 from loaded_tca.scene.internal import InternalScene, RingSection
@@ -65,6 +67,7 @@ from loaded_tca.stages.kinematics import spacing_problems
 SUN_MESH = {"pinion": "sun", "wheel": "planet"}
 RING_MESH = {"pinion": "planet", "wheel": "ring"}
 """Words for the gears of both meshes: in their scenes, in the stage."""
+MEMBERS = "sun", "planet", "ring"
 OF_ONE_PITCH = {
     "pitch": "teeth of a stage are alike",
     "tooth": "teeth of a stage are alike",
@@ -73,6 +76,8 @@ OF_ONE_PITCH = {
 }
 """Sections of a gear that a stage does not have, and why."""
 MOST_PLANETS = 12
+LARGEST_SHIFT = 5.0
+"""Of profile shift coefficients, as of those that are given."""
 SAME_DISTANCE = 1e-3
 """Difference of the centre distances of both meshes, in modules, that counts as none."""
 WRITTEN_deg = 1e-3
@@ -169,6 +174,16 @@ class PlanetaryStage(Section):
         return math.inf if stiffness is None else 1e3 * stiffness
 
 
+def _planet_between(planet: float | None, sun: float | None, ring: float | None, distance: float | None) -> str | None:
+    """What is wrong with a planet whose profile shift both of its mates ask for."""
+    if planet is not None or sun is None or ring is None or distance is None:
+        return None
+    return (
+        "missing; pair.centre_distance_mm asks for one with sun.profile_shift and for one with ring.profile_shift: "
+        "give that of the planet, or leave out that of sun or ring, which then has what leaves no backlash"
+    )
+
+
 def _largest_gap(angles: tuple[float, ...]) -> float:
     """Largest angle between neighbouring planets [deg]."""
     turns = sorted(angle % 360.0 for angle in angles)
@@ -185,7 +200,10 @@ class StageGeometry(Section):
         Number(0.0, 59.0), "helix angle beta at the reference circle; its sign is in `sun.hand`", 0.0
     )
     centre_distance_mm: float | None = key(
-        DIAMETER_mm, "centre distance of sun and planets", None, "follows from the profile shifts, without backlash"
+        DIAMETER_mm,
+        "centre distance of both meshes; profile shifts that are not given beside it leave no backlash",
+        None,
+        "follows from the profile shifts, without backlash",
     )
     addendum_coefficient: float = key(
         ADDENDUM, "addendum of the basic rack in modules, h_aP/m_n; each gear may have its own", 1.0
@@ -319,10 +337,14 @@ class Stage(InNotebooks, Section):
                 (f"{gear}.{name}",),
                 lambda given, why=why: None if given is None else f"found a section; not allowed: {why}",
             )
-            for gear in ("sun", "planet", "ring")
+            for gear in MEMBERS
             for name, why in OF_ONE_PITCH.items()
         ),
-        shortened_once(("sun", "planet", "ring")),
+        shortened_once(MEMBERS),
+        Rule(
+            ("planet.profile_shift", "sun.profile_shift", "ring.profile_shift", "pair.centre_distance_mm"),
+            _planet_between,
+        ),
         Rule(
             ("load.sun_torque_Nm", "analysis.torques_Nm"),
             lambda torque, several: (
@@ -377,6 +399,45 @@ class Stage(InNotebooks, Section):
         return first
 
     @cached_property
+    def profile_shifts(self) -> tuple[float, float, float]:
+        """Profile shift coefficients of sun, planet and ring: one planet in both meshes.
+
+        Those that are not given leave no backlash at a centre distance that is; where none is given, all are 0.
+
+        Raises
+        ------
+        GeometryError
+            If the centre distance asks for a profile shift that no gear has.
+        """
+        sun, planet, ring = given = self.sun.profile_shift, self.planet.profile_shift, self.ring.profile_shift
+        distance = self.geometry.centre_distance_mm
+        if distance is None or given.count(None) in (0, len(given)):
+            return sun or 0.0, planet or 0.0, ring or 0.0
+        of_sun = self._shift_sum(SUN_MESH, (self.sun.teeth, self.planet.teeth), distance)
+        of_ring = self._shift_sum(RING_MESH, (self.planet.teeth, self.ring.teeth), distance)
+        if planet is None:
+            planet = of_sun - sun if sun is not None else of_ring - (ring or 0.0)
+        shifts = of_sun - planet if sun is None else sun, planet, of_ring - planet if ring is None else ring
+        for name, shift in zip(MEMBERS, shifts, strict=True):
+            if abs(shift) > LARGEST_SHIFT:
+                raise GeometryError(
+                    f"pair.centre_distance_mm: found {plain(distance, 6)}; it and the profile shifts that are given "
+                    f"ask for {shift:.4f} on the {name}, allowed -{LARGEST_SHIFT:g} to {LARGEST_SHIFT:g}"
+                )
+        return shifts
+
+    def _shift_sum(self, gears: Mapping[str, str], teeth: tuple[int, int], distance: float) -> float:
+        """Sum of the profile shifts of a mesh that leaves no backlash at a centre distance [mm]."""
+        with in_words_of(gears), arguments_by_keys(StageGeometry):
+            return profile_shift_sum(
+                teeth,
+                self.geometry.normal_module_mm,
+                pressure_angle=math.radians(self.geometry.pressure_angle_deg),
+                helix_angle=math.radians(self.geometry.helix_angle_deg),
+                centre_distance=distance,
+            )
+
+    @cached_property
     def sun_scene(self) -> CylindricalScene:
         """Scene of the sun and a planet: the sun is the pinion; the torque is a planet's part of the first torque."""
         return self._meshes(self.centre_distance)[0]
@@ -395,7 +456,27 @@ class Stage(InNotebooks, Section):
         GeometryError
             If gears are impossible, or do not mesh.
         """
-        return _gears_of(self.sun_scene, self.ring_scene)
+        with self._following_shifts_named():
+            return _gears_of(self.sun_scene, self.ring_scene)
+
+    @contextmanager
+    def _following_shifts_named(self) -> Iterator[None]:
+        """Add to a refusal of gears which profile shifts the centre distance asks for, where any follow from it."""
+        try:
+            yield
+        except (InputError, GeometryError) as error:
+            distance, given = self.geometry.centre_distance_mm, (self.sun, self.planet, self.ring)
+            following = [
+                f"{shift:.4f} on the {name}"
+                for name, gear, shift in zip(MEMBERS, given, self.profile_shifts, strict=True)
+                if gear.profile_shift is None
+            ]
+            if distance is not None and 0 < len(following) < len(MEMBERS):
+                error.add_note(
+                    f"pair.centre_distance_mm = {plain(distance, 6)} and the profile shifts that are given ask for "
+                    f"{' and '.join(following)}"
+                )
+            raise
 
     def _meshes(self, distance: float | None) -> tuple[CylindricalScene, InternalScene]:
         """Scenes of both meshes under a planet's part of the first torque; problems have the names of the stage."""
@@ -404,7 +485,10 @@ class Stage(InNotebooks, Section):
         driving: Driving = "pinion" if self.stage.driving == "sun" else "wheel"
         planets, torque = len(self.stage.angles), 1e-3 * self.sun_torques[0]
         other = OTHER[self.sun.hand or "right"]
-        sun, planet = replace(self.sun, strength=None), replace(self.planet, strength=None)  # of rating alone
+        sun_shift, planet_shift, ring_shift = self.profile_shifts
+        sun = replace(self.sun, profile_shift=sun_shift, strength=None)  # strength: of rating alone
+        planet = replace(self.planet, profile_shift=planet_shift, strength=None)
+        ring = replace(self.ring, profile_shift=ring_shift, strength=None)
         shared: dict[str, Any] = {"material": self.material, "analysis": replace(self.analysis, torques_Nm=None)}
         with in_words_of(SUN_MESH):
             of_sun = CylindricalScene(
@@ -420,7 +504,7 @@ class Stage(InNotebooks, Section):
                 title=f"{self.title}: planet and ring".strip(": "),
                 geometry=cylindrical.Geometry(**common, driving=driving, sense="negative"),
                 pinion=replace(planet, hand=other),
-                wheel=replace(self.ring, strength=None),
+                wheel=ring,
                 load=Load(pinion_torque_Nm=torque * self.planet.teeth / self.sun.teeth / planets),
                 **shared,
             )
