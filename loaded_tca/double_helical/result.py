@@ -72,7 +72,10 @@ NUMBERS = numbers(
             OVER_HALVES, "MPa", "peak contact pressure in the half", columns=("half_{}_peak_pressure_MPa",)
         ),
         "line_load": Number(
-            OVER_HALVES, "N/mm", "largest line load in the half", columns=("half_{}_line_load_N_per_mm",)
+            OVER_HALVES,
+            "N/mm",
+            "largest line load in the half; at a face end mesh-dependent",
+            columns=("half_{}_line_load_N_per_mm",),
         ),
         "face_load_factor": (HALF, "1", "face load factor K_Hbeta of the half, under its mean torque; NaN: no load"),
         "face_border": Number(
@@ -155,7 +158,8 @@ FIGURES: dict[str, Figure] = {
     },
     **{
         f"half_{name}_line_load_N_per_mm": Figure(
-            of=partial(_of_half, "line_load", half), label=f"largest line load of half {name}"
+            of=partial(_of_half, "line_load", half),
+            label=f"largest line load of half {name}; mesh-dependent at sharp ends",
         )
         for half, name in enumerate(HALVES)
     },

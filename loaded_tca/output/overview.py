@@ -126,9 +126,10 @@ def spectrum_rows(load: AnyLoad) -> Iterator[Row]:
     """Bins of a load spectrum, which of them are reversed (from 1 on), and their time."""
     if load.case is None:
         return
-    other_way = ", ".join(str(number) for number, case in enumerate(load.case, start=1) if case.reversed)
+    other_way = [str(number) for number, case in enumerate(load.case, start=1) if case.reversed]
     yield "bins of the load spectrum", f"{len(load.case)}"
-    yield "bins that are reversed", other_way or "none"
+    names = f"bin{'s' * (len(other_way) > 1)} {', '.join(other_way)} of {len(load.case)}"
+    yield "bins that are reversed", names if other_way else "none"
     if load.hours is not None:
         yield "hours of all bins [h]", plain(load.hours, 9)
 

@@ -344,7 +344,8 @@ def plot_contact_patterns(result: MeshCycle) -> Figure:
     figure, panels = _envelopes(result, shown)
     for torque, axes in zip(shown, panels[::2], strict=True):
         axes.set_ylabel(f"{style.torque_label(result, torque)}\n{axes.get_ylabel()}")
-    style.set_title(figure, result, f"loaded contact patterns, {style.loads(result)}", range_of_positions(result))
+    about = f"loaded contact patterns, {style.loads(result, len(shown))}"
+    style.set_title(figure, result, about, range_of_positions(result))
     return figure
 
 

@@ -65,8 +65,7 @@ def plot_sn_curves(rating: OfCases) -> Figure:
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(lambda value, _: plain(value))
         axes.yaxis.set_minor_formatter(NullFormatter())
-    kind = "bins" if isinstance(rating, OfSpectrum) else "torques"
-    return _finished(figure, panels, rating, f"S-N curves with {len(rating.torque)} {kind}")
+    return _finished(figure, panels, rating, f"S-N curves with {_cases(rating)}")
 
 
 def plot_damage(rating: OfCases) -> Figure:
@@ -97,14 +96,22 @@ def plot_damage(rating: OfCases) -> Figure:
                 label = f"{gear}: above the static strength"
                 axes.plot(broken, np.full(broken.size, 0.97), "v", color=colour, transform=top, label=label)
         label = rating.NUMBERS["torque"].label
+        if len(places) == 1:  # bars beside it would be at torques of their own
+            axes.set_xticks(places, [plain(places[0], 6)])
         axes.set(xlabel=f"{label} [N m]", ylabel=f"damage in {plain(rating.life_required, 6)} h [-]")
         _scale(axes, damage[np.isfinite(damage)])
         if not (damage > 0.0).any():
             style.tell(axes, "no damage: stresses below the end of the curve")
         _finish(axes, WORDS[mode])
     several = isinstance(rating, OfSpectrum)
-    what = f"damage of {len(rating.torque)} bins" if several else "damage under each torque alone"
+    what = f"damage of {_cases(rating)}" if several else "damage under each torque alone"
     return _finished(figure, panels, rating, what)
+
+
+def _cases(rating: OfCases) -> str:
+    """How many bins or torques a rating has, in words."""
+    kind = "bin" if isinstance(rating, OfSpectrum) else "torque"
+    return f"{len(rating.torque)} {kind}{'s' * (len(rating.torque) > 1)}"
 
 
 def _scale(axes: Axes, damage: Array) -> None:

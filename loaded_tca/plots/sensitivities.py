@@ -383,7 +383,7 @@ def plot_transmission_error_band(
         axes.set_xlabel("pinion angle [deg]")
     handles = _legend_of_bands(rows[0, 0])
     figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
-    under = loads(result) if torque is None else load(result, torque)
+    under = loads(result, len(shown_torques)) if torque is None else load(result, torque)
     what = f"scatter by the tolerances of {len(given)} key{'s' * (len(given) > 1)}, to first order"
     style.set_title(figure, result, f"{what}, {under}", range_of_positions(result))
     return figure

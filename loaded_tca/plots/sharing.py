@@ -35,6 +35,7 @@ from loaded_tca.plots.style import (
 from loaded_tca.results.load_factors import face_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import CycleNumbers
+from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.separation import slice_middles
 from loaded_tca.unloaded.path import contact_span, path_letters, roll_lengths_of_flanks
 
@@ -52,6 +53,8 @@ NEAR_LETTERS = 0.03
 MOST_ORDERS, LEAST_POSITIONS = 8, 4
 """Orders of the tooth mesh that are drawn; positions from which the first is known."""
 SMALLEST_AMPLITUDE_UM = 1e-4
+MOST_SLICES, ABOVE_THEM = 0.99, 1.1
+"""Part of the slices that all colours of a line load are for, and how far above these they go."""
 CENTRE_DECIMALS = 3
 """Of the centre of the load in mm, which the grid does not tell more closely."""
 PART_WITH_PHASE = 0.01
@@ -101,7 +104,7 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     below.grid(alpha=0.3)
     keys = [key for axes in (panels[0], below) for key in axes.get_legend_handles_labels()[0]]
     figure.legend(handles=keys, loc="outside lower center", ncols=4, fontsize="small")
-    about = load(result, shown[0]) if len(shown) == 1 else loads(result)
+    about = load(result, shown[0]) if len(shown) == 1 else loads(result, len(shown))
     style.set_title(figure, result, f"load sharing, {about}", range_of_positions(result))
     return figure
 
@@ -264,7 +267,8 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
     """Line load along the contacts of all pairs and positions, each where it lies on both flanks.
 
     Every contact is drawn as the line through the middles of its pressure, coloured by the force per length along it,
-    on one scale for all torques.
+    on one scale for all torques. The scale ends a tenth above the line load of 99 of 100 slices under the torque that
+    has the largest one; where slices lie above, the label of the bar has the largest line load.
 
     Parameters
     ----------
@@ -286,21 +290,38 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
     for one in loaded_maps(result, torque):
         loaded, across = slice_middles(one.x, one.pressure)
         points = one.origin + across[:, None] * one.axes[0] + one.y[loaded, None] * one.axes[1]
-        line_load = one.pressure[:, loaded].sum(axis=0) * one.spacing[0]
+        line_load = _of_slices(one)
         parts.append(np.stack([points[:-1], points[1:]], axis=1))
         loads_of_parts.append(0.5 * (line_load[:-1] + line_load[1:]))
     values = np.concatenate(loads_of_parts)
     rising = np.argsort(values, kind="stable")  # the largest is seen where lines meet
     segments, values = np.concatenate(parts)[rising], values[rising]
-    scale = Normalize(0.0, float(np.nanmax(result.line_load, initial=0.0)) or 1.0)
+    largest = float(np.nanmax(result.line_load, initial=0.0)) or 1.0
+    highest = min(largest, _line_load_of_most(result))
+    scale = Normalize(0.0, highest)
 
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
         return [draw_segments(axes, to_picture(segments), values, scale)]
 
     figure, panels = both_flanks(result, draw)
-    figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="line load [N/mm]")
+    beyond = f"\nsingle slices up to {plain(largest)}; mesh-dependent at sharp ends"
+    extend = "max" if highest < largest else "neither"
+    bar = ScalarMappable(scale, COLOURS)
+    figure.colorbar(bar, ax=panels, label=f"line load [N/mm]{beyond * (highest < largest)}", extend=extend)
     style.set_title(figure, result, f"line load along the contacts, {load(result, torque)}", range_of_positions(result))
     return figure
+
+
+def _of_slices(one: PressureMap) -> Array:
+    """Line load of the slices of a map that carry load [N/mm]."""
+    return one.pressure[:, one.pressure.any(axis=0)].sum(axis=0) * one.spacing[0]
+
+
+def _line_load_of_most(result: MeshCycle) -> float:
+    """Where the colours of line loads end [N/mm]."""
+    torque = int(np.argmax(np.nanmax(result.line_load, axis=(1, 2), initial=0.0)))
+    slices = np.concatenate([np.zeros(1), *(_of_slices(one) for one in loaded_maps(result, torque))])
+    return ABOVE_THEM * float(np.quantile(slices, MOST_SLICES)) or 1.0
 
 
 def plot_path_pressure(result: MeshCycle) -> Figure:

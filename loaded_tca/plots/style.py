@@ -274,10 +274,13 @@ def load(result: CycleNumbers, torque: int) -> str:
     return torque_label(result, torque) + (f" ({which} of {count})" if count > 1 else "")
 
 
-def loads(result: CycleNumbers) -> str:
-    """Return what a title says of all torques."""
-    low, high = shown_torque(result.torque.min()).split()[0], shown_torque(result.torque.max())
-    return load(result, 0) if len(result.torque) == 1 else f"pinion torques {low} to {high}"
+def loads(result: CycleNumbers, panels: int | None = None) -> str:
+    """Return what a title says of all torques, and how many of them have panels where those are fewer."""
+    count, low = len(result.torque), shown_torque(result.torque.min()).split()[0]
+    if count == 1:
+        return load(result, 0)
+    left_out = f" ({panels} of {count} shown)" if panels is not None and panels < count else ""
+    return f"pinion torques {low} to {shown_torque(result.torque.max())}{left_out}"
 
 
 def position_label(result: CycleNumbers, position: int, column: int | None = None) -> str:

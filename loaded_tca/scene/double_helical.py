@@ -43,6 +43,10 @@ ONE_BY_ONE = (
     "half_a.nc and half_b.nc of a result, scene.halves, and as a scene, with its measured flanks, "
     "scene.half_scenes(0.0)"
 )
+WHERE_BEARINGS_ARE = (
+    "; forces on bearings: 'loaded-tca check' has those of even shares, double_helical_bearings.csv of 'loaded-tca run' "
+    "those under load"
+)
 SHARED = "found a torque of 0; allowed above 0: the halves share a torque"
 NOT_OF_HALVES = {
     "tooth": "teeth have the flanks of their half; give the half by itself, as a helical pair",
@@ -396,4 +400,4 @@ class DoubleHelicalScene(CylindricalScene):
         InputError
             Always.
         """
-        raise InputError(f"pair.double_helical: {ONE_BY_ONE}")
+        raise InputError(f"pair.double_helical: {ONE_BY_ONE}{WHERE_BEARINGS_ARE if self.is_supported else ''}")

@@ -285,7 +285,8 @@ class StageResult(JoinedResult):
         degrees = ", ".join(plain(math.degrees(angle)) for angle in self.stage.stage.angles)
         return (
             f"sun {z_s}, planets {z_p} at {degrees} deg, ring {z_r}; the {self.stage.stage.driving} drives; "
-            f"{self.dataset.sizes['position']} positions of a pitch"
+            f"meshes at {self.stage.analysis.positions} positions of a pitch, both ends among them; shares at "
+            f"{self.dataset.sizes['position']} even positions, a multiple of the planets"
         )
 
     def rows(self, figures: Sequence[Figures]) -> list[tuple[str, ...]]:

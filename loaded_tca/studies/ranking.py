@@ -74,10 +74,26 @@ def figure_values(study: xarray.Dataset, name: str) -> Array:
     """
     names = [str(figure) for figure, values in study.data_vars.items() if values.dims == ("sample", "torque")]
     if name not in names:
-        hint = did_you_mean(nearest(name, names)) or f"; allowed {', '.join(names) or 'nothing: there are none'}"
-        raise InputError(f"{name}: no figure of the study{hint}")
+        raise InputError(f"{name}: no figure of the study{_figures_instead(study, name, names)}")
     ok = (study["status"].values == "ok")[:, None]
     return np.where(ok, np.asarray(study[name].values, dtype=float), np.nan)
+
+
+def _figures_instead(study: xarray.Dataset, name: str, names: list[str]) -> str:
+    """What the study has where it has not the figure of that name; without any figure, why."""
+    if names:
+        return did_you_mean(nearest(name, names)) or f"; allowed {', '.join(names)}"
+    return f"; {failure_of_all(study)}" if failure_of_all(study) else "; allowed nothing: there are none"
+
+
+def failure_of_all(study: xarray.Dataset) -> str:
+    """Sentence on a study of which no variant is ok: how many have which status, and the first reason; else empty."""
+    status = Counter(study["status"].values.tolist())
+    if "ok" in status:
+        return ""
+    counts = ", ".join(f"{count} {word}" for word, count in sorted(status.items()))
+    reason = " ".join(study["reason"].values.tolist()[0].split())
+    return f"no variant of {study.sizes['sample']} is ok ({counts}); the first: {reason}"
 
 
 def nominal_variant(study: xarray.Dataset) -> int | None:

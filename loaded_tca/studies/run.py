@@ -42,6 +42,7 @@ from loaded_tca.scene import Scene
 from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.stages import Stage
 from loaded_tca.studies.double_helical import halves_figures
+from loaded_tca.studies.ranking import failure_of_all
 from loaded_tca.studies.ranking import figures as key_figures
 from loaded_tca.studies.ranking import figures_of
 from loaded_tca.studies.rows import Row, Rows, dataset_of, problem_of_figures
@@ -110,6 +111,8 @@ def run_study(
     -----
     DamageWarning
         Which rows beside ``out`` cannot be used, and why, if anything is missing: their variants are analysed again.
+    UserWarning
+        If no variant is ok: how many have which status, and the reason of the first.
 
     Examples
     --------
@@ -159,6 +162,8 @@ def run_study(
         dataset = dataset_of(study, rows.of(digests), attributes)
         if out is not None:
             write_dataset(place, dataset)
+    if failure := failure_of_all(dataset):
+        warnings.warn(f"study: {failure}", UserWarning, stacklevel=2)
     return dataset
 
 

@@ -101,5 +101,7 @@ def test_units_of_labels_end_names():
 def test_spectrum_shows_its_bins_those_that_are_reversed_and_their_hours():
     case, other = (LoadCase(pinion_torque_Nm=50.0, hours=hours, reversed=hours > 2.0) for hours in (1.5, 4.0))
     rows = dict(spectrum_rows(Load(case=(case, other, case, other))))
-    assert [*rows.values()] == ["4", "2, 4", "11"]
+    assert [*rows.values()] == ["4", "bins 2, 4 of 4", "11"]
+    assert dict(spectrum_rows(Load(case=(case, other))))["bins that are reversed"] == "bin 2 of 2"
+    assert dict(spectrum_rows(Load(case=(case, case))))["bins that are reversed"] == "none"
     assert not [*spectrum_rows(Load(pinion_torque_Nm=50.0))]

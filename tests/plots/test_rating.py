@@ -55,6 +55,16 @@ def test_bars_add_up_to_the_damage(torques):
     assert axes.get_ylabel() == "damage in 20000 h [-]"
 
 
+def test_bars_of_one_torque_stand_at_that_torque_alone():
+    one = rated([150.0])
+    axes = plot_damage(one).axes[1]
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["150"]
+    assert axes.get_xticks().tolist() == [150.0]
+    assert plot_damage(one).get_suptitle() == "damage of 1 bin"
+    assert plot_sn_curves(one).get_suptitle() == "S-N curves with 1 bin"
+    assert plot_sn_curves(rated()).get_suptitle() == "S-N curves with 2 torques"
+
+
 def test_torques_above_the_static_strength_have_a_mark():
     axes = plot_damage(rated(**{"rating.required_root_safety": 20.0})).axes[1]
     assert "pinion: above the static strength" in axes.get_legend_handles_labels()[1]

@@ -1,5 +1,6 @@
 """Pictures of the shared load: what is drawn is what the result holds."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.plain import plain
 from loaded_tca.plots import (
     plot_contact_path,
     plot_contact_patterns,
@@ -78,6 +80,37 @@ def test_line_load_on_the_flanks_carries_the_largest_line_load(name):
         # A segment has the mean of its ends; the top of a contact is flat.
         assert_allclose(lines.get_array().max(), np.nanmax(cycle.line_load), rtol=0.01)
     assert "[N/mm]" in figure.axes[2].get_ylabel()
+
+
+def test_colours_of_line_loads_do_not_follow_a_single_slice():
+    """One slice in several hundred has three times the largest line load: the label says so, the colours do not."""
+    smooth = shared()
+    one = smooth.maps[0][2][1]
+    pressure = one.pressure.copy()
+    pressure[:, np.flatnonzero(pressure.any(axis=0))[-1]] *= 50.0
+    spike = pressure.sum(axis=0).max() * one.spacing[0]
+    row = (smooth.maps[0][2][0], replace(one, pressure=pressure), *smooth.maps[0][2][2:])
+    maps = ((*smooth.maps[0][:2], row, *smooth.maps[0][3:]), *smooth.maps[1:])
+    line_load = smooth.line_load.copy()
+    line_load[0, 2, 1] = spike
+    assert spike > 1.5 * np.nanmax(smooth.line_load)
+    before, after = (
+        plot_line_load_distribution(cycle).axes[2]
+        for cycle in (smooth, replace(changed(smooth, line_load=line_load), maps=maps))
+    )
+    assert after.get_ylim()[1] <= 1.1 * before.get_ylim()[1]
+    assert before.get_ylabel() == "line load [N/mm]"
+    assert after.get_ylabel().endswith(f"single slices up to {plain(spike)}; mesh-dependent at sharp ends")
+
+
+def test_title_says_how_many_torques_have_panels():
+    titles = [
+        plot(result(torques=torques)).get_suptitle()
+        for plot in (plot_load_share, plot_contact_patterns)
+        for torques in ((20.0, 30.0, 40.0, 50.0, 80.0), (20.0, 80.0))
+    ]
+    assert ["(4 of 5 shown)" in title for title in titles] == [True, False, True, False]
+    assert all("pinion torques 20 to 80 N m" in title for title in titles)
 
 
 def test_lines_on_the_flanks_are_as_segments_one_by_one():

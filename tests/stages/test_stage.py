@@ -91,6 +91,12 @@ def test_scenes_of_both_meshes_have_the_flanks_of_the_stage(stage):
     assert_allclose(forces[0], forces[1])
 
 
+def test_scope_says_at_which_positions_meshes_and_shares_are(result):
+    """Four planets: of the six steps between seven positions, shares take the next multiple of four."""
+    assert "meshes at 7 positions of a pitch, both ends among them; shares at 8 even positions" in result.scope
+    assert result.planet_share.shape[1] == 8
+
+
 def test_shares_add_up_and_orders_of_equal_planets_cancel(result):
     assert_allclose(result.planet_share.sum(axis=-1), 1.0, rtol=1e-9)
     assert result.neutralised_orders == (1, 3, 5)

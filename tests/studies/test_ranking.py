@@ -46,8 +46,11 @@ def test_study_without_a_figure_ranks_nothing_and_loses_nothing():
     found = rank_variants(study)
     assert found["rank"].isna().all()
     assert found["status"].tolist() == ["refused"] * 2
-    with pytest.raises(InputError, match=r"anything: no figure of the study; allowed nothing"):
+    why = r"^anything: no figure of the study; no variant of 2 is ok \(2 refused\); the first: it is refused$"
+    with pytest.raises(InputError, match=why):
         rank_variants(study, "anything")
+    with pytest.raises(InputError, match=r"anything: no figure of the study; allowed nothing: there are none"):
+        rank_variants(study.assign(status=("sample", ["ok", "refused"])), "anything")
 
 
 def test_figures_of_variants_that_are_not_ok_are_not_known():

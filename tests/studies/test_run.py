@@ -79,7 +79,8 @@ def nonsense(scene):
 
 
 def test_figures_that_are_no_numbers_are_a_fault():
-    found = run_study(study(1.0), figures=nonsense)
+    with pytest.warns(UserWarning, match="^study: no variant of 1 is ok"):
+        found = run_study(study(1.0), figures=nonsense)
     assert found["status"].values[0] == "fault"
     assert "could not convert string to float" in found["reason"].values[0]
 
@@ -205,7 +206,8 @@ def spaced(scene):
     ],
 )
 def test_figures_that_do_not_fit_into_the_result_are_a_fault(tmp_path, figures, told):
-    found = run_study(study(1.0, 2.0), out=tmp_path / "study.nc", figures=figures)
+    with pytest.warns(UserWarning, match=r"^study: no variant of 2 is ok \(2 fault\); the first: figures: "):
+        found = run_study(study(1.0, 2.0), out=tmp_path / "study.nc", figures=figures)
     assert list(found["status"].values) == ["fault", "fault"]
     assert told in found["reason"].values[0]
 
