@@ -44,8 +44,8 @@ ONE_BY_ONE = (
     "scene.half_scenes(0.0)"
 )
 WHERE_BEARINGS_ARE = (
-    "; forces on bearings: 'loaded-tca check' has those of even shares, double_helical_bearings.csv of 'loaded-tca run' "
-    "those under load"
+    "; forces on bearings: 'loaded-tca check' has those of even shares, double_helical_bearings.csv of "
+    "'loaded-tca run' those under load"
 )
 SHARED = "found a torque of 0; allowed above 0: the halves share a torque"
 NOT_OF_HALVES = {

@@ -42,9 +42,8 @@ from loaded_tca.scene import Scene
 from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.stages import Stage
 from loaded_tca.studies.double_helical import halves_figures
-from loaded_tca.studies.ranking import failure_of_all
+from loaded_tca.studies.ranking import failure_of_all, figures_of
 from loaded_tca.studies.ranking import figures as key_figures
-from loaded_tca.studies.ranking import figures_of
 from loaded_tca.studies.rows import Row, Rows, dataset_of, problem_of_figures
 from loaded_tca.studies.stage import stage_figures
 from loaded_tca.studies.study import Study
