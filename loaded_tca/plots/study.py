@@ -264,10 +264,12 @@ def plot_study_heat_map(
             axis.set_ticks(range(0, len(ticks), every), ticks[::every])
         one.set(xlabel=key_label(study, across), ylabel=key_label(study, upwards))
         one.set_title(labels[torque] if values.shape[1] > 1 else "", fontsize="small")
-    best = Patch(fill=False, edgecolor=ACCENT, linewidth=2.5, label="largest" if largest_first else "least")
+    over_others = max(of.size for line in of_cell for of in line) > 1
+    framed = ("largest" if largest_first else "least") + " median" * over_others
+    best = Patch(fill=False, edgecolor=ACCENT, linewidth=2.5, label=framed)
     handles = [best, Line2D([], [], color=ACCENT, marker="x", linestyle="", label=MISSING)][: 1 + crossed]
     drawing.legend(handles=handles, loc="outside lower center", ncols=2, fontsize="small")
-    median = [] if max(of.size for line in of_cell for of in line) < 2 else ["medians over the other keys"]
+    median = ["medians over the other keys; the best variant may lie in another cell"] if over_others else []
     set_study_title(drawing, study, values, f"{without_unit(label_of(figure))}{under_torques(study, torques)}", *median)
     return drawing
 
