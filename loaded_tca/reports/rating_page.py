@@ -22,8 +22,8 @@ from loaded_tca.reports.page import Picture, Table, parts_of, pictures_of
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.summary import shown
 from loaded_tca.scene.rating import is_rated
-from loaded_tca.stages.rating import MEMBERS, MESHES, StageRating, stage_rating_of
-from loaded_tca.stages.sections import words_of
+from loaded_tca.stages.rating import MESHES, StageRating, stage_rating_of
+from loaded_tca.stages.sections import MEMBERS, words_of
 
 if TYPE_CHECKING:
     from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult

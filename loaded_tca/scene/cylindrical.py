@@ -201,8 +201,8 @@ class CylindricalScene(BlankScene):
         return CylindricalMesh(pinion, wheel, self.geometry.centre_distance_mm, self.mounting.axial_offset_mm)
 
     @cached_property
-    def _profile_shifts(self) -> tuple[float, float]:
-        """Profile shifts of both gears, before any gear is made: thickness is measured on teeth with their shift."""
+    def profile_shifts(self) -> tuple[float, float]:
+        """Coefficients of both gears, before any gear is made: thickness is measured on teeth with their shift."""
         geometry, shifts = self.geometry, [self.pinion.profile_shift, self.wheel.profile_shift]
         following = 0.0
         if geometry.centre_distance_mm is not None and shifts.count(None) == 1:
@@ -219,11 +219,11 @@ class CylindricalScene(BlankScene):
     @property
     def computed_tip_alteration(self) -> float:
         """Coefficient k of both tips as ``pair.tip_shortening = "computed"`` has it."""
-        return tip_alteration(self.geometry, (self.pinion.teeth, self.wheel.teeth), self._profile_shifts)
+        return tip_alteration(self.geometry, (self.pinion.teeth, self.wheel.teeth), self.profile_shifts)
 
     def _gear_values(self, kinds: tuple[type, type]) -> Iterator[dict[str, Any]]:
         """Values of both gears: of their sections, and those that follow from the pair."""
-        shifts, sections = self._profile_shifts, (self.pinion, self.wheel)
+        shifts, sections = self.profile_shifts, (self.pinion, self.wheel)
         tips = shortening(self.geometry, (self.pinion.teeth, self.wheel.teeth), shifts)
         for kind, own, sign, name, shift in zip(kinds, sections, self.hand_signs, GEARS, shifts, strict=True):
             values = cut_parameters(kind, self.geometry, own) | tips | {"name": name, "profile_shift": shift}
@@ -237,7 +237,7 @@ class CylindricalScene(BlankScene):
             yield
         except (InputError, GeometryError) as error:
             distance = self.geometry.centre_distance_mm
-            shifts = zip((self.pinion, self.wheel), self._profile_shifts, strict=True)
+            shifts = zip((self.pinion, self.wheel), self.profile_shifts, strict=True)
             following = [shift for own, shift in shifts if own.profile_shift is None]
             if distance is not None and len(following) == 1:
                 error.add_note(

@@ -34,7 +34,7 @@ from loaded_tca.scene.rating import ANALYSIS, RatingSection, StrengthSection
 from loaded_tca.scene.section import contents
 from loaded_tca.scene.sections import Operation
 from loaded_tca.stages.gears import StageGears
-from loaded_tca.stages.sections import RING_MESH, SUN_MESH, Stage, in_words_of, words_of
+from loaded_tca.stages.sections import MEMBERS, RING_MESH, SUN_MESH, Stage, in_words_of, words_of
 from loaded_tca.stages.warnings import WHOSE
 
 if TYPE_CHECKING:
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 
     from loaded_tca.stages.result import StageResult
 
-MEMBERS = "sun", "planet", "ring"
 MESHES = {"sun_mesh": SUN_MESH, "ring_mesh": RING_MESH}
 """Attribute of each mesh -> the gears that its pinion and wheel are."""
 BENT_TO_AND_FRO = 0.7

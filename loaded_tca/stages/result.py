@@ -20,14 +20,16 @@ from loaded_tca.results.figure import Figure, Figures
 from loaded_tca.results.files import STAGE
 from loaded_tca.results.result import JoinedResult, figures_of
 from loaded_tca.results.summary import kind_of_edge, shown_torque
+from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.stages.files import parse_stage
 from loaded_tca.stages.kinematics import neutralised
-from loaded_tca.stages.sections import Stage
+from loaded_tca.stages.sections import SAME_DISTANCE, Stage
 from loaded_tca.units import MICROMETRES
 
 if TYPE_CHECKING:
     import xarray
 
+    from loaded_tca.scene import Scene
     from loaded_tca.stages.rating import StageRating
 
 STAGE_FILE = "stage.nc"
@@ -349,8 +351,20 @@ class StageResult(JoinedResult):
 
     @classmethod
     def require_parts(cls, subject: Stage, places: Sequence[Path], parts: Sequence[MeshCycle]) -> None:
-        """Refuse mesh cycles of another stage, whatever their strengths and cells."""
+        """Refuse mesh cycles of another stage, whatever their strengths and cells, and how they have profile shifts."""
         for place, cycle, scene in zip(places, parts, (subject.sun_scene, subject.ring_scene), strict=True):
-            gears = {gear: replace(getattr(cycle.scene, gear), strength=None) for gear in GEARS}  # of rating alone
-            if replace(cycle.scene, analysis=scene.analysis, **gears) != scene:
+            if not _is_of(cycle.scene, scene):
                 raise InputError(f"{place}: the mesh cycle of another stage than {STAGE_FILE} beside it")
+
+
+def _is_of(saved: Scene, scene: CylindricalScene) -> bool:
+    """Whether the scene of a saved mesh cycle has the gears of a mesh, their profile shifts given or following."""
+    if not isinstance(saved, CylindricalScene) or type(saved) is not type(scene):
+        return False
+    gears = {
+        gear: replace(getattr(saved, gear), strength=None, profile_shift=getattr(scene, gear).profile_shift)
+        for gear in GEARS  # strengths are of rating alone
+    }
+    return replace(saved, analysis=scene.analysis, **gears) == scene and bool(
+        np.allclose(saved.profile_shifts, scene.profile_shifts, rtol=0.0, atol=SAME_DISTANCE)
+    )

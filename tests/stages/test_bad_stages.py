@@ -1,6 +1,7 @@
 """Stage files that cannot be analysed: one sentence each, in the words of the stage."""
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -106,3 +107,17 @@ def test_files_that_are_no_stage_are_refused(saved, tmp_path):
     write_dataset(tmp_path / "stage.nc", file.isel(planet=[0, 1]))
     with pytest.raises(InputError, match=r"planet: expected 4"):
         StageResult.load(tmp_path)
+
+
+def test_mesh_cycles_are_those_of_a_stage_by_the_shifts_of_their_gears(saved, tmp_path):
+    """The sun's shift, 0, may be given or not; a planet with another one is another planet."""
+    place, result, _ = saved
+    for shifts in ({"pinion.profile_shift": None}, {"wheel.profile_shift": 0.21}):
+        scene = result.sun_mesh.scene.with_changes(shifts)
+        shutil.copytree(place, tmp_path / "stage", dirs_exist_ok=True)
+        replace(result.sun_mesh, scene=scene).save(tmp_path / "stage" / "sun_mesh.nc")
+        if scene.pinion.profile_shift is None:
+            assert StageResult.load(tmp_path / "stage").sun_mesh.scene == scene
+        else:
+            with pytest.raises(InputError, match=r"sun_mesh.nc: the mesh cycle of another stage than stage.nc"):
+                StageResult.load(tmp_path / "stage")
