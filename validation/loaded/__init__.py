@@ -24,7 +24,8 @@
 - ``root_stress_precision``: models whose fronts are of single precision beside those of double;
 - ``numbers_to_copy``: load factors, peak pressure and free edges over misalignment, box, grid and defaults; a page;
 - ``moving_edges``: derivatives by mounting errors where contacts end at edges, beside differences of analyses;
-- ``random_sensitivities``: derivatives of random scenes of all families to every key, beside the same, in minutes;
+- ``random_sensitivities``: derivatives of random spur, helical, bevel and face-milled pairs to every key, beside the
+  same, in minutes;
 - ``random_scenes``: random scenes with every feature against invariances and laws of mechanics, in minutes;
 - ``random_errors``: errors of the default grids on such scenes, by figure and family, in minutes; a page;
 - ``sensitivities``: against slopes through whole analyses, closed forms, Monte Carlo studies; their cost; a page;

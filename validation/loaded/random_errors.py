@@ -92,12 +92,12 @@ def of_itself(coarse: Array, fine: Array) -> float:
 TEXT = """# Errors of grids on random scenes
 
 Written by `python -m validation.loaded.random_errors --log FILE`. Seeds 0 to {last} of
-`validation.random_scenes.featured_scene`: gears of seven families that nobody has tried, with up to a dozen features
-each (reliefs, roundings, caps, shafts, bores, measured flanks, other torques), at {positions} positions. Each scene is
-analysed with the default `accuracy` of {accuracy:g}, and again with {finer} times as many cells along both axes as the
-finest of its contacts has. The difference is the error of the default's grids, not that of the model, which [another
-table](../how_it_works/errors.md#how-far-off-each-number-is) has. Of a scene the largest error of all positions, torques
-and tooth pairs counts.
+`validation.random_scenes.featured_scene`: gears of {families} families that nobody has tried, with up to {features}
+features each (reliefs, roundings, caps, shafts, bores, measured flanks, other torques), at {positions} positions. Each
+scene is analysed with the default `accuracy` of {accuracy:g}, and again with {finer} times as many cells along both
+axes as the finest of its contacts has. The difference is the error of the default's grids, not that of the model, which
+[another table](../how_it_works/errors.md#how-far-off-each-number-is) has. Of a scene the largest error of all
+positions, torques and tooth pairs counts.
 
 {table}
 
@@ -126,6 +126,8 @@ def page(found: list[dict[str, Any]]) -> str:
     heads = [f"{family.replace('_', ' ')} ({count})" for family, count in zip(families, counts, strict=True)]
     failed = [f"seed {one['seed']}: {one['failed']}" for one in found if "failed" in one]
     return TEXT.format(
+        families=len(families),
+        features=max(len(one["features"]) for one in found),
         last=max(one["seed"] for one in found),
         positions=POSITIONS,
         accuracy=ACCURACY,

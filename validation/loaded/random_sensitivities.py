@@ -1,8 +1,9 @@
-"""Derivatives of random scenes of all families to every key, beside differences of whole analyses with two steps.
+"""Derivatives of random pairs to every key, beside differences of whole analyses with two steps.
 
-Analyses on either side place their boxes and grids anew and scatter by that; what slopes over two steps differ by is
-the scatter of a comparison. Only those that scatter by less than 5 % are judged. Every derivative is seen in the size
-of its figure: a slope that changes it by less than 1 % over the usual tolerance of the key counts as one that does.
+Pairs are spur, helical, straight and spiral bevel and face-milled. Analyses on either side place their boxes and grids
+anew and scatter by that; what slopes over two steps differ by is the scatter of a comparison. Only those that scatter
+by less than 5 % are judged. Every derivative is seen in the size of its figure: a slope that changes it by less than 1
+% over the usual tolerance of the key counts as one that does.
 """
 
 import math

@@ -519,8 +519,8 @@ contacts without gears and the closed form.
 Contacts of mesh cycles that carry more than a twentieth of their position's force, up to four of each scene, those with
 the highest bound first. Columns are so many times as fine as the first ones of an analysis, beside the edge and
 away from it; the finest ones two to four times. The error is that of an analysis against the finest columns, beside
-it what it estimates: the change from coarser columns, and at least 5 % over the number of cells on the pressed part of
-the rounding, 12 % where two edges cross. Share is that of the position's force.
+it what it estimates: the change from coarser columns, and at least {by_cells} over the number of cells on the pressed
+part of the rounding, {crossing} where two edges cross. Share is that of the position's force.
 
 {columns}
 
@@ -566,6 +566,8 @@ def page() -> Page:
     sharp, most, every = times().values()
     text = TEXT.format(
         machine=machine(),
+        by_cells=f"{100.0 * edges_of_gears.LEFT_BY_CELLS:.0f} %",
+        crossing=f"{100.0 * edges_of_gears.LEFT_BESIDE_CROSSING:.0f} %",
         columns=table_of_columns(),
         corner=", ".join(f"{peak:.0f}" for peak in corner_peaks()),
         first=CORNER_ROWS[0],
