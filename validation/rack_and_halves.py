@@ -23,25 +23,38 @@ from validation.invariances import (
     Subject,
     analysed,
     difference,
+    of_pairs,
     span,
     stored_in,
     told,
 )
 from validation.scene_transforms import as_wheel, half_alone, halves_exchanged
 
-MOST_TEETH = 10_000
-"""Of a wheel in a scene: what differs from a rack is a part of the teeth of the pinion over these."""
+WHEEL_TEETH = 5_000, 10_000
+"""Of two wheels in a scene, the second with twice the teeth of the first and the most that a scene allows."""
 EXACT = 1e-9
 """Of forces that follow from each other in closed form."""
 
 
 def rack_as_wheel(subject: Subject) -> Off:
-    """The rack as a wheel of very many teeth, by contact alone: bodies below the teeth are unlike ones."""
+    """The rack as the limit of wheels of very many teeth, by contact alone: bodies below the teeth are unlike ones.
+
+    What a wheel has differs from the limit by a part of one over its teeth, which two wheels tell.
+    """
     changes = {"analysis.compliance": "contact", "mounting.in_plane_deg": 0.0}
     scene = subject.scene.with_changes(changes)
-    wheel: Any = Renamed(analysed(as_wheel(scene, MOST_TEETH)))
-    wheel.transmission_error = wheel.of_pair.transmission_error * MOST_TEETH / RACK_TEETH  # the same travel
-    return difference(analysed(scene), wheel, SOLVED_ANEW)
+    wheels = [analysed(as_wheel(scene, teeth)) for teeth in WHEEL_TEETH]
+    limit: Any = Renamed(wheels[-1])
+    limit.pair = np.union1d(*(wheel.pair for wheel in wheels))
+    for name in ("load_share", "peak_pressure"):
+        near, nearest = (of_pairs(wheel, name, limit.pair) for wheel in wheels)
+        setattr(limit, name, 2.0 * nearest - near)
+    near, nearest = (
+        wheel.transmission_error * teeth / RACK_TEETH  # the same travel
+        for wheel, teeth in zip(wheels, WHEEL_TEETH, strict=True)
+    )
+    limit.transmission_error = 2.0 * nearest - near
+    return difference(analysed(scene), limit, SOLVED_ANEW)
 
 
 def _double_helical(subject: Subject) -> DoubleHelicalScene:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.unloaded import ContactPoint
 
 STEP_ROUNDING = 1e-13
-"""Newton steps shorter than this times the sum of the base radii are rounding."""
+"""Newton steps shorter than this times the base radius of the gear are rounding."""
 BEND = 100.0
 """Factor by which the bend of a flank along the normal may differ from place to place."""
 NO_MORE = 1e3
@@ -28,7 +28,7 @@ STEPS_TOGETHER = 4
 """Newton steps of all points of a contact; those that need more, near or beyond the end of an involute, go on alone
 from where they meet the other flank, for as many again, as long as the steps shrink to less than half."""
 FLATTEST = 1e-6
-"""Change of theta along the normal, times the sum of the base radii, below which a flank bends away from it."""
+"""Change of theta along the normal, times the base radius of the gear, below which a flank bends away from it."""
 ON_EDGE = 1e-9
 """Distance from an edge, over the module, up to which a flank has not ended."""
 TOGETHER = 16_000
@@ -39,19 +39,20 @@ TOGETHER = 16_000
 class _Rays:
     """Rays along the normals of n contacts, in the frame of one gear turned back.
 
-    Starts (3 of (n, points)), normals (3 of (n, 1)), turns (n, 1).
+    Starts (3 of (n, points)), normals (3 of (n, 1)), turns (n, 1), base radius [mm].
     """
 
     flank: Flank
     start: tuple[Array, ...]
     normal: tuple[Array, ...]
     turn: Array
+    base_radius: float
 
     def single(self, places: tuple[Indices, ...], height: Array) -> _Rays:
         """Some of the rays (k,), from these heights on, each as if it were all of a contact."""
         normal = tuple(part[places[0]] for part in self.normal)
         start = (part[places][:, None] + height[:, None] * n for part, n in zip(self.start, normal, strict=True))
-        return _Rays(self.flank, tuple(start), normal, self.turn[places[0]])
+        return replace(self, start=tuple(start), normal=normal, turn=self.turn[places[0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,8 +137,6 @@ class NormalGap:
             (pair.pinion.flank, points, axes, pair.sense * angles[0]),
             (pair.wheel.flank, (origins @ in_wheel)[:, 0], axes @ in_wheel, -pair.sense * angles[1]),
         )
-        self._size = sum(pair.base_radii)
-        self._rounding = STEP_ROUNDING * self._size
 
     def of(self, rows: Indices | Mask | slice) -> NormalGap:
         """Some of the contacts, or the same ones more than once."""
@@ -212,14 +211,15 @@ class NormalGap:
     def _rays(self, x: Array, y: Array) -> list[_Rays]:
         """Rays of pinion and wheel at points of the tangent planes, those of a contact in a row."""
         rays, beside = [], (1,) * (max(x.ndim, y.ndim) - 1)
-        for flank, origins, axes, turns in self._views:
+        for (flank, origins, axes, turns), base_radius in zip(self._views, self.pair.base_radii, strict=True):
             count = len(turns)
             start = (
                 (o.reshape(count, *beside) + x * a.reshape(count, *beside)) + y * b.reshape(count, *beside)
                 for o, a, b in zip(origins.T, axes[:, 0].T, axes[:, 1].T, strict=True)
             )
             normal = tuple(axes[:, 2, :, None].swapaxes(0, 1))
-            rays.append(_Rays(flank, tuple(part.reshape(count, -1) for part in start), normal, turns[:, None]))
+            starts = tuple(part.reshape(count, -1) for part in start)
+            rays.append(_Rays(flank, starts, normal, turns[:, None], base_radius))
         return rays
 
     def _meetings(self, rays: list[_Rays]) -> tuple[list[_Meeting], Mask | None]:
@@ -250,6 +250,7 @@ class NormalGap:
     def _meet(self, rays: _Rays) -> _Meeting:
         """Newton steps, of each contact until the longest of its points is rounding or the next one would be."""
         (nx, ny, nz), (x, y, z), longest = rays.normal, rays.start, 0.25 * self.pair.module
+        rounding = STEP_ROUNDING * rays.base_radius
         height, before = np.zeros((2, *rays.turn.shape))
         settled: Mask = np.zeros(rays.turn.shape, dtype=bool)
         for _ in range(STEPS_TOGETHER):
@@ -257,7 +258,7 @@ class NormalGap:
             rho = np.sqrt(square)
             jet = rays.flank.theta(rho, z)
             slope = (x * ny - y * nx) / square - jet.rho * ((x * nx + y * ny) / rho) - jet.z * nz
-            flat = np.abs(slope) <= FLATTEST / self._size
+            flat = np.abs(slope) <= FLATTEST / rays.base_radius
             if flat.any():
                 slope[flat] = np.inf
             step = (jet.value + rays.turn - np.arctan2(y, x)) / slope
@@ -269,11 +270,11 @@ class NormalGap:
                 step = np.where(settled, 0.0, step)
             height = height + step
             x, y, z = x + step * nx, y + step * ny, z + step * nz
-            settled = settled | (largest <= self._rounding) | (BEND * largest**3 <= self._rounding * before**2)
+            settled = settled | (largest <= rounding) | (BEND * largest**3 <= rounding * before**2)
             if settled.all():
                 break
             before = np.minimum(largest, longest)
-        return _Meeting(height, np.sqrt(x * x + y * y), z, length, settled | (length <= NO_MORE * self._rounding))
+        return _Meeting(height, np.sqrt(x * x + y * y), z, length, settled | (length <= NO_MORE * rounding))
 
 
 def _gradient(flank: Flank, rho: Array, z: Array) -> Array:

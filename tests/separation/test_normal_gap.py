@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import read_scene, sample_separation, trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.cylindrical import Mounting
+from loaded_tca.separation import normal_gap
 from loaded_tca.separation.normal_gap import ON_EDGE, STEP_ROUNDING, NormalGap
 from loaded_tca.unloaded import relative_curvature
 from tests.samples.gear_pairs import gear_pair, sam_paper
@@ -80,16 +81,31 @@ def test_normals_that_meet_no_flank_have_no_room():
     assert (room < 0.0).all()
 
 
-def test_steps_end_where_the_next_one_is_rounding():
+def test_normals_miss_the_flank_of_a_pinion_below_its_base_cylinder_beside_a_rack_too():
+    """Where there is room the normal ends on the flank; a rack, a million times as large, leaves that as it is."""
+    changes = {"teeth": 12, "modifications.tip_relief_um": 0.0, "modifications.tip_relief_start_mm": 0.0,
+               "modifications.profile_crowning_um": 4.0}  # fmt: skip
+    scene = read_scene(SCENES / "rack_and_pinion.toml")
+    pair = scene.with_changes({f"pinion.{key}": value for key, value in changes.items()}).pair()
+    gap, x, y = gap_of(pair, -1.0), np.linspace(0.0, 0.4, 41), np.zeros(1)
+    met, rho = np.isfinite(gap.at(x, y)[1]), gap.places(x, y)[0][0]
+    (points, _), turn = gap.flank_points(x, y), pair.sense * trace_contact(pair, [-pair.pitch]).pinion_angle
+    angle = np.arctan2(points.point[..., 1], points.point[..., 0]) - turn
+    aside = points.rho * (angle - pair.pinion.flank.theta(points.rho, points.z).value)
+    assert 10 < met.sum() < 20, "from the contact point on to the base cylinder"
+    assert (rho[met] > pair.base_radii[0]).all()
+    assert_allclose(aside[met], 0.0, rtol=0, atol=GAP)
+
+
+def test_steps_end_where_the_next_one_is_rounding(monkeypatch):
     """Newton's method from the heights that were found moves nothing."""
     pair = read_scene(SCENES / "spiral_bevel.toml").pair()
     gap = gap_of(pair)
     x, y = np.linspace(-0.1, 0.1, 5)[:, None], np.linspace(-2.0, 2.0, 7)
     finer, there = gap.at(x, y)
-    moved = gap_of(pair)
-    moved._rounding = 1e-3 * STEP_ROUNDING * sum(pair.base_radii)
     assert (there > 0.0).all()
-    assert_allclose(finer, moved.at(x, y)[0], rtol=0, atol=GAP)
+    monkeypatch.setattr(normal_gap, "STEP_ROUNDING", 1e-3 * STEP_ROUNDING)
+    assert_allclose(finer, gap.at(x, y)[0], rtol=0, atol=GAP)
 
 
 @pytest.mark.parametrize(
