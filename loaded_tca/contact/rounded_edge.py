@@ -80,10 +80,10 @@ class EdgePressure:
     error : float
         Estimated relative error of the discretisation: the change from coarser cells, and at least what the number of
         cells is known to leave; infinite where the end of the box is what bounds the contact, where the pressure
-        along the edge rises to a sharp end of the material, and where the slope of the gap jumps at the peak, as at the
-        start of a linear relief: there finer rows find more and more.
+        along the edge rises to a sharp end of the material, where pressure across the edge goes on to one, and where
+        the slope of the gap jumps at the peak, as at the start of a linear relief: there finer rows find more and more.
     ends_sharp : bool
-        Whether it does the latter: the corner is as sharp as that end.
+        Whether the pressure meets a sharp end of the material: the place is as sharp as that end.
     pressed_width : float [mm]
         How far the contact reaches onto the rounding, across the edge.
     cells_on_arc : float
@@ -193,12 +193,22 @@ class PressedArc:
         peak = largest * in_x * in_y if problem.max_pressure is None else largest
         error = (ASKEW_ERROR if across[0] else ALIGNED_ERROR) / on_arc**2
         ends_sharp = _rises_to_sharp_end(solution, row, column, error)
+        ends_sharp = ends_sharp or self._reaches_end(solution, row, column)
         growth = _growth_at_slope_jump(problem, row, column) / largest
         error = max(error, MARGIN_OF_GROWTH * growth) if growth <= MOST_GROWTH else math.inf
         if row in (0, x.size - 1) or column in (0, y.size - 1) or ends_sharp:
             error = math.inf
         rows = np.count_nonzero(((beyond + along > 0.0) & (pressure > 0.0)).any(axis=1))
         return EdgePressure(peak, (x_top, y_top), error, ends_sharp, width, on_arc, int(rows), solution)
+
+    def _reaches_end(self, solution: GradedSolution, row: int, column: int) -> bool:
+        """Whether pressure goes on from a peak, across the edge, to a sharp end of the material that cuts the arc."""
+        across = int(abs(self.normal[1]) >= abs(self.normal[0]))
+        start, line = ((row, np.s_[:, column]), (column, np.s_[row]))[across]
+        outwards = np.s_[start:] if self.normal[across] > 0.0 else np.s_[start::-1]
+        gaps, pressures = (part[line][outwards] for part in (solution.problem.gap, solution.pressure))
+        end = int(np.argmin(np.append(pressures, 0.0) > 0.0))
+        return end < gaps.size and bool(np.isinf(gaps[end]))
 
     def after(self, peak: EdgePressure) -> PressedArc:
         """The edge as a solution leaves it."""

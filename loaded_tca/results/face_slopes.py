@@ -18,6 +18,7 @@ from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.results.figure_slopes import line_load_slopes
 from loaded_tca.results.load_factors import (
     STRIPS,
+    error_beside_arcs,
     face_ends,
     face_forces,
     strip_motions,
@@ -369,3 +370,14 @@ def warn_of_end_strips(
         first = keys[int(at_end.argmax())]
         counted = {"key": first, "count": np.count_nonzero(at_end), "keys": len(keys)}
         give_accuracy_warning(kinds.FACE_END_IN_LOAD.sentence(**counted), stacklevel=stacklevel + 1)
+
+
+def warn_of_arcs(result: CycleNumbers, keys: Sequence[str], slopes: Array, stacklevel: int) -> None:
+    """Tell where derivatives (torque, key) of K_Hbeta rest on contacts that end on the arc of an end of the face."""
+    errors = np.array([error_beside_arcs(result.gear_pair, result.path, rows) for rows in result.maps])
+    moved = (np.nan_to_num(slopes)[errors > TOLD] != 0.0).any(axis=0)
+    if moved.any():
+        counted = {"key": keys[int(moved.argmax())], "count": np.count_nonzero(moved), "keys": len(keys)}
+        give_accuracy_warning(
+            kinds.ARC_IN_LOAD.sentence(error=float(errors.max()), **counted), stacklevel=stacklevel + 1
+        )

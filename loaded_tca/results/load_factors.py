@@ -10,9 +10,10 @@ pair in a strip at one position over the length of the contact line across the s
 The last position is the first one a pitch later and does not count. The factors depend on the number of strips;
 on the grid by some per cent where the load crowds at a sharp end. There half-spaces have a line load that grows without
 end, and pressures that are constant on cells carry what an end 0.2 cells farther out would have: a strip of the width w
-at the end lacks force in proportion to the length h of a cell, or less where the edge is free. Elsewhere strips miss
-what the load changes by within a cell. ``face_load_factor_error`` estimates both. Contact lines of few positions lie
-apart on the face, so that W has waves: ``face_load_factor_by_positions``.
+at the end lacks force in proportion to the length h of a cell, or less where the edge is free. On the arc of a rounded
+end cells tell to half of one where a contact ends, and the strips beside it follow. Elsewhere strips miss what the load
+changes by within a cell. ``face_load_factor_error`` estimates all three. Contact lines of few positions lie apart on
+the face, so that W has waves: ``face_load_factor_by_positions``.
 
 References
 ----------
@@ -23,11 +24,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.gear_pair import cylindrical_basis
+from loaded_tca.results.pressure_map import arc_cells
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,6 +45,12 @@ MISSING_AT_END = 0.15
 """Part of K_Hbeta that half-spaces lack at a sharp end on cells as long as a strip, at the most; on shorter ones less
 in proportion: 0.07 to 0.15 in 15 pairs (``validation/loaded/face_ends.py``); with free edges up to 0.07
 in five random pairs against 128 cells."""
+MISSING_AT_ARC = 0.3
+"""Relative error of K_Hbeta by cells as long as a strip, at the most, where contacts end on the arc of an end of the
+face, besides what half a cell at their ends moves; on shorter ones less in proportion: up to 0.26 on grids of 48 to 256
+cells along spur contacts, against 640 (``validation/loaded/face_ends.py``)."""
+END_EDGES = [k for k, edge in enumerate(2 * EDGE_NAMES) if "side" in edge]
+"""Numbers of the ends of the face among the edges of both gears."""
 IN_PAIRS = 3.0
 """Error of K_Hbeta away from the ends, at the most, over its change where each two cells along the contact share
 their load: up to 2.5 in seven random pairs with free edges, against 128 cells."""
@@ -87,8 +96,9 @@ def face_load_factor_error(
     """Estimated relative error of K_Hbeta under one torque by the cells, at the most.
 
     Where the strip with the largest force is the last one at an end of the face by which contacts end, K_Hbeta is too
-    low: the law of half-spaces without free edges, which have less. Elsewhere its change counts where each two slices
-    of cells share their load, in the worse way to take them in pairs.
+    low: the law of half-spaces without free edges, which have less. Where contacts end on the arc of an end of the
+    face, in this strip or beside it, the cells tell where to half a cell. Elsewhere the change of K_Hbeta counts where
+    each two slices of cells share their load, in the worse way to take them in pairs.
 
     Parameters
     ----------
@@ -110,16 +120,78 @@ def face_load_factor_error(
     if not forces.any():
         return math.nan
     largest = int(forces.argmax())
-    if largest not in (0, STRIPS - 1):
-        return IN_PAIRS * _change_in_pairs(pair, loaded, borders, forces)
-    cells = sum(
-        float(force[largest]) * one.spacing[1] / length
-        for one, (force, length) in zip(loaded, strips, strict=True)
-        if one.pressure[one.beside_end].any()
-    )
-    if not cells:
-        return IN_PAIRS * _change_in_pairs(pair, loaded, borders, forces)
-    return MISSING_AT_END * cells / float(forces[largest])
+    if by_ends := error_beside_arcs(pair, path, positions):
+        return max(by_ends, IN_PAIRS * _change_in_pairs(pair, loaded, borders, forces))
+    at_end = [largest in (0, STRIPS - 1) and bool(one.pressure[one.beside_end].any()) for one in loaded]
+    if any(at_end):
+        return MISSING_AT_END * _cells_in_strip(loaded, strips, at_end, largest)
+    return IN_PAIRS * _change_in_pairs(pair, loaded, borders, forces)
+
+
+def error_beside_arcs(pair: GearPair, path: ContactPath, positions: Sequence[Sequence[PressureMap | None]]) -> float:
+    """Estimated relative error of K_Hbeta by contacts that end on the arc of an end of the face; 0 where none does.
+
+    Those count that end in the strip with the largest force, or in one beside it.
+    """
+    if pair.sharp is pair:
+        return 0.0
+    borders, loaded = strip_borders(pair, path), loaded_maps(positions)
+    strips = [strip_forces(pair, one, borders) for one in loaded]
+    forces = np.sum([np.zeros(STRIPS), *(force for force, _ in strips)], axis=0)
+    largest = int(forces.argmax())
+    ends = [_ends_on_arcs(pair, one, borders) for one in loaded]
+    beside_arc = [any(largest in end.strips for end in of_map) for of_map in ends]
+    if not any(beside_arc):
+        return 0.0
+    return MISSING_AT_ARC * _cells_in_strip(loaded, strips, beside_arc, largest) + _change_by_ends(ends, forces)
+
+
+def _cells_in_strip(
+    loaded: Sequence[PressureMap], strips: Sequence[tuple[Array, float]], which: Sequence[bool], strip: int
+) -> float:
+    """Length of the cells of some of all maps over the width of a strip, weighted by their forces in it."""
+    forces = np.array([force[strip] for force, _ in strips])
+    cells = [one.spacing[1] / length for one, (_, length) in zip(loaded, strips, strict=True)]
+    return float((forces * cells) @ np.array(which, dtype=float)) / float(forces.sum())
+
+
+class _EndOnArc(NamedTuple):
+    """The first or the last slice under pressure of a map, on the arc of an end of the face or beside it.
+
+    Attributes
+    ----------
+    strips : set of int
+        Those that hold a part of the slice, and those beside them.
+    moved : (2, n) array [N]
+        Growth of the forces of all strips as the slice moves by half its width inwards, and outwards.
+    """
+
+    strips: set[int]
+    moved: Array
+
+
+def _ends_on_arcs(pair: GearPair, one: PressureMap, borders: Array) -> list[_EndOnArc]:
+    """Ends of the pressure of a map along the contact that lie on the arc of an end of the face."""
+    on_arc = arc_cells(pair, one)[..., END_EDGES].any(axis=-1) & (one.pressure > 0.0)
+    pressed, ends = np.flatnonzero(one.pressure.any(axis=0)), []
+    for outwards, place in zip((-1.0, 1.0), pressed[[0, -1]].tolist() if pressed.size else (), strict=False):
+        if on_arc[:, place].any():
+            alone = replace(one, pressure=np.where(np.arange(one.y.size) == place, one.pressure, 0.0))
+            force, *moved = (
+                strip_forces(pair, replace(alone, y=one.y + way * one.spacing[1]), borders)[0]
+                for way in (0.0, -0.5 * outwards, 0.5 * outwards)
+            )
+            first, last = np.flatnonzero(force)[[0, -1]].tolist()
+            ends.append(_EndOnArc({*range(first - 1, last + 2)}, np.array(moved) - force))
+    return ends
+
+
+def _change_by_ends(ends: Sequence[Sequence[_EndOnArc]], forces: Array) -> float:
+    """Largest relative change of K_Hbeta of forces of strips (n,) [N] as all ends on arcs move by half a cell."""
+    moved = forces + np.sum([end.moved for of_map in ends for end in of_map], axis=0)
+    largest = int(forces.argmax())
+    tops = moved[:, max(0, largest - 1) : largest + 2].max(axis=1)
+    return float(np.abs(tops / forces[largest] - 1.0).max())
 
 
 def _change_in_pairs(pair: GearPair, loaded: Sequence[PressureMap], borders: Array, forces: Array) -> float:

@@ -21,6 +21,7 @@ from loaded_tca.results.face_slopes import (
     peak_cut,
     rival_strip,
     top_strips,
+    warn_of_arcs,
     warn_of_edges,
     warn_of_end_strips,
     warn_of_face_ends,
@@ -373,6 +374,7 @@ class Sensitivities:
             warn_of_strips_beside(self.keys, by_torque, through_three, stacklevel=3)
         warn_of_face_ends(self.keys, by_torque, kinks, stacklevel=3)
         warn_of_end_strips(result, self.keys, *self._common_face, stacklevel=3)
+        warn_of_arcs(result, self.keys, by_torque, stacklevel=3)
         return by_torque
 
     @property

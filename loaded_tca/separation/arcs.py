@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from loaded_tca.arrays import Mask
-from loaded_tca.edges.places import lengths_past_tangents
+from loaded_tca.edges.places import on_arcs
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.flank_places import CellGrid, FlankPlaces, border_of
@@ -13,10 +13,10 @@ from loaded_tca.separation.flank_places import CellGrid, FlankPlaces, border_of
 
 def cells_on_arcs(pair: GearPair, grid: CellGrid, cells: Mask) -> Mask:
     """Edges (nx, ny, 8) on whose arcs some cells (nx, ny) of the grid of a contact lie; none of its other cells."""
-    on_arcs = np.zeros((*cells.shape, 2 * len(EDGE_NAMES)), dtype=bool)
+    edges = np.zeros((*cells.shape, 2 * len(EDGE_NAMES)), dtype=bool)
     if cells.any():
-        on_arcs[cells] = lengths_past_tangents(pair, *FlankPlaces(pair, grid).of(cells)) > 0.0
-    return on_arcs
+        edges[cells] = on_arcs(pair, *FlankPlaces(pair, grid).of(cells))
+    return edges
 
 
 def arcs_beside(pair: GearPair, grid: CellGrid, pressed: Mask) -> Mask:

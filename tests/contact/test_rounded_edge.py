@@ -96,6 +96,20 @@ def test_edge_that_meets_a_sharp_end_has_no_limit():
     assert crowned[0].error < 0.01
 
 
+@pytest.mark.parametrize(("left", "is_sharp"), [(0.01, True), (0.05, False)])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_arc_that_a_sharp_end_cuts_is_sharp_where_it_is_pressed_up_to_there(left, is_sharp, side):
+    """Another body ends so far [mm] past the beginning of the arc: the gap there is left^2/2R, 0.25 or 6 um."""
+
+    def gap(x, y):
+        return np.where(side * y < 2.0 + left, face_end(x, side * y), np.inf)
+
+    box = (BOX[0], tuple(sorted(side * end for end in BOX[1])))
+    found = peak(gap, box, RoundedEdge((0.0, side * 2.0), (0.0, side), RADIUS))
+    assert found.ends_sharp == is_sharp
+    assert (found.error == math.inf) == is_sharp
+
+
 @pytest.mark.thorough
 def test_estimate_covers_the_error_at_a_face_end():
     exact = peak(cells_on_arc=FINE).pressure

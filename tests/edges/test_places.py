@@ -4,9 +4,19 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.edges.places import arcs_at, arcs_of, dilated, edge_distances, has_relief_starts, relief_start_distances
+from loaded_tca.edges.places import (
+    LEAST_ARC,
+    arcs_at,
+    arcs_of,
+    dilated,
+    edge_distances,
+    has_relief_starts,
+    relief_start_distances,
+)
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
+from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.pairs.cylindrical import cylindrical_pair
 from tests.samples.gear_pairs import NONE, gear_pair
 
 PINION_TIP, WHEEL_TIP = 54.0, 88.5  # mm, radii of 34 and 57 teeth of 3 mm
@@ -39,6 +49,18 @@ def test_arcs_have_the_numbers_of_their_edges_and_begin_a_radius_before_the_end_
     end = 0.5 * WIDTH - RADIUS
     on = arcs_at(pair, between_the_axes(pair, 50.0, [-end - 0.01, -end + 0.01, end - 0.01, end + 0.01]))
     assert [np.flatnonzero(row).tolist() for row in on] == [[6], [], [], [7]]
+
+
+@pytest.mark.parametrize("cut", [0.0, 0.5, 2.0])
+def test_arc_that_begins_where_a_sharp_edge_has_ended_the_contact_is_none(cut):
+    """A wider pinion with rounded ends; ``cut``: what of its arcs lies before the wheel's ends, over the least part."""
+    beyond = RADIUS * (1.0 - cut * LEAST_ARC)
+    gears = [CylindricalGear(z, 3.0, WIDTH + 2.0 * wider) for z, wider in ((34, beyond), (57, 0.0))]
+    pair = cylindrical_pair(CylindricalMesh(*gears)).rounded(EdgeRounding(side=RADIUS), EdgeRounding())
+    end = 0.5 * WIDTH
+    inside, past = arcs_at(pair, between_the_axes(pair, 50.0, [end - 1e-4, end + 0.5 * RADIUS]))
+    assert np.flatnonzero(inside).tolist() == ([3] if cut else []), "on the flank an arc is one, however short"
+    assert np.flatnonzero(past).tolist() == ([3] if cut > 1.0 else [])
 
 
 @pytest.mark.parametrize("gear", [0, 1])

@@ -243,6 +243,16 @@ def test_face_load_factor_away_from_ends_misses_at_most_what_is_estimated():
     assert errors[1] < 0.5 * errors[0]
 
 
+@pytest.mark.parametrize("cells", [64, 128])
+def test_face_load_factor_beside_rounded_ends_is_off_by_at_most_what_is_estimated(cells):
+    """Roundings of 0.6 mm begin just before the second strip of a face of 14 mm: 384 cells tell where loads end."""
+    rounded = {"analysis.free_edges": True} | {f"{gear}.side_rounding_mm": 0.6 for gear in ("pinion", "wheel")}
+    coarse, fine = (without_crowning(number, **rounded) for number in (cells, 384))
+    error = coarse.key_figures()[0]["face_load_factor_error"]
+    off = abs(coarse.face_load_factor.item() / fine.face_load_factor.item() - 1.0)
+    assert 0.01 < off < error < 0.4
+
+
 def test_face_load_factor_with_free_edges_misses_less_than_half_spaces_do_at_most():
     coarse, fine = (without_crowning(cells, **{"analysis.free_edges": True}) for cells in (32, 64))
     error = coarse.key_figures()[0]["face_load_factor_error"]

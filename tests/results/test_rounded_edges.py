@@ -85,6 +85,20 @@ def test_edge_is_sharp_where_only_other_edges_have_a_radius():
     assert any(TOLD in one for one in told)
 
 
+def test_sharp_end_of_a_face_before_the_arc_of_the_wider_one_is_a_sharp_edge():
+    """The pinion is wider by its rounding, and more: what of its face the wheel meets is the same, and not rounded."""
+    pressures = []
+    for wider in (0.2, 0.3, 0.6):
+        keys = (("pinion.face_width_mm", 25.0 + 2.0 * wider), ("pinion.side_rounding_mm", 0.2))
+        cycle, told = analysed("misaligned", keys, positions=1)
+        assert cycle.on_edge.all()
+        assert not cycle.edge_is_rounded.any()
+        assert any(TOLD in one for one in told)
+        pressures.append(cycle.edge_pressure.item())
+    # the bending of a face wider by 0.4 mm of 25
+    assert_allclose(pressures, pressures[0], rtol=0.1)
+
+
 @pytest.mark.thorough
 def test_pressure_at_a_rounded_edge_is_a_number_of_the_gear():
     """The same on grids of twice and four times as many cells, to 2 %; that of a sharp edge grows without end."""

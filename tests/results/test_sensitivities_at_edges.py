@@ -152,6 +152,22 @@ def test_derivatives_of_the_strip_at_an_end_that_moves_are_warned_of():
         assert all("(mounting.axial_offset_mm; 1 of 2 keys)" in sentence for sentence in told)
 
 
+@pytest.mark.parametrize(("radius", "crowning", "count"), [(0.2, 3.0, 1), (0.0, 3.0, 0), (0.2, 40.0, 0)])
+def test_derivatives_of_the_strip_beside_a_rounded_end_are_warned_of(radius, crowning, count):
+    """With little crowning the load reaches the ends, where cells tell how far; with much it ends before them."""
+    ends = {f"{gear}.side_rounding_mm": radius for gear in ("pinion", "wheel")}
+    scene = read_scene(SCENES / "fzg_c14.toml").with_changes(
+        FLANKS_ALONE
+        | ends
+        | {CROWNING: crowning, "mounting.misalignment_um": 10.0, "analysis.positions": 3, "analysis.accuracy": None}
+        | {"analysis.cells": (16, 64)}
+    )
+    with noted_accuracy_warnings(given=False) as sentences:
+        slopes = analyse(scene).sensitivities([CROWNING]).face_load_factor
+    assert np.isfinite(slopes).all()
+    assert sum(kind_of(sentence) is kinds.ARC_IN_LOAD for sentence in sentences) == count
+
+
 @pytest.mark.parametrize(("key", "step"), [("wheel.modifications.tip_relief_start_mm", 0.01), (DISTANCE, 0.02)])
 def test_contact_points_on_the_start_of_a_linear_relief_move_as_by_whole_analyses(key, step):
     """Beyond the start the flank has another slope: both sides of it at once give 30 times the derivative."""
