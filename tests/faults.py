@@ -3790,12 +3790,16 @@ FAULTS = (
         "np.allclose(saved.profile_shifts, scene.profile_shifts, rtol=0.0, atol=SAME_DISTANCE)",
         "True",
         "stages/test_bad_stages.py::test_mesh_cycles_are_those_of_a_stage_by_the_shifts_of_their_gears",
+    ),
+    Fault(
         "steps to the flank of a pinion count as rounding by the size of the rack beside it",
         "separation/normal_gap.py",
         "rounding = STEP_ROUNDING * rays.base_radius",
         "rounding = STEP_ROUNDING * sum(self.pair.base_radii)",
         "separation/test_normal_gap.py::"
         "test_normals_miss_the_flank_of_a_pinion_below_its_base_cylinder_beside_a_rack_too",
+    ),
+    Fault(
         "rounded edges: the arc of a face counts beyond the sharp end of the narrower face that ends the contact",
         "edges/places.py",
         "((past_sharp < 0.0) | (lengths > past_sharp + least))",
