@@ -387,7 +387,7 @@ def beyond_defaults(before: Section, table: Mapping[str, Any], changed: Collecti
         Which the table was made of.
     table : mapping
     changed : collection of str
-        Paths, with dots, of keys in the table that are given: these are kept.
+        Paths, with dots, of keys and sections in the table that are given: these are kept whole.
     """
     kept = dict(table)
     for name, (_, entry) in entries(type(before)).items():
@@ -395,7 +395,7 @@ def beyond_defaults(before: Section, table: Mapping[str, Any], changed: Collecti
         value, own = table.get(name), contents(before)[name]
         if isinstance(entry, Key) and not inner and value == entry.default:
             kept.pop(name, None)
-        elif isinstance(own, Section) and isinstance(value, dict):
+        elif isinstance(own, Section) and isinstance(value, dict) and "" not in inner:
             kept[name] = beyond_defaults(own, value, inner)
     return kept
 

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import InputError, parse_scene, read_scene
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.scene.cylindrical import CylindricalScene
+from loaded_tca.scene.section import as_table
 from loaded_tca.unloaded import trace_contact
 from tests.refusals import refusals
 
@@ -118,6 +119,9 @@ def test_keys_that_made_halves_of_a_pair_make_one_pair_again_without_them(scene)
         halves.with_changes({**back, "pair.floating": "pinion"})
     with pytest.raises(InputError, match=r"^pair\.double_helical: missing"):
         halves.with_changes({"pair.floating": "wheel"}).with_changes(back)
+    whole = {**as_table(single)["pair"], "floating": "pinion"}
+    with pytest.raises(InputError, match=r"^pair\.double_helical: missing"):
+        halves.with_changes({"pair": whole})
 
 
 def test_text_makes_the_scene_again_and_keys_of_halves_make_it_another_one(scene):
