@@ -221,6 +221,10 @@ def exchanged(scene: Scene) -> Scene:
     The frame is turned half round about z and moved to the other axis, so that the other gear drives, in the other
     sense of rotation. A tilt of the wheel about its own middle is one of the pinion about its own, and a way along the
     axis.
+
+    The pinion angle of the other scene is the angle of the wheel here: states are the same where it is ratio phi1 + the
+    unloaded transmission error, not at equal angles. Each gear counts its angle from its own mid-face, so that an axial
+    offset dz of a helical pair parts both zeros by dz tan(beta) along the pitch.
     """
     table = as_table(scene)
     pinion, wheel = table["pinion"], table["wheel"]

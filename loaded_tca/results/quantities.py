@@ -33,8 +33,8 @@ QUANTITIES: dict[str, Part] = {
     "transmission_error_by_grids": Number(
         CYCLE,
         "rad",
-        "estimated error of the transmission error by the grids, from the two finest of each contact; NaN where cells "
-        "are given",
+        "estimated error of the transmission error by the grids, from the two finest of each contact; no bound with "
+        "rounded side edges; NaN on given cells of which fewer than 32 lie along both axes",
         at_base_circle=True,
     ),
     "mesh_stiffness": (
@@ -121,8 +121,8 @@ QUANTITIES: dict[str, Part] = {
     "discretisation_error": (
         PAIRS,
         "1",
-        "estimated relative error of the peak pressure by the grid, from the two finest grids; NaN where cells are "
-        "given, and without load",
+        "estimated relative error of the peak pressure by the grid, from the two finest grids; NaN without load, and "
+        "on given cells at edges and relief starts, or if fewer than 32 lie along both axes",
     ),
     "iterations": (PAIRS, "1", "iterations of the contact solver"),
     "residual": (PAIRS, "1", "residual of the contact solver"),

@@ -35,6 +35,7 @@ from loaded_tca.scene.section import (
     Rule,
     Section,
     as_table,
+    beyond_defaults,
     contents,
     in_keys,
     place_at,
@@ -489,7 +490,8 @@ class Scene(InNotebooks, WithStandards, ABC):
             place_at(table, sections)[name] = value
         with told_as_written(writings):
             if not is_of_family:
-                without_keys_of(self, table, scenes_of(table), changes)
+                said = beyond_defaults(self, table, changes)
+                without_keys_of(self, table, scenes_of(table, said), changes)
             return scene_from_table(table)
 
     def to_toml(self) -> str:

@@ -253,8 +253,11 @@ def scene_from_table(table: Mapping[str, Any]) -> Scene:
     return made(scenes, values)
 
 
-def scenes_of(table: Mapping[str, Any]) -> type[Scene]:
-    """Return the class of scenes that nested dictionaries describe; InputError with every problem if there is none."""
+def scenes_of(table: Mapping[str, Any], said: Mapping[str, Any] | None = None) -> type[Scene]:
+    """Return the class of scenes that nested dictionaries describe; InputError with every problem if there is none.
+
+    ``said``: the part of the table that tells the variant, without defaults of another one; None: all of the table.
+    """
     pair = {} if table.get("pair") is None else table["pair"]
     pair = contents(pair) if isinstance(pair, Section) else pair
     kind = pair.get("type") if isinstance(pair, Mapping) else None
@@ -263,7 +266,7 @@ def scenes_of(table: Mapping[str, Any]) -> type[Scene]:
     except ValueError as refused:
         raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
     _, variants = MODULES[name]
-    module = next((each for each, describes in variants.items() if describes(table)), None)
+    module = next((each for each, describes in variants.items() if describes(table if said is None else said)), None)
     return FAMILIES[name] if module is None else VARIANTS[module][0]
 
 

@@ -366,7 +366,7 @@ def without_keys_of(before: Section, table: dict[str, Any], section: type[Sectio
     """
     known = entries(section)
     for name, (_, entry) in entries(type(before)).items():
-        inner = [path.partition(".")[2] for path in changed if path.partition(".")[0] == name]
+        inner = _inside(changed, name)
         if name not in known:
             is_default = isinstance(entry, Key) and not inner and table.get(name, entry.default) == entry.default
             if is_default or table.get(name) is None:
@@ -376,6 +376,33 @@ def without_keys_of(before: Section, table: dict[str, Any], section: type[Sectio
         own = contents(before)[name]
         if isinstance(there, Subsection) and isinstance(own, Section) and isinstance(table.get(name), dict):
             without_keys_of(own, table[name], there.section, inner)
+
+
+def beyond_defaults(before: Section, table: Mapping[str, Any], changed: Collection[str]) -> dict[str, Any]:
+    """Return what a table says beyond the defaults of the section that it was made of: variants are told by this.
+
+    Parameters
+    ----------
+    before : Section
+        Which the table was made of.
+    table : mapping
+    changed : collection of str
+        Paths, with dots, of keys and sections in the table that are given: these are kept whole.
+    """
+    kept = dict(table)
+    for name, (_, entry) in entries(type(before)).items():
+        inner = _inside(changed, name)
+        value, own = table.get(name), contents(before)[name]
+        if isinstance(entry, Key) and not inner and value == entry.default:
+            kept.pop(name, None)
+        elif isinstance(own, Section) and isinstance(value, dict) and "" not in inner:
+            kept[name] = beyond_defaults(own, value, inner)
+    return kept
+
+
+def _inside(paths: Collection[str], name: str) -> list[str]:
+    """Paths that begin with a name, from there on; the name itself is empty."""
+    return [rest for first, _, rest in (path.partition(".") for path in paths) if first == name]
 
 
 def replaced_by(section: type[Section], changes: Mapping[str, Any]) -> set[str]:

@@ -204,6 +204,21 @@ def test_error_of_the_rotation_by_grids_is_a_part_of_it_that_the_accuracy_bounds
     assert np.isnan(cells_given.transmission_error_by_grids).all()
 
 
+def test_errors_by_grids_are_told_of_given_cells_that_the_solver_starts_from_half_of():
+    """From 32 cells along an axis on; slices of a contact at an edge would need a second grid of their own."""
+    scene = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes({**FLANKS_ALONE, "analysis.positions": 3})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # some contacts reach an edge
+        fewer, enough = (analyse(scene.with_changes({"analysis.cells": (16, along)})) for along in (31, 32))
+    assert np.isnan(fewer.transmission_error_by_grids).all()
+    assert np.isnan(fewer.discretisation_error).all()
+    assert (enough.transmission_error_by_grids > 0.0).all()
+    smooth = (enough.normal_force > 0.0) & ~enough.on_edge & ~enough.on_relief_start
+    assert smooth.any()
+    assert (enough.discretisation_error[smooth] > 0.0).all()
+    assert np.isnan(enough.discretisation_error[enough.on_edge]).all()
+
+
 def test_largest_discretisation_error_is_that_of_its_torque():
     cycle = refined(1e-2, (0.0, 130.0))
     without, loaded = (figures["largest_discretisation_error"] for figures in cycle.key_figures())

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import InputError, parse_scene, read_scene
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.scene.cylindrical import CylindricalScene
+from loaded_tca.scene.section import as_table
 from loaded_tca.unloaded import trace_contact
 from tests.refusals import refusals
 
@@ -105,6 +106,22 @@ def test_keys_of_halves_that_are_none_leave_a_pair_without_halves(scene):
     single = scene.with_changes({**{f"pair.{key}": None for key in keys}, "pinion.half_b": None})
     assert type(single) is CylindricalScene
     assert single.pinion.face_width_mm == scene.pinion.face_width_mm  # now without a groove
+
+
+def test_keys_that_made_halves_of_a_pair_make_one_pair_again_without_them(scene):
+    """Defaults of the other keys of halves are no keys that were given; one that is given is told to need them."""
+    keys = ("double_helical", "gap_mm", "apex_offset_mm", "floating", "axial_stiffness_N_per_um")
+    single = scene.with_changes({**{f"pair.{key}": None for key in keys}, "pinion.half_b": None})
+    halves = single.with_changes({"pair.double_helical": True, "pair.gap_mm": 20.0})
+    back = {"pair.double_helical": None, "pair.gap_mm": None}
+    assert halves.with_changes(back) == single
+    with pytest.raises(InputError, match=r"^pair\.double_helical: missing"):
+        halves.with_changes({**back, "pair.floating": "pinion"})
+    with pytest.raises(InputError, match=r"^pair\.double_helical: missing"):
+        halves.with_changes({"pair.floating": "wheel"}).with_changes(back)
+    whole = {**as_table(single)["pair"], "floating": "pinion"}
+    with pytest.raises(InputError, match=r"^pair\.double_helical: missing"):
+        halves.with_changes({"pair": whole})
 
 
 def test_text_makes_the_scene_again_and_keys_of_halves_make_it_another_one(scene):
