@@ -79,6 +79,7 @@ CASES = (
     "loaded.root_face_load",
     "loaded.face_ends_space",
     "loaded.numbers_to_copy",
+    "loaded.rounded_ends",
     "calculix.mesh_cycle",
     "calculix.helical_relief",
     "contact.subsurface",

@@ -30,6 +30,7 @@
 - ``random_errors``: errors of the default grids on such scenes, by figure and family, in minutes; a page;
 - ``sensitivities``: against slopes through whole analyses, closed forms, Monte Carlo studies; their cost; a page;
 - ``rounded_edges``: pressure at rounded edges over columns, grids and radii; its time, in minutes; a page;
+- ``rounded_ends``: transmission error of misaligned pairs with rounded face ends beside fine cells;
 - ``user_scenes``: time told and taken of scenes by defaults alone; a page;
 - ``cycles``: time of whole mesh cycles before and after a change, and what it is spent on;
 - ``one_contact``: time of one contact, before and after a change, and what of it its gaps take;
