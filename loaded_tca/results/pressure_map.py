@@ -11,7 +11,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy
 
 from loaded_tca.edges.places import dilated, edge_distances
 from loaded_tca.errors import InputError
@@ -98,7 +97,9 @@ class PressureMap:
         there = np.isfinite(self.gap)
         if there.all():
             return self.beside_end
-        away = np.asarray(scipy.ndimage.distance_transform_edt(there, sampling=self.spacing))
+        from scipy.ndimage import distance_transform_edt  # which checks of scenes do not need
+
+        away = np.asarray(distance_transform_edt(there, sampling=self.spacing))
         return np.asarray(self.beside_end | (away < distance))
 
     @cached_property

@@ -422,7 +422,7 @@ class Stage(InNotebooks, Section):
             if abs(shift) > LARGEST_SHIFT:
                 raise GeometryError(
                     f"pair.centre_distance_mm: found {plain(distance, 6)}; it and the profile shifts that are given "
-                    f"ask for {shift:.4f} on the {name}, allowed -{LARGEST_SHIFT:g} to {LARGEST_SHIFT:g}"
+                    f"ask for {plain(shift)} on the {name}, allowed -{plain(LARGEST_SHIFT)} to {plain(LARGEST_SHIFT)}"
                 )
         return shifts
 
