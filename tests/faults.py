@@ -267,7 +267,7 @@ FAULTS = (
     Fault(
         "K_Hbeta: what cells lack at a sharp end does not depend on their length",
         "results/load_factors.py",
-        "cells = [one.spacing[1] / length for",
+        "cells = [one.spacing[1] / width for",
         "cells = [0.05 for",
         "results/test_load_factors.py::test_face_load_factor_at_sharp_ends_misses_what_is_estimated_on_any_cells",
     ),
@@ -3557,8 +3557,8 @@ FAULTS = (
     Fault(
         "error of K_Hbeta: none away from the ends of the face",
         "results/load_factors.py",
-        "    return IN_PAIRS * _change_in_pairs(pair, loaded, borders, forces)\n\n\ndef error_beside_arcs",
-        "    return math.nan\n\n\ndef error_beside_arcs",
+        "if any(at_end) else IN_PAIRS * _change_in_pairs(pair, load)",
+        "if any(at_end) else math.nan",
         "results/test_load_factors.py::test_face_load_factor_away_from_ends_misses_at_most_what_is_estimated",
     ),
     Fault(

@@ -113,19 +113,13 @@ def face_load_factor_error(
     float
         NaN without load.
     """
-    borders = strip_borders(pair, path)
-    loaded = loaded_maps(positions)
-    strips = [strip_forces(pair, one, borders) for one in loaded]
-    forces = np.sum([np.zeros(STRIPS), *(force for force, _ in strips)], axis=0)
-    if not forces.any():
+    load = _LoadInStrips.of(pair, path, positions)
+    if not load.forces.any():
         return math.nan
-    largest = int(forces.argmax())
-    if by_ends := error_beside_arcs(pair, path, positions):
-        return max(by_ends, IN_PAIRS * _change_in_pairs(pair, loaded, borders, forces))
-    at_end = [largest in (0, STRIPS - 1) and bool(one.pressure[one.beside_end].any()) for one in loaded]
-    if any(at_end):
-        return MISSING_AT_END * _cells_in_strip(loaded, strips, at_end, largest)
-    return IN_PAIRS * _change_in_pairs(pair, loaded, borders, forces)
+    if pair.sharp is not pair and (by_ends := _error_beside_arcs(pair, load)):
+        return max(by_ends, IN_PAIRS * _change_in_pairs(pair, load))
+    at_end = [load.largest in (0, STRIPS - 1) and bool(one.pressure[one.beside_end].any()) for one in load.maps]
+    return MISSING_AT_END * load.cells(at_end) if any(at_end) else IN_PAIRS * _change_in_pairs(pair, load)
 
 
 def error_beside_arcs(pair: GearPair, path: ContactPath, positions: Sequence[Sequence[PressureMap | None]]) -> float:
@@ -133,26 +127,54 @@ def error_beside_arcs(pair: GearPair, path: ContactPath, positions: Sequence[Seq
 
     Those count that end in the strip with the largest force, or in one beside it.
     """
-    if pair.sharp is pair:
-        return 0.0
-    borders, loaded = strip_borders(pair, path), loaded_maps(positions)
-    strips = [strip_forces(pair, one, borders) for one in loaded]
-    forces = np.sum([np.zeros(STRIPS), *(force for force, _ in strips)], axis=0)
-    largest = int(forces.argmax())
-    ends = [_ends_on_arcs(pair, one, borders) for one in loaded]
-    beside_arc = [any(largest in end.strips for end in of_map) for of_map in ends]
+    return 0.0 if pair.sharp is pair else _error_beside_arcs(pair, _LoadInStrips.of(pair, path, positions))
+
+
+class _LoadInStrips(NamedTuple):
+    """What strips of the face carry under one torque.
+
+    Attributes
+    ----------
+    borders : (n + 1,) array [mm]
+    maps : sequence of PressureMap
+        Those with pressure.
+    by_map : list of ((n,) array [N], float [mm])
+        Forces of the strips by each map, and their width.
+    forces : (n,) array [N]
+        By all maps.
+    """
+
+    borders: Array
+    maps: Sequence[PressureMap]
+    by_map: list[tuple[Array, float]]
+    forces: Array
+
+    @classmethod
+    def of(cls, pair: GearPair, path: ContactPath, positions: Sequence[Sequence[PressureMap | None]]) -> _LoadInStrips:
+        """The load of pressure maps by positions and tooth pairs."""
+        borders, maps = strip_borders(pair, path), loaded_maps(positions)
+        by_map = [strip_forces(pair, one, borders) for one in maps]
+        return cls(borders, maps, by_map, np.sum([np.zeros(STRIPS), *(force for force, _ in by_map)], axis=0))
+
+    @property
+    def largest(self) -> int:
+        """Number of the strip with the largest force."""
+        return int(self.forces.argmax())
+
+    def cells(self, which: Sequence[bool]) -> float:
+        """Length of the cells of some of all maps over the width of the largest strip, weighted by forces in it."""
+        forces = np.array([force[self.largest] for force, _ in self.by_map])
+        cells = [one.spacing[1] / width for one, (_, width) in zip(self.maps, self.by_map, strict=True)]
+        return float((forces * cells) @ np.array(which, dtype=float)) / float(forces.sum())
+
+
+def _error_beside_arcs(pair: GearPair, load: _LoadInStrips) -> float:
+    """Result of :func:`error_beside_arcs` for a load on gears with rounded edges."""
+    ends = [_ends_on_arcs(pair, one, load.borders) for one in load.maps]
+    beside_arc = [any(load.largest in end.strips for end in of_map) for of_map in ends]
     if not any(beside_arc):
         return 0.0
-    return MISSING_AT_ARC * _cells_in_strip(loaded, strips, beside_arc, largest) + _change_by_ends(ends, forces)
-
-
-def _cells_in_strip(
-    loaded: Sequence[PressureMap], strips: Sequence[tuple[Array, float]], which: Sequence[bool], strip: int
-) -> float:
-    """Length of the cells of some of all maps over the width of a strip, weighted by their forces in it."""
-    forces = np.array([force[strip] for force, _ in strips])
-    cells = [one.spacing[1] / length for one, (_, length) in zip(loaded, strips, strict=True)]
-    return float((forces * cells) @ np.array(which, dtype=float)) / float(forces.sum())
+    return MISSING_AT_ARC * load.cells(beside_arc) + _change_by_ends(ends, load)
 
 
 class _EndOnArc(NamedTuple):
@@ -186,19 +208,18 @@ def _ends_on_arcs(pair: GearPair, one: PressureMap, borders: Array) -> list[_End
     return ends
 
 
-def _change_by_ends(ends: Sequence[Sequence[_EndOnArc]], forces: Array) -> float:
-    """Largest relative change of K_Hbeta of forces of strips (n,) [N] as all ends on arcs move by half a cell."""
-    moved = forces + np.sum([end.moved for of_map in ends for end in of_map], axis=0)
-    largest = int(forces.argmax())
-    tops = moved[:, max(0, largest - 1) : largest + 2].max(axis=1)
-    return float(np.abs(tops / forces[largest] - 1.0).max())
+def _change_by_ends(ends: Sequence[Sequence[_EndOnArc]], load: _LoadInStrips) -> float:
+    """Largest relative change of K_Hbeta as all ends on arcs move by half a cell."""
+    moved = load.forces + np.sum([end.moved for of_map in ends for end in of_map], axis=0)
+    tops = moved[:, max(0, load.largest - 1) : load.largest + 2].max(axis=1)
+    return float(np.abs(tops / load.forces[load.largest] - 1.0).max())
 
 
-def _change_in_pairs(pair: GearPair, loaded: Sequence[PressureMap], borders: Array, forces: Array) -> float:
-    """Largest relative change of K_Hbeta of forces of strips (n,) [N] where two slices of each map share their load."""
-    factor, changes = forces.max() / forces.mean(), []
+def _change_in_pairs(pair: GearPair, load: _LoadInStrips) -> float:
+    """Largest relative change of K_Hbeta where two slices of each map share their load."""
+    factor, changes = load.forces.max() / load.forces.mean(), []
     for first in (0, 1):
-        shared = np.sum([strip_forces(pair, in_pairs(one, first), borders)[0] for one in loaded], axis=0)
+        shared = np.sum([strip_forces(pair, in_pairs(one, first), load.borders)[0] for one in load.maps], axis=0)
         changes.append(abs(shared.max() / shared.mean() / factor - 1.0))
     return float(max(changes))
 
