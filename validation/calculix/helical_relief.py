@@ -54,11 +54,11 @@ PAGE = """\
 
 Written by `python -m validation.calculix.helical_relief`. Machine: {machine}.
 
-Where the unloaded contact point lies on the start of a short tip relief, curvatures at that point are those of one
-side of it, and the loaded line of contact crosses their axis askew. With the force of every slice on that axis the
-transmission error had a step between two positions; with the force at the
-[centre of the pressure](../how_it_works/tooth_compliance.md#where-a-force-acts) it has none. Which of them is right
-was decided by finite elements with contact on both sides of the step.
+If the unloaded contact point lies on the start of a short tip relief, the curvatures at that point are those of one
+side of the start, and the axis of curvatures does not follow the loaded line of contact. With the force of every slice
+on this axis the transmission error had a step between two positions; with the force at the [centre of the
+pressure](../how_it_works/tooth_compliance.md#where-a-force-acts) it has no step. Finite elements with contact on both
+sides of the step decided which of the two is right.
 
 **The pair**: 25/25 teeth, m_n 3 mm, beta 27 deg, face 12 mm, 40 um of parabolic tip relief over the last 1.5 mm of the
 path of contact, 20 um of lead crowning and 20 um of helix slope on the pinion; one tooth pair carries 100 N m. The

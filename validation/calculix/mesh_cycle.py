@@ -213,14 +213,16 @@ load left the finite elements.
 
 ![Transmission error, load share and peak pressure over the pitch](mesh_cycle_fem.png)
 
-Crosses: a tip corner is in contact; its pressure has no limit in theory, and stiffness changes with every element
-that comes into contact, so that stiffness and pressure there (on either side) are not compared; its shares are in
-brackets. Stiffness is taken between 96 and 100 % of the torque on both sides; a pair with less than {parting:g} % of
-it comes apart somewhere in between: such positions are left out of the column.
+Crosses mark positions with a tip corner in contact. The pressure at the corner has no limit in theory, and the
+stiffness changes with every element that comes into contact. Stiffness and pressure there, of either side, are
+therefore not compared; the shares there are in brackets. Stiffness is taken between 96 and 100 % of the torque on both
+sides. A pair with less than {parting:g} % of the torque loses contact in between: such positions are left out of the
+column.
 
 The kept deflections of the unmodified pair under 20, 100 and 200 N m follow Hertz's law F' (a - b ln F') to 3e-4 where
-no tip corner touches. The kept stiffness, a difference over 4 % of a torque, is up to {uncertain} % from its slope: so
-much is allowed beside what is asked, and that slope has rows of its own, with {slope:g} %.
+no tip corner touches. The kept stiffness is a difference over 4 % of a torque; under these torques it differs from the
+slope of this law by up to {uncertain} %. This is allowed in addition to the {asked_stiffness:g} % that are asked.
+Separate rows compare stiffness with the slope, with {slope:g} % allowed.
 
 ## Plane strain against a face with ends
 

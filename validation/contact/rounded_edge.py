@@ -291,8 +291,8 @@ give 1 %, 5 give 0.5 %. Columns off by half a cell need 7.
 
 ## Time against error
 
-A contact is solved as often as the pressed width asks for, first on 0.6 m cells on it, at last on m; the time is
-of all that, the median of {runs} runs. Columns: cells and iterations of the last solution; error against
+A contact is solved several times: first with 0.6 m cells on the pressed width d, in the end with m cells. The time is
+that of all solutions, the median of {runs} runs. Columns: cells and iterations of the last solution; error against
 {exact:g} cells on d (askew: {askew:g}); the estimate that is returned; cells that are on the pressed part
 in the end.
 

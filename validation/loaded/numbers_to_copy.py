@@ -323,26 +323,27 @@ Helical pair 23/81, m_n 2.5, alpha_n 17.5 deg, beta 28 deg, a 147.5 mm, faces 32
 
 {load_factors()}
 
-K_Hbeta rises on both sides of its least value, and changes by less than 3 % from 32 to 64 cells along each axis. With
-flanks alone it changes by up to 4.5 %, since more load lies at sharp ends, where a strip converges slowly, and its
-least value is near zero. Bending of teeth and bodies lowers the effect of misalignment, and moves the least value:
-the axial force of a helical gear tilts the bodies.
+K_Hbeta rises on both sides of its least value. From 32 to 64 cells along each axis it may change by 3 %, with flanks
+alone by 4.5 %, since then more load lies at sharp ends, where a strip converges slowly. With flanks alone the least
+value is at a misalignment near zero. Bending of teeth and bodies lowers the effect of misalignment and moves the least
+value, because the axial force of a helical gear tilts the bodies.
 
-The earlier revision has, instead of K_Hbeta, the line load of the pair with the largest force over that of an even
-load (today `line_load_ratio`); without free edges it depends on the grid:
+Instead of K_Hbeta, the earlier revision has the line load of the pair with the largest force, divided by that of an
+even load (today `line_load_ratio`). Without free edges this ratio depends on the grid:
 
 {FACTORS_BEFORE}
 
 ## Free edges against the box
 
-One contact under one force, the size of its cells kept; contact deformation [um]. The box x 1 is the one that an
-analysis takes, the box x 0.85 leaves out the ends of the longest contact.
+One contact under one force, on cells of one size; contact deformation [um]. The box x 1 is the one that an analysis
+takes; the box x 0.85 cuts off the ends of the longest contact.
 
 {boxes()}
 
-The load shared, flanks alone: rotation at the first position, at the last one, which is the same state a pitch later,
-and the mesh stiffness over the derivative of the rotation over 4 % of the torque (the worst of three positions), on
-24 x 32 cells. The lines of the helical pair end at tips within cells: on 64 x 96 cells its ratio is 1.002.
+The next table is for a shared load with flanks alone, on 24 x 32 cells: the rotation at the first position and at the
+last one, which is the same state a pitch later, and the mesh stiffness divided by the derivative of the rotation over
+4 % of the torque (the worst of three positions). The contact lines of the helical pair end at tips within cells: on 64
+x 96 cells its ratio is 1.002.
 
 {repeated()}
 
@@ -350,8 +351,8 @@ and the mesh stiffness over the derivative of the rotation over 4 % of the torqu
 
 {at_sharp_edges()}
 
-The edge pressure is above the highest cell of the map where the edge cuts that cell: the map has its force over the
-whole cell, the edge pressure over the part with material.
+Where the edge cuts the cell, the edge pressure is above the highest cell of the map: the map divides the force by the
+whole cell, the edge pressure by the part with material.
 
 ## Example scenes, earlier defaults and today's
 

@@ -25,16 +25,16 @@ from validation.random_scenes import featured_scene
 
 ACCURACY, POSITIONS, FINER = 1e-2, 5, 2
 FIGURES = {
-    "transmission error": "of the deflection under load",
-    "its peak to peak": "of the larger one of itself and a fifth of the deflection",
-    "mean mesh stiffness": "of itself",
-    "load share": "of the whole load",
-    "peak pressure": "of the largest of the mesh",
-    "K_Hbeta": "of itself",
-    "K_Halpha": "of itself",
-    "largest line load": "of itself",
+    "transmission error": "to the deflection under load",
+    "its peak to peak": "to itself, or to a fifth of the deflection if this is larger",
+    "mean mesh stiffness": "to itself",
+    "load share": "to the whole load",
+    "peak pressure": "to the largest peak pressure of the mesh",
+    "K_Hbeta": "to itself",
+    "K_Halpha": "to itself",
+    "largest line load": "to itself",
 }
-"""Figure -> what its error is a part of."""
+"""Figure -> to what its error is relative."""
 
 
 def errors_of(seed: int) -> dict[str, Any]:
@@ -91,20 +91,21 @@ def of_itself(coarse: Array, fine: Array) -> float:
 
 TEXT = """# Errors of grids on random scenes
 
-Written by `python -m validation.loaded.random_errors --log FILE`. Seeds 0 to {last} of
-`validation.random_scenes.featured_scene`: gears of {families} families that nobody has tried, with up to {features}
-features each (reliefs, roundings, caps, shafts, bores, measured flanks, other torques), at {positions} positions. Each
-scene is analysed with the default `accuracy` of {accuracy:g}, and again with {finer} times as many cells along both
-axes as the finest of its contacts has. The difference is the error of the default's grids, not that of the model, which
-[another table](../how_it_works/errors.md#how-far-off-each-number-is) has. Of a scene the largest error of all
-positions, torques and tooth pairs counts.
+Written by `python -m validation.loaded.random_errors --log FILE`. The scenes are seeds 0 to {last} of
+`validation.random_scenes.featured_scene`: pairs of {families} families, each with up to {features} features drawn at
+random (reliefs, roundings, caps on the pressure, shafts, bores, measured flanks, several torques), at {positions}
+positions. Each scene is analysed with the default `accuracy` of {accuracy:g}, and again with {finer} times as many
+cells along both axes as its finest contact has. The difference is the error of the default grids. The error of the
+model is in [another table](../how_it_works/errors.md#how-far-off-each-number-is). For each scene the largest error of
+all positions, torques and tooth pairs counts.
 
 {table}
 
-Each cell: 95 % of the scenes have at most the first number, all of them the second one, and the seed in brackets has
-that: `validation.random_scenes.featured_scene(SEED)`. Large errors of peak pressures and line loads are those of
-contacts at tips and ends of faces, of which the analyses warn; where a rounded tip is reached, it depends on the grid
-whether some of its cells count in `peak_pressure` or in `edge_pressure`. An error is a part:
+In each cell, 95 % of the scenes have at most the first error, and all scenes have at most the second error. The number
+in brackets is the seed of the scene with the second error: `validation.random_scenes.featured_scene(SEED)`. Large
+errors of peak pressures and line loads occur where contacts reach tips and face ends; the analyses warn of these
+contacts. If a contact reaches a rounded tip, it depends on the grid whether some cells at the tip count in
+`peak_pressure` or in `edge_pressure`. Each error is relative:
 
 {parts}
 
@@ -135,7 +136,7 @@ def page(found: list[dict[str, Any]]) -> str:
         table=table(("figure", f"all ({len(known)})", *heads), rows),
         parts="\n".join(f"- {figure}: {part}" for figure, part in FIGURES.items()),
         seconds=sum(one["seconds"] for one in known),
-        failures="Refused: " + "; ".join(failed) + "." if failed else "None was refused.",
+        failures="Refused: " + "; ".join(failed) + "." if failed else "No scene was refused.",
         machine=machine(),
     )
 

@@ -221,10 +221,11 @@ repeated with the wheel where the loads move both shafts. Where the expected num
 
 ## Misalignment over the torque
 
-The same pair, flanks alone, with its rolling bearings, with linear ones of the stiffness that these have under 130 N m,
-and on rigid supports; of the pinion's bearings the largest element force [N] and the shortest life [1e6 revolutions].
-With linear bearings the misalignment is proportional to the torque, as far as the load stays in its place; rolling
-bearings have gone through their clearances under small torques already, and then grow stiffer.
+The same pair with flanks alone: with its rolling bearings, with linear bearings that have the stiffness of the rolling
+bearings under 130 N m, and on rigid supports. The last two columns have the largest element force [N] and the shortest
+life [1e6 revolutions] of the pinion's bearings. With linear bearings the misalignment is proportional to the torque, as
+far as the load stays in its place. In rolling bearings small torques already close the clearances; under larger torques
+the bearings become stiffer.
 
 | torque [N m] | F_beta rolling [um] | linear [um] | K_Hbeta rolling | linear | rigid | element force | life |
 | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -238,8 +239,8 @@ Nine positions, one torque, teeth that bend, models of teeth kept; one processor
 | --- | --- | --- |
 {times}
 
-The pair is moved and solved at a few positions before the cycle itself; a balance of a shaft on its bearings takes some
-milliseconds, a hundredth of that.
+Before the cycle itself the pair is moved and solved at a few positions. A balance of a shaft on its bearings takes some
+milliseconds, about a hundredth of this additional time.
 """
 
 

@@ -471,10 +471,11 @@ stress, asked 3 %:
 
 ## Against the mesh
 
-The same pinion. Errors are the largest of four loads against the plane reference; mid-face and end are tension over the
-plane value (the ring in space has {middle:.3f} and {end:.3f} at b 20; wider faces have their own). Time is processor
-time of one thread, memory what the process takes beyond its libraries (0.09 GiB), "told" what is compared with that of
-the machine before the elimination starts. {machine()}.
+The same pinion. Errors are the largest of four loads against the plane reference; mid-face and end are tension over
+the plane value (the ring in space has {middle:.3f} and {end:.3f} at b 20; wider faces have their own). Time is
+processor time of one thread. "GiB taken" is the memory that the process takes beyond its libraries (0.09 GiB), "GiB
+told" the memory that is reported before the elimination starts, and compared with the memory of the machine.
+{machine()}.
 
 {meshes}
 

@@ -78,10 +78,10 @@ K_Fbeta = K_Hbeta^N_F, N_F = 0.692 (h/b no more than 1/3):
 
 K_Fbeta is larger in every line, for three reasons:
 
-- A load on one place of the face bends the tooth beside it, too: the root sees a mean over about a tooth height of
-  the face, not the peak. N_F stands for this, but it depends on h/b alone, not on the shape of the load: it is right
-  for a peak that is wide against the height of the tooth. Here (h/b 0.34) the load of the crowned pair falls from its
-  peak to nothing within one and a half tooth heights.
+- A load on one place of the face bends the tooth beside it, too: the root stress follows the mean load over about a
+  tooth height of the face, not the peak. N_F stands for this, but it depends on h/b alone, not on the shape of the
+  load: it is right for a peak that is wide against the height of the tooth. Here (h/b 0.34) the load of the crowned
+  pair falls from its peak to nothing within one and a half tooth heights.
 - An even load does not stress the root evenly: the middle of the face has 1.04 of the stress of plane strain, the ends
   have 0.73 of it, because nothing holds the material lengthwise there. A load that is largest at the end, as that of a
   misaligned pair, meets the sections with the least stress per load: the largest stress under the linear load lies

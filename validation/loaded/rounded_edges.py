@@ -524,10 +524,9 @@ part of the rounding, {crossing} where two edges cross. Share is that of the pos
 
 {columns}
 
-With sharp ends the line of contact at a rounded tip ends in a sharp corner. There half-spaces have a pressure without a
-limit: {corner} MPa on {first} to {last} rows along the tip.
-Free edges leave less of it, and what is left depends on the rows by up to 7 %. The estimated error is infinite there:
-give the face ends a radius, too.
+With sharp ends the line of contact at a rounded tip ends in a sharp corner. There half-spaces have a pressure without
+a limit: {corner} MPa on {first} to {last} rows along the tip. With free edges the pressure there is lower, but still
+depends on the rows by up to 7 %. The estimated error is infinite: give the face ends a radius, too.
 
 ## Grids
 
@@ -543,8 +542,8 @@ Tip of the crowned spur pair: the largest pressure of 25 positions, and that of 
 {radii}
 
 In the limit of narrow roundings the exponent is -1/3. With a larger rounding the arc begins farther from the tip, so
-that more of the same contact is cut off, and in the end it lies on the arc, as of a cylinder (-1/2); in the mesh load
-is shifted to other teeth, too, and the position with the largest pressure changes.
+that more of the contact is cut off. In the end the whole contact lies on the arc, like that of a cylinder (-1/2). In
+the mesh the load also moves to other teeth, and the position with the largest pressure changes.
 
 ## Found pressures over their bounds
 

@@ -217,58 +217,60 @@ def make() -> Page:
 
 TEXT = """# Where the standard and the analysis part
 
-A rating takes K_Hβ of the analysis. Method C of ISO 6336-1 has another one, and both parts of ISO 6336 on scuffing have
-other temperatures than each other. Where they differ by more than a tenth, this page says why, by numbers that
+A rating takes K_Hβ of the analysis; method C of ISO 6336-1 gives another K_Hβ. The two parts of ISO 6336 on scuffing
+give different temperatures. Where these numbers differ by more than a tenth, this page says why, by numbers that
 `python -m validation.rating.methods_part` measures.
 
-## Face load factors: narrow faces are stiffer against tilting than method C has them
+## Face load factors: narrow faces are stiffer against tilting than in method C
 
-Straight flanks, 10 µm of misalignment in the plane of action over the face, nothing run in. K_Hβ by method C of
-ISO 6336-1, with c_γβ = 0.85 c_γα, and of the analysis; of the latter also without misalignment, and of single positions
-with the fewest and the most pairs in contact.
+The flanks are straight, with 10 µm of misalignment in the plane of action over the face and no running-in. The table
+has K_Hβ by method C of ISO 6336-1, with c_γβ = 0.85 c_γα, and K_Hβ of the analysis: with this misalignment, aligned,
+and with the misalignment at the positions with the fewest and with the most pairs in contact.
 
 {0}
 
-Method C takes even springs along the face, which give way under their own load alone. Then one stiffness says how far
-teeth give way under an even load and under one that is crowded to an end. Of the analysis the stiffness against
-tilting, with which the formula of method C has its rise of K_Hβ, is above the mean one of the mesh [N/(mm µm)]:
+Method C takes equal springs along the face, each of which yields only under its own load. One stiffness then says how
+far teeth yield under an even load and under a load that is concentrated at one end. In the analysis these are two
+stiffnesses. With the stiffness against tilting, the formula of method C gives the rise of K_Hβ by the misalignment
+that the analysis has; it is larger than the mean stiffness of the mesh [N/(mm µm)]:
 
 {1}
 
-1. The mean stiffness of both differs by little, and in either direction: K with the mean one of the analysis is nearly
-   that of method C.
-2. Teeth and bodies carry the load of one place to its neighbours. Under an even load all places sink together, and
-   their deflections add up; under a crowded one they cancel. The stiffness against tilting is therefore above the
-   mean one, the more so the narrower the face is. The torsion of the bodies is a part of the mean stiffness, and none
-   of that against tilting.
-3. In double contact both pairs are misaligned, and the stiffness of both stands against it: positions of spur gears
-   with two pairs have a larger K than those with one, and the standard has a mean. Contact lines of helical pairs cover
-   a part of the face at a time, so that K of single positions says less there.
-4. c_γβ is 0.85 c_γα: 15 % of the rise.
+1. The mean stiffness of the analysis and that of the standard differ by little, in either direction: with the mean
+   stiffness of the analysis the formula gives nearly the K_Hβ of method C.
+2. Teeth and bodies carry the load at one place also to its neighbours. Under an even load all places yield together,
+   and their deflections add up; under a load at one end the deflections partly cancel. The stiffness against tilting
+   is therefore larger than the mean stiffness, the more so the narrower the face is. The torsion of the bodies is a
+   part of the mean stiffness, but not of the stiffness against tilting.
+3. In double contact both pairs are misaligned, and the stiffness of both acts against the misalignment: K_Hβ at
+   positions of spur gears with two pairs is larger than at positions with one pair; the standard takes a mean. Contact
+   lines of helical pairs cover only a part of the face at a time, so that K_Hβ of single positions says less.
+4. c_γβ is 0.85 c_γα: this is 15 % of the rise of K_Hβ.
 
-The second reason shows with the width alone: the spur pair under 10 N m for each mm, 10 µm over each face. On a face of
-80 mm the stiffness against tilting is all but the mean one.
+The width alone shows the second reason: the spur pair under 10 N m per mm of face width, with 10 µm over each face. On
+a face of 80 mm the stiffness against tilting is nearly the mean stiffness.
 
 {2}
 
-On faces as narrow as these take K_Hβ of the analysis.
+For faces as narrow as those of the pairs above, take K_Hβ of the analysis.
 
 ## Contact temperatures of FZG test gears
 
-The load stage of an oil in the FZG test A/8.3/90 is that at which the test gears scuff. A gear under the torque of the
-stage at which its oil fails should have a safety of 1. Part 20 compares the largest contact temperature with
-θ_S = 80 °C + 2.25 X_L S², part 21 a mean one:
+The load stage of an oil in the FZG test A/8.3/90 is the stage at which the test gears scuff. A gear under the torque of
+the stage at which its oil fails should have a safety of 1. Part 20 compares the largest contact temperature with
+θ_S = 80 °C + 2.25 X_L S², part 21 a mean temperature:
 
 {3}
 
-1. Both have θ_S from the stage as a square and the torque of the stages goes with the square, too, so that S_B ought to
-   be even. The constant of θ_S is 80 °C, the oil of the test has 90 °C: 10 K that stage 5 does not have left.
-   With oil of 80 °C the safety hardly moves with the stage.
-2. Part 21 divides temperatures, part 20 their rises above the oil: the ratio of part 21 is nearer to 1.
+1. In both parts θ_S grows with the square of the stage, and so does the torque of the stages; S_B should therefore be
+   the same at all stages. But the constant of θ_S is 80 °C, while the oil of the test has 90 °C: this difference of 10
+   K is large compared with the rise at stage 5. With oil of 80 °C the safety hardly changes with the stage.
+2. Part 21 divides temperatures, part 20 divides their rises above the oil: the ratio of part 21 is therefore nearer to
+   1.
 3. The largest flash temperature of the analysis is that of a pair that shares the load at E, or carries it alone
-   farther in; part 21 takes that of one pair that carries all at E, times X_ε.
+   farther in; part 21 takes that of one pair that carries the whole load at E, times X_ε.
 
-S_B of gears in hot oil, judged by a low load stage, is on the safe side.
+S_B of gears in hot oil is therefore on the safe side, if the oil fails at a low load stage.
 """
 
 
