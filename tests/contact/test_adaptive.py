@@ -72,7 +72,7 @@ def test_peak_that_misses_the_accuracy_where_that_is_of_the_approach_is_said():
     assert solution.error_estimate.approach <= 0.05 < solution.error_estimate.peak_pressure
     assert [str(one.message) for one in warned if "accuracy 0.05" in str(one.message)] == [
         f"the estimated error of the peak pressure, {solution.error_estimate.peak_pressure:.2g}, is above the "
-        "accuracy 0.05, which is that of the approach where the pressure has no limit"
+        "accuracy 0.05; where the pressure has no limit, this accuracy holds for the approach"
     ]
 
 

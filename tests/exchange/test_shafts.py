@@ -218,7 +218,7 @@ def test_a_shaft_without_any_load_turns_about_the_gear() -> None:
     relations = [one for one in model.relations if one.type == "assembly" and one.roles["part"] != "97"]
     imported = import_stage(changed(model, without=["assembly"], relations=relations), "10", torque_Nm=150.0)
     assert imported.scene.pinion.shaft.torque_at_mm == 0.0
-    assert "shaft 3: no place where its torque enters or leaves; it is the middle of the face" in imported.read_as
+    assert "shaft 3: no place where its torque enters or leaves; taken at mid-face" in imported.read_as
 
 
 def test_torque_that_does_not_follow_is_asked_for() -> None:

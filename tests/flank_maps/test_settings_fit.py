@@ -325,7 +325,7 @@ def test_command_writes_scene_tables_and_picture(run, tmp_path, monkeypatch):
 
 
 REFUSED = {
-    "method": (["--method", "spread_blade"], "of a bevel blank; not with --measured"),
+    "method": (["--method", "spread_blade"], "only for bevel blanks; not allowed with --measured"),
     "twice": (["--settings", "a.b", "a.b"], "--settings a.b: given twice"),
     "limit": (["--settings", "a.b=0"], "the limit a number above 0"),
 }

@@ -77,7 +77,7 @@ ONE_PROBLEM = [
     ),
     (
         {"pair.type": "straight_bevel", "pair.spiral_angle_deg": None, "pair.pinion_flank": "convex"},
-        'pair.pinion_flank: found "convex", but flanks of straight teeth are neither; give sense instead',
+        'pair.pinion_flank: found "convex", but straight teeth have no concave or convex flank; give sense instead',
     ),
     (
         {"pair.normal_module_mm": 3.0},

@@ -123,7 +123,7 @@ test_loads_refuse = refusals(
         {"load.case": bins([20.0]), "analysis.torques_Nm": (5.0, 10.0)},
         "load: a bin has 20 N m; allowed up to 10, the largest of analysis.torques_Nm",
     ),
-    ({"rating": WANTED}, "rating.life_hours: missing; needed but for load cases with hours"),
+    ({"rating": WANTED}, "rating.life_hours: missing; needed unless load cases have hours"),
     ({"load.spectrum": "nowhere.csv"}, "load.spectrum: nowhere.csv: cannot be read"),
 )
 
