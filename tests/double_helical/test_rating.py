@@ -269,7 +269,7 @@ def test_rating_without_a_lubricant_is_refused():
 
 def test_bins_above_the_torques_that_were_solved_are_refused(held):
     scene = held.scene.with_changes({"load": {"case": [{"pinion_torque_Nm": 1700.0, "hours": 1.0}]}})
-    with pytest.raises(InputError, match=r"load\.case: a bin has 1700 N m; allowed up to 1600, the largest that was"):
+    with pytest.raises(InputError, match=r"load\.case: a bin has 1700 N m; allowed up to 1600, the largest analysed"):
         replace(held, scene=scene).rating()
 
 
@@ -360,7 +360,7 @@ def test_torque_in_a_list_is_rated_by_the_mesh_cycles_under_it(rating_under_both
             ones = np.concatenate([getattr(rating, of).values(name) for rating in alone])
             assert_allclose(values, ones, rtol=ROUNDING, err_msg=f"{of}, {name}")  # nothing else is in them
     assert both.half_a.K_Hbeta[0] > 1.2 * both.half_a.K_Hbeta[1]
-    assert any("are those of the mesh cycles under it" in note for note in both.notes())
+    assert any("come from its own mesh cycles" in note for note in both.notes())
 
 
 def test_bins_add_up_over_mesh_cycles_of_other_torques(under_both, under_each):

@@ -222,7 +222,7 @@ def test_a_shaft_without_any_load_turns_about_the_gear() -> None:
 
 
 def test_torque_that_does_not_follow_is_asked_for() -> None:
-    with pytest.raises(InputError, match=r"stage 10: torque: it does not follow .*; give --torque"):
+    with pytest.raises(InputError, match=r"stage 10: torque: missing in the stage, .*; give --torque"):
         import_stage(changed(attributes={"97.torque_around_u_axis": None}), "10")
     scene = import_stage(changed(attributes={"97.torque_around_u_axis": None}), "10", torque_Nm=80.0).scene
     assert scene.load.pinion_torque_Nm == 80.0

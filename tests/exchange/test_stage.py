@@ -321,8 +321,8 @@ RING_TOOLS = {
         {"85.addendum_coefficient_reference_profile": None},
         1.25,
         [
-            "ring_gear 58: no tool with addendum_coefficient_reference_profile; dedendum_coefficient 1.25 is that by "
-            "the tool of the other gear"
+            "ring_gear 58: no tool with addendum_coefficient_reference_profile; dedendum_coefficient 1.25 is taken "
+            "from the tool of the other gear"
         ],
     ),
     "its root diameter": (

@@ -242,7 +242,7 @@ def refused(words, **more):
         ("no flank of the pinion is measured", {"settings": ["pinion.machine.radial_mm"]}),
         ("the convex flank of the wheel is not measured", {"settings": ["wheel.cutter.convex.point_radius_mm"]}),
         ("the blade is straight, or missing", {"settings": ["wheel.cutter.concave.blade_radius_mm"]}),
-        ("cradle_angle_deg: does nothing to the measured", {"settings": ["wheel.machine.cradle_angle_deg"]}),
+        ("cradle_angle_deg: only turns the measured", {"settings": ["wheel.machine.cradle_angle_deg"]}),
         (
             'generation = "formate"',
             {

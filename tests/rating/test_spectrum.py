@@ -281,7 +281,7 @@ def test_maps_are_those_of_the_bin_of_the_largest_damage():
         assert worst_case(rated, name) == (0, "largest damage of bins with an analysed torque")
     figure = plot_flank_safety(rated)
     assert "bin 1 of 2" in figure.get_suptitle()
-    assert any("bin of the largest damage" in text.get_text() for text in figure.findobj(Text))
+    assert any("largest damage of bins" in text.get_text() for text in figure.findobj(Text))
     assert worst_case(under(rows, **forever, **dict.fromkeys(safe, 0.5)), name)[0] == 1, "no damage at all"
 
 

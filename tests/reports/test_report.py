@@ -219,7 +219,7 @@ def test_discretisation_error_is_that_of_the_result(written):
     (peak,) = page.rows(label_of("peak_pressure_MPa"))
     tops = np.nanargmax(found.peak_pressure[:, 0], axis=1)  # beside the peak stands the error of its own contact
     beside = ", ".join(f"{100.0 * found.discretisation_error[t, 0, k]:.2f}%" for t, k in enumerate(tops))
-    assert peak[-1].startswith(f"mesh-independent; error of the grid: {beside}; where contacts reach")
+    assert peak[-1].startswith(f"mesh-independent; error of the grid: {beside}; at edges and relief starts")
 
 
 def test_accuracy_of_figures_is_what_the_studies_show(page):
@@ -257,7 +257,7 @@ def test_accuracy_of_figures_is_what_the_studies_show(page):
 
 @pytest.mark.quick_cases(
     "mesh_cycle_bevel-changes1-no estimate: for teeth of bevel gears this figure was not compared",
-    "mesh_cycle_spur-changes3-spur teeth on a face of 33 modules or more: the gears that were compared are",
+    "mesh_cycle_spur-changes3-spur teeth on a face of 33 modules or more: compared gears are",
 )
 @pytest.mark.parametrize(
     ("name", "changes", "note"),
@@ -272,7 +272,7 @@ def test_accuracy_of_figures_is_what_the_studies_show(page):
         (
             "mesh_cycle_spur",
             {"face_width": 99.0},
-            "spur teeth on a face of 33 modules or more: the gears that were compared are",
+            "spur teeth on a face of 33 modules or more: compared gears are",
         ),
     ],
 )

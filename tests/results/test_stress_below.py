@@ -155,7 +155,7 @@ def test_summary_beside_a_spike_tells_the_spike_in_its_note_alone():
     below = spike()
     peak, text = f"{below.pressure_map.pressure.max():.4g} MPa", below.summary()
     assert [peak in line for line in text.splitlines()] == [False] * (text.count("\n")) + [True]
-    assert "not those of the edge" in text
+    assert "hold across the contact point. At the edge" in text
 
 
 def test_picture_and_table_show_the_plane_beside_a_spike():

@@ -283,7 +283,7 @@ WIDE = (50, 100)
 
 
 def test_refusal_of_a_crown_wheel_names_the_thickness_factor():
-    with pytest.raises(GeometryError, match=r"slot closes .*; pair\.blank\.thickness_factor: missing, .* 0\.841, "):
+    with pytest.raises(GeometryError, match=r"slot closes .*; pair\.blank\.thickness_factor: missing; .* 0\.841, "):
         crown("straight_bevel", WIDE, 120.0).blanks()
 
 

@@ -166,7 +166,7 @@ def test_what_a_rack_does_not_have_is_refused_by_its_key(key: str, value: Any, m
 
 
 def test_rating_of_a_rack_needs_its_length() -> None:
-    with pytest.raises(InputError, match=r"^wheel\.length_mm: missing; \[rating\] needs it"):
+    with pytest.raises(InputError, match=r"^wheel\.length_mm: missing; \[rating\] needs this length"):
         SPUR.with_changes(RATED | {"wheel.length_mm": None})
 
 

@@ -119,7 +119,7 @@ def test_fillets_of_planets_are_drawn_by_both_meshes_where_bins_are_reversed():
 
 def test_note_on_reversed_bins_of_a_stage_names_what_stages_have():
     rating = under(bins((480.0, 1.0)) + bins((300.0, 3.0), reversed=True))
-    notes = [note for note in rating.notes() if "damage of the other flanks is not counted" in note]
+    notes = [note for note in rating.notes() if "their damage is not counted" in note]
     assert len(notes) == 1  # of both meshes alike
     assert "analyse with stage.driving changed and reversed swapped in every bin" in notes[0]
     assert "--coast" not in rating.summary()
