@@ -38,43 +38,51 @@ class Kind:
         return max(re.split(r" ?\(?\{[^}]*\}", self.template), key=len)
 
 
+RELIEVE = "give the gears more `lead_crowning_um`, `end_relief_um` or `tip_relief_um`"
+"""What takes the load from edges."""
+OFFSET_FACES = (
+    "give the gears different `face_width_mm`, or shift one along its axis, for instance by `mounting.axial_offset_mm`"
+)
+"""What brings faces apart that end at one place."""
+
 EDGE_NOT_FREE = Kind(
     "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent; the free edge is left "
     "out (analysis.free_edges)",
     "the contact ends at a tip or a face end. In theory the pressure at a sharp edge is infinite. The half-space of "
     "the model goes on beyond the edge and is too stiff there: K_Hbeta grows with the number of cells, by "
     "`face_load_factor_error` at the most",
-    "`free_edges = true`; read `peak_pressure`, not `edge_pressure` and not the cells of the map; give the gears more"
-    " crowning, end relief or tip relief",
+    f"`free_edges = true`; read `peak_pressure`, not `edge_pressure` and not the cells of the map; {RELIEVE}",
 )
 EDGE = Kind(
     "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent",
     "the contact ends at a tip or a face end. In theory the pressure at a sharp edge is infinite",
-    "read `peak_pressure`, not `edge_pressure` and not the cells of the map; give the gears more crowning, end relief"
-    " or tip relief",
+    f"read `peak_pressure`, not `edge_pressure` and not the cells of the map; {RELIEVE}",
 )
 ROUNDED_EDGE = Kind(
     "the pressure at a rounded edge has an estimated error above {limit:.0%}, {size}",
     "two edges that meet askew, or a rounding much smaller than the contact, need more columns of cells than the "
     "analysis makes. Where a rounded edge meets a sharp edge or the start of a linear relief, the pressure has no "
     "limit",
-    "read `edge_pressure` together with its error; use a larger radius, give the sharp edge a radius, too, or use a "
-    "parabolic relief",
+    "read `edge_pressure` together with its error; use a larger `tip_rounding_mm` or `side_rounding_mm`, round the "
+    "sharp edge, too, or use a parabolic relief",
 )
 NARROW_ENDS = Kind(
     "the pressure at rounded flush face ends is uncertain: their radius is below {part} of the half width of the "
     "contact",
-    "the contact lies within 45 degrees of these ends. There the correction for free ends has one length across the "
-    "contact, that of a half width of a twentieth of the module. Beside a wider contact the pressure is too high: 1.4 "
-    "to 2.1 times at a twentieth of the half width. The estimated error does not contain this",
-    "where both gears have the same radius, 1.16 (p^2 E*)^(1/3), which small radii do not change: p is the pressure "
-    "directly at the same ends without roundings. Use end relief or crowning",
+    "the contact runs within 45 degrees of the direction of these ends. There the image of the pressure in a free end"
+    " acts on whole slices, with the width of a contact whose half width is a twentieth of the module. Beside a wider "
+    "contact the pressure is too high: 1.4 to 2.1 times for a radius of a twentieth of the half width. The estimated "
+    "error does not contain this",
+    "where both gears have the same radius, take 1.16 (p^2 E*)^(1/3), which small radii do not change. An analysis of "
+    "the same ends without roundings has p, which makes this 17 to 25% too high on a spur pair. Use `end_relief_um` or"
+    " `lead_crowning_um`",
 )
 EDGE_UNSOLVED = Kind(
     "the pressure at a rounded edge is not known: its columns of cells are left with a residual of {residual:.1e}, "
     "above {tolerance:.0e}",
-    "the contact that is solved once more along the edge, for `edge_pressure` alone, did not converge. Its edge "
-    "pressure is missing, and the largest one is that of the other contacts. All other numbers stand",
+    "the contact is solved once more along the edge, for `edge_pressure` alone, and this solution did not converge. "
+    "This contact has no edge pressure, and the largest edge pressure is that of the other contacts. All other numbers"
+    " stand",
     "another number of `cells`, or a slightly different radius of the edge: both make other columns",
 )
 RELIEF_START = Kind(
@@ -85,8 +93,8 @@ RELIEF_START = Kind(
 LINE_LOAD_SLOPES = Kind(
     "an edge of a flank cuts the slices with the largest line load: of the derivatives of such line loads one in four"
     " is off by more than 5%, one in six by more than 10%",
-    "with every step of a key the edge leaves other cells of a slice: even differences of analyses on both sides of a"
-    " value are off by as much as the derivative",
+    "with every step of a key the edge cuts other cells of a slice. Even differences of analyses on both sides of a "
+    "value are off by as much as the derivative",
     "read the derivatives of the load share and of the peak pressure instead",
 )
 PEAK_SLOPES = Kind(
@@ -95,8 +103,7 @@ PEAK_SLOPES = Kind(
     "than 10%",
     "only few cells lie in the corner of a contact, or in a contact that has only just come under load: the peak "
     "pressure follows these few cells",
-    "read the derivatives of other contacts, or compare two grids; give the gears more crowning, end relief or tip "
-    "relief",
+    f"read the derivatives of other contacts, or compare two grids; {RELIEVE}",
 )
 PEAK_BESIDE_JUMP = Kind(
     "the curvature of the gap jumps beside the peak pressure, as at the start of a parabolic relief: derivatives of "
@@ -109,44 +116,42 @@ PEAK_BESIDE_JUMP = Kind(
 EDGES_AT_ONE_PLACE = Kind(
     "edges of both gears lie at one place: the transmission error has a kink there, and its derivatives for growing "
     "values differ by up to {size:.2g} um per {unit} from those for falling values ({key}; {count} of {keys} keys)",
-    "to one side of the present value the edge of the pinion ends the contact, to the other side the edge of the "
-    "wheel, and to one of both sides the contact gets shorter. A misalignment that is given over the common face also"
-    " tilts the wheel more where this face gets shorter. The derivative is the mean of both sides",
-    "give the gears faces of two widths or an offset, so that one gear alone ends the contact; else analyse values on"
-    " both sides of the present one",
+    "for values on one side of the present value the edge of the pinion ends the contact, on the other side the edge "
+    "of the wheel, and on one of these sides the contact gets shorter. A misalignment that is given over the common "
+    "face also tilts the wheel more where this face gets shorter. The derivative is the mean of both sides",
+    f"{OFFSET_FACES}, so that one gear alone ends the contact; else analyse values on both sides of the present one",
 )
 FACE_ENDS_AT_ONE_PLACE = Kind(
     "faces of both gears end at one place: K_Hbeta has a kink there, and its derivative is {falling:+.2g} per {unit} "
     "for falling and {growing:+.2g} per {unit} for growing values ({key}; {count} of {keys} keys)",
-    "K_Hbeta counts over the common face, and this face, or one end of it, gets shorter to both sides of the present "
-    "value. The derivative is the mean of both sides. Where the face ends close to an end of the load, the derivative"
-    " and even its sign depend on the cells",
-    "give the gears faces of two widths or an offset; else analyse values to the side that is meant, in steps that "
-    "move the face by more than a cell",
+    "K_Hbeta counts over the common face, which growing and falling values shorten, as a whole or at one end. The "
+    "derivative is the mean of both sides. Where the face ends close to an end of the load, the derivative and even "
+    "its sign depend on the cells",
+    f"{OFFSET_FACES}; else analyse values on the side of interest, in steps that move the face by more than a cell",
 )
 FACE_END_IN_LOAD = Kind(
     "K_Hbeta is that of the strip at one end of the face, and this end moves with a key: the derivative of K_Hbeta "
     "depends on the cells, at times even its sign ({key}; {count} of {keys} keys)",
     "the load is highest where the face ends, in a cell that this end cuts: differences of analyses over steps below "
     "a cell scatter by as much as the derivative",
-    "use analyses over steps of more than a cell along the contact; use end relief or crowning that takes the load "
-    "away from the end of the face",
+    "use analyses over steps of more than a cell along the contact; use `end_relief_um` or `lead_crowning_um` that "
+    "takes the load away from the end of the face",
 )
 ARC_IN_LOAD = Kind(
     "contacts end on the rounding of a face end beside the strip with the largest load, and K_Hbeta is off by up to "
     "{error:.0%} by its cells: derivatives of K_Hbeta depend on the cells by as much as their own size ({key}; "
     "{count} of {keys} keys)",
-    "cells tell where a contact ends on a rounding to half a cell, and a key moves this end. Differences of analyses "
-    "over steps that move the end by less than a cell scatter as well",
+    "the cells resolve the end of a contact on a rounding to half a cell only, and a key moves this end. Differences "
+    "of analyses over steps that move the end by less than a cell scatter as well",
     "more `cells` along the contact; use analyses over steps that change K_Hbeta by more than its "
-    "`face_load_factor_error`; use end relief or crowning that takes the load away from the rounding",
+    "`face_load_factor_error`; use `end_relief_um` or `lead_crowning_um` that takes the load away from the rounding",
 )
 SLOPES_BY_GRIDS = Kind(
     "derivatives of the transmission error depend on the grid by up to {size:.2g} um per {unit}, more than 5% of "
     "their range over the positions ({key}; {count} of {keys} keys)",
-    "edges, arcs and relief starts run through cells. So the derivatives differ by this size with the place of the "
-    "grids, whether these stay or move with the contact points; on small cells they would not. Derivatives of peak to"
-    " peak and of harmonics are off by about as much",
+    "edges, arcs and relief starts run through cells. The derivatives depend by this size on where the grids lie, both"
+    " for grids that stay in place and for grids that move with the contact points; on small cells they would not. "
+    "Derivatives of peak to peak and of harmonics are off by about as much",
     "more `cells`, or a smaller `accuracy`; compare two grids",
 )
 NEARLY_PLASTIC = Kind(
@@ -159,8 +164,8 @@ NEARLY_PLASTIC = Kind(
 STRIPS_ALIKE = Kind(
     "another strip of the face carries nearly the largest load, {lacking:.2%} less: K_Hbeta has a kink, and beyond it"
     " derivatives differ by up to {size:.0%} ({key}; {count} of {keys} keys)",
-    "K_Hbeta follows the strip with the largest load, of 30 strips. Beyond the change of a key by which another strip"
-    " gets the largest load, it follows that other strip: for an aligned pair K_Hbeta rises to both sides",
+    "K_Hbeta follows the one of 30 strips that has the largest load. Where a change of a key makes another strip the "
+    "most loaded one, K_Hbeta follows that strip: for an aligned pair K_Hbeta rises to both sides",
     "analyse values on both sides of the present one, or use a Monte Carlo study; do not use the spread to first order",
 )
 STRIPS_BESIDE = Kind(
@@ -175,8 +180,8 @@ CONTACTS_ALIKE = Kind(
     "{figure}: the largest stresses of two contacts differ by {lacking:.1%}; derivatives are those of the contact "
     "with the larger stress, and where the other contact gets the larger stress they change by up to {size:.0%} "
     "({key}; {count} of {keys} keys)",
-    "local safeties follow from the largest pressure and the largest root tension of all positions. Beyond the change"
-    " of a key by which another contact gets the largest stress, they follow that other contact",
+    "local safeties follow from the largest pressure and the largest root tension of all positions. Where a change of"
+    " a key gives another contact the largest stress, local safeties follow that contact",
     "analyse values on both sides of the present one, or use more positions; do not use the spread to first order",
 )
 TRANSVERSE_HELD = Kind(
@@ -189,9 +194,9 @@ TRANSVERSE_HELD = Kind(
 ANOTHER_POSITION = Kind(
     "{figure}: its derivatives do not hold over the whole tolerance: beyond a change by {change:+.2g} {unit} another "
     "position is the highest or lowest, and the derivatives differ by {size:.0%} ({key}; {count} of {keys} keys)",
-    "the figure is that of one position, or of two. Beyond the change that is given, which follows from values and "
-    "derivatives of all positions, it is that of another position: it may grow to both sides where the table has it "
-    "fall",
+    "the figure follows one position, or two. Beyond the stated change, which is computed from values and derivatives"
+    " of all positions, the figure follows another position: it may grow to both sides even where the derivative is "
+    "negative",
     "use the derivative up to that change only; beyond it use analyses or a Monte Carlo study, not the spread to "
     "first order",
 )
@@ -207,8 +212,8 @@ PAIR_COMES_OR_GOES = Kind(
 RELIEF_START_BESIDE = Kind(
     "a linear relief starts within the contact, beside the contact point: derivatives depend on the grid by up to 25%",
     "the start of the relief runs through cells, and each cell has the gap of its middle. Derivatives by mounting "
-    "errors, machine settings and relief starts are off by 15 to 25 %, with either sign; those of line loads are off "
-    "by more if the slice lies there",
+    "errors, machine settings and relief starts are off by 15 to 25 %, with either sign. Derivatives of line loads in "
+    "slices on the start of the relief are off by more",
     '`tip_relief_form = "parabolic"`, or compare two grids; derivatives by amounts of reliefs are as exact as '
     "elsewhere",
 )
@@ -216,13 +221,13 @@ PEAK_ERROR = Kind(
     "the estimated relative error of the peak pressure stays above {allowed:g}",
     "the finest grid allowed is too coarse for the accuracy asked for. At edges and relief starts grids are refined "
     "until the approach agrees, and the line load still changes by more than the accuracy. Where the curvature of the"
-    " gap jumps, the pressure beside the peak does so",
-    "a larger `accuracy`, or `cells`; at edges a smaller `accuracy`",
+    " gap jumps, the pressure beside the peak still changes by more than the accuracy",
+    "a larger `accuracy`, or more `cells`; at edges a smaller `accuracy`, which refines the grid further",
 )
 PEAK_MOVES = Kind(
     "the peak pressure changes by more than {limit:.0%} as the teeth bend after the grid was chosen",
-    "under the final forces of the slices the teeth bend in another way than when the grid was chosen, and the peak "
-    "pressure changed by this much more than its load. The error of the peak pressure is as large",
+    "under the final forces of the slices the teeth bend in another way than when the grid was chosen. The peak "
+    "pressure changed by this percentage more than the load, and its error is as large",
     "fewer `cells` along the contact, or a larger `accuracy`; compare the same position one pitch later",
 )
 BOX = Kind(
@@ -238,21 +243,21 @@ NO_TORQUE = Kind(
     "nothing, or a larger torque",
 )
 IN_ONE_PIECE = (
-    "for a pinion in one piece with its shaft give `bore_diameter_mm = 0`; beside a `[pinion.shaft]`, which has this "
-    "torsion, give no bore"
+    "for a pinion in one piece with its shaft give `bore_diameter_mm = 0`; beside a `[pinion.shaft]`, which contains "
+    "this torsion, leave `bore_diameter_mm` out"
 )
 """What bore to give a gear that has none."""
 BODY_TWIST = Kind(
     "the twist of the gear bodies about their bores, {bores} mm, is up to {share:.0%} of the deflection: the mesh "
     "stiffness is mostly that of the bodies",
-    "given for teeth that bend: the model holds the bores rigid, and about a small bore the whole body twists",
+    "where teeth bend, the model holds the bores rigid, and about a small bore the whole body twists",
     f"give the `bore_diameter_mm` of the hub or shaft seat; {IN_ONE_PIECE}",
 )
 RIGID_BORES = Kind(
     "bores of {bores} mm are held rigid: the mesh is about {share:.0%} stiffer than with bores of {usual} mm, the "
     "seats of shafts or the default bores",
-    "given for teeth that bend: a thin rim on a bearing, a sleeve or a web is not rigid, which the model leaves out; "
-    "the percentage comes from two models with these bores",
+    "where teeth bend, the model holds the bores rigid; a thin rim on a bearing, a sleeve or a web is not. The "
+    "percentage comes from two models with these bores",
     "give the diameter of the part that is as stiff as a shaft as `bore_diameter_mm`, or leave this key out; else use"
     " finite elements of the whole gear",
 )
@@ -425,9 +430,9 @@ PITCH_VELOCITY = Kind(
 EDGES_NOT_RATED = Kind(
     "rating: local safeties of flanks leave edges out, whose pressure is {pressure:.0f} MPa under {torque} beside a "
     "peak pressure of {peak:.0f} MPa, {accuracy}",
-    "they follow from slices of the flanks without their edges, as `peak_pressure` does: a sharp edge has no finite "
-    "pressure, and allowable stresses are not those of an edge; what an edge adds to pitting is not rated",
-    "tip or end relief that takes the load from the edge, as the finding of the summary says; a radius makes "
+    "local safeties follow from slices of the flanks away from edges, as `peak_pressure` does. A sharp edge has no "
+    "finite pressure, and allowable stresses are not those of edges. The pitting that an edge adds is not rated",
+    "tip or end relief that takes the load from the edge, as the finding of the summary says. A radius makes "
     "`edge_pressure` finite, and local safeties stay the same; safeties after the standard have no edges",
 )
 ABOVE_STATIC_STRENGTH = Kind(

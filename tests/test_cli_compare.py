@@ -36,7 +36,7 @@ def test_compare_writes_table_and_pictures_and_tells_the_differences(run):
     code, out, errors = run("compare", "plain", "crowned/result.nc", "--out", "out")
     assert (code, errors) == (0, [])
     assert {path.name for path in Path("out").iterdir()} == FILES
-    assert out.startswith("Compared with plain, pinion torque 130 N m; in % sizes")
+    assert out.startswith("Compared with plain, pinion torque 130 N m; % of absolute")
     assert "pinion.modifications.lead_crowning_um" in out
     assert "(+0.0 %)" in out
     assert f"Written to out: {', '.join(sorted(FILES, key=out.index))}" in out

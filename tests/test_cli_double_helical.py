@@ -95,7 +95,7 @@ def test_commands_that_take_one_pair_refuse_two_halves(command, tmp_path, capsys
 
 def test_sides_and_supports_are_not_compared(tmp_path, capsys):
     assert main(["run", str(SCENE), "--coast", "--out", str(tmp_path)]) == 2
-    assert "--coast, --rigid: not of double helical pairs" in capsys.readouterr().err
+    assert "--coast, --rigid: not allowed with double helical pairs" in capsys.readouterr().err
 
 
 @pytest.mark.usefixtures("blank_pictures")

@@ -36,8 +36,8 @@ def test_word_is_looked_for_in_names_and_meanings_and_spellings(run):
 
 def test_word_that_no_key_has_is_refused_with_those_near(refused):
     near = "lead_crowning_um, lead_crowning_form, profile_crowning_um"
-    assert refused("keys", "crowing") == f"crowing: no key has it in its name or meaning; near are {near}"
-    assert refused("keys", "%%%") == "%%%: no key has it in its name or meaning"
+    assert refused("keys", "crowing") == f"crowing: no key has this word in its name or meaning; near are {near}"
+    assert refused("keys", "%%%") == "%%%: no key has this word in its name or meaning"
 
 
 @pytest.mark.parametrize("width", [50, 90])

@@ -101,7 +101,7 @@ def test_run_says_why_a_scene_is_not_rated(tmp_path):
 
 
 REFUSED = [
-    (("--set", "pinion.teeth=21"), "--set pinion.teeth: an analysis depends on it"),
+    (("--set", "pinion.teeth=21"), "--set pinion.teeth: needs another analysis"),
     (("--set", "rating.life_hours=-1"), "rating.life_hours: found -1"),
     (("--set", "pinion.strength.hardness_HV=100"), "pinion.strength.hardness_HV: found 100 HV; allowed for kind 'Eh'"),
 ]
@@ -133,7 +133,7 @@ def test_command_rates_the_stage_of_a_directory(run, stage):
     assert row["K_gamma"] == row["ring_mesh_K_gamma"] == 1.3
     code, _, errors = run("rating", stage, "--set", "sun.teeth=21")
     assert code == 2
-    assert any("--set sun.teeth: an analysis depends on it; allowed keys of [sun.strength]" in line for line in errors)
+    assert any("--set sun.teeth: needs another analysis; allowed keys of [sun.strength]" in line for line in errors)
 
 
 @pytest.mark.usefixtures("blank_pictures")

@@ -68,7 +68,7 @@ def test_command_without_speed_or_oil_has_the_loss_factor_alone(run, out):
 
 REFUSED = [
     (("--speed", "0"), "operation.pinion_speed_rpm: found 0.0; allowed a number above 0"),
-    (("--set", "pinion.teeth=21"), "--set pinion.teeth: an analysis depends on it"),
+    (("--set", "pinion.teeth=21"), "--set pinion.teeth: needs another analysis"),
     (("--set", "lubricant.base=water"), 'lubricant.base: found "water"'),
     (settings(*OIL, "lubricant.viscosity_100_mm2_s=300"), "lubricant.viscosity_100_mm2_s: found 300"),
 ]

@@ -57,7 +57,7 @@ ratio of roll for a gear that is cut without roll.
 files beside FILE (out.toml):
   out_corrections.csv       one row per setting: its correction, standard deviation and limit, in its unit
   out_deviations.csv        one row per measured point: deviation before and after
-  out_deviations.png        the same over the flanks
+  out_deviations.png        these deviations over the flanks
 docs/guide/measured_settings.md says more."""
 MEASURED = """The command shows slopes, crownings and twist, found by least squares over the measured points, their
 standard deviations, and the form deviations that remain. It reads points, profile and helix lines as
@@ -87,7 +87,7 @@ files in DIR:
 and with --loaded instead
   vh_under_load.png         highest pressure at each place of the flank
   vh_study.csv              key figures, one row per pair of errors and torque; the summary has the warnings
-  vh_study.nc, vh_study_maps/  the study that these come from; the same command continues it"""
+  vh_study.nc, vh_study_maps/  the study behind both files; the same command continues it"""
 TRIBOLOGY = """[operation], [lubricant], roughness_Ra_um and the thermal keys of materials say how the pair runs; --set
 gives or changes these. Numbers that need a missing input are left out, and the summary says which.
 
@@ -99,18 +99,18 @@ files in DIR:
 Only the friction of the teeth is counted; docs/guide/efficiency_and_scuffing.md says more."""
 RATING = """[pinion.strength], [wheel.strength], [rating], [operation] and [lubricant] of the scene say what the gears
 are made of, what is required and how they run; a stage has [sun.strength], [planet.strength] and [ring.strength]. --set
-gives or changes these, and the load spectrum: load.spectrum=FILE, with torques up to the largest that was solved.
+gives or changes these, and the load spectrum: load.spectrum=FILE, with torques up to the largest analysed torque.
 Without a load spectrum each torque is rated by itself. Both halves of a double helical pair are rated under their
 shares, and have pictures of their own: half_a_safeties.png ...
 
 files in DIR:
   rating.json               safeties, damage, lives and every factor of each torque or bin, and of all bins together
-  rating.csv                the same, one row per torque or bin
+  rating.csv                these numbers, one row per torque or bin
 {pictures}
 docs/guide/strong_enough.md says more."""
 SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
-  subsurface.csv            the same stresses over the depth, below the highest pressure
+  subsurface.csv            these stresses over the depth, below the highest pressure
   subsurface_max_shear.png, subsurface_von_mises.png
 Stresses in MPa, tension positive, of a half-space without friction; docs/guide/stresses_below.md says more."""
 SENSITIVITIES = """KEY is a key of the scene, TOLERANCE its standard deviation, in the unit that the key ends in.
@@ -135,10 +135,10 @@ DYNAMICS = """files:
 All in SI units; lines that begin with # say what the columns are. The result must have load sharing."""
 STUDY = """files in DIR:
   study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
-  study.csv                 the same, one row per variant and torque: torque_Nm, or where variants have different
-                            torques their torque_number from 0
+  study.csv                 these figures, one row per variant and torque: torque_Nm, or, where variants differ in
+                            their torques, torque_number from 0
   ranking.csv               one row per variant, the best by --rank-by first
-  shortfall.csv             for scenes with strengths: how probable safeties below the required ones are
+  shortfall.csv             for scenes with strengths: probability of safeties below the required ones
   study_*.png               pictures, depending on what varies
   study.rows.jsonl          the variants that are done; the same command continues from there
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
@@ -188,7 +188,7 @@ looks for WORD in names and meanings, capitals or not. WORD may also be the name
 a key, such as beta or da; docs/reference/scene_keys.md says more."""
 
 
-BESIDE = "beside the result; with options that choose a part of it, in a directory there that the options name"
+BESIDE = "beside the result; with options that choose a part of the result, in a directory named after the options"
 """Where the files of what is made of a result go by default."""
 Command = Callable[..., argparse.ArgumentParser]
 """Adds a command of a name, a function to run, a text, and a text below its options."""
@@ -265,8 +265,8 @@ def _add_analyses(command: Command) -> None:
     _add_changes(stage)
     stage.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     text = (
-        "parts of the work done at once, at most one per core; default: LOADED_TCA_JOBS, or one per core; results do "
-        "not depend on it"
+        "parts of the work done at once, at most one per core; default: LOADED_TCA_JOBS, or one per core; any N gives "
+        "the same results"
     )
     for analysis in (demo, run, revolution, stage):
         analysis.add_argument("--jobs", metavar="N", type=_jobs, help=text)
@@ -274,7 +274,7 @@ def _add_analyses(command: Command) -> None:
 
 def _add_readers(command: Command) -> None:
     """Add the commands that show one result again."""
-    peak = "default: that of the peak pressure of the summary"
+    peak = "default: where the summary has its peak pressure"
     plot = command("plot", run_by.plot, "draw the pictures of a result again")
     text = "write the complete teeth of a result as surfaces (VTK, STL) and as a picture"
     tooth = command("tooth", run_by.tooth, text, TEETH)
@@ -312,7 +312,7 @@ def _add_tribology(command: Command) -> None:
     reader.add_argument("--out", metavar="DIR", type=_path, help="directory for the files; default: beside the result")
 
 
-COAST = "result of the coast side, whose flanks carry reversed bins: after run --coast it is DIR/coast beside DIR/drive"
+COAST = "result of the coast side, whose flanks carry reversed bins; 'run --coast' writes it to DIR/coast"
 
 
 def _add_rating(command: Command) -> None:
@@ -342,7 +342,7 @@ def _add_comparisons(command: Command) -> None:
         "--position",
         metavar="N",
         type=_int,
-        help="position of the maps in the first result, from 1; default: that of the peak pressure of each result",
+        help="position of the maps, from 1 in the first result; default: where each result has its peak pressure",
     )
     slopes = command(
         "sensitivities",
@@ -396,7 +396,7 @@ def _add_tables_and_maps(command: Command) -> None:
     vh.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
     for name, what in (("v", "V, upwards"), ("h", "H, to the right")):
         text = (
-            f"values of {what}; default: 0, and a hundredth of the module to both sides (angles: of that over the face)"
+            f"values of {what}; default: 0, and 0.01 modules to both sides (angles: 0.01 modules over the face width)"
         )
         vh.add_argument(f"--{name}", metavar=name.upper(), nargs="+", type=_float, help=text)
     for reader in (ease_off, vh):
@@ -457,9 +457,9 @@ def _add_studies(command: Command) -> None:
     study.add_argument(
         "--rank-by",
         metavar="FIGURE",
-        help="figure of study.csv by which variants are ranked, best first; default: peak-to-peak TE",
+        help="figure of study.csv that ranks the variants, best first; default: peak-to-peak transmission error",
     )
-    axes = "keys with given values that heat maps have to the right and upwards; default: the first two"
+    axes = "two keys with given values, for heat maps to the right and upwards; default: the first two"
     study.add_argument("--axes", metavar="KEY", nargs=2, help=axes)
     study.add_argument(
         "--keep-maps",
@@ -488,7 +488,7 @@ def _add_studies(command: Command) -> None:
     report.add_argument(
         "--rank-by",
         metavar="FIGURE",
-        help="for a study: figure by which variants are ranked, best first; default: peak-to-peak TE",
+        help="for a study: figure that ranks the variants, best first; default: peak-to-peak transmission error",
     )
     report.add_argument("--axes", metavar="KEY", nargs=2, help=f"for a study: {axes}")
 

@@ -96,7 +96,11 @@ def run(options: argparse.Namespace) -> None:
 
         assert isinstance(scene, DoubleHelicalScene)
         require(
-            (not compared, "--coast, --rigid: not of double helical pairs; give the scene that is meant, and run it")
+            (
+                not compared,
+                "--coast, --rigid: not allowed with double helical pairs; run a scene with the other pair.driving, or "
+                "a scene without shafts",
+            )
         )
         _run_double_helical(scene, directory)
         return
@@ -320,7 +324,7 @@ STRENGTHS = "pinion.strength", "wheel.strength"
 STAGE_STRENGTHS = "sun.strength", "planet.strength", "ring.strength"
 SPECTRUM = "load.spectrum", "load.case"
 OF_RATING, OF_STAGE_RATING = (
-    f"an analysis depends on it; allowed keys of {', '.join(f'[{name}]' for name in sections)}, [rating], [operation] "
+    f"needs another analysis; allowed keys of {', '.join(f'[{name}]' for name in sections)}, [rating], [operation] "
     f"and [lubricant], and a load spectrum: {', '.join(SPECTRUM)}"
     for sections in (STRENGTHS, STAGE_STRENGTHS)
 )
@@ -334,7 +338,7 @@ def _is_of_rating(key: str, strengths: Sequence[str] = STRENGTHS) -> bool:
 ROUGHNESS, THERMAL = "roughness_Ra_um", ("conductivity_W_mK", "density_kg_m3", "heat_capacity_J_kgK")
 """Keys of gears and of materials that concern tribology alone."""
 OF_TRIBOLOGY = (
-    f"an analysis depends on it; allowed keys of [operation] and [lubricant], {ROUGHNESS} of the gears, and "
+    f"needs another analysis; allowed keys of [operation] and [lubricant], {ROUGHNESS} of the gears, and "
     f"{', '.join(THERMAL[:-1])} and {THERMAL[-1]} of materials"
 )
 
@@ -446,7 +450,7 @@ def sensitivities(options: argparse.Namespace) -> None:
     result, directory, torque, _ = result_of(options)
     torque = index_or_largest(result.torque, torque)
     tolerances = tolerances_of(options, result.scene)
-    with bar_of(f"derivatives to {len(tolerances)} keys", len(DERIVATIVES), BAR) as show:
+    with bar_of(f"derivatives by {len(tolerances)} keys", len(DERIVATIVES), BAR) as show:
         slopes = result.sensitivities(list(tolerances))
         for done, name in enumerate(DERIVATIVES, 1):
             getattr(slopes, name)

@@ -63,7 +63,7 @@ def keys(options: argparse.Namespace) -> None:
     sections = [section.with_word(word) for section in _sections()] if word else _sections()
     shown = [section for section in sections if section.reference.rows]
     if not shown:
-        raise InputError(f"{word}: no key has it in its name or meaning{_near(word)}")
+        raise InputError(f"{word}: no key has this word in its name or meaning{_near(word)}")
     print("\n\n".join("\n".join(_lines(section, width_of_lines())) for section in shown))
 
 

@@ -20,7 +20,7 @@ def correct(options: argparse.Namespace) -> None:
     from loaded_tca.plots import plot_measured_settings, png_of
     from loaded_tca.results.files import replace_together
 
-    require((options.method is None, f"--method {options.method}: of a bevel blank; not with --measured"))
+    require((options.method is None, f"--method {options.method}: only for bevel blanks; not allowed with --measured"))
     scene, out = scene_of(options), options.out
     files = [out.with_name(f"{out.stem}_{part}") for part in PARTS]
     for read in (Path(options.scene), *(file for _, _, file in options.measured)):

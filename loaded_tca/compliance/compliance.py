@@ -70,7 +70,7 @@ class ToothCompliance:
         return body_torsion(self.pair)
 
     def mounted(self, pair: GearPair) -> ToothCompliance:
-        """The same teeth in a pair whose wheel stands elsewhere."""
+        """These teeth in a pair whose wheel stands elsewhere."""
         return replace(self, pair=pair)
 
     def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:

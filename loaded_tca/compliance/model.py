@@ -69,7 +69,7 @@ class BendingPart(BendingModel, Protocol):
     """A bending model whose gears can stand elsewhere."""
 
     def mounted(self, pair: GearPair) -> Self:
-        """The same bodies in a pair whose wheel stands elsewhere."""
+        """These bodies in a pair whose wheel stands elsewhere."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +124,7 @@ class SumOfParts(BendingModel):
         return 0 if (teeth := self.on_rigid_supports) is None else teeth.neighbours
 
     def on_supports(self, supports: SupportCompliance) -> SumOfParts:
-        """The same parts with other supports."""
+        """These parts with other supports."""
         return SumOfParts(tuple(supports if isinstance(part, SupportCompliance) else part for part in self.parts))
 
     @property
@@ -139,7 +139,7 @@ class SumOfParts(BendingModel):
         return self.on_rigid_supports if self.supports is not None and self.supports.is_rigid else self
 
     def mounted(self, pair: GearPair) -> SumOfParts:
-        """The same parts in a pair whose wheel stands elsewhere."""
+        """These parts in a pair whose wheel stands elsewhere."""
         return SumOfParts(tuple(part.mounted(pair) for part in self.parts))
 
 

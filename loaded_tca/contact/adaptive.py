@@ -127,7 +127,7 @@ def _missed(solution: ContactSolution, error: float, of_approach: bool, accuracy
     """Sentences on the figures whose estimated error is above the accuracy; ``of_approach``: it is that of another."""
     figures = [("approach" if of_approach else "peak pressure", error, "")]
     if of_approach:
-        limit = ", which is that of the approach where the pressure has no limit"
+        limit = "; where the pressure has no limit, this accuracy holds for the approach"
         figures.append(("peak pressure", solution.error_estimate.peak_pressure, limit))
     return tuple(
         f"the estimated error of the {figure}, {'unknown' if math.isnan(size) else plain(size, 2)}, is above the "

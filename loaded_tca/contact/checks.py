@@ -107,7 +107,7 @@ def check_demand(
         )
     depth = 0.0 if approach is None else real(approach) - float(gap.min())
     if not (-LONGEST <= depth <= 0.0 or SHORTEST <= depth <= LONGEST):
-        allowed = f"within {plain(LONGEST, 6)} mm of it and, beyond it, at least {plain(SHORTEST, 6)} mm"
+        allowed = f"up to {plain(LONGEST, 6)} mm to either side of it, and beyond it at least {plain(SHORTEST, 6)} mm"
         problems.append(f"approach: {approach} mm lies {depth} mm beyond first contact; allowed {allowed}")
     if max_pressure is not None and not real(max_pressure) > 0.0:
         problems.append(f"max_pressure: {max_pressure} MPa is not positive")

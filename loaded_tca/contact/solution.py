@@ -157,7 +157,7 @@ class Solution:
         What was solved.
     """
 
-    WAY_OUT: ClassVar = "try a larger tolerance (in scenes: analysis.tolerance), or on_failure='return' to look at it"
+    WAY_OUT: ClassVar = "try a larger tolerance (in scenes: analysis.tolerance), or on_failure='return'"
 
     pressure: Array
     gap: Array

@@ -205,7 +205,7 @@ def depths_below(solution: ContactSolution, count: int = 31) -> Array:
     """
     problems = [] if count >= 2 else [f"count: {count} is less than 2"]
     if not solution.in_contact.any():
-        problems.append("solution: nothing is in contact, there is no depth to measure by")
+        problems.append("solution: no cell is in contact, so that depths have no half width to count in")
     checks.raise_if(problems)
     return graded_depths(solution.semi_axes[0], count)
 

@@ -182,7 +182,7 @@ def _not_settled(scene: DoubleHelicalScene, place: float, rounds: int) -> Conver
     """Error of a floating gear whose place [mm] changes from one analysis of both halves to the next."""
     return ConvergenceError(
         f"pair.floating: the place of the {scene.geometry.floating} along its axis, {plain(place)} mm, is not "
-        f"settled in {rounds} steps"
+        f'settled in {rounds} steps; give pair.axial_stiffness_N_per_um, or pair.floating = "none"'
     )
 
 

@@ -182,7 +182,7 @@ class DoubleHelicalRating(OfCases):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DoubleHelicalSpectrumRating(OfSpectrum, DoubleHelicalRating):
-    """The same under a load spectrum: cases are its bins, whose torque the halves share bin by bin.
+    """Safeties and lives of a double helical pair under a load spectrum, whose torque the halves share bin by bin.
 
     ``miner_sum`` is the larger of both halves, ``life_hours`` and ``spectrum_safety`` the smaller.
     """
@@ -301,8 +301,8 @@ def _parts_of(result: DoubleHelicalResult, halves: Indices, torques: Array) -> l
     if falls.size:
         less, more = (shown_torque(float(result.torque[row])) for row in rows[falls[0] : falls[0] + 2])
         raise InputError(
-            f"analysis.torques_Nm: the half carries no more under {more} of both halves than under {less}, and a "
-            "rating takes torques under which it does; analyse and rate each of them by itself"
+            f"analysis.torques_Nm: the half carries no more under {more} of both halves than under {less}; a rating "
+            "needs torques under which its load rises; analyse and rate each of them by itself"
         )
     parts = []
     for place, half in sorted({*zip(result.place_of_torque[rows].tolist(), halves[rows].tolist(), strict=True)}):
@@ -388,7 +388,7 @@ def _of_pair(rating: DoubleHelicalRating) -> Iterator[str]:
             largest = shown_torque(float(rating.torque[idle].max()))
             yield f"half {name} carries nothing under up to {largest} of both halves, and has no load factors there"
     if not scene.floats_freely:
-        yield "each half is rated under the largest of its shares over the pitch"
+        yield "each half is rated under its largest share over the pitch"
     shares = result.torque_share
     span, mean = np.ptp(shares, axis=1), shares.mean(axis=1)
     if (span > UNEVEN * mean).any():
@@ -399,9 +399,9 @@ def _of_pair(rating: DoubleHelicalRating) -> Iterator[str]:
             f"{shown_torque(result.torque[torque])}: the life under the largest share is on the safe side"
         )
     if any(case.reversed for case in scene.load.case or ()):
-        yield "the halves share reversed bins as they share the same torques that are not reversed"
+        yield "in reversed bins the halves share the torque as under the same torque that is not reversed"
     if result.elsewhere:
         yield (
-            "load factors and stresses under each torque that was analysed are those of the mesh cycles under it, "
-            "between the torques of the half that these have; under other torques they lie between"
+            "load factors and stresses under each analysed torque come from its own mesh cycles, interpolated between "
+            "the torques of the half there; under other torques they are interpolated between analysed torques"
         )

@@ -334,13 +334,14 @@ class DoubleHelicalResult(OfHalves):
         largest = int(self.torque.argmax())
         files = {n: " and ".join(names) for n, names in enumerate(_files_elsewhere(self.dataset), start=1)}
         on_shafts = [
-            f"half_a and half_b hold the mesh cycles under {shown_torque(self.torque[largest])}, with the loads that "
-            f"both halves have on the shafts under it; those under other torques are in {', '.join(files.values())}"
+            f"half_a and half_b hold the mesh cycles under {shown_torque(self.torque[largest])}, with the shaft loads "
+            f"of both halves under this torque; {', '.join(files.values())} hold those under other torques"
         ]
         return (on_shafts if self.scene.is_supported and len(self.torque) > 1 else []) + [
             f"under {shown_torque(torque)} the {self.scene.geometry.floating} stands {plain(way, 3)} mm along its axis "
-            f"from its place under {shown_torque(self.torque[largest])}, for which half_a and half_b hold the mesh "
-            f"cycles; those at its place under {shown_torque(torque)} are in {files[place]}"
+            f"from its place under {shown_torque(self.torque[largest])}; half_a and half_b hold the mesh cycles at the "
+            f"place under {shown_torque(self.torque[largest])}, {files[place]} at the place under "
+            f"{shown_torque(torque)}"
             for torque, way, place in zip(
                 self.torque.tolist(), (places - places[largest]).tolist(), self.place_of_torque.tolist(), strict=True
             )

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 ON_RIGID_AXES = (
     "found a section; not allowed in whole revolutions of double helical pairs, whose gears stand on rigid axes; "
-    "shafts are of account over a pitch: 'loaded-tca run', loaded_tca.double_helical.analyse_double_helical"
+    "analyse a pitch with shafts by 'loaded-tca run' or loaded_tca.double_helical.analyse_double_helical"
 )
 HALVES_REVOLUTION_FILE = "double_helical_revolution.nc"
 """Name of the file of both halves together."""

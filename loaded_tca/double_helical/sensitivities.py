@@ -35,8 +35,8 @@ STEP = 1e-3
 ALLOWED = f"{TORQUE}, {APEX}, and keys of [mounting] and of the modifications of both gears and of their half_b"
 
 ON_SHAFTS = (
-    "both halves load the shafts, and derivatives of both together are those of gears on rigid axes; allowed are those "
-    "of half_a and half_b, where the loads of the other half are held"
+    "both halves load the shafts, and derivatives of both halves together need rigid axes; use the derivatives of "
+    "half_a or half_b, which hold the loads of the other half constant"
 )
 
 

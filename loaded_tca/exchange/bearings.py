@@ -48,7 +48,7 @@ def bearing_rows(
         rows = rolling_rows(reading, bearing, sign)
         if rows is not None:
             reading.take(bearing, "radial_stiffness", "axial_stiffness", "bending_stiffness")
-            reading.note(f"{bearing}: it gives way by its inner geometry")
+            reading.note(f"{bearing}: its stiffness follows from its inner geometry")
             return rows
     stiffness = _linear(reading, bearing, thrust)
     return None if stiffness is None else [(0.0, stiffness)]
@@ -85,9 +85,9 @@ def _axial(reading: Reading, bearing: Component, radial: float, axial: float, th
         return 0.0
     if absorption in ("positive", "negative") and thrust:
         if (thrust > 0.0) != (absorption == "positive"):
-            reading.note(f"{bearing}: it takes no axial force in the scene: that on its shaft points the other way")
+            reading.note(f"{bearing}: no axial force in the scene: the force on its shaft points the other way")
             return 0.0
-        reading.note(f"{bearing}: it takes axial forces of both directions in the scene, {absorption} ones in the file")
+        reading.note(f"{bearing}: axial forces of both directions in the scene, only {absorption} ones in the file")
     if not axial and absorption and bearing.type in ROLLING and radial > RIGID_N_per_mm:
         return math.inf  # rigid, of a file that gives no stiffness where a direction is held
     return axial

@@ -118,8 +118,8 @@ def operation_of(gearbox: Gearbox, stage: Stage, torque: float | None) -> Operat
     magnitude = next((abs(one) for one in (torque, of_file, by_balance) if one), None)
     if magnitude is None:
         raise InputError(
-            f"stage {stage.id}: torque: it does not follow from the loads on the shafts, and the stage has none; give "
-            "--torque, that on the pinion in N m"
+            f"stage {stage.id}: torque: missing in the stage, and not to be had from the loads on the shafts; give "
+            "--torque, the torque on the pinion in N m"
         )
     speed = None if stage.shafts[0] is None else gearbox.speeds.get(stage.shafts[0].id)
     side = _side(gearbox, stage, data, by_balance)
@@ -177,7 +177,8 @@ def flank_of(gearbox: Gearbox, stage: Stage, gear: int, side: int) -> Component 
     data = gear_data(reading, stage)[gear]
     stated = "" if data is None else data.text("loaded_tooth_flank")
     if stated in FLANKS and stated != wanted:
-        reading.note(f"{component}: the loaded flank of the file is the {stated} one, by the torque the {wanted} one")
+        by_torque = f"the torque would load the {wanted} one"
+        reading.note(f"{component}: the file says that the {stated} flank is loaded; {by_torque}")
         wanted = stated
     both = {one: reading.model.related("flank", "gear", component.id, one) for one in FLANKS}
     other = both["left" if wanted == "right" else "right"]
@@ -243,7 +244,7 @@ def pair_section(gearbox: Gearbox, stage: Stage, flanks: list[Component | None],
     if distance is None and stage.placed:
         distance = stage.distance
         reading.note(
-            f"{stage.component}: no center_distance; it is that of the places of the gears, {plain(distance, 6)} mm"
+            f"{stage.component}: no center_distance; taken from the places of the gears, {plain(distance, 6)} mm"
         )
     if distance is not None:
         section["centre_distance_mm"] = abs(distance)
@@ -316,7 +317,7 @@ def _own_rack(
     for name in (one for one in names if one in pair):
         value = _by_tool(reading, gear, flank, pair["normal_module_mm"], name)
         if value is None:
-            by_other = f"{name} {plain(pair[name], 6)} is that by the tool of the other gear"
+            by_other = f"{name} {plain(pair[name], 6)} is taken from the tool of the other gear"
             reading.note(f"{gear}: no tool with {RACK[name][0]}; {by_other}")
         elif abs(value - pair[name]) > ALIKE:
             rack[name] = value

@@ -78,7 +78,7 @@ def modification_keys(reading: Reading, flank: Component, teeth: Teeth) -> Keys:
             continue
         try:
             if modification.flag("is_additive_modification") is False:
-                raise _Left("it does not add to the others")
+                raise _Left("is_additive_modification: false; allowed true")
             if teeth.ring and modification.type in ("profile_crowning", "profile_slope", "tip_relief", "root_relief"):
                 raise _Left("modifications of the profile of ring gears are not read")
             more = KINDS[modification.type](reading, modification, teeth)

@@ -246,7 +246,7 @@ class ShaftFrame:
             place = on_shaft[0][0]
         else:
             place = 0.0
-            self.reading.note(f"{self.shaft}: no place where its torque enters or leaves; it is the middle of the face")
+            self.reading.note(f"{self.shaft}: no place where its torque enters or leaves; taken at mid-face")
         loads = []
         for at, force, moment, torque in on_shaft:
             whole = moment if at == place else moment + self.turn @ np.array([torque, 0.0, 0.0])

@@ -205,11 +205,11 @@ class _Fit:
         weights = topography.weights
         root = np.ones(excess.size) if weights is None else np.sqrt(np.asarray(weights).ravel())
         sizes = np.linalg.norm(root[:, None] * columns, axis=0)
-        require((bool((sizes > 0.0).all()), f"the points do not tell all of {', '.join(keys)}"))
+        require((bool((sizes > 0.0).all()), f"the points do not determine {', '.join(keys)}; measure more points"))
         matrix = root[:, None] * columns / sizes
         values = np.linalg.svd(matrix, compute_uv=False)
         apart = excess.size >= len(sizes) and values[-1] > ALIKE * values[0]
-        require((apart, f"{excess.size} points do not tell {', '.join(keys)} apart; measure more lines"))
+        require((apart, f"{excess.size} points do not distinguish {', '.join(keys)}; measure more lines"))
         inverse = np.linalg.pinv(matrix) / sizes[:, None]
         amounts = inverse @ (root * excess.ravel())
         left = excess.ravel() - columns @ amounts

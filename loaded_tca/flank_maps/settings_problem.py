@@ -203,7 +203,7 @@ class SettingsProblem:
         sizes, whole = np.linalg.norm(free, axis=0), np.linalg.norm(slopes, axis=0)
         require(
             *(
-                (size > SAME * all_of, f"settings: {key}: does nothing to the measured flanks but turn them")
+                (size > SAME * all_of, f"settings: {key}: only turns the measured flanks; leave it out")
                 for key, size, all_of in zip(self.keys, sizes, whole, strict=True)
             )
         )
@@ -271,7 +271,7 @@ class SettingsProblem:
             if after <= before + SETTLED:
                 return errors + part * step, moved, values, slopes
         raise ConvergenceError(
-            "settings: no step lessens what is left of the deviations; free fewer settings, or give them limits"
+            "settings: no step makes the remaining deviations smaller; free fewer settings, or give them limits"
             + (f" ({last})" if last else ""),
             errors * self.factors,
         )

@@ -378,7 +378,7 @@ class _Pinion:
         miss = float(np.abs(self.conditions(unknowns)[:HARD]).max())
         if miss > MET:
             raise GeometryError(
-                f"pinion: no settings meet all conditions at the calculation point; what is left is "
+                f"pinion: no settings meet all conditions at the calculation point; the largest error is "
                 f"{plain(miss, 3)} mm; change the mismatch, the taper or the radius of the cutter"
             )
         return unknowns

@@ -106,8 +106,9 @@ def flank_of_lines(line: Array, radius: Array, axial: Array, excess: Array) -> t
     at_radius, at_axial = float(helix[0].mean()), float(profile[1].mean())
     crossing = profile[0][0] <= at_radius <= profile[0][-1] and helix[1][0] <= at_axial <= helix[1][-1]
     ends = f"{plain(profile[0][0])} to {plain(profile[0][-1])} mm", f"{plain(helix[1][0])} to {plain(helix[1][-1])} mm"
-    where = f"that of the helix at radius {plain(at_radius)}, of the profile {ends[0]}; at axial {plain(at_axial)}"
-    require((crossing, f"line: the lines do not cross: {where}, of the helix {ends[1]}"))
+    places = f"the helix lies at radius {plain(at_radius)} mm, the profile covers {ends[0]}"
+    places += f"; the profile lies at axial {plain(at_axial)} mm, the helix covers {ends[1]}"
+    require((crossing, f"line: the lines do not cross: {places}"))
     up = profile[2] - np.interp(at_radius, profile[0], profile[2])
     along_face = helix[2] - np.interp(at_axial, helix[1], helix[2])
     grid = np.meshgrid(profile[0], helix[1], indexing="ij")

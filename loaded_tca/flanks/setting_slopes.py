@@ -128,7 +128,7 @@ def cut_at(
     if not points.found.all():
         missing, worst = int((~points.found).sum()), int(np.argmin(points.found))
         raise GeometryError(
-            f"{gear.name}, {flank} flank: the cutter leaves none of it at {missing} of {rho.size} points, first at "
+            f"{gear.name}, {flank} flank: at {missing} of {rho.size} points the cutter leaves no flank, first at "
             f"rho = {plain(rho[worst], 6)}, z = {plain(z[worst], 6)} mm"
         )
     if not settings:

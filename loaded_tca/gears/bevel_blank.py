@@ -150,7 +150,7 @@ class BevelBlank(BlankPair):
         return cls(teeth, wheel_diameter / max(teeth[1], 1), face_width, **options)
 
     def with_backlash(self, backlash: float, kind: BacklashKind) -> BevelBlank:
-        """The same blanks with a backlash j_en, j_et2, j_mn or j_mt2 [mm] (ISO 23509:2016, formulas 201 to 204)."""
+        """These blanks with a backlash j_en, j_et2, j_mn or j_mt2 [mm] (ISO 23509:2016, formulas 201 to 204)."""
         return replace(self, outer_normal_backlash=backlash / self._backlash_ratios[kind])
 
     @property

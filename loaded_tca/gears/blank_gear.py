@@ -369,8 +369,8 @@ class BlankGear:
         """Raise GeometryError where this gear cannot exist; the message says where, and what to change."""
         self._require("no addendum is left", self.addenda, "reduce profile shift, taper or face width")
         self._require("no dedendum is left", self.dedenda, "reduce profile shift, taper or face width")
-        self._require("pointed tooth, its tip is", self.tip_thicknesses, "reduce profile shift or addendum")
-        self._require("the slot closes above its root, its bottom is", self.slot_widths, "reduce dedendum or taper")
+        self._require("pointed tooth: no tip is left", self.tip_thicknesses, "reduce profile shift or addendum")
+        self._require("the slot closes above its root: no width is left", self.slot_widths, "reduce dedendum or taper")
         if self.is_undercut and not allow_undercut:
             raise GeometryError(
                 f"{self.name}: undercut with a profile shift x_hm of {self.profile_shift:.4f}; with these cones the"

@@ -27,7 +27,7 @@ def teeth_checks(*teeth: float) -> Iterator[tuple[bool, str]]:
 def bore_check(bore_diameter: float | None) -> tuple[bool, str]:
     """Check of a bore diameter, where it is given: 0 is a solid gear."""
     fits = bore_diameter is None or 0.0 <= real(bore_diameter) < inf
-    return fits, f"bore_diameter: {bore_diameter} is not positive and finite, nor 0, a solid gear"
+    return fits, f"bore_diameter: {bore_diameter} is neither 0 (a solid gear) nor positive and finite"
 
 
 def input_checks(gear: Any, positive: tuple[str, ...], finite: tuple[str, ...]) -> Iterator[tuple[bool, str]]:

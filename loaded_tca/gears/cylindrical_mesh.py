@@ -320,7 +320,7 @@ def _what_stops(room: Room, module: float) -> Iterator[str]:
     if room.backlash < -RIGID * module:
         yield (
             f"teeth are {plain(-room.backlash)} mm thicker than the spaces of the mating gear, more than "
-            f"{plain(RIGID, 6)} modules, to which no teeth give way"
+            f"{plain(RIGID, 6)} modules, by which no teeth deflect"
         )
     for (name, mating), length in zip(BOTH_WAYS, room.below_root, strict=True):
         if length < -ROUNDING * module:

@@ -109,7 +109,7 @@ class InternalMesh(InvoluteMesh):
         if self.working_centre_distance <= smallest:
             raise GeometryError(
                 f"centre_distance: {plain(self.working_centre_distance, 6)} mm is not above {smallest:.4f} mm, the "
-                "base radius of the ring less that of the pinion"
+                "difference of both base radii"
             )
 
     def _check_flanks(self) -> None:

@@ -334,7 +334,7 @@ def profile_shift_sum(
     angle = atan(tan(pressure_angle) / cos(helix_angle))
     base = 0.5 * abs(sum(teeth)) * normal_module / cos(helix_angle) * cos(angle)
     if not centre_distance > base:
-        radii = "both base radii" if teeth[1] > 0 else "the base radius of the ring less that of the pinion"
+        radii = "both base radii" if teeth[1] > 0 else "the difference of both base radii"
         raise GeometryError(f"centre_distance: {plain(centre_distance, 6)} mm is not above {base:.4f} mm, {radii}")
     difference = involute(working_pressure_angle(centre_distance, base)) - involute(angle)
     return 0.5 * sum(teeth) * difference / tan(pressure_angle)

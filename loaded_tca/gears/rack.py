@@ -174,8 +174,8 @@ def rack_mesh(
         require(
             (
                 rack.length >= least,
-                f"length: {plain(rack.length, 6)} mm is below {plain(least, 6)} mm, the way of all tooth pairs "
-                "of a pitch",
+                f"length: {plain(rack.length, 6)} mm is below {plain(least, 6)} mm, the length that the "
+                "tooth pairs of a pitch need",
             ),
             owner=rack.name,
         )

@@ -157,7 +157,7 @@ class RingGear(MeasuredGear):
         teeth, rounding = real(self.teeth), self.root_radius_coefficient
         whole = -inf < teeth <= -3 and teeth == int(teeth)
         require(
-            (whole, f"teeth: {self.teeth} is not a whole number up to -3; those of a ring gear count negative"),
+            (whole, f"teeth: {self.teeth} is not a whole number of -3 or below; ring gears have negative teeth"),
             *input_checks(self, (*positive, "addendum_coefficient", "outer_diameter"), finite),
             spiral_check("helix_angle", self.helix_angle),
             face_check(self.face_width, self.normal_module, "normal_module"),

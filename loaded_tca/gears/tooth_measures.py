@@ -251,7 +251,7 @@ def allowance_of_balls(gear: MeasuredGear, measurement: float, diameter: float) 
         (0.0 < diameter < inf, f"ball_diameter: {diameter} mm is not positive and finite"),
         (
             gear.base_radius < centre < inf,
-            f"{what} has them inside the base circle, diameter {plain(2.0 * gear.base_radius, 6)} mm",
+            f"{what} puts the balls inside the base circle, diameter {plain(2.0 * gear.base_radius, 6)} mm",
         ),
         owner=gear.name,
     )

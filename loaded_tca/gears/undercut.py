@@ -34,7 +34,7 @@ POINTS = 500
 
 @dataclass(frozen=True)
 class Undercut:
-    """What an undercut takes of the path of contact.
+    """Part of the path of contact that an undercut removes.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Undercut:
 
 
 def undercuts(mesh: CylindricalMesh | InternalMesh) -> tuple[Undercut | None, Undercut | None]:
-    """Undercuts of pinion and wheel; None of a gear without an undercut in what the mating gear would use.
+    """Undercuts of pinion and wheel; None for a gear whose undercut takes nothing that the mating gear would use.
 
     Parameters
     ----------

@@ -217,7 +217,7 @@ class _Balance:
             else f"; with max_pressure {plain(cap, 6)} MPa contacts near their limit deform without end"
         )
         raise ConvergenceError(
-            f"load sharing not converged: the tooth pairs' rotations differ by {shared.residual:.1e} > "
+            f"load sharing not converged: the rotations of the tooth pairs differ by {shared.residual:.1e} > "
             f"{self.agreement:.1e} of the rotation after {MOST_BALANCES} balances{limit}",
             last=shared,
         )

@@ -185,7 +185,7 @@ class LoadedContact:
 
     @property
     def hertz(self) -> PointContact | None:
-        """Hertz's contact of the same curvatures and load; None where it does not hold.
+        """Contact of these curvatures and this load after Hertz; None where Hertz does not hold.
 
         That is at an edge, on a relief start or a line, without load, and where the curvature of the contact point is
         not that of the contact: on a flank with end relief alone the ellipse would be longer than the box, and where a

@@ -299,8 +299,8 @@ def _require_rolling(cones: HypoidCones, teeth: tuple[int, int], angles: list[Fl
     if abs(pinion - wheel + cones.offset_angle) < abs(pinion - wheel - cones.offset_angle):
         larger, sign = ("larger", "positive") if cones.offset > 0.0 else ("smaller", "negative")
         raise InputError(
-            f"offset: {plain(cones.offset, 6)} mm; {angles_at_p}; with a {sign} offset that of the pinion is the "
-            f"{larger} one: turn the sign of the offset"
+            f"offset: {plain(cones.offset, 6)} mm; {angles_at_p}; with a {sign} offset the pinion has the "
+            f"{larger} spiral angle: change the sign of the offset"
         )
     rolls = [
         radius * math.cos(spiral) / number

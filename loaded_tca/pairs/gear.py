@@ -86,7 +86,7 @@ def rounding_problems(geometry: ToothGeometry, flank: Flank, rounding: EdgeRound
         height = float(np.min(flank.edges(*(part[0] for part in root))[TIP].value))
         reach = 1.0 + float(material_cosines(flank, TIP, *edge_places(flank, TIP)).max())
         limits["tip"].append(
-            (height / reach, f"with which no flank is left above its root edge, {plain(height)} mm below")
+            (height / reach, f"with which no flank is left above the root edge, {plain(height)} mm below the tip")
         )
         limits["tip"] += _limit_of_land(geometry, flank)
     if rounding.side > 0.0:
@@ -94,7 +94,7 @@ def rounding_problems(geometry: ToothGeometry, flank: Flank, rounding: EdgeRound
         width = float(np.min(flank.edges(rho, z)[UPPER].value))
         reach = sum(1.0 + float(material_cosines(flank, end, *edge_places(flank, end)).max()) for end in (LOWER, UPPER))
         limits["side"].append(
-            (width / reach, f"with which no flank is left between the ends of the face, {plain(width)} mm apart")
+            (width / reach, f"with which no flank is left between both face ends, {plain(width)} mm apart")
         )
     problems = []
     for name, radius in (("tip", rounding.tip), ("side", rounding.side)):

@@ -268,19 +268,19 @@ ALWAYS: dict[str, Picture[Shown]] = {
     ),
     "transmission_error": Picture(
         "over the positions, all torques",
-        "Above absolute, below less its mean over a pitch. The unloaded transmission error is that of the flanks.",
+        "Above: absolute; below: less its mean over a pitch. Unloaded: the transmission error of rigid flanks.",
         lambda one: plot_transmission_error(one.result),
     ),
     "peak_pressure": Picture(
         "over the positions, all torques",
-        "Broad dashed lines: pressure after Hertz, where Hertz holds. Crosses and arrows: pressure at an edge, "
-        "mesh-dependent where the edge is sharp.",
+        "Broad dashed lines: pressure after Hertz, where Hertz holds. Filled pentagons: pressure at a rounded edge. "
+        "Crosses: mesh-dependent pressure at a sharp edge; triangles: such pressures above the axis.",
         lambda one: plot_peak_pressure(one.result),
     ),
     "pressure_map": Picture(
         "at the position of the peak pressure, under the largest torque",
         "At the position of the peak pressure, in the tangent plane. White: no pressure, grey: no "
-        "material. The direction across is drawn larger.",
+        "material. The scale across may be larger.",
         lambda one: one.map_at(one.peak),
         lambda one: one.peak is not None,
     ),
@@ -369,14 +369,13 @@ ROOTS: dict[str, Picture[Shown]] = {
 ON_SUPPORTS: dict[str, Picture[Shown]] = {
     "misalignment": Picture(
         "misalignment of cylindrical gears over the torque, with its band over the pitch",
-        "Misalignment of both gears by their supports, counted as the misalignment of the mounting, which it does not "
-        "contain.",
+        "Misalignment by the supports of both gears, with the signs of mounting.misalignment_um, which is left out.",
         lambda one: plot_misalignment(one.result),
         lambda one: _has_torques(one) and bool(np.isfinite(one.result.misalignment).any()),
     ),
     "bearing_loads": Picture(
         "forces of all elements around the rings of rolling bearings, under the largest torque",
-        "Forces of rolling elements around their rings, the first of them on the x axis of the gear's own frame, and "
+        "Forces of rolling elements around their rings, the first element on the x axis of the gear's own frame, and "
         "the basic reference rating life.",
         lambda one: plot_bearing_loads(one.result, one.torque),
         lambda one: one.result.has_rolling_bearings,

@@ -61,9 +61,10 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     """Peak pressure over the positions for each torque, with the pressure after Hertz and the pressure at edges.
 
     Where tooth pairs share the load, the peak and that after Hertz are those of the pair with the highest peak, the
-    pressure at an edge is the highest of all pairs: single filled markers at rounded edges, crosses at sharp ones,
-    where it is mesh-dependent and the axis does not follow it far. Hertz is drawn where it holds over a stretch of
-    positions.
+    Where tooth pairs share the load, peak and pressure after Hertz are those of the pair with the highest peak. The
+    pressure at an edge is the highest of all pairs: filled pentagons at rounded edges, crosses at sharp edges. It is
+    mesh-dependent at sharp edges; triangles at the upper end of the axis stand for pressures far above the peak. Hertz
+    is drawn where it holds over a stretch of positions.
 
     Parameters
     ----------
@@ -100,7 +101,7 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
 
 
 def _draw_sharp_edges(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -> None:
-    """Crosses, unconnected, for a peak (m, n) that is none elsewhere; arrows at the upper end where they lie beyond."""
+    """Crosses, unconnected, for a peak (m, n) that is none elsewhere; triangles at the upper end for those above."""
     _, high = axes.get_ylim()
     within, beyond = peak <= EDGE_HEADROOM * high, peak > EDGE_HEADROOM * high
     high = max(high, (1.0 + HEADROOM) * float(peak[within].max(initial=0.0)))
@@ -113,7 +114,7 @@ def _draw_sharp_edges(axes: Axes, result: MeshCycle, angle: Array, peak: Array) 
         axes.plot([], [], "x", color="black", label=label)
     if beyond.any():
         span = " to ".join(dict.fromkeys(f"{value:z.0f}" for value in (peak[beyond].min(), peak[beyond].max())))
-        name = "the same" if within.any() else label
+        name = "at a sharp edge," if within.any() else label
         axes.plot([], [], "^", color="black", label=f"{name} above the axis: {span} MPa")
         high = 1.03 * edge
     axes.set_ylim(0.0, high)

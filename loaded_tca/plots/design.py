@@ -120,7 +120,7 @@ def plot_peak_to_peak_over_torque(design: xarray.Dataset | DesignResult) -> Figu
 
 
 def plot_robustness(design: xarray.Dataset) -> Figure:
-    """Robustness curve: the objective of each design over the multiple of the scatter; at 0 there is none.
+    """Robustness curve: the objective of each design over the multiple of the scatter; at 0 there is no scatter.
 
     Parameters
     ----------

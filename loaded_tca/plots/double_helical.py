@@ -154,17 +154,17 @@ DOUBLE_HELICAL_PICTURES: dict[str, Picture[DoubleHelicalResult]] = {
     ),
     "halves_shares": Picture(
         "shares of both halves over the pitch, under the largest torque",
-        "Even where a gear floats freely; where both are held the half that stands nearer carries more.",
+        "Equal shares if a gear floats freely; if both gears are held, the half with the smaller gap carries more.",
         plot_halves_shares,
     ),
     "halves_error": Picture(
         "transmission error of both halves together less its mean, all torques",
-        "What both halves excite together: a motion along the axis evens out what they do not share.",
+        "Excitation by both halves together; axial motion of a floating gear evens out how the halves differ.",
         plot_halves_error,
     ),
     "halves_axial_motion": Picture(
         "motion of the gear along its axis over the pitch, all torques; if a gear floats",
-        "The mean is the place that the gear finds, the span shuttles with each tooth mesh.",
+        "Mean: place where the axial forces balance. Span: shuttling with each tooth mesh.",
         plot_halves_axial_motion,
         _floats,
     ),
@@ -175,7 +175,7 @@ DOUBLE_HELICAL_CAPTIONS = captions_of(DOUBLE_HELICAL_PICTURES)
 
 
 def double_helical_figures(result: DoubleHelicalResult) -> dict[str, Figure]:
-    """Draw every picture of a double helical pair that it has: of a gear that moves, of a mean over some positions.
+    """Draw every picture that the result of a double helical pair has.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ HALVES_REVOLUTION_PICTURES: dict[str, Picture[DoubleHelicalRevolution]] = {
 
 
 def halves_revolution_figures(revolution: DoubleHelicalRevolution) -> dict[str, Figure]:
-    """Draw every picture of a whole revolution of a double helical pair that it has.
+    """Draw every picture that a whole revolution of a double helical pair has.
 
     Parameters
     ----------

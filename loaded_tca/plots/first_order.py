@@ -63,7 +63,7 @@ def plot_first_order_scatter(sensitivities: Sensitivities, study: xarray.Dataset
         np.allclose(torques[np.isfinite(torques).all(axis=1)], 1e-3 * result.torque, rtol=SAME)
     )
     require(
-        (not others, f"study: varies {', '.join(others)}, to which no derivatives are known"),
+        (not others, f"study: varies {', '.join(others)}, without derivatives in the sensitivities"),
         (same, "study: its torques are not those of the result"),
     )
     spread = np.array([float(np.std(study[key].values, ddof=1)) if key in keys else 0.0 for key in sensitivities.keys])

@@ -130,7 +130,7 @@ def _edge(result: MeshCycle, torque: int, at: tuple[int, int]) -> list[str]:
     rounded = bool(result.edge_is_rounded[torque][at])
     return [
         f"pressure at {'a rounded' if rounded else 'a sharp'} edge {plain(pressure)} MPa"
-        + ("" if rounded else ", mesh-dependent: the force of a cell that an edge cuts, on its part with material")
+        + ("" if rounded else ", mesh-dependent: force of a cell that the edge cuts, over the area of its material")
     ]
 
 

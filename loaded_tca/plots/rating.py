@@ -186,7 +186,7 @@ RATING_PICTURES: dict[str, Picture[OfCases]] = {
         "S-N curves with the load cases on them, a panel for each kind of failure",
         "S-N curves after ISO 6336-6 of all gears, with each load case at its load cycles in the required life and at "
         "its stress times the required safety: points above their curve use up more than the life. Where the strength "
-        "differs from case to case, stresses are scaled to that of the curve.",
+        "differs from case to case, stresses are scaled to the strength of the curve.",
         plot_sn_curves,
         methodcaller("has", "damage"),
     ),
@@ -214,8 +214,8 @@ def _of_half(name: str, picture: Picture[OfCases]) -> Picture[DoubleHelicalRatin
 HALVES_RATING_PICTURES: dict[str, Picture[DoubleHelicalRating]] = {
     "safeties": Picture(
         "the smaller safeties of both halves beside the required ones",
-        "Of each gear the smallest safety of both halves and all cases, or the smaller one under all bins of a load "
-        "spectrum together; below, the same of each half.",
+        "Smallest safety of each gear over both halves and all cases; under a load spectrum the smaller safety of all "
+        "bins together. Below: the safeties of each half.",
         plot_safeties,
     ),
     **{f"half_{name}_{file}": _of_half(name, picture) for name in HALVES for file, picture in RATING_PICTURES.items()},

@@ -112,7 +112,7 @@ def plot_revolution_spectrum(revolution: OverTurns, torque: int | None = None) -
         size = 1.5 if group == "other" else 4.0
         axes.plot(order[rows], amplitude[rows], marker, color=colour, markersize=size, label=labels[group])
     named = groups != "other"
-    axes.plot(order[named], rigid[named], "_", color="black", markersize=5.0, label="the same without load")
+    axes.plot(order[named], rigid[named], "_", color="black", markersize=5.0, label="without load")
     axes.set_yscale("log")
     axes.set_ylim(LEAST_SHOWN, 3.0 * max(amplitude.max(initial=10.0 * LEAST_SHOWN), rigid.max(initial=0.0)))
     gear = GEARS[revolution.counted_by]
@@ -227,12 +227,12 @@ def plot_revolution_waterfall(revolution: Revolution) -> Figure:
 REVOLUTION_PICTURES: dict[str, Picture[Any]] = {
     "revolution_error": Picture(
         "transmission error over the revolution, rigid and under each torque",
-        "Above without load; below under each torque, less its mean.",
+        "Above: without load. Below: under each torque, less its mean.",
         plot_revolution_error,
     ),
     "revolution_spectrum": Picture(
-        "its orders under the largest torque",
-        "Orders of the rotation of both gears with their sidebands, and those of the tooth mesh.",
+        "orders of the transmission error under the largest torque",
+        "Orders of the tooth mesh, and of the rotation of both gears with sidebands.",
         plot_revolution_spectrum,
     ),
     "revolution_shares": Picture(
@@ -251,7 +251,7 @@ REVOLUTION_PICTURES: dict[str, Picture[Any]] = {
 
 
 def revolution_figures(revolution: Revolution) -> dict[str, Figure]:
-    """Draw every picture of a revolution: that over the torque needs two of them.
+    """Draw every picture of a revolution; the picture over the torque needs two torques.
 
     Parameters
     ----------

@@ -298,8 +298,8 @@ def _has_places(name: str, rating: OfCases) -> bool:
 SAFETY_PICTURES: dict[str, Picture[OfCases]] = {
     "safeties": Picture(
         "safeties of the standard and local safeties beside the required ones",
-        "Of each gear the smallest safety of all cases, or the safety under all bins of a load spectrum together. "
-        "Where the local safety is below that of the standard, the contact of the analysis carries its load less "
+        "Smallest safety of each gear over all cases; under a load spectrum the safety of all bins together. "
+        "Where the local safety is below the safety of the standard, the analysed contact carries its load less "
         "evenly than the standard assumes, or the local pressure lacks Z_eps.",
         plot_safeties,
         methodcaller("has", "flank_safety"),

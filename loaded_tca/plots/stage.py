@@ -226,7 +226,7 @@ def plot_stage_orders(result: StageResult, torque: int | None = None) -> Figure:
     axes.bar(count + 0.2, path, 0.36, color=style.DISTINCT_COLOURS[1], hatch="//", label="one planet alone")
     names = [f"{one.order}\ncancels" if one.torsion_cancels else f"{one.order}" for one in orders]
     axes.set_xticks(count, names)
-    axes.set_xlabel("order of the mesh; those that cancel do so between equal planets")
+    axes.set_xlabel('order of the mesh; "cancels": between equal planets')
     axes.set_ylabel("amplitude [µm]")
     axes.grid(alpha=0.3, axis="y")
     figure.legend(loc="outside lower center", ncols=2, fontsize="small")
@@ -250,23 +250,23 @@ STAGE_PICTURES: dict[str, Picture[StageResult]] = {
     ),
     "stage_load_factor": Picture(
         "K_gamma over the pin errors, all torques",
-        "K_gamma as pin errors grow. Where they make it more than 1 it falls with the torque: errors "
-        "stay, deflections grow. Three planets about a floating sun stay at 1, whatever the pins.",
+        "K_gamma over growing pin errors. A K_gamma above 1 falls with the torque, since deflections grow and errors "
+        "do not. With three planets about a floating sun K_gamma is 1 for all pin errors.",
         plot_stage_load_factor,
     ),
     "stage_sun_orbit": Picture(
         "motion of the sun's axis, all torques; if the sun is not held rigid",
-        "How far the sun goes to even the shares out, in the frame of the carrier.",
+        "Motion by which the sun evens out the shares, in the frame of the carrier.",
         plot_stage_sun_orbit,
         lambda result: bool(result.sun_motion.any()),
     ),
     "stage_error": Picture(
         "transmission error of the stage beside that of one planet, under the largest torque",
-        "Where the phases cancel orders, the planets together excite less than one alone.",
+        "Where the phases cancel orders, all planets together excite less than one planet alone.",
         plot_stage_error,
     ),
     "stage_orders": Picture(
-        "mesh orders of these transmission errors",
+        "mesh orders of the transmission errors of the stage and of one planet",
         "Amplitudes of the stage and of one planet alone; unequal shares bring orders back that equal planets cancel.",
         plot_stage_orders,
     ),

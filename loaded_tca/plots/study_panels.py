@@ -275,7 +275,8 @@ def plot_study_ranking(
     lucky = 100.0 * quantile_of(by or main_figures(study)[0], largest_is_best)
     apart = largest_is_best is None and any(is_largest_best(name) != largest_first for name in columns if name in study)
     worst = "worst" if apart else "least" if largest_first else "largest"
-    but = f" (of those that are best the other way the {100.0 - lucky:z.0f} % quantile)" if apart else ""
+    other = "least" if largest_first else "largest"
+    but = f" ({100.0 - lucky:z.0f} % where the {other} value is best)" if apart else ""
     quantile = [f"of each figure the {lucky:z.0f} % quantile over the samples{but}"] if sampled else []
     quantile += sorted({*ranked["note"]} - {""}) if sampled else []
     of = [f"of each figure the {worst} over the torques"] if torque is None and values.shape[1] > 1 else []

@@ -69,7 +69,7 @@ def plot_teeth(result: MeshCycle, position: int | None = None, torque: int | Non
 
 
 def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
-    """As :func:`plot_teeth`, of teeth that were placed before.
+    """Draw teeth that were placed before, as :func:`plot_teeth` does.
 
     Parameters
     ----------

@@ -61,7 +61,7 @@ def plot_contact_temperature(tribology: Tribology, speed: int | None = None) -> 
 
 
 def plot_film_ratio(tribology: Tribology, speed: int | None = None) -> Figure:
-    """Film ratio over the path of contact with the points A to E, and the permissible one, all torques.
+    """Film ratio over the path of contact with the points A to E, and the permissible film ratio, all torques.
 
     Parameters
     ----------
@@ -387,7 +387,7 @@ TRIBOLOGY_PICTURES: dict[str, Picture[Tribology]] = {
     ),
     "sliding_velocities": Picture(
         "rolling velocities of both gears and sliding velocity over the path of contact",
-        "Velocities of both surfaces across the contact; they are alike at the pitch point.",
+        "Velocities of both surfaces across the contact; they are equal at the pitch point.",
         plot_sliding_velocities,
         methodcaller("knows", "sliding_velocity"),
     ),

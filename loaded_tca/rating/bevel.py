@@ -43,9 +43,7 @@ Arrays = dict[str, Array]
 STEEL_MODULUS = 206e3 / (2.0 * (1.0 - 0.3**2))
 """E* of two steel gears, whose stiffnesses the standard has [MPa]."""
 NEARLY = 0.05
-ALIKE = (
-    "K_Halpha: of the analysis, whose teeth are all alike: pitch deviations, for which method B has it, are not in it"
-)
+ALIKE = "K_Halpha: from the analysis of equal teeth, without the pitch deviations that method B covers"
 
 
 @dataclass(frozen=True, eq=False)

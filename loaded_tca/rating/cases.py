@@ -159,4 +159,4 @@ def problems_of_cases(
     highest = load.largest_Nm
     if 1e3 * highest > largest * (1.0 + 1e-9):
         found, most = apart([highest, 1e-3 * largest])
-        yield f"load.case: a bin has {found} N m; allowed up to {most}, the largest that was solved"
+        yield f"load.case: a bin has {found} N m; allowed up to {most}, the largest analysed torque"

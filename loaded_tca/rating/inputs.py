@@ -38,18 +38,15 @@ NEEDED = {
 }
 """Sections of any rating, and why they are."""
 BY_COAST_SIDE = (
-    "with the result of the coast side 'loaded-tca rating DIR --coast OTHER' rates both, and 'loaded-tca report DIR "
-    "--coast OTHER' reports it"
+    "'loaded-tca rating DIR --coast OTHER' rates both sides, with the result of the coast side in OTHER, and "
+    "'loaded-tca report DIR --coast OTHER' reports it"
 )
 """How the flanks that reversed bins of a pair load are rated."""
 
 
 def by_itself(load: AnyLoad) -> str:
     """How those of a stage and of a double helical pair are rated, whose ratings take one side alone."""
-    return (
-        f"another analysis, with {load.CASE.OTHER_WAY} changed, and reversed the other way in every bin, rates them by "
-        "itself"
-    )
+    return f"to rate them, analyse with {load.CASE.OTHER_WAY} changed and reversed swapped in every bin"
 
 
 @dataclass(frozen=True, eq=False)

@@ -168,16 +168,16 @@ def worst_case(rating: Rating, name: str) -> tuple[int, str]:
     safety = np.where(shown, rating.values(name).min(axis=1), np.inf)
     if not rating.inputs.cases.is_spectrum:
         return int(safety.argmin()), ""
-    among = "of the drive side, whose torque was solved" if rating.inputs.cases.reversed.any() else "solved"
+    among = "drive-side bins" if rating.inputs.cases.reversed.any() else "bins"
     damage = np.nan_to_num(rating.damage[..., rating.modes.index(name.removesuffix("_safety"))]).max(axis=1)
     if (damage[shown] > 0.0).any():
-        return int(np.where(shown, damage, -1.0).argmax()), f"bin of the largest damage among those {among}"
-    return int(safety.argmin()), f"bin of the smallest safety among those {among}; none of them does damage"
+        return int(np.where(shown, damage, -1.0).argmax()), f"largest damage of {among} with an analysed torque"
+    return int(safety.argmin()), f"smallest safety of {among} with an analysed torque, which do no damage"
 
 
 def torque_of(rating: Rating, case: int) -> int:
     """Index of the torque of a case in its result."""
     torque = 1e-3 * float(rating.torque[case])
-    words = "is reversed" if rating.inputs.cases.reversed[case] else "was not solved; analysis.torques_Nm has what is"
+    words = "is reversed" if rating.inputs.cases.reversed[case] else "was not analysed; add it to analysis.torques_Nm"
     require((bool(is_shown(rating)[case]), f"case: {case}, {plain(torque, 6)} N m, {words}"))
     return int(np.abs(rating.result.torque - rating.torque[case]).argmin())

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from loaded_tca.scene import Scene
     from loaded_tca.scene.rating import RatingSection
 
-NOT_COUNTED = "local safeties have pitch deviations and load paths only as far as K_A K_gamma K_v have them; Z_X is 1"
+NOT_COUNTED = "local safeties count pitch deviations and load paths only through K_A K_gamma K_v; Z_X is 1"
 WORDS = {
     FLANK: "flank",
     ROOT: "root",

@@ -62,32 +62,32 @@ def _notes(inputs: CommonInputs, arrays: dict[str, Array], error: Array, *, of_b
         )
         yield (
             f"stresses under {between.sum()} of {len(between)} bins are interpolated between {len(solved.torque)} "
-            f"torques that were solved: {within}"
+            f"analysed torques: {within}"
         )
     if below.any():
         parts = arrays["damage"][below].sum(axis=0)[sums > 0.0] / sums[sums > 0.0]
         largest = float(parts[np.isfinite(parts)].max(initial=0.0))
-        part = f"they do up to {plain(100.0 * largest, 1)} % of the damage"
+        part = f"these do up to {plain(100.0 * largest, 1)} % of the damage"
         bins = "1 bin lies" if below.sum() == 1 else f"{below.sum()} bins lie"
         least = inputs.torque_in_words(float(solved.torque[0]))
-        yield f"{bins} below {least}, the smallest torque that was solved; {part}"
+        yield f"{bins} below {least}, the smallest analysed torque; {part}"
     if cases.reversed.any():
         bins = f"reversed bins ({cases.reversed.sum()} of {len(between)})"
         if of_both_sides:
-            yield f"{bins} load the flanks of the coast side and the roots as the analysis of the coast side has it"
+            yield f"{bins} load the coast flanks and the roots, with the stresses of the analysis of the coast side"
         else:
             yield (
-                f"{bins} load the other flanks, which are not analysed: damage of the other flanks is not counted; "
+                f"{bins} load the other flanks, which are not analysed: their damage is not counted; "
                 f"{inputs.duty.other_flanks}"
             )
             yield (
-                f"{bins} stress the roots as much as the same torques that are not reversed, with load factors and "
-                "local stresses of the side that is analysed"
+                f"{bins} stress the roots as much as bins of the same torque that are not reversed, with the load "
+                "factors and local stresses of the analysed side"
             )
         yield (
-            f"roots under loads on both flanks have Y_M of R = {plain(REVERSED, 6)} times the largest torque on "
-            "the other flank over that of the bin, at most 1, where neither root_stress_ratio nor the computed ratio "
-            "is less"
+            f"Y_M of roots with loads on both flanks follows from R = {plain(REVERSED, 6)} times the largest torque on "
+            "the other flank over the torque of the bin (at most 1), or from a smaller root_stress_ratio or computed "
+            "ratio"
         )
     if abs(cases.repeated - 1.0) > ROUNDING:
         together = f"{plain(cases.life_hours / cases.repeated, 6)} h"
@@ -154,13 +154,13 @@ class OfSpectrum(OfCases):
                 if life == 0.0:
                     sentences.append(
                         f"{gear}: {WORDS[mode]}: life 0 at the required safety {plain(least, 6)}: a bin lies above the "
-                        f"static strength; has a safety of {plain(safety, 3)} in {plain(self.life_required, 6)} h"
+                        f"static strength; the safety in {plain(self.life_required, 6)} h is {plain(safety, 3)}"
                     )
                 elif life < self.life_required:
                     lasts, _ = apart([life, self.life_required], 4)
                     sentences.append(
                         f"{gear}: {WORDS[mode]}: life {lasts} h of {plain(self.life_required, 6)} h at the "
-                        f"required safety {plain(least, 6)}; has a safety of {plain(safety, 3)} in these"
+                        f"required safety {plain(least, 6)}; the safety in this time is {plain(safety, 3)}"
                     )
         return sentences
 

@@ -65,7 +65,8 @@ def extra_displacement(place: ArrayLike, load_place: ArrayLike, angle: float) ->
     require_positive(place=float(x.min()), load_place=float(s.min()))
     apart = np.log(x / s)
     farthest = math.exp(float(np.abs(apart).max()))
-    require((farthest <= FARTHEST, f"place: {plain(farthest, 3)} times as far as load_place or the other way round"))
+    allowed = f"allowed up to {plain(FARTHEST, 3)}"
+    require((farthest <= FARTHEST, f"place, load_place: one is {plain(farthest, 3)} times the other; {allowed}"))
     sine, cosine = math.sin(angle), math.cos(angle)
     more = math.pi * (angle + sine * cosine) / (angle * angle - sine * sine) - 1.0
     tau = np.arange(STEP, 0.5 * LAST / angle, STEP)

@@ -117,7 +117,7 @@ def _refusal(subject: Any) -> str:
     """Why something has no interactive page, and what of it has one."""
     text = f"interactive report: found a {type(subject).__name__}; allowed a result or a study"
     if isinstance(subject, StageResult | DoubleHelicalResult):
-        text += f"; it joins results that have such pages: {' and '.join(subject.PARTS.values())} beside its file"
+        text += f"; its parts {' and '.join(subject.PARTS.values())} beside its file have such pages"
     return text
 
 

@@ -232,7 +232,7 @@ def _of_result(result: Result) -> Card:
     else:
         tables = (Table(tuple(result.rows(figures[part]))),)
     if count > MOST_TORQUES and not isinstance(result, SpectrumRating):
-        about += f"; of {count} torques the largest, key_figures() has all"
+        about += f"; largest of {count} torques, key_figures() has all"
     draw = next((draw for kind, draw in PICTURES.items() if isinstance(result, kind)), None)
     picture = None if draw is None else partial(draw, result)
     return Card(result.title or result.TITLE, about, tables, sentences=result.sentences(), draw=picture)

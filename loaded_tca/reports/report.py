@@ -264,7 +264,8 @@ def _quantiles(study: xarray.Dataset, by: str | None) -> str:
     least = any(is_largest_best(name) for name in figures)
     worst = "worst" if others else "least" if least else "largest"
     over = f" of its {worst} value over the torques" if study.sizes.get("torque", 1) > 1 else ""
-    apart = "".join(f" ({other} of those that are best the other way)" for other in others)
+    opposite = "least" if is_largest_best(next(iter(figures), "")) else "largest"
+    apart = "".join(f" ({other} where the {opposite} value is best)" for other in others)
     return f"{usual} quantile{apart} over the samples{over}"
 
 

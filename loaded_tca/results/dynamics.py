@@ -36,7 +36,7 @@ PARTS: dict[str, Part] = {
     "pinion_base_helix_angle_rad": (
         (),
         "rad",
-        "base helix angle beta_b of the pinion, positive for the right hand, 0 for spur gears; the wheel has the other",
+        "base helix angle beta_b of the pinion, positive: right hand, 0: spur gears; the wheel has the other hand",
     ),
     TORQUE: ((TORQUE,), "N m", "pinion torque T1"),
     PHASE: ((PHASE,), "1", "mesh phase, z1 phi1/(2 pi) modulo 1"),
@@ -47,7 +47,7 @@ PARTS: dict[str, Part] = {
     "transmission_error_rad": (OVER_PITCH, "rad", "loaded transmission error TE = phi2 - (z1/z2) phi1, at the wheel"),
     "transmission_error_m": (OVER_PITCH, "m", "r_b2 TE: along the line of action in the transverse plane"),
     "mesh_stiffness_N_per_m": (OVER_PITCH, "N/m", "tangent of T1/r_b1 to r_b2 TE, of the whole face width"),
-    "torsional_stiffness_Nm_per_rad": (OVER_PITCH, "N m/rad", "the same about the axis of the wheel, times r_b2^2"),
+    "torsional_stiffness_Nm_per_rad": (OVER_PITCH, "N m/rad", "mesh stiffness about the wheel axis, times r_b2^2"),
     "loaded_pairs": (OVER_PITCH, "1", "number of tooth pairs under load"),
     "normal_force_per_torque_N_per_Nm": (OVER_PITCH, "1/m", "sum of the normal forces of all pairs over T1"),
     "transmission_error_amplitude_m": (OVER_ORDERS, "m", "amplitude of r_b2 TE"),

@@ -58,9 +58,7 @@ def saying(sentence: str) -> Note:
 def of_peak(_: str, result: CycleNumbers, part: slice, figures: Sequence[Figures]) -> str:
     """How accurate the peak pressure is."""
     of_slices = any(entry["edge_positions"] or entry["relief_start_positions"] for entry in figures)
-    beside = (
-        "; where contacts reach an edge or a relief start, the error of the pressure of slices" if of_slices else ""
-    )
+    beside = "; at edges and relief starts the error of the pressure of slices" if of_slices else ""
     return f"mesh-independent; error of the grid: {_errors_at_peak(result, part)}{beside}"
 
 
@@ -68,7 +66,7 @@ def of_edge(_: str, __: CycleNumbers, ___: slice, figures: Sequence[Figures]) ->
     """What is to be known of the pressure at an edge."""
     rounded = {bool(entry["edge_is_rounded"]) for entry in figures if math.isfinite(entry["edge_pressure_MPa"])}
     if rounded == {True}:
-        return "rounded edge: with the error below"
+        return "rounded edge: its error stands below"
     return "mesh-dependent at sharp edges: not for rating"
 
 
@@ -77,7 +75,7 @@ def of_error_at_edge(_: str, __: CycleNumbers, ___: slice, figures: Sequence[Fig
     at_edges = [entry for entry in figures if math.isfinite(entry["edge_pressure_MPa"])]
     if all(entry["edge_is_rounded"] for entry in at_edges):
         return ""
-    return f"{NO_ESTIMATE} at a sharp edge, where pressure grows with finer cells: give that edge its rounding"
+    return f"{NO_ESTIMATE} at a sharp edge, where pressure grows with finer cells: give the edge a radius"
 
 
 def of_face_load(_: str, result: CycleNumbers, __: slice, figures: Sequence[Figures]) -> str:
@@ -85,7 +83,7 @@ def of_face_load(_: str, result: CycleNumbers, __: slice, figures: Sequence[Figu
     moves = [entry["face_load_factor_by_positions"] for entry in figures]
     known = [f"{move:.1%}" for move in moves if math.isfinite(move)]
     strips = f"{max(known, key=lambda text: float(text[:-1]))} of the largest" if known else ""
-    by = f"; from every second position alone loads of strips differ by {strips}" if known else ""
+    by = f"; with every second position only, loads of strips differ by {strips}" if known else ""
     return f"from 30 strips of the face and {len(result.path)} positions{by}"
 
 
@@ -116,7 +114,7 @@ def compared(name: str, result: CycleNumbers, *_: object) -> str:
     if not any(words in name for percents in COMPARED.values() for words in percents):
         return ""
     for kind, percent in _percents(name, result):
-        return f"{kind}: the gears that were compared are within {plain(percent, 6)} % of finite elements"
+        return f"{kind}: compared gears are within {plain(percent, 6)} % of finite elements"
     within = {kind: percent for kind, of in COMPARED.items() for words, percent in of.items() if words in name}
     others = ", ".join(f"{kind} within {plain(percent, 6)} %" for kind, percent in within.items())
     kinds = "helical teeth" if math.isfinite(result.scene.transverse_angles[1]) else "teeth of bevel gears"

@@ -61,12 +61,12 @@ AXES = {
 """Key figure -> its label on axes, in the order of tables and files."""
 
 REASONS: Mapping[str, str] = {
-    STRESS: "sigma_H0 is the pressure of Hertz at the pitch point under an even load; the computed peak pressure has "
-    "the load as tooth pairs and face share it, and the curvature where this load acts",
+    STRESS: "sigma_H0 is the pressure of Hertz at the pitch point under an even load; the computed peak pressure comes "
+    "from the load as tooth pairs and face share it, and from the curvature where this load acts",
     SINGLE_CONTACT[0]: "Z_B and Z_D are for the curvature where single contact begins, under the whole load; computed "
     "teeth bend and hand the load over to the next pair gradually",
-    CONTACT_RATIO: "Z_eps stands for an even load on contact lines of mean length; at each position computed contacts "
-    "have the load and the length that they have there",
+    CONTACT_RATIO: "Z_eps stands for an even load on contact lines of mean length; computed contacts have the load and "
+    "the length of each position",
     HELIX_ANGLE: "Z_beta = 1/sqrt(cos(beta)) is fitted to tests of helical gears; computed contacts lie askew on their "
     "flanks",
     SINGLE_STIFFNESS: "c' is the largest stiffness of one tooth pair, measured on solid steel discs above 100 N/mm; "

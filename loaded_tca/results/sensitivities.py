@@ -184,8 +184,9 @@ class Sensitivities:
     def transmission_error_by_grids(self) -> Array:
         """How far derivatives of the transmission error depend on the grids, (torque, position, key) [rad per unit].
 
-        They would not if cells were small: the less of what they change as grids stay, and as they go with the contact
-        points. Zero of keys that move no grids. It takes half of what derivatives by one mounting error do.
+        The smaller of two changes: by grids that stay in place, and by grids that move with the contact points; with
+        small cells there is no change. Zero for keys that move no grids. Takes half the time of the derivatives by one
+        mounting error.
         """
         by_grids = np.zeros((*self.result.transmission_error.shape, len(self.keys)))
         moving = np.array([change is not None and not change.of_modifications for change in self.changes])
@@ -430,7 +431,7 @@ class Sensitivities:
 
     @cached_property
     def root_compression(self) -> Array:
-        """Derivatives of the largest root compression, likewise; where they are negative, compression grows."""
+        """Derivatives of the largest root compression, in the form of ``root_tension``; negative: compression grows."""
         return self._of_root_stress("root_compression")
 
     def _of_root_stress(self, name: str) -> Array:

@@ -243,14 +243,14 @@ class StressBelow:
             if self.beside_spike is not None:
                 peak, shear = float(self.pressure_map.pressure.max()), self.largest("max_shear", anywhere=True).value
                 note += (
-                    "; the numbers above are those across the contact point, not those of the edge: there the cells "
+                    "; the numbers above hold across the contact point. At the edge the cells "
                     f"have up to {plain(peak)} MPa and {plain(shear)} MPa of shear"
                 )
             elif self._is_of_an_edge:
                 without = float(self.result.peak_pressure[self._at])
                 note += (
-                    "; the numbers above are those of the edge, since the contact point lies within it or carries "
-                    f"nothing: they are not to be rated. Without the edge the contact has {plain(without)} MPa"
+                    "; the numbers above are those of the edge, since the contact point lies within it or carries no "
+                    f"load: do not rate these numbers. Without the edge the contact has {plain(without)} MPa"
                 )
             lines.append(note)
         return "\n".join(lines)

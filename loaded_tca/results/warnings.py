@@ -367,7 +367,7 @@ def _remedy(result: CycleNumbers, at: tuple[int, int, int], edges: Sequence[str]
     torque, n, k = at
     remedies = [
         f"{relief} on the {' or '.join(dict.fromkeys(name.split()[0] for name in edges if where in name))}"
-        for relief, where in (("end relief", "side"), ("tip relief", "tip"), ("root relief", "root"))
+        for relief, where in (("end_relief_um", "side"), ("tip_relief_um", "tip"), ("root_relief_um", "root"))
         if any(where in name for name in edges)
     ]
     deflections = np.nansum([result.contact_deformation[torque, n], result.tooth_deflection[torque, n]], axis=0)
@@ -378,8 +378,8 @@ def _remedy(result: CycleNumbers, at: tuple[int, int, int], edges: Sequence[str]
         amount = f"up to about {amount}"
     mating = ", and the tip of the mating gear may need relief, too" if any("tip" in name for name in edges) else ""
     return (
-        f"to unload this edge, use {' or '.join(remedies) or 'a relief'} of {amount}; analyse again with some starts "
-        f"and amounts: a short relief presses where it starts, other edges take load from this one{mating}"
+        f"to unload this edge, use {' or '.join(remedies) or 'a relief'} of {amount}; analyse again with several "
+        f"starts and amounts: a short relief presses where it starts, and other edges take the load of this one{mating}"
     )
 
 
@@ -423,6 +423,6 @@ def _peak_finding(result: CycleNumbers, torque: int) -> str:
     )
     pressure, applied = result.peak_pressure[torque][place], plain(1e-3 * result.torque[torque], 6)
     return (
-        f"the peak pressure {plain(pressure)} MPa at {applied} N m is that of slices at an edge, on a pair that "
+        f"the peak pressure {plain(pressure)} MPa at {applied} N m lies in slices at an edge, on a pair that "
         f"carries {plain(100.0 * result.load_share[torque][place], 3)} % of the torque{most}"
     )

@@ -124,7 +124,7 @@ class Geometry(Pair):
         spiral.SIDE, "flank of a spiral pinion that is in contact, instead of `sense`", None, "by `sense`"
     )
     blank: Blank | None = subsection(
-        Blank, "depths and thicknesses after ISO 23509; without it they are outer modules about one apex", optional=True
+        Blank, "depths and thicknesses after ISO 23509; without it: outer modules about one apex", optional=True
     )
 
     equivalents: ClassVar[Equivalents] = OF_BEVEL
@@ -133,7 +133,7 @@ class Geometry(Pair):
         rule(
             ("spiral_angle_deg", "type"),
             lambda spiral, kind: not spiral or kind == "spiral_bevel",
-            'found {0:g}; allowed 0 for a "straight_bevel" pair; another angle makes it a "spiral_bevel" one',
+            'found {0:g}; allowed 0 for a "straight_bevel" pair; give type = "spiral_bevel" for other angles',
         ),
         rule(
             ("spiral_angle_deg", "type"),
@@ -143,7 +143,7 @@ class Geometry(Pair):
         rule(
             ("pinion_flank", "type"),
             lambda flank, kind: flank is None or kind == "spiral_bevel",
-            'found "{0}", but flanks of straight teeth are neither; give sense instead',
+            'found "{0}", but straight teeth have no concave or convex flank; give sense instead',
         ),
         spiral.FLANK_OR_SENSE,
         spiral.ONE_PRESSURE_ANGLE,
@@ -165,12 +165,12 @@ class GearSection(BlankGearSection):
     face_apex_mm: float | None = key(
         ERROR_mm, "apex t_zF of the face cone, beyond the crossing point of the axes, away from the teeth", None, "0"
     )
-    root_apex_mm: float | None = key(ERROR_mm, "apex t_zR of the root cone, likewise", None, "0")
+    root_apex_mm: float | None = key(ERROR_mm, "apex t_zR of the root cone, counted like `face_apex_mm`", None, "0")
     mean_addendum_mm: float | None = key(
         DEPTH_mm, "with [pair.blank]: measured mean addendum h_am, instead of data type I or II", None, "by the blank"
     )
     mean_dedendum_mm: float | None = key(
-        DEPTH_mm, "with [pair.blank]: measured mean dedendum h_fm, likewise", None, "by the blank"
+        DEPTH_mm, "with [pair.blank]: measured mean dedendum h_fm, instead of data type I or II", None, "by the blank"
     )
     mean_normal_thickness_mm: float | None = key(
         DEPTH_mm,
@@ -225,7 +225,7 @@ class BevelScene(SpiralScene, BlankScene):
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
-    wheel: GearSection = subsection(GearSection, "its mating gear")
+    wheel: GearSection = subsection(GearSection, "the mating gear of the pinion")
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
     rules: ClassVar[tuple[Rule, ...]] = (

@@ -97,7 +97,7 @@ def _measured_rules() -> Iterator[Rule]:
         yield rule(
             (f"{gear}.profile_shift", "pair.blank"),
             lambda value, blank: blank is None or not value,
-            "found {0:g}; not allowed with [pair.blank], which has that of the pinion",
+            "found {0:g}; not allowed with [pair.blank]: give pair.blank.profile_shift, that of the pinion",
         )
         for cone in ("face", "root"):
             yield rule(
@@ -135,7 +135,7 @@ def _thicknesses(first: Any, second: Any, depth: Any, blank: Any) -> str | None:
     if (first is None and second is None) or blank is None:
         return None
     if first is None or second is None or depth is None:
-        return "measured thicknesses need those of both gears, with mean_addendum_mm and mean_dedendum_mm"
+        return "measured thicknesses need both gears, with mean_addendum_mm and mean_dedendum_mm"
     given = [name for name in BACKLASHES if getattr(blank, name) is not None]
     return f"measured thicknesses beside pair.blank.{given[0]}, which follows from them" if given else None
 
@@ -292,7 +292,7 @@ class Blank(Section):
         if measured.addenda or not usual or equivalent_ratio(teeth, shaft_angle) <= largest_ratio(teeth):
             return error
         return GeometryError(
-            f"{error}; pair.blank.thickness_factor: missing, and near a crown wheel the usual one is "
+            f"{error}; pair.blank.thickness_factor: missing; near a crown wheel the usual factor is "
             f"{plain(usual_factors(teeth, shaft_angle)['thickness'])}, the bound of its formula: give a smaller one, "
             "or pair.blank.wheel_slot_width_mm"
         )
@@ -311,10 +311,9 @@ class Blank(Section):
         factors |= {name: value for name, value in named.items() if value is not None}
         if (share := factors["addendum_share"]) > 1.0:  # the usual one; a given one is from 0 to 1
             raise InputError(
-                f"mean_addendum_factor: missing; the usual one, 0.21 + 0.29/u_a², is "
-                f"{plain(share if share < 100.0 else inf)} of a pinion of {teeth[0]} teeth and a wheel of {teeth[1]}: "
-                "usual where the pinion is the smaller gear; allowed a factor from 0 to 1, the wheel's share of the "
-                "working depth"
+                f"mean_addendum_factor: missing; allowed a factor from 0 to 1, the wheel's share of the working depth. "
+                f"The usual one, 0.21 + 0.29/u_a², is {plain(share if share < 100.0 else inf)} for a pinion of "
+                f"{teeth[0]} teeth and a wheel of {teeth[1]}: it is meant for pinions that are the smaller gear"
             )
         return crown_gear_factors(**factors)
 

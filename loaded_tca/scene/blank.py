@@ -47,7 +47,7 @@ class BlankScene(Scene):
     """A scene whose gears have opposite hands."""
 
     pinion: BlankGearSection = subsection(BlankGearSection, "the gear that turns about +z")
-    wheel: BlankGearSection = subsection(BlankGearSection, "its mating gear")
+    wheel: BlankGearSection = subsection(BlankGearSection, "the mating gear of the pinion")
 
     rules: ClassVar[tuple[Rule, ...]] = (*Scene.rules, opposite_hands())
 

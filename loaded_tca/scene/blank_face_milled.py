@@ -95,7 +95,7 @@ class BlankFaceMilledScene(BevelScene):
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
-    wheel: GearSection = subsection(GearSection, "its mating gear")
+    wheel: GearSection = subsection(GearSection, "the mating gear of the pinion")
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
     rules: ClassVar[tuple[Rule, ...]] = (

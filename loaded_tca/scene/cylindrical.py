@@ -72,11 +72,11 @@ class Geometry(Pair):
         ADDENDUM, "addendum of the basic rack in modules, h_aP/m_n; each gear may have its own", 1.0
     )
     dedendum_coefficient: float = key(
-        DEDENDUM, "dedendum of the basic rack (ISO 53 profile A) in modules, h_fP/m_n; likewise", 1.25
+        DEDENDUM, "dedendum of the basic rack (ISO 53 profile A) in modules, h_fP/m_n; each gear may have its own", 1.25
     )
     root_radius_coefficient: float | str = key(
         ROOT_RADIUS,
-        'root radius of the basic rack in modules, rho_fP/m_n, or "full", the largest that fits; likewise',
+        'root radius of the basic rack in modules, rho_fP/m_n, or "full", the largest that fits; each gear may differ',
         0.38,
     )
     tip_shortening: str = key(
@@ -94,10 +94,9 @@ class GearSection(CutSection):
 
     profile_shift: float | None = key(  # type: ignore[assignment]
         Number(-5.0, 5.0),
-        "profile shift coefficient x; of one gear where the centre distance is given: the other has what leaves no "
-        "backlash",
+        "profile shift coefficient x; with a centre distance give it for one gear: the other follows, without backlash",
         None,
-        "0, or what leaves no backlash",
+        "0, or by the centre distance, without backlash",
     )
 
     protuberance_um: float | None = key(
@@ -183,7 +182,7 @@ class CylindricalScene(BlankScene):
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
-    wheel: GearSection = subsection(GearSection, "its mating gear")
+    wheel: GearSection = subsection(GearSection, "the mating gear of the pinion")
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
     def mesh(self) -> CylindricalMesh:
@@ -241,7 +240,7 @@ class CylindricalScene(BlankScene):
             following = [shift for own, shift in shifts if own.profile_shift is None]
             if distance is not None and len(following) == 1:
                 error.add_note(
-                    f"pair.centre_distance_mm = {plain(distance, 6)} and the profile shift that is given ask for "
+                    f"pair.centre_distance_mm = {plain(distance, 6)} and the given profile_shift ask for "
                     f"{following[0]:.4f} on the other gear"
                 )
             raise

@@ -39,13 +39,12 @@ SIGNS = 1.0, -1.0
 """Of z of the pair, along the z of each half, which runs outwards."""
 ONE_BY_ONE = (
     "found true; allowed false here, where one pair of flanks is needed. Both halves together are analysed by "
-    "'loaded-tca run' and 'revolution', in Python by analyse and analyse_revolution. Each half is a pair by itself: "
-    "half_a.nc and half_b.nc of a result, scene.halves, and as a scene, with its measured flanks, "
-    "scene.half_scenes(0.0)"
+    "'loaded-tca run' and 'revolution', in Python by analyse and analyse_revolution. Each half by itself: half_a.nc "
+    "and half_b.nc of a result, the pairs scene.halves, and the scenes scene.half_scenes(0.0) with measured flanks"
 )
 WHERE_BEARINGS_ARE = (
-    "; forces on bearings: 'loaded-tca check' has those of even shares, double_helical_bearings.csv of "
-    "'loaded-tca run' those under load"
+    "; forces on bearings: those of even shares are in 'loaded-tca check', those under load in "
+    "double_helical_bearings.csv of 'loaded-tca run'"
 )
 SHARED = "found a torque of 0; allowed above 0: the halves share a torque"
 NOT_OF_HALVES = {
@@ -65,8 +64,8 @@ class Geometry(cylindrical.Geometry):
     gap_mm: float = key(above_zero(10000.0), "width of the groove between the halves, of both gears")
     apex_offset_mm: float = key(
         ERROR_mm,
-        "axial distance from the apex of the pinion's teeth to that of the wheel's, where the middles of both grooves "
-        "face each other; positive: that of the wheel lies nearer to half a",
+        "axial distance from the apex of the pinion's teeth to the apex of the wheel's, where the middles of both "
+        "grooves face each other; positive: the apex of the wheel lies nearer to half a",
         0.0,
     )
     floating: Literal["pinion", "wheel", "none"] = key(
@@ -99,14 +98,12 @@ class HalfSection(Section):
     """[pinion.half_b], [wheel.half_b]: what the teeth of half b have instead of those of half a."""
 
     modifications: Modifications | None = subsection(
-        Modifications, "material removed from the flanks of half b, instead of that of half a", optional=True
+        Modifications, "material removed from the flanks of half b; default: as of half a", optional=True
     )
     flank: FlankForm | None = subsection(
-        FlankForm, "how the flanks of half b are described, instead of those of half a", optional=True
+        FlankForm, "how the flanks of half b are described; default: as of half a", optional=True
     )
-    pitch: Pitch | None = subsection(
-        Pitch, "where the teeth of half b stand beside their nominal places, instead of those of half a", optional=True
-    )
+    pitch: Pitch | None = subsection(Pitch, "pitch deviations of half b; default: as of half a", optional=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -195,7 +192,7 @@ class DoubleHelicalScene(CylindricalScene):
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
-    wheel: GearSection = subsection(GearSection, "its mating gear")
+    wheel: GearSection = subsection(GearSection, "the mating gear of the pinion")
     mounting: Mounting = subsection(Mounting, "mounting errors of the whole wheel")
 
     rules: ClassVar[tuple[Rule, ...]] = (

@@ -73,8 +73,8 @@ class Blank(Section):
     face_width_mm: float = key(LENGTH_mm, "face width b")
     pitch_angle_deg: float = key(
         CONE_deg,
-        "pitch angle delta, as teeth and shaft angle (and of a pinion with an offset the other cones) ask for; its "
-        "last digits are taken from them",
+        "pitch angle delta, which follows from teeth and shaft angle (for a pinion with an offset also from the other "
+        "cones); its last digits are corrected",
     )
     face_angle_deg: float = key(CONE_deg, "face angle delta_a")
     root_angle_deg: float = key(CONE_deg, "root angle delta_f")
@@ -84,7 +84,7 @@ class Blank(Section):
         "apex), away from the teeth",
         0.0,
     )
-    root_apex_mm: float = key(SETTING_mm, "likewise the apex of the root cone", 0.0)
+    root_apex_mm: float = key(SETTING_mm, "apex of the root cone, counted like `face_apex_mm`", 0.0)
     calculation_cone_distance_mm: float | None = key(
         LENGTH_mm, "cone distance R_m of the calculation point, where the pitch cones touch", None, "in the middle of b"
     )
@@ -272,7 +272,7 @@ class FaceMilledScene(SpiralScene):
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
-    wheel: GearSection = subsection(GearSection, "its mating gear")
+    wheel: GearSection = subsection(GearSection, "the mating gear of the pinion")
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
     rules: ClassVar[tuple[Rule, ...]] = (

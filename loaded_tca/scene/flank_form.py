@@ -61,7 +61,7 @@ class Measurement(Section):
     )
     axial_mm: Points | None = key(
         COORDINATES_mm,
-        "their axial coordinates, from mid-face (bevel gears: from the apex)",
+        "axial coordinates of the points, from mid-face (bevel gears: from the apex)",
         None,
         "as `radius_mm`",
     )
@@ -73,12 +73,12 @@ class Measurement(Section):
     )
     x_mm: Points | None = key(
         COORDINATES_mm,
-        "points in the gear's own frame, z along its axis; the tooth stands at any azimuth",
+        "x of the points in the gear's own frame, z along its axis; the tooth stands at any azimuth",
         None,
         "`radius_mm`, `axial_mm`, `deviation_um` are",
     )
-    y_mm: Points | None = key(COORDINATES_mm, "likewise", None, "as `x_mm`")
-    z_mm: Points | None = key(COORDINATES_mm, "likewise", None, "as `x_mm`")
+    y_mm: Points | None = key(COORDINATES_mm, "y of the points", None, "as `x_mm`")
+    z_mm: Points | None = key(COORDINATES_mm, "z of the points", None, "as `x_mm`")
     source: str = key(Line(), "where the points come from", "")
 
     rules: ClassVar[tuple[Rule, ...]] = (
@@ -152,7 +152,8 @@ class FlankForm(Section):
     )
     coefficients: tuple[int, int] | None = key(
         List(COUNT, 2, 2),
-        "B-spline coefficients along the profile and lengthwise of a measured flank; as many as points: through each",
+        "B-spline coefficients along the profile and lengthwise of a measured flank; with as many as points, the flank "
+        "goes through every point",
         None,
         "half as many as points and two, which smooths the noise of measurement",
     )
@@ -160,7 +161,7 @@ class FlankForm(Section):
         Line(1000),
         "file of measured points, relative to the folder of the scene",
         None,
-        "no points, or those of a section measurement",
+        "no points, or the points of a section measurement",
     )
     measurement: Measurement | None = subsection(Measurement, "measured points, instead of a file", optional=True)
 

@@ -79,9 +79,9 @@ class RingSection(CutSection):
     profile_shift: float | None = key(  # type: ignore[assignment]
         Number(-5.0, 5.0),
         "profile shift coefficient x with the sign of ISO 21771: positive ones thicken the teeth of the ring and move "
-        "them towards the axis; of one gear where the centre distance is given: the other has what leaves no backlash",
+        "them towards the axis; with a centre distance give it for one gear: the other follows, without backlash",
         None,
-        "0, or what leaves no backlash",
+        "0, or by the centre distance, without backlash",
     )
     tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a, positive", None, "d - 2 m_n (h_aP + x + k)")
     root_diameter_mm: float | None = key(DIAMETER_mm, "root diameter d_f, positive", None, "d + 2 m_n (h_fP - x_E)")
@@ -89,7 +89,7 @@ class RingSection(CutSection):
         DIAMETER_mm, "outer diameter, held rigid where teeth bend", None, "root diameter + 14 m_n"
     )
     cutter: CutterSection | None = subsection(
-        CutterSection, "pinion-type cutter of the ring; without it its fillets are arcs", optional=True
+        CutterSection, "pinion-type cutter of the ring; without a cutter the fillets are arcs", optional=True
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (
@@ -99,7 +99,7 @@ class RingSection(CutSection):
         rule(
             ("bore_diameter_mm",),
             lambda bore: bore is None,
-            "found {0:g}; a ring gear has none, it is held at its outside: give outer_diameter_mm",
+            "found {0:g}; a ring gear has no bore, its outside is held: give outer_diameter_mm",
         ),
         below("tip_diameter_mm", "root_diameter_mm"),
         below("tip_diameter_mm", "outer_diameter_mm"),
@@ -145,7 +145,7 @@ class InternalScene(CylindricalScene):
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
-    wheel: RingSection = subsection(RingSection, "its ring gear")  # type: ignore[assignment]
+    wheel: RingSection = subsection(RingSection, "the ring gear")  # type: ignore[assignment]
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
     rules: ClassVar[tuple[Rule, ...]] = (

@@ -82,7 +82,7 @@ torque_of_bin = partial(key, Number(0.0, 1e9, advice="reversed = true is the oth
 speed_of_bin = partial(key, above_zero(1e6))
 hours_of_bin = partial(key, Number(0.0, 1e8), "how long the bin lasts", None, "`share` is given")
 share_of_bin = partial(
-    key, Number(0.0, 1.0), "or its part of the time; all shares add up to 1", None, "`hours` are given"
+    key, Number(0.0, 1.0), "or the part of the time of the bin; all shares add up to 1", None, "`hours` are given"
 )
 reversed_of_bin = partial(
     key, Choice((False, True)), "whether the torque acts the other way, so that the other flanks carry it", False
@@ -127,7 +127,7 @@ def _spectrum_problem(cases: Sequence[Bin] | None) -> str | None:
     hours, shares = ([getattr(case, name) for case in cases] for name in ("hours", "share"))
     of_hours = sum(each is not None for each in hours)
     if 0 < of_hours < len(cases):
-        return f"hours of {of_hours} bins and shares of {len(cases) - of_hours}; give the same of all"
+        return f"hours of {of_hours} bins and shares of {len(cases) - of_hours}; give one of them for all"
     if of_hours and not sum(hours) > 0.0:
         return "the hours sum to 0; allowed above 0"
     if not of_hours and abs(sum(shares) - 1.0) > SUM_OF_SHARES:
@@ -191,7 +191,7 @@ class Load(AnyLoad):
         "or the bins of a load spectrum, each a table `[[load.case]]` of `pinion_torque_Nm`, `hours` or `share` (of "
         "the time; all shares add up to 1), `pinion_speed_rpm`, by default that of [operation], and `reversed = false` "
         "(true: the torque acts the other way, and the other flanks carry it); of more than twelve torques, twelve in "
-        "equal steps are solved",
+        "equal steps are analysed",
         None,
         "no spectrum",
     )
@@ -242,7 +242,7 @@ def life_is_given(life_hours: float | None, load: AnyLoad) -> str | None:
     """What is wrong where neither a rating nor its load cases say how long the gears are to last."""
     if life_hours is not None or load.hours is not None:
         return None
-    return "missing; needed but for load cases with hours, which are the life that is asked for then"
+    return "missing; needed unless load cases have hours, whose sum then is the required life"
 
 
 def within_solved(load: AnyLoad | None, torques: Sequence[float] | None) -> str | None:

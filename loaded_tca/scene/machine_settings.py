@@ -45,8 +45,8 @@ class Settings(Section):
 
     method: Method = key(
         Choice(METHODS),
-        "basic settings in closed form, or those of the pinion by local synthesis: contact as asked for at the mean "
-        "point, beside a wheel by `duplex_spread_blade`",
+        "basic settings in closed form; or the pinion by local synthesis, for the contact asked for at the mean point, "
+        "and the wheel by `duplex_spread_blade`",
         "duplex_spread_blade",
     )
     edge_radius_mm: float = key(Number(0.0, 1000.0), "radius of the rounded tips of all blades", 0.0)
@@ -54,12 +54,12 @@ class Settings(Section):
         Number(-200.0, 200.0),
         "number of the blade group of a duplex_spread_blade pair",
         None,
-        "that of the tilt of the root planes, to a half",
+        "by the tilt of the root planes, to a half",
     )
     motion_fall_arcsec: float | None = key(
         Number(0.0, 3600.0),
-        "local_synthesis: by how much the wheel stays behind a half pitch beside the mean point, were the motion curve "
-        "the parabola that it is there",
+        "local_synthesis: lag of the wheel half a pitch away from the mean point, by the parabola that fits the motion "
+        "curve there",
         None,
         f"{plain(USUAL_FALL_arcsec, 6)}",
     )
@@ -72,14 +72,14 @@ class Settings(Section):
     )
     contact_length_mm: float | None = key(
         above_zero(10000.0),
-        "local_synthesis: length of the contact ellipse there under an approach of 6.35 um, a marking compound",
+        "local_synthesis: length of the contact ellipse at the mean point under an approach of 6.35 um (compound)",
         None,
         f"{plain(USUAL_LENGTH, 6)} of the face width",
     )
     both_flanks: bool | None = key(
         Choice((False, True)),
-        "local_synthesis: whether the other flank of the pinion, cut in the same pass, is asked for as much (its path "
-        "as a mirror image), which takes tilt and helical motion; false: it touches at the mean point",
+        "local_synthesis: whether the other flank of the pinion, cut in the same pass, has this contact, too (with the "
+        "path mirrored), which takes tilt and helical motion; false: the other flank only touches at the mean point",
         None,
         "false",
     )

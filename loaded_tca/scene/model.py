@@ -92,7 +92,7 @@ class Scene(InNotebooks, WithStandards, ABC):
     title: str = key(Line(), "stands over reports and plots", "")
     geometry: Pair = subsection(Pair, "what both gears have in common", name="pair")
     pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
-    wheel: GearSection = subsection(GearSection, "its mating gear")
+    wheel: GearSection = subsection(GearSection, "the mating gear of the pinion")
     mounting: Section = subsection(Section, "mounting errors")
     material: ElasticMaterial | None = subsection(
         ElasticMaterial, "material of both gears; needed unless each has its own", optional=True

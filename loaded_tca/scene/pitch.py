@@ -37,7 +37,7 @@ def _one_source(*given: object) -> str | None:
 def _of_class(seed: int, tolerance_class: int | None) -> str | None:
     if not seed or tolerance_class is not None:
         return None
-    return f"found {seed} without tolerance_class; allowed beside it, whose random deviations it numbers"
+    return f"found {seed} without tolerance_class; allowed beside tolerance_class, for its random deviations"
 
 
 def _closed(single: tuple[float, ...] | None) -> str | None:
@@ -73,18 +73,18 @@ class Pitch(Section):
     file: str | None = key(
         Line(1000),
         "or a CSV file, relative to the folder of the scene, with a column `index_um` or `single_um`, a line for each "
-        "tooth, in whose order teeth are numbered; beside it no column but `tooth`, which counts them from 0 or 1",
+        "tooth in the order of the numbers of teeth; the only other column is `tooth`, with these numbers from 0 or 1",
         None,
         "as `index_um`",
     )
     tolerance_class: int | None = key(
         Whole(1, 11),
         "or the flank tolerance class of ISO 1328-1:2013, whose single and cumulative pitch tolerances "
-        "random deviations fill; of cylindrical gears alone",
+        "random deviations fill; for cylindrical gears only",
         None,
         "as `index_um`",
     )
-    seed: int = key(Whole(0, 2**31 - 1), "of these random deviations: the same ones for the same number", 0)
+    seed: int = key(Whole(0, 2**31 - 1), "seed of these random deviations: equal seeds give equal deviations", 0)
     runout_um: float = key(Number(0.0, 10000.0), "runout, twice the eccentricity of the teeth", 0.0)
     runout_phase_deg: float = key(
         Number(-360.0, 360.0),
@@ -196,15 +196,15 @@ class Revolution(Section):
 
     pitches: int | str = key(
         Either((Choice(("pinion", "wheel", "hunting")), Whole(1, 10**8))),
-        "pitches that follow each other: a turn of the pinion or of the wheel, all until the same teeth meet again "
-        '("hunting"), or a number of them up to that',
+        "pitches in succession: a turn of the pinion or of the wheel, all pitches until the same teeth meet again "
+        '("hunting"), or any smaller number of pitches',
         "wheel",
     )
     positions_per_pitch: int = key(Whole(1, 10000), "positions that divide each pitch evenly", 8)
     first_pair: int | tuple[int, int] = key(
         Either((Whole(0, 10**8), List(Whole(0, 10000), 2, 2))),
-        "tooth pair at the pitch point at the first position: its number, which modulo the numbers of teeth is that of "
-        "its teeth; or its teeth of pinion and wheel, from 0",
+        "tooth pair at the pitch point at the first position: its number, which modulo the numbers of teeth gives "
+        "the teeth; or the teeth of pinion and wheel, from 0",
         0,
     )
 

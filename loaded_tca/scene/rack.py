@@ -40,7 +40,7 @@ def _needs_length(length: float | None, rating: object) -> str | None:
     """What is wrong with the rating of a rack whose teeth are not counted."""
     if rating is None or length is not None:
         return None
-    return "missing; [rating] needs it: load cycles of the rack's teeth are strokes over this length"
+    return "missing; [rating] needs this length: the load cycles of a rack tooth are strokes over it"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +58,7 @@ class RackGeometry(Geometry):
         *Geometry.rules,
         refusal(
             "centre_distance_mm",
-            "found {0:g}; a rack has no axis: give distance_mm, of the pinion's axis from the reference line",
+            "found {0:g}; a rack has no axis: give distance_mm, from the pinion axis to the reference line",
         ),
     )
 
@@ -77,7 +77,7 @@ class RackSection(BlankGearSection):
     thickness_allowance_um: float | None = key(
         SLOPE_um,
         "allowance A_sn of the tooth thickness in the normal section at the reference line, negative for thinner "
-        "teeth, up to half a module: the root line follows",
+        "teeth, up to half a module; the root line follows from it",
         None,
         "0",
     )
@@ -85,9 +85,9 @@ class RackSection(BlankGearSection):
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankGearSection.rules,
         _none("profile_shift", "give pair.distance_mm"),
-        _none("bore_diameter_mm", "it is held at its bed: give height_mm"),
-        _none("shaft", "it is held at its bed"),
-        _none("support", "it is held at its bed"),
+        _none("bore_diameter_mm", "its bed is held: give height_mm"),
+        _none("shaft", "its bed is held"),
+        _none("support", "its bed is held"),
         _none("pitch", "whole revolutions are those of gears"),
         _none("tooth", "whole revolutions are those of gears"),
         rule(
@@ -148,8 +148,7 @@ class RackScene(CylindricalScene):
             rule(
                 (name,),
                 lambda value: value is None or value == (),
-                "found; not allowed beside a rack: it belongs to whole revolutions, which need a wheel with teeth all "
-                "around",
+                "found; not allowed with a rack: whole revolutions need a wheel with teeth all around",
             )
             for name in ("revolution", "pinion.pitch", "pinion.tooth")
         ),

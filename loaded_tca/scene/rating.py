@@ -112,15 +112,15 @@ class StrengthSection(Section):
     quality: str = key(Choice(QUALITIES), "quality of material and heat treatment of ISO 6336-5", "MQ")
     hardness_HV: float | None = key(
         above_zero(1500.0), "surface hardness after Vickers; or one of the other scales", None,
-        "700 HV of case-hardened, 750 HV of nitriding steels that are named",
+        "for steels by name: 700 HV case-hardened, 750 HV nitriding",
     )  # fmt: skip
     hardness_HBW: float | None = key(above_zero(1500.0), "or after Brinell", None, "as above")
     hardness_HRC: float | None = key(above_zero(100.0), "or after Rockwell", None, "as above")
     sigma_H_lim_MPa: float | None = key(
-        STRESS_MPa, "allowable stress number of flanks, with that of roots", None, "that of ISO 6336-5"
+        STRESS_MPa, "allowable stress number of flanks; give sigma_F_lim_MPa, too", None, "that of ISO 6336-5"
     )
     sigma_F_lim_MPa: float | None = key(
-        STRESS_MPa, "nominal allowable stress number of roots, with that of flanks", None, "that of ISO 6336-5"
+        STRESS_MPa, "nominal allowable stress number of roots; give sigma_H_lim_MPa, too", None, "that of ISO 6336-5"
     )
     proof_stress_MPa: float | None = key(
         STRESS_MPa, "yield point, proof stress or, of grey cast iron, tensile strength; counts at the root", None,
@@ -139,7 +139,7 @@ class StrengthSection(Section):
         rule(
             ("material", "kind"),
             lambda material, kind: (material is None) != (kind is None),
-            "missing, or found beside kind; give one of the two",
+            "missing, or found beside kind; give material or kind",
         ),
         rule(
             HARDNESS,
@@ -149,7 +149,7 @@ class StrengthSection(Section):
         rule(
             ("sigma_H_lim_MPa", "sigma_F_lim_MPa"),
             lambda flank, root: (flank is None) == (root is None),
-            "one of sigma_H_lim_MPa and sigma_F_lim_MPa alone; give both, or none for those of ISO 6336-5",
+            "found one of sigma_H_lim_MPa and sigma_F_lim_MPa; give both, or none for the stresses of ISO 6336-5",
         ),
         Rule(("material", "kind", "quality", "sigma_H_lim_MPa", *HARDNESS), _no_hardness),
         *(
@@ -195,7 +195,7 @@ class RatingSection(Section):
     required_root_safety: float = key(above_zero(100.0), "required safety against tooth breakage S_Fmin")
     life_hours: float | None = key(
         above_zero(1e8),
-        "life that is required: hours under each torque alone, or of a load spectrum, whose bins repeat in it",
+        "required life: hours under each torque alone, or of a load spectrum, whose bins repeat over it",
         None,
         "the hours of the load cases together",
     )

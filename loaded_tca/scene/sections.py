@@ -107,11 +107,11 @@ class Modifications(Section):
     end_relief_lower_um: float | None = key(
         AMOUNT_um, "end relief C_betaI at the lower end (z < 0; toe)", None, "`end_relief_um`"
     )
-    end_relief_lower_length_mm: float | None = key(END_mm, "its length", None, "`end_relief_length_mm`")
+    end_relief_lower_length_mm: float | None = key(END_mm, "length of this relief", None, "`end_relief_length_mm`")
     end_relief_upper_um: float | None = key(
         AMOUNT_um, "end relief C_betaII at the upper end (z > 0; heel)", None, "`end_relief_um`"
     )
-    end_relief_upper_length_mm: float | None = key(END_mm, "its length", None, "`end_relief_length_mm`")
+    end_relief_upper_length_mm: float | None = key(END_mm, "length of this relief", None, "`end_relief_length_mm`")
     profile_crowning_um: float = key(AMOUNT_um, "profile crowning C_alpha, at the ends of the active profile", 0.0)
     tip_relief_um: float = key(AMOUNT_um, "tip relief C_alpha_a, at the tip; above 0 it needs its start", 0.0)
     tip_relief_start_mm: float = key(
@@ -119,12 +119,13 @@ class Modifications(Section):
     )
     tip_relief_start_roll_deg: float = key(
         START_deg,
-        "or its roll angle, tan(alpha_y) (bevel gears: unwound arc over sin(delta_b); face-milled gears have none)",
+        "or roll angle of this start, tan(alpha_y) (bevel gears: unwound arc over sin(delta_b); face-milled gears: "
+        "none)",
         0.0,
     )
     tip_relief_start_length_mm: float = key(
         START_mm,
-        "or its roll length, which counts on the path of contact from T1, on a wheel from T2 (bevel gears: the "
+        "or roll length of this start, counted on the path of contact from T1, on a wheel from T2 (bevel gears: the "
         "unwound arc times R_m; face-milled gears: from the form line at mid-face)",
         0.0,
     )
@@ -135,8 +136,8 @@ class Modifications(Section):
         0.0,
     )
     root_relief_start_mm: float = key(START_mm, "diameter at which the root relief starts", 0.0)
-    root_relief_start_roll_deg: float = key(START_deg, "or its roll angle", 0.0)
-    root_relief_start_length_mm: float = key(START_mm, "or its roll length", 0.0)
+    root_relief_start_roll_deg: float = key(START_deg, "or roll angle of this start", 0.0)
+    root_relief_start_length_mm: float = key(START_mm, "or roll length of this start", 0.0)
     root_relief_form: str = key(RELIEF_FORM, "form of the root relief over the roll length", "parabolic")
     helix_slope_um: float = key(SLOPE_um, "helix slope C_H_beta over the face width; may be negative", 0.0)
     profile_slope_um: float = key(SLOPE_um, "profile slope C_H_alpha over the active profile; may be negative", 0.0)
@@ -180,8 +181,8 @@ class ElasticMaterial(Section):
         above_zero(1e7), "pressure at which the surface yields (plastic cap)", None, "elastic"
     )
     conductivity_W_mK: float = key(above_zero(1000.0), "conductivity of heat, for flash temperatures", 50.0)
-    density_kg_m3: float = key(above_zero(30000.0), "density, likewise", 7850.0)
-    heat_capacity_J_kgK: float = key(above_zero(10000.0), "heat capacity, likewise", 484.0)
+    density_kg_m3: float = key(above_zero(30000.0), "density, for flash temperatures", 7850.0)
+    heat_capacity_J_kgK: float = key(above_zero(10000.0), "heat capacity, for flash temperatures", 484.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,10 +191,10 @@ class Tooth(Section):
 
     number: int = key(Whole(0, 9999), "number of the tooth, from 0")
     modifications: Modifications | None = subsection(
-        Modifications, "material removed from its flanks, instead of that of the others", optional=True
+        Modifications, "material removed from the flanks of this tooth, in place of that of the gear", optional=True
     )
     flank: FlankForm | None = subsection(
-        FlankForm, "how its flanks are described, instead of those of the others", optional=True
+        FlankForm, "how the flanks of this tooth are described, in place of those of the gear", optional=True
     )
 
     @property
@@ -212,7 +213,7 @@ class GearSection(Section):
         Number(0.0, 100000.0),
         "bore diameter, held rigid; 0: a solid gear, held by journals of 0.55 of the root diameter at both faces",
         None,
-        "where teeth bend the shaft at the middle of the face, up to 0.8 of the root diameter; else 0.55 of it",
+        "where teeth bend, the shaft diameter at mid-face, up to 0.8 root diameters; else 0.55 root diameters",
     )
     tip_rounding_mm: float = key(
         ROUNDING_mm, "radius of both tip edges of the teeth, up to 0.3 normal modules; 0: sharp", 0.0
@@ -232,20 +233,18 @@ class GearSection(Section):
         ElasticMaterial, "material of this gear, instead of the common one", optional=True
     )
     shaft: ShaftSection | None = subsection(
-        ShaftSection, "the shaft that the gear sits on; without it, and without a support, rigid", optional=True
+        ShaftSection, "the shaft of the gear; without shaft and support: rigid", optional=True
     )
     support: SupportSection | None = subsection(
-        SupportSection, "how far the gear gives way as a whole; without it, rigid", optional=True
+        SupportSection, "how far the gear moves as a whole under load; without this section: rigid", optional=True
     )
-    pitch: Pitch | None = subsection(
-        Pitch, "where the teeth stand beside their nominal places, in whole revolutions", optional=True
-    )
+    pitch: Pitch | None = subsection(Pitch, "pitch deviations of the teeth, for whole revolutions", optional=True)
     strength: StrengthSection | None = subsection(
         StrengthSection, "what the gear withstands, for rating", optional=True
     )
     tooth: tuple[Tooth, ...] | None = key(
         Tables(Tooth, 0, 10000),
-        "teeth whose flanks differ from the others, in whole revolutions: `[[pinion.tooth]]`, `[[wheel.tooth]]` with "
+        "teeth whose flanks differ from the others, for whole revolutions: `[[pinion.tooth]]`, `[[wheel.tooth]]` with "
         "`number`, from 0, and sections `modifications` or `flank` in place of those of the gear",
         None,
         "all teeth have the flanks of the gear",
@@ -275,11 +274,11 @@ class Analysis(Section):
         Whole(1, 10000), "mesh positions over one pitch, both ends included; 1 = the pitch point alone", 21
     )
     accuracy: float = key(
-        Number(1e-6, 0.5), "wanted relative error of the peak pressure; chooses the grid unless cells do", 1e-2
+        Number(1e-6, 0.5), "wanted relative error of the peak pressure; chooses the grid unless `cells` are given", 1e-2
     )
     cells: tuple[int, int] | None = key(
         List(Whole(4, 1000000), 2, 2),
-        "cells across and along the contact; chooses the grid instead of the accuracy",
+        "cells across and along the contact, instead of a grid by `accuracy`",
         None,
         "follows from accuracy",
     )
@@ -291,7 +290,7 @@ class Analysis(Section):
     )
     load_sharing: bool = key(
         Choice((False, True)),
-        "whether several tooth pairs share the torque; false: one carries all",
+        "whether several tooth pairs share the torque; false: one tooth pair carries all of it",
         True,
     )
     compliance: str = key(
@@ -301,20 +300,20 @@ class Analysis(Section):
     )
     edge_pressures: str = key(
         Choice(("largest", "all")),
-        "which contacts at rounded edges have their pressure there found: those that can hold the largest one of their "
-        "torque, or all",
+        "contacts whose pressure at rounded edges is computed: those that can have the largest under their torque, or "
+        "all",
         "largest",
     )
     root_stress: bool = key(
         Choice((False, True)),
-        "whether the stress at the roots of the teeth is found, by finite elements of both gears",
+        "whether root stress is computed, by finite elements of both gears",
         False,
     )
     torques_Nm: tuple[float, ...] | None = key(
         List(TORQUE_Nm, 1, 1000),
-        "several pinion torques, all analysed instead of that of [load], or of those that are chosen for its spectrum",
+        "several pinion torques, analysed instead of the torque of [load] or of the torques chosen for its spectrum",
         None,
-        "the one of [load], or those of its spectrum",
+        "the torque of [load], or those of its spectrum",
     )
 
     @property

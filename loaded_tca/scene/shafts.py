@@ -64,7 +64,7 @@ def fault_of_matrix(rows: tuple[tuple[float, ...], ...], *, definite: bool) -> s
     if definite and values[0] < FREE:
         free = DIRECTIONS[int(np.abs(vectors[:, 0] / roots).argmax() if roots.all() else roots.argmin())]
         free = DIRECTIONS[int(np.flatnonzero(diagonal == 0.0)[0])] if (diagonal == 0.0).any() else free
-        return f"holds the gear not {free}: this motion is free; allowed are matrices that hold all six, or compliance"
+        return f"leaves the gear free {free}; allowed are matrices that hold all six motions, or compliance"
     return None
 
 
@@ -89,7 +89,7 @@ class SupportSection(Section):
     )
     stiffness: tuple[tuple[float, ...], ...] | None = key(
         Grid(Number(-STIFFEST_N_per_mm, STIFFEST_N_per_mm), 6, 6),
-        "or its inverse, forces [N] and moments [N mm] by unit motions [mm, rad]; all six motions are held",
+        "or the inverse of `compliance`, forces [N] and moments [N mm] by unit motions [mm, rad]; all six are held",
         None,
         "by `compliance`",
     )
@@ -128,9 +128,9 @@ def _inner_below_outer(inner: float, outer: float) -> str | None:
 class PartOfShaft(Section):
     """A cylindrical part of a shaft."""
 
-    length_mm: float = key(LENGTH_mm, "its length")
-    outer_diameter_mm: float = key(LENGTH_mm, "its outer diameter; under the teeth that of the body or of the root")
-    inner_diameter_mm: float = key(Number(0.0, 100000.0), "its inner diameter; 0: solid", 0.0)
+    length_mm: float = key(LENGTH_mm, "length of the part")
+    outer_diameter_mm: float = key(LENGTH_mm, "outer diameter; under the teeth the diameter of the body or the root")
+    inner_diameter_mm: float = key(Number(0.0, 100000.0), "inner diameter; 0: solid", 0.0)
 
     rules: ClassVar[tuple[Rule, ...]] = (Rule(("inner_diameter_mm", "outer_diameter_mm"), _inner_below_outer),)
 
@@ -196,7 +196,7 @@ def _fitting(count: int | None, diameter: float | None, pitch: float | None) -> 
     if diameter < largest:
         return None
     return (
-        f"found {plain(diameter, 6)}; {count} of them on {plain(pitch, 6)} mm would touch: allowed below "
+        f"found {plain(diameter, 6)}; {count} elements on {plain(pitch, 6)} mm would touch: allowed below "
         f"{plain(largest)}"
     )
 
@@ -204,8 +204,8 @@ def _fitting(count: int | None, diameter: float | None, pitch: float | None) -> 
 def _side(side: int | None, angle: float | None, preload: float | None) -> str | None:
     if side is None and angle:
         return (
-            f"missing; a contact angle of {plain(angle, 6)} takes thrust one way: 1 if that of the shaft "
-            "along z, -1 if not"
+            f"missing; a contact angle of {plain(angle, 6)} takes thrust one way: give 1 if the shaft pushes "
+            "along z, else -1"
         )
     if side is None and preload:
         return "missing; a preload presses the shaft along z with 1, against it with -1"
@@ -231,7 +231,7 @@ def whole_matrix(rows: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...]
 class BearingSection(Section):
     """A bearing of a shaft: linear, or a rolling bearing by its inner geometry."""
 
-    at_mm: float = key(PLACE_mm, "its place, in the axial coordinate of the gear")
+    at_mm: float = key(PLACE_mm, "place of the bearing, in the axial coordinate of the gear")
     type: str | None = key(
         Choice(("ball", "roller")),
         "a row of balls (deep groove, or angular contact with a contact angle) or of rollers (cylindrical, or tapered "
@@ -244,17 +244,19 @@ class BearingSection(Section):
     tilting_stiffness_Nm_per_mrad: float = key(STIFFNESS, "linear: stiffness against tilting about x and y", 0.0)
     stiffness: tuple[tuple[float, ...], ...] | None = key(
         Grid(Number(-STIFFEST_N_per_mm, STIFFEST_N_per_mm), 5, 6),
-        "linear, or all of it: forces [N] and moments [N mm] on the bearing by motions [mm, rad], x, y, z, about x, "
-        "about y (and z) of the gear's own frame; 5 lists of 5, or 6 of 6",
+        "linear, or the whole matrix: forces [N] and moments [N mm] on the bearing by motions [mm, rad], x, y, z, "
+        "about x, about y (and z) of the gear's own frame; 5 lists of 5, or 6 of 6",
         None,
-        "by the three before",
+        "by the three keys before",
     )
     balls: int | None = key(ELEMENTS, "balls: how many; the first one is on the x axis of the gear's own frame", None)
     ball_diameter_mm: float | None = key(LENGTH_mm, "balls: diameter", None)
     inner_groove_ratio: float | None = key(
         GROOVE, "balls: radius of the groove of the inner ring over the diameter of a ball", None, "0.52"
     )
-    outer_groove_ratio: float | None = key(GROOVE, "balls: the same of the outer ring", None, "0.53")
+    outer_groove_ratio: float | None = key(
+        GROOVE, "balls: radius of the groove of the outer ring over the diameter of a ball", None, "0.53"
+    )
     rollers: int | None = key(ELEMENTS, "rollers: how many; the first one is on the x axis of the gear's frame", None)
     roller_diameter_mm: float | None = key(LENGTH_mm, "rollers: diameter, of tapered ones in the middle", None)
     roller_length_mm: float | None = key(LENGTH_mm, "rollers: effective length", None)
@@ -264,7 +266,7 @@ class BearingSection(Section):
     )
     side: int | None = key(
         Choice((1, -1)),
-        "the thrust of the shaft that a bearing with a contact angle takes: 1 along z of the gear's own frame, -1 "
+        "sense of the shaft thrust that a bearing with a contact angle takes: 1 along z of the gear's own frame, -1 "
         "against it; without a contact angle the sense of its preload",
         None,
     )
@@ -276,7 +278,7 @@ class BearingSection(Section):
     )
     preload_um: float | None = key(
         Number(-1000.0, 1000.0),
-        "balls and tapered rollers: by how much the rings are set against each other along the axis, in the sense of "
+        "balls and tapered rollers: axial displacement that presses the rings together, in the sense of "
         "`side`; below 0: apart",
         None,
         "0",
@@ -314,7 +316,7 @@ class BearingSection(Section):
 class ShaftLoadSection(Section):
     """A load of something else on a shaft: a further gear, a belt, weight."""
 
-    at_mm: float = key(PLACE_mm, "its place, in the axial coordinate of the gear")
+    at_mm: float = key(PLACE_mm, "place of the load, in the axial coordinate of the gear")
     force_N: tuple[float, ...] = key(List(FORCE, 3, 3), "force along x, y, z of the gear's own frame", (0.0, 0.0, 0.0))
     moment_Nm: tuple[float, ...] = key(List(FORCE, 3, 3), "moment about x, y, z", (0.0, 0.0, 0.0))
 
@@ -337,12 +339,12 @@ class ShaftSection(Section):
     )
     sections: tuple[PartOfShaft, ...] = key(
         Tables(PartOfShaft, 1, MOST_PARTS),
-        "its parts from the lower end on, of the material of the gear: `{length_mm, outer_diameter_mm, "
+        "parts from the lower end on, of the material of the gear: `{length_mm, outer_diameter_mm, "
         "inner_diameter_mm = 0.0}` each",
     )
     bearings: tuple[BearingSection, ...] = key(
         Tables(BearingSection, 1, MOST_PARTS),
-        "its bearings, each a table `[[pinion.shaft.bearings]]` of `at_mm`, `radial_stiffness_N_per_um`, "
+        "bearings, each a table `[[pinion.shaft.bearings]]` of `at_mm`, `radial_stiffness_N_per_um`, "
         "`axial_stiffness_N_per_um = 0.0`, `tilting_stiffness_Nm_per_mrad = 0.0`, or with `stiffness`, 5 x 5 or 6 x 6 "
         '[N, mm, rad], instead of the three; or a rolling bearing: `type = "ball"` with `balls`, `ball_diameter_mm`, '
         '`pitch_diameter_mm`, `inner_groove_ratio = 0.52`, `outer_groove_ratio = 0.53`, or `type = "roller"` with '
@@ -352,8 +354,8 @@ class ShaftSection(Section):
     )
     loads: tuple[ShaftLoadSection, ...] = key(
         Tables(ShaftLoadSection, 0, MOST_PARTS),
-        "other loads on it, each a table `[[pinion.shaft.loads]]` of `at_mm`, `force_N` and `moment_Nm`, three numbers "
-        "each, axes of the gear's own frame",
+        "other loads on the shaft, each a table `[[pinion.shaft.loads]]` of `at_mm`, `force_N` and `moment_Nm`, three "
+        "numbers each, axes of the gear's own frame",
         (),
     )
 

@@ -37,7 +37,7 @@ Progress = Callable[[int, int], None]
 
 
 def analyse_stage(stage: Stage, progress: Progress | None = None) -> StageResult:
-    """Analyse a planetary stage: how its planets share the torque over a pitch of the sun, and what that does.
+    """Analyse a planetary stage: how its planets share the torque over a pitch of the sun, and what follows.
 
     Parameters
     ----------

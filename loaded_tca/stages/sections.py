@@ -71,8 +71,8 @@ MEMBERS = "sun", "planet", "ring"
 OF_ONE_PITCH = {
     "pitch": "teeth of a stage are alike",
     "tooth": "teeth of a stage are alike",
-    "shaft": "gears of a stage stand on rigid axes, but for the sun: stage.sun_support_stiffness_N_per_um",
-    "support": "gears of a stage stand on rigid axes, but for the sun: stage.sun_support_stiffness_N_per_um",
+    "shaft": "gears of a stage stand on rigid axes; for the sun give stage.sun_support_stiffness_N_per_um",
+    "support": "gears of a stage stand on rigid axes; for the sun give stage.sun_support_stiffness_N_per_um",
 }
 """Sections of a gear that a stage does not have, and why."""
 MOST_PLANETS = 12
@@ -139,7 +139,7 @@ class PlanetaryStage(Section):
         Rule(
             ("floating_sun", "sun_support_stiffness_N_per_um", "planets", "planet_angles_deg"),
             lambda floating, stiffness, count, angles: (
-                "found a sun that floats beside one planet; allowed from two planets on, which hold it"
+                "found a floating sun with one planet; allowed from two planets on, which hold the sun"
                 if (floating or stiffness == 0.0) and (count or len(angles or ())) == 1
                 else None
             ),
@@ -147,8 +147,8 @@ class PlanetaryStage(Section):
         Rule(
             ("planet_angles_deg", "floating_sun", "sun_support_stiffness_N_per_um"),
             lambda angles, floating, stiffness: (
-                f"found planets on one side of a sun that floats, with {plain(gap)} deg between two of them; allowed "
-                "up to 180 deg, or the planets push the sun away"
+                f"found planets on one side of a floating sun, with {plain(gap)} deg between two of them; allowed "
+                "up to 180 deg: beyond it the planets push the sun away"
                 if (floating or stiffness == 0.0)
                 and len(angles or ()) > 1
                 and (gap := _largest_gap(angles)) > 180.0 + WRITTEN_deg
@@ -179,8 +179,8 @@ def _planet_between(planet: float | None, sun: float | None, ring: float | None,
     if planet is not None or sun is None or ring is None or distance is None:
         return None
     return (
-        "missing; pair.centre_distance_mm asks for one with sun.profile_shift and for one with ring.profile_shift: "
-        "give that of the planet, or leave out that of sun or ring, which then has what leaves no backlash"
+        "missing; pair.centre_distance_mm asks for one value with sun.profile_shift, another with ring.profile_shift: "
+        "give planet.profile_shift, or leave out one of the other two, which then follows without backlash"
     )
 
 
@@ -201,17 +201,17 @@ class StageGeometry(Section):
     )
     centre_distance_mm: float | None = key(
         DIAMETER_mm,
-        "centre distance of both meshes; profile shifts that are not given beside it leave no backlash",
+        "centre distance of both meshes; profile shifts that are left out then follow, without backlash",
         None,
         "follows from the profile shifts, without backlash",
     )
     addendum_coefficient: float = key(
         ADDENDUM, "addendum of the basic rack in modules, h_aP/m_n; each gear may have its own", 1.0
     )
-    dedendum_coefficient: float = key(DEDENDUM, "dedendum of the basic rack in modules, h_fP/m_n; likewise", 1.25)
+    dedendum_coefficient: float = key(DEDENDUM, "dedendum of the basic rack in modules, h_fP/m_n", 1.25)
     root_radius_coefficient: float | str = key(
         ROOT_RADIUS,
-        'root radius of the basic rack in modules, rho_fP/m_n, or "full", the largest that fits; likewise',
+        'root radius of the basic rack in modules, rho_fP/m_n, or "full", the largest that fits',
         0.38,
     )
     tip_shortening: str = key(
@@ -251,7 +251,7 @@ class StageLoad(AnyLoad):
         Tables(StageLoadCase, 1, MOST_BINS),
         "or the bins of a load spectrum, each a table `[[load.case]]` of `sun_torque_Nm`, `hours` or `share`, "
         "`sun_speed_rpm`, by default that of [operation], and `reversed`, as of pairs; of more than twelve torques, "
-        "twelve in equal steps are solved",
+        "twelve in equal steps are analysed",
         None,
         "no spectrum",
     )

@@ -164,7 +164,7 @@ class DesignModel:
 
     @property
     def figures(self) -> tuple[str, ...]:
-        """Those of ``FIGURES`` that the scene has: of roots with ``analysis.root_stress``, of strength with it."""
+        """Figures that the scene has; roots need ``analysis.root_stress``, strength needs strengths of both gears."""
         known = {name: one for name, one in FIGURES.items() if one.fewest_positions <= self.scene.analysis.positions}
         of_strength = figures_of_strength(self.scene)
         known = {
@@ -384,7 +384,7 @@ class Evaluation:
 
     @property
     def figures(self) -> dict[str, Array]:
-        """All of the model, (sample, torque) each."""
+        """All figures of the model, (sample, torque) each."""
         return {name: self.figure(name) for name in self.model.figures}
 
     @property

@@ -105,7 +105,7 @@ class Study(InNotebooks):
         if not is_whole(self.seed, 0, math.inf):
             yield f"seed: found {shown(self.seed)}; allowed a whole number from 0 on"
         if not self.distributions and self.samples is not None:
-            yield "samples: given without distributions, of which they are"
+            yield "samples: given without distributions; give distributions, too, or leave samples out"
         elif self.distributions and not is_whole(self.samples, 1, MOST_VARIANTS):
             given = "missing" if self.samples is None else f"found {shown(self.samples)}"
             yield f"samples: {given}; allowed a whole number from 1 to {MOST_VARIANTS}, with distributions"

@@ -162,8 +162,8 @@ def balanced(stiffness: Array, load: Array, free: Indices, seats: Sequence[Seat]
             return now.motion, now.reactions
         now = whole.after_a_step(now)
     raise InputError(
-        "bearings: the shaft finds no balance on its rolling bearings; one with a contact angle under a radial load "
-        "needs another one that takes the thrust it makes"
+        "bearings: no balance of the shaft on its rolling bearings; a bearing with a contact angle under a radial load "
+        "needs another bearing that takes its thrust"
     )
 
 

@@ -64,7 +64,7 @@ def support_compliance(scene: Scene, pair: GearPair) -> SupportCompliance | None
 
 
 def shafts_of(scene: Scene) -> tuple[Shaft | None, Shaft | None]:
-    """Shafts of pinion and wheel; None of a gear without one.
+    """Shafts of pinion and wheel; None for a gear without a shaft.
 
     Raises
     ------

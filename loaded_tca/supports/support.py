@@ -233,11 +233,11 @@ class SupportCompliance:
         return max(self.pair.teeth)
 
     def mounted(self, pair: GearPair) -> SupportCompliance:
-        """The same supports in a pair whose wheel stands elsewhere."""
+        """These supports in a pair whose wheel stands elsewhere."""
         return replace(self, pair=pair)
 
     def moved(self, motions: Sequence[Array]) -> SupportCompliance:
-        """The same supports in the pair whose gears have moved by (6,) each, in the axes of each gear's own frame.
+        """These supports in the pair whose gears have moved by (6,) each, in the axes of each gear's own frame.
 
         The fixed frame of the moved pair turns with the pinion, the axes of loads and motions do not.
         """

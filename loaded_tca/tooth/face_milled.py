@@ -40,7 +40,7 @@ class FaceMilledTooth(ToothGeometry):
 
     @property
     def unmodified(self) -> ToothGeometry:
-        """The same teeth without modifications."""
+        """These teeth without modifications."""
         return replace(self, modifications=FlankModifications())
 
     def nominal(self, side: int) -> Flank:

@@ -172,7 +172,7 @@ class ToothGeometry(ABC):
     @property
     @abstractmethod
     def unmodified(self) -> ToothGeometry:
-        """The same teeth without modifications; equal ones have equal nominal flanks and forms."""
+        """These teeth without modifications; equal ones have equal nominal flanks and forms."""
 
     @abstractmethod
     def nominal(self, side: int) -> Flank:
@@ -216,7 +216,7 @@ class InvoluteTooth(ToothGeometry):
 
     @property
     def unmodified(self) -> ToothGeometry:
-        """The same teeth without modifications."""
+        """These teeth without modifications."""
         return replace(self, modifications=FlankModifications())
 
     def nominal(self, side: int) -> Flank:
@@ -292,7 +292,7 @@ class BevelTooth(ToothGeometry):
 
     @property
     def unmodified(self) -> ToothGeometry:
-        """The same teeth without modifications."""
+        """These teeth without modifications."""
         return replace(self, modifications=FlankModifications())
 
     def nominal(self, side: int) -> Flank:

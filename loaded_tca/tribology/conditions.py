@@ -70,7 +70,7 @@ def _of_oil_alone(oil: type[AnyOil]) -> type[AnyOil]:
 
     @wraps(init)
     def checked(self: AnyOil, **given: Any) -> None:
-        place = "not of the oil but of how the pair runs; allowed in the call, as tribology({}=...), or in the scene"
+        place = "belongs to the pair, not to the oil; allowed in the call, as tribology({}=...), or in the scene"
         require(*((name not in OF_CALL, f"{name}: {place.format(name)}") for name in given))
         init(self, **given)
 

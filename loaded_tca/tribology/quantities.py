@@ -9,12 +9,12 @@ TORQUE = ("torque",)
 GEARS = (*PAIRS, "gear")
 
 NEEDS = {
-    "load_sharing": "one tooth pair alone makes no mesh; set analysis.load_sharing = true and run the scene",
+    "load_sharing": "needs the load sharing of tooth pairs; set analysis.load_sharing = true and run the scene",
     "positions": "a mean over a pitch takes five positions or more; raise analysis.positions and run the scene",
     "speed": "needs pinion_speed_rpm, or operation.pinion_speed_rpm in the scene",
     "lubricant": "needs lubricant, or [lubricant] in the scene",
     "roughness": "needs roughness_um, or pinion.roughness_Ra_um and wheel.roughness_Ra_um in the scene",
-    "friction": 'needs friction: "local", "Xu-Kahraman" or a number; ISO/TS 6336-22 has one for cylindrical gears only',
+    "friction": 'needs friction: "local", "Xu-Kahraman" or a number; ISO/TS 6336-22 covers cylindrical gears only',
     "bulk": "needs bulk_temperature_C: the standard computes it for cylindrical gears only",
     "load_stage": "needs scuffing_load_stage, or lubricant.scuffing_load_stage in the scene",
     "permissible": "needs permissible_film_ratio, or lubricant.permissible_film_ratio in the scene",

@@ -173,9 +173,9 @@ def test_a_torque_in_a_list_has_the_numbers_that_it_has_alone(equal_halves, one_
     assert both.half_a.scene.mounting == alone[1].half_a.scene.mounting
     note = next(note for note in both.notes() if "half_a and half_b hold the mesh" in note)
     assert note.startswith(
-        "under 160 N m the pinion stands -6.43 mm along its axis from its place under 1600 N m, for "
+        "under 160 N m the pinion stands -6.43 mm along its axis from its place under 1600 N m; half_a "
     )
-    assert note.endswith("under 160 N m are in half_a_under_160_Nm.nc and half_b_under_160_Nm.nc")
+    assert note.endswith("half_a_under_160_Nm.nc and half_b_under_160_Nm.nc at the place under 160 N m")
     assert both.place.tolist() == [1, 0]
     assert both.elsewhere[0][0].scene.mounting == alone[0].half_a.scene.mounting
 

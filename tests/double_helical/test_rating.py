@@ -177,8 +177,8 @@ def test_bins_are_shared_as_their_torques_are(under_bins):
 def test_summary_of_a_spectrum_has_both_halves_and_what_is_assumed(under_bins):
     text = under_bins.summary()
     assert text.count("half b, under its share") >= 2  # all bins together, and bin by bin
-    assert "the halves share reversed bins as they share the same torques" in text
-    assert "with pair.driving or pair.sense changed, and reversed the other way in every bin, rates them" in text
+    assert "in reversed bins the halves share the torque as" in text
+    assert "analyse with pair.driving or pair.sense changed and reversed swapped in every bin" in text
     assert "--coast" not in text
 
 
@@ -193,7 +193,7 @@ def test_command_and_report_rate_both_halves(tmp_path, monkeypatch, capsys, held
     again = replace(again, scene=again.scene.with_changes({"rating.life_hours": 5000.0})).rating()
     assert row["wheel_whole_root_safety"] == pytest.approx(again.whole_root_safety[0, 1], rel=1e-6)
     assert main(["rating", ".", "--set", "pinion.teeth=21"]) == 2
-    assert "--set pinion.teeth: an analysis depends on it" in capsys.readouterr().err
+    assert "--set pinion.teeth: needs another analysis" in capsys.readouterr().err
     under_bins.result.save(tmp_path)
     assert main(["rating", str(tmp_path)]) == 0
     spectrum = json.loads((tmp_path / "rating.json").read_text())["spectrum"]
@@ -269,7 +269,7 @@ def test_rating_without_a_lubricant_is_refused():
 
 def test_bins_above_the_torques_that_were_solved_are_refused(held):
     scene = held.scene.with_changes({"load": {"case": [{"pinion_torque_Nm": 1700.0, "hours": 1.0}]}})
-    with pytest.raises(InputError, match=r"load\.case: a bin has 1700 N m; allowed up to 1600, the largest that was"):
+    with pytest.raises(InputError, match=r"load\.case: a bin has 1700 N m; allowed up to 1600, the largest analysed"):
         replace(held, scene=scene).rating()
 
 
@@ -360,7 +360,7 @@ def test_torque_in_a_list_is_rated_by_the_mesh_cycles_under_it(rating_under_both
             ones = np.concatenate([getattr(rating, of).values(name) for rating in alone])
             assert_allclose(values, ones, rtol=ROUNDING, err_msg=f"{of}, {name}")  # nothing else is in them
     assert both.half_a.K_Hbeta[0] > 1.2 * both.half_a.K_Hbeta[1]
-    assert any("are those of the mesh cycles under it" in note for note in both.notes())
+    assert any("come from its own mesh cycles" in note for note in both.notes())
 
 
 def test_bins_add_up_over_mesh_cycles_of_other_torques(under_both, under_each):

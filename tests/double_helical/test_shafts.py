@@ -425,7 +425,7 @@ def test_results_on_shafts_come_back_and_say_of_which_torque_halves_are(both_on_
     assert again.dataset.identical(both_on_shafts.dataset)
     assert again.pinion_bearing_force.shape == (2, 1, 2, 6)
     (note,) = again.notes()
-    assert note.startswith("half_a and half_b hold the mesh cycles under 1600 N m, with the loads that both")
+    assert note.startswith("half_a and half_b hold the mesh cycles under 1600 N m, with the shaft loads of both")
     other = replace(both_on_shafts, scene=both_on_shafts.scene.with_changes({"pinion.shaft.start_mm": -101.0}))
     other.save(tmp_path)
     with pytest.raises(InputError, match="the mesh cycle of another pair"):

@@ -153,7 +153,7 @@ LEFT = {
     "not additive": (
         "helix_slope",
         {"helix_slope": 0.004, "is_additive_modification": "false"},
-        "it does not add to the others",
+        "is_additive_modification: false; allowed true",
     ),
     "added material": ("tip_relief", {"tip_relief_depth": -0.01, "tip_relief_datum_length": 2.0}, "found -10 um"),
     "no length": ("tip_relief", {"tip_relief_depth": 0.01}, "tip_relief_datum_diameter: missing"),

@@ -125,7 +125,7 @@ def test_sew_thrust_goes_to_the_bearing_that_takes_its_direction() -> None:
         imported = import_stage(sew(), stage)
         shaft = getattr(imported.scene, gear).shaft
         assert [one.axial_stiffness_N_per_um > 0.0 for one in shaft.bearings].count(True) == 1
-        assert any(f"geometry {holds}: it takes axial forces of both directions" in one for one in imported.read_as)
+        assert any(f"geometry {holds}: axial forces of both directions" in one for one in imported.read_as)
         line = next(one for one in shaft_lines(imported.scene) if one.gear == gear)
         assert line.bearing_forces[-1, 2] > 0.0  # towards +u, which "positive" bearings hold
 

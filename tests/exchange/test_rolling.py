@@ -130,7 +130,7 @@ def test_a_stated_stiffness_goes_before_the_geometry_and_a_rigid_one_does_not() 
     assert (stated.type, stated.radial_stiffness_N_per_um) == (None, 300.0)
     rigid = import_stage(model(radial_stiffness=(1e23, "N / m"), axial_stiffness=(0.0, "N / m")), "10")
     assert rigid.scene.pinion.shaft.bearings[0].type == "ball"
-    assert "rolling_bearing_with_detailed_geometry 191: it gives way by its inner geometry" in rigid.read_as
+    assert "rolling_bearing_with_detailed_geometry 191: its stiffness follows from its inner geometry" in rigid.read_as
 
 
 INCOMPLETE = {

@@ -218,11 +218,11 @@ def test_a_shaft_without_any_load_turns_about_the_gear() -> None:
     relations = [one for one in model.relations if one.type == "assembly" and one.roles["part"] != "97"]
     imported = import_stage(changed(model, without=["assembly"], relations=relations), "10", torque_Nm=150.0)
     assert imported.scene.pinion.shaft.torque_at_mm == 0.0
-    assert "shaft 3: no place where its torque enters or leaves; it is the middle of the face" in imported.read_as
+    assert "shaft 3: no place where its torque enters or leaves; taken at mid-face" in imported.read_as
 
 
 def test_torque_that_does_not_follow_is_asked_for() -> None:
-    with pytest.raises(InputError, match=r"stage 10: torque: it does not follow .*; give --torque"):
+    with pytest.raises(InputError, match=r"stage 10: torque: missing in the stage, .*; give --torque"):
         import_stage(changed(attributes={"97.torque_around_u_axis": None}), "10")
     scene = import_stage(changed(attributes={"97.torque_around_u_axis": None}), "10", torque_Nm=80.0).scene
     assert scene.load.pinion_torque_Nm == 80.0

@@ -113,7 +113,7 @@ def test_wheel_has_its_tool_where_that_of_the_pinion_says_less(lacking) -> None:
     notes = [one for one in imported.read_as if one.startswith("cylindrical_gear 21: no tool with ")]
     assert len(notes) == len(lacking or TOOL)
     assert notes[-1].endswith(
-        "no tool with tip_radius_factor; root_radius_coefficient 0.2 is that by the tool of the other gear"
+        "no tool with tip_radius_factor; root_radius_coefficient 0.2 is taken from the tool of the other gear"
     )
 
 
@@ -166,7 +166,7 @@ def test_half_a_material_is_steel_and_named() -> None:
 def test_centre_distance_by_the_places_of_the_gears() -> None:
     imported = import_stage(changed(attributes={"10.center_distance": None}), "10")
     assert imported.scene.geometry.centre_distance_mm == 98.0
-    assert any("no center_distance; it is that of the places" in one for one in imported.read_as)
+    assert any("no center_distance; taken from the places" in one for one in imported.read_as)
     imported = import_stage(changed(attributes={"10.center_distance": (98.4, "mm")}), "10")
     assert imported.scene.geometry.centre_distance_mm == 98.4
     assert any("center_distance is taken; the gears are placed 98 mm apart" in one for one in imported.read_as)
@@ -201,7 +201,8 @@ def test_a_stated_loaded_flank_tells_the_side_without_torque() -> None:
 def test_a_loaded_flank_against_the_torque_is_named() -> None:
     imported = import_stage(changed(attributes={"31.loaded_tooth_flank": ("left", "none")}), "10")
     assert any(
-        "the loaded flank of the file is the left one, by the torque the right one" in one for one in imported.read_as
+        "the file says that the left flank is loaded; the torque would load the right one" in one
+        for one in imported.read_as
     )
     assert imported.table["pinion"]["modifications"] == {"lead_crowning_um": 7.0}
 
@@ -320,8 +321,8 @@ RING_TOOLS = {
         {"85.addendum_coefficient_reference_profile": None},
         1.25,
         [
-            "ring_gear 58: no tool with addendum_coefficient_reference_profile; dedendum_coefficient 1.25 is that by "
-            "the tool of the other gear"
+            "ring_gear 58: no tool with addendum_coefficient_reference_profile; dedendum_coefficient 1.25 is taken "
+            "from the tool of the other gear"
         ],
     ),
     "its root diameter": (

@@ -96,7 +96,7 @@ def test_flank_of_the_scene_is_taken_and_others_are_refused():
     rho, z, delta = removed(SCENES["helical"], PUT_IN)
     with pytest.raises(InputError, match=r"wheel.flank: 45 of 45 points lie beside the flank"):
         measured_modifications(scene, "wheel", MeasuredDeviations(rho, z + 50.0, delta))
-    with pytest.raises(InputError, match=r"wheel.flank: 9 points do not tell .* apart; measure more lines"):
+    with pytest.raises(InputError, match=r"wheel.flank: 9 points do not distinguish .*; measure more lines"):
         measured_modifications(scene, "wheel", MeasuredDeviations(rho[:1], z[:1], delta[:1]))
     hollow = measured_modifications(scene, "wheel", MeasuredDeviations(rho, z, 1e-4 * z**2))
     with pytest.raises(InputError, match="lead_crowning_um"):

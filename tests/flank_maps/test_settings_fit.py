@@ -242,7 +242,7 @@ def refused(words, **more):
         ("no flank of the pinion is measured", {"settings": ["pinion.machine.radial_mm"]}),
         ("the convex flank of the wheel is not measured", {"settings": ["wheel.cutter.convex.point_radius_mm"]}),
         ("the blade is straight, or missing", {"settings": ["wheel.cutter.concave.blade_radius_mm"]}),
-        ("cradle_angle_deg: does nothing to the measured", {"settings": ["wheel.machine.cradle_angle_deg"]}),
+        ("cradle_angle_deg: only turns the measured", {"settings": ["wheel.machine.cradle_angle_deg"]}),
         (
             'generation = "formate"',
             {
@@ -325,7 +325,7 @@ def test_command_writes_scene_tables_and_picture(run, tmp_path, monkeypatch):
 
 
 REFUSED = {
-    "method": (["--method", "spread_blade"], "of a bevel blank; not with --measured"),
+    "method": (["--method", "spread_blade"], "only for bevel blanks; not allowed with --measured"),
     "twice": (["--settings", "a.b", "a.b"], "--settings a.b: given twice"),
     "limit": (["--settings", "a.b=0"], "the limit a number above 0"),
 }

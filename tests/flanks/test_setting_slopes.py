@@ -46,5 +46,5 @@ def test_settings_of_roll_do_nothing_to_a_formate_gear_and_a_blade_nothing_to_th
 
 
 def test_point_that_the_cutter_does_not_leave_is_told():
-    with pytest.raises(GeometryError, match="concave flank: the cutter leaves none of it at 3 of 3 points"):
+    with pytest.raises(GeometryError, match="concave flank: at 3 of 3 points the cutter leaves no flank"):
         cut_at(GEARS["generated"], "concave", 3.0 * RHO, 3.0 * Z)

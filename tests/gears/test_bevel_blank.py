@@ -254,8 +254,8 @@ test_blanks_that_cannot_exist_are_refused_with_the_place = refusals(
     ({"profile_shift": 1.2}, "pinion: no dedendum is left .* at the mean point|wheel: no addendum is left"),
     ({"wheel_angles": (0.02, 0.25)}, r"pinion: no addendum is left \(-1.61.. mm\) at the toe"),
     ({"wheel_angles": (0.25, 0.02)}, r"pinion: no dedendum is left \(-1.1... mm\) at the toe"),
-    ({"thickness_modification": -0.5}, r"pinion: pointed tooth, its tip is \(-.* mm\) at the heel"),
-    ({"thickness_modification": 0.6}, r"pinion: the slot closes above its root, its bottom is \(-.* mm\)"),
+    ({"thickness_modification": -0.5}, r"pinion: pointed tooth: no tip is left \(-.* mm\) at the heel"),
+    ({"thickness_modification": 0.6}, r"pinion: the slot closes above its root: no width is left \(-.* mm\)"),
     (
         {"teeth": (6, 62)},
         "pinion: undercut with a profile shift x_hm of 0.0500; with these cones the least is 0.[0-9]{4}",

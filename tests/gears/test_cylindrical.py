@@ -249,7 +249,7 @@ test_gear_refuses_an_impossible_value = refusals(
     ({"helix_angle": "left"}, "gear: helix_angle: nan rad is not within"),
     ({"face_width": -1.0}, "gear: face_width: -1.0 is not positive and finite"),
     ({"tip_diameter": inf}, "gear: tip_diameter: inf is not positive and finite"),
-    ({"bore_diameter": nan}, "gear: bore_diameter: nan is not positive and finite"),
+    ({"bore_diameter": nan}, "gear: bore_diameter: nan is neither 0"),
     ({"bore_diameter": 55.0}, "gear: bore_diameter: 55 mm is not below the root diameter 55 mm"),
     ({"dedendum_coefficient": 0.0}, "gear: dedendum_coefficient: 0.0 is not positive"),
     ({"dedendum_coefficient": 2.2}, "gear: dedendum_coefficient: 2.2 is beyond the point of the rack's tooth"),

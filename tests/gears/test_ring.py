@@ -113,7 +113,7 @@ def test_form_circle_by_a_cutter_is_that_of_a_published_report():
 
 
 test_bad_numbers_are_refused = refused_calls(
-    (lambda: ring(teeth=60), "teeth: 60 is not a whole number up to -3"),
+    (lambda: ring(teeth=60), "teeth: 60 is not a whole number of -3 or below"),
     (lambda: ring(teeth=-2), "teeth: -2 is not"),
     (lambda: ring(teeth=math.nan), "teeth: nan is not"),
     (lambda: ring(outer_diameter=150.0), "outer_diameter: 150 mm is not above the root diameter"),

@@ -187,6 +187,6 @@ test_tooth_measures_refuse = refused_calls(
         "span_measurement: 15.46 mm over 4 teeth makes the teeth 6.28.* thinner",
     ),
     (lambda: allowance_of_balls(gear(), 70.0, 3.5), r"^gear: ball_measurement: 70 mm .* mm thicker"),
-    (lambda: allowance_of_balls(gear(), 49.0, 3.5), "has them inside the base circle, diameter 46.98"),
+    (lambda: allowance_of_balls(gear(), 49.0, 3.5), "puts the balls inside the base circle, diameter 46.98"),
     (lambda: allowance_of_balls(gear(), 49.0, -1.0), "^gear: ball_diameter: -1.0 mm"),
 )

@@ -283,6 +283,5 @@ def test_profile_shifts_of_both_gears_are_shown_and_what_asks_for_one_that_canno
     with pytest.raises((InputError, GeometryError)) as raised:
         scene.with_changes({"pair.centre_distance_mm": 170.0}).mesh()
     assert any(
-        "pair.centre_distance_mm = 170 and the profile shift that is given ask for" in one
-        for one in raised.value.__notes__
+        "pair.centre_distance_mm = 170 and the given profile_shift ask for" in one for one in raised.value.__notes__
     )

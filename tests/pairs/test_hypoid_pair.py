@@ -135,8 +135,8 @@ def test_local_synthesis_goes_on_from_a_synthesised_pinion():
 test_hypoid_pair_refuses = refused_calls(
     (
         lambda: face_milled_pair(*hypoid_gears(), offset=-15.0),
-        r"^offset: -15 mm; the flanks have spiral angles of 50 and 38\.61 deg at P; with a negative offset that of the "
-        "pinion is the smaller one: turn the sign",
+        r"^offset: -15 mm; the flanks have spiral angles of 50 and 38\.61 deg at P; with a negative offset the "
+        "pinion has the smaller spiral angle: change the sign",
     ),
     (
         lambda: face_milled_pair(*hypoid_gears(), offset=14.0),

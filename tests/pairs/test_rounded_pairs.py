@@ -112,6 +112,6 @@ def test_tip_arc_that_leaves_no_flank_is_refused():
     most = (gear.tip_radius - gear.form_radius) / (1.0 - sine)
     assert most < 0.9, "else the module is the limit"
     assert isinstance(stub.with_changes({"pinion.tip_rounding_mm": 0.999 * most}).pair().pinion.flank, RoundedFlank)
-    told = r"^pinion.tip_rounding_mm: found .*; allowed up to .* mm, with which no flank is left above its root edge"
+    told = r"^pinion.tip_rounding_mm: found .*; allowed up to .* mm, with which no flank is left above the root edge"
     with pytest.raises(InputError, match=told):
         stub.with_changes({"pinion.tip_rounding_mm": 1.001 * most}).pair()

@@ -64,7 +64,7 @@ def test_linear_scatter_is_that_of_first_order(torque):
 
 test_study_of_something_else_is_refused = refusals(
     lambda changes: plot_first_order_scatter(found(), study(**changes)),
-    ({"keys": (KEYS[0], "pinion.teeth")}, "study: varies pinion.teeth, to which no derivatives are known"),
+    ({"keys": (KEYS[0], "pinion.teeth")}, "study: varies pinion.teeth, without derivatives in the sensitivities"),
     ({"torques": TORQUES[:1]}, "study: its torques are not those of the result"),
     ({"torques": (40.0, 250.0)}, "study: its torques are not those of the result"),
     ({"name": "crowning_um"}, "study: has none of transmission_error_mean_um"),

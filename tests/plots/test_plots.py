@@ -147,7 +147,7 @@ def test_map_at_an_edge_tells_the_pressure_there_and_why_cells_have_less(rounded
     pressure[0][at] = 2061.4
     found = told(plot_pressure_map(changed(cycle, edge_pressure=pressure, edge_is_rounded=is_rounded), *at[:1]))
     assert f"pressure at {kind} edge 2061 MPa" in found
-    assert ("the force of a cell that an edge cuts" in found) == (not rounded)
+    assert ("force of a cell that the edge cuts" in found) == (not rounded)
     assert "pressure at" not in told(plot_pressure_map(cycle, *at[:1])).partition("contact pressure")[2]
 
 
@@ -241,7 +241,7 @@ def test_high_peaks_at_a_edge_do_not_rule_the_axis():
 
 
 def test_rounded_edges_have_filled_markers_that_the_axis_follows():
-    """A sharp one has a cross, or an arrow above the axis, as before."""
+    """A sharp one has a cross, or a triangle above the axis, as before."""
     cycle = result("misaligned", positions=2)
     rounded = np.array([True, False]).reshape(cycle.edge_is_rounded.shape)
     peak = float(cycle.peak_pressure.max())

@@ -101,7 +101,7 @@ def test_transverse_load_factor_of_the_analysis_is_the_largest_share_over_that_o
     assert shares[0] > 0.873 > shares[1]  # Y_LS of sample 1 as printed: under 300 N m more is shared than by it
     assert_allclose(rated.K_Halpha, [shares[0] / 0.873, 1.0], rtol=FOUR_DIGITS)
     assert_allclose(rated.K_Falpha, rated.K_Halpha, rtol=ROUNDING)
-    assert any("whose teeth are all alike: pitch deviations" in note for note in rated.notes())
+    assert any("from the analysis of equal teeth, without the pitch deviations" in note for note in rated.notes())
     high = bevel_solved(**GIVEN | {"rating.transverse_load_factor": "analysis", "rating.profile_crowning": "high"})
     assert_allclose(high.rating().K_Halpha[0], shares[0] / high.rating().Y_LS[0], rtol=ROUNDING)
 

@@ -170,7 +170,7 @@ def test_solved_torques_count_as_they_are_and_have_no_error():
     between = under(bins((100.0, 1.0), (150.0, 1.0), (200.0, 1.0)))
     assert np.isnan(between.interpolation_error).all()
     assert any(
-        "1 of 3 bins are interpolated between 2 torques that were solved: there is no estimate" in note
+        "1 of 3 bins are interpolated between 2 analysed torques: there is no estimate" in note
         for note in between.notes()
     )
     assert ((between.sigma_H[0] < between.sigma_H[1]) & (between.sigma_H[1] < between.sigma_H[2])).all()
@@ -261,11 +261,11 @@ def test_places_are_those_of_bins_whose_torque_was_solved():
     assert "(bin 3 of 3)" in plot_flank_safety(rated).get_suptitle()
     case, why = worst_case(rated, "local_root_safety")
     assert case == 2  # the reversed bin has less, and no places
-    assert "among those of the drive side" in why
+    assert "drive-side bins" in why
     for gear in range(2):
         least = np.nanmin(root_safeties(rated, 2, gear).safety)
         assert_allclose(least, rated.local_root_safety[2, gear], rtol=ROUNDING)
-    for case, words in ((0, "case: 0, 150 N m, was not solved"), (1, "case: 1, 200 N m, is reversed")):
+    for case, words in ((0, "case: 0, 150 N m, was not analysed"), (1, "case: 1, 200 N m, is reversed")):
         with pytest.raises(InputError, match=words):
             root_safeties(rated, case, 0)
 
@@ -278,10 +278,10 @@ def test_maps_are_those_of_the_bin_of_the_largest_damage():
     for name in ("local_flank_safety", "local_root_safety"):
         # the small torque has the smaller safety, and is borne for ever; the large one, of 1800 load cycles, is not
         assert rated.values(name).min(axis=1).argmin() == 1
-        assert worst_case(rated, name) == (0, "bin of the largest damage among those solved")
+        assert worst_case(rated, name) == (0, "largest damage of bins with an analysed torque")
     figure = plot_flank_safety(rated)
     assert "bin 1 of 2" in figure.get_suptitle()
-    assert any("bin of the largest damage" in text.get_text() for text in figure.findobj(Text))
+    assert any("largest damage of bins" in text.get_text() for text in figure.findobj(Text))
     assert worst_case(under(rows, **forever, **dict.fromkeys(safe, 0.5)), name)[0] == 1, "no damage at all"
 
 

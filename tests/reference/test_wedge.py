@@ -82,5 +82,5 @@ test_arguments_out_of_range_are_refused = refusals(
     (0.0, 1.0, "^place: 0.0 "),
     (1.0, 0.0, "^angle: 0.0 rad is not between 0 and pi$"),
     (1.0, 4.0, "^angle: 4.0 rad"),
-    (2.0 * FARTHEST, 1.0, "^place: .* times as far as load_place"),
+    (2.0 * FARTHEST, 1.0, "^place, load_place: one is .* times the other"),
 )

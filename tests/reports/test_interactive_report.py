@@ -342,8 +342,8 @@ def test_page_is_written_whole_or_not_at_all(tmp_path):
     ("subject", "told"),
     [
         (7, "interactive report: found a int; allowed a result or a study"),
-        (object.__new__(StageResult), "it joins results that have such pages: sun_mesh.nc and ring_mesh.nc beside"),
-        (object.__new__(DoubleHelicalResult), "it joins results that have such pages: half_a.nc and half_b.nc beside"),
+        (object.__new__(StageResult), "its parts sun_mesh.nc and ring_mesh.nc beside"),
+        (object.__new__(DoubleHelicalResult), "its parts half_a.nc and half_b.nc beside"),
     ],
     ids=["number", "stage", "double helical"],
 )

@@ -137,7 +137,7 @@ def test_card_with_its_picture_is_small_and_has_no_colour_of_its_own_for_text():
 @pytest.mark.usefixtures("_without_picture")
 def test_of_many_torques_the_largest_is_shown():
     html = result(torques=(10.0, 50.0, 20.0, 30.0, 40.0))._repr_html_()
-    assert "of 5 torques the largest, key_figures() has all" in html
+    assert "largest of 5 torques, key_figures() has all" in html
     assert re.findall(r"<th>(\S+)&nbsp;N|<th>([\d.]+)\xa0N", html) == [("", "50")]
 
 

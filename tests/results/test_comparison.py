@@ -126,7 +126,7 @@ def test_summary_has_values_and_both_differences():
     first = two_torques()
     lines = compare_results({"a": first, "b": changed(first, peak_pressure=2.0 * first.peak_pressure)}).summary(20e3)
     head, names, row = lines.splitlines()[:3]
-    assert head.startswith("Compared with a, pinion torque 20 N m; in % sizes without their signs")
+    assert head.startswith("Compared with a, pinion torque 20 N m; % of absolute values")
     assert names.split() == ["a", "b"]
     peak = np.nanmax(first.peak_pressure[0])
     assert row.split()[-5:] == [f"{peak:.4g}", f"{2.0 * peak:.4g}", f"+{peak:.4g}", "(+100.0", "%)"]

@@ -28,12 +28,12 @@ def test_finding_names_the_edges_of_the_largest_edge_pressure_and_the_relief_tha
     assert f"edge pressure {cycle.edge_pressure[at]:.4g} MPa at 130 N m on " in sentences[0]
     reached = [name for name, one in zip(EDGES, reached_edges(cycle)[at], strict=True) if one]
     assert " + ".join(reached) in sentences[0]
-    assert "end relief on the pinion or wheel of more than" in sentences[0]
+    assert "end_relief_um on the pinion or wheel of more than" in sentences[0]
     assert f"finding: {sentences[0]}" in cycle.summary()
     deflection = 1e3 * cycle.contact_deformation[at]  # of flanks alone, and one pair
     assert (
         f"{deflection:.2g} um at the edge itself, the deflection of the mesh there, since the pair first touches at "
-        "this edge even without load; analyse again with some starts and amounts: a short relief presses"
+        "this edge even without load; analyse again with several starts and amounts: a short relief presses"
     ) in sentences[0]
     assert "mating gear" not in sentences[0]  # ends of the face
 
@@ -46,7 +46,7 @@ def test_finding_at_a_root_edge_has_the_gear_and_what_the_mesh_deflects_not_a_pa
     (sentence,) = (one for one in cycle.findings() if "pinion root" in one)
     turned = np.abs(cycle.transmission_error[0, 0] - cycle.unloaded_transmission_error[0])
     mesh = 1e3 * turned * cycle.wheel_base_radius
-    assert f"use root relief on the pinion of more than {mesh:.2g} um at the edge itself, the deflection" in sentence
+    assert f"use root_relief_um on the pinion of more than {mesh:.2g} um at the edge itself, the deflection" in sentence
     assert np.nanmin(cycle.contact_deformation[0, 0]) < 0.7e-3 * mesh  # of the pair at the edge
 
 
@@ -66,9 +66,9 @@ def test_finding_at_a_tip_says_that_the_mating_tip_may_need_relief_too(monkeypat
     there = np.array([name == edge for name in EDGES])
     monkeypatch.setattr("loaded_tca.results.warnings._edges_of_pressure", lambda *_: there)
     (sentence,) = [one for one in result("misaligned", positions=2).findings() if one.startswith("edge pressure")]
-    relief = "tip relief" if mating else "end relief"
+    relief = "tip_relief_um" if mating else "end_relief_um"
     assert f"to unload this edge, use {relief} on the wheel of " in sentence
-    assert sentence.endswith("load from this one" + ", and the tip of the mating gear may need relief, too" * mating)
+    assert sentence.endswith("load of this one" + ", and the tip of the mating gear may need relief, too" * mating)
 
 
 def test_edge_pressure_below_the_peak_pressure_is_no_finding():
@@ -114,7 +114,7 @@ def test_relief_of_the_deflection_takes_the_load_off_the_edge():
     scene = read_scene(SCENES / "spur.toml").with_changes(changes | FLANKS_ALONE)
     pressed = analysed(scene.with_changes({"pinion.modifications.lead_crowning_um": 1.0}))
     (sentence,) = pressed.findings()
-    deflection = float(re.search(r"end relief on the pinion or wheel of up to about (\S+) um at", sentence).group(1))
+    deflection = float(re.search(r"end_relief_um on the pinion or wheel of up to about (\S+) um at", sentence).group(1))
     relief = {"pinion.modifications.end_relief_um": 1.3 * deflection, "pinion.modifications.end_relief_length_mm": 5.0}
     relieved = analysed(pressed.scene.with_changes(relief))  # what the ends carried deflects the rest by as much more
     assert relieved.findings() == ()

@@ -155,7 +155,7 @@ def test_summary_beside_a_spike_tells_the_spike_in_its_note_alone():
     below = spike()
     peak, text = f"{below.pressure_map.pressure.max():.4g} MPa", below.summary()
     assert [peak in line for line in text.splitlines()] == [False] * (text.count("\n")) + [True]
-    assert "not those of the edge" in text
+    assert "hold across the contact point. At the edge" in text
 
 
 def test_picture_and_table_show_the_plane_beside_a_spike():
@@ -298,5 +298,5 @@ def test_spike_that_holds_the_contact_point_is_told_as_one():
     assert below.pressure_map.pressure.max() == cycle.edge_pressure[at] > cycle.peak_pressure[at]
     assert "highest pressure at the edge, mesh-dependent, " in below.where[1]
     note = below.summary().splitlines()[-1]
-    assert "not to be rated" in note
+    assert "do not rate these numbers" in note
     assert note.endswith(f"the contact has {cycle.peak_pressure[at]:.4g} MPa")

@@ -283,7 +283,7 @@ WIDE = (50, 100)
 
 
 def test_refusal_of_a_crown_wheel_names_the_thickness_factor():
-    with pytest.raises(GeometryError, match=r"slot closes .*; pair\.blank\.thickness_factor: missing, .* 0\.841, "):
+    with pytest.raises(GeometryError, match=r"slot closes .*; pair\.blank\.thickness_factor: missing; .* 0\.841, "):
         crown("straight_bevel", WIDE, 120.0).blanks()
 
 
@@ -331,7 +331,7 @@ def test_factors_and_slot_widths_that_are_given_do_not_meet_the_usual_ones():
         (
             {"pair.blank.taper": "standard", "pinion.teeth": 39, "wheel.teeth": 15},
             # 0.21 + 0.29 (39/15)^2, at 90 deg
-            r"pair.blank: mean_addendum_factor: missing; the usual one, .* is 2.17 of a pinion of 39 teeth",
+            r"pair.blank: mean_addendum_factor: missing; .* is 2.17 for a pinion of 39 teeth",
         ),
     ],
 )
@@ -494,7 +494,7 @@ def test_equal_faces_about_their_middles_are_as_before():
         ),
         (
             MEASURED | {"wheel.mean_normal_thickness_mm": None},
-            "measured thicknesses need those of both gears",
+            "measured thicknesses need both gears",
         ),
         (
             MEASURED | {"pair.blank": None},

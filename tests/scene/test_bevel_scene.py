@@ -67,8 +67,8 @@ ONE_PROBLEM = [
     ({"pair.spiral_angle_deg": None}, 'pair.spiral_angle_deg: missing; a "spiral_bevel" pair needs it, 0 to 59'),
     (
         {"pair.type": "straight_bevel"},
-        'pair.spiral_angle_deg: found 35; allowed 0 for a "straight_bevel" pair; another angle makes it a '
-        '"spiral_bevel" one',
+        'pair.spiral_angle_deg: found 35; allowed 0 for a "straight_bevel" pair; give type = "spiral_bevel" for other '
+        "angles",
     ),
     ({"pair.pinion_flank": "drive"}, 'pair.pinion_flank: found "drive"; allowed "concave" or "convex"'),
     (
@@ -77,7 +77,7 @@ ONE_PROBLEM = [
     ),
     (
         {"pair.type": "straight_bevel", "pair.spiral_angle_deg": None, "pair.pinion_flank": "convex"},
-        'pair.pinion_flank: found "convex", but flanks of straight teeth are neither; give sense instead',
+        'pair.pinion_flank: found "convex", but straight teeth have no concave or convex flank; give sense instead',
     ),
     (
         {"pair.normal_module_mm": 3.0},

@@ -97,5 +97,5 @@ def test_refused_measure_names_the_shift_that_the_centre_distance_asks_for():
     with pytest.raises(InputError, match=r"^wheel: span_measurement_mm: 45 mm over 9 teeth") as refusal:
         scene.mesh()
     assert refusal.value.__notes__ == [
-        "pair.centre_distance_mm = 82.4 and the profile shift that is given ask for 1.0236 on the other gear"
+        "pair.centre_distance_mm = 82.4 and the given profile_shift ask for 1.0236 on the other gear"
     ]

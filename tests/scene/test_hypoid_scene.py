@@ -85,7 +85,7 @@ def test_axes_that_meet_have_one_calculation_point(table):
 
 
 def test_offset_against_the_spiral_angles_is_told_by_its_key(scene):
-    with pytest.raises(InputError, match=r"^pair\.offset_mm: -15 mm; the flanks have spiral angles .* turn the sign"):
+    with pytest.raises(InputError, match=r"^pair\.offset_mm: -15 mm; the flanks have spiral angles .* change the sign"):
         scene.with_changes({"pair.offset_mm": -15.0}).pair()
 
 

@@ -138,7 +138,7 @@ test_bad_scenes_are_refused = refused_calls(
     (lambda: changed(wheel__teeth=-25), "wheel.teeth: found -25; allowed below -25"),
     (lambda: changed(wheel__teeth=-2), "wheel.teeth: found -2; allowed a whole number from -10000 to -3"),
     (lambda: changed(pinion__teeth=-25), "pinion.teeth: found -25; allowed a whole number from 3 to 10000"),
-    (lambda: changed(wheel__bore_diameter_mm=20.0), "wheel.bore_diameter_mm: found 20; a ring gear has none"),
+    (lambda: changed(wheel__bore_diameter_mm=20.0), "wheel.bore_diameter_mm: found 20; a ring gear has no bore"),
     (lambda: changed(wheel__hand="left", pinion__hand="right"), 'wheel.hand: found "left" and "right" of the pinion'),
     (lambda: changed(wheel__outer_diameter_mm=150.0), "tip_diameter_mm: found 181.5; allowed up to outer_diameter_mm"),
     (
@@ -166,7 +166,7 @@ test_gears_that_cannot_mesh_are_refused = refused_calls(
 
 def test_reference_of_keys_describes_the_ring():
     text = describe_keys()
-    assert "### `[wheel]`: its ring gear (an internal pair: `wheel.teeth` is negative)" in text
+    assert "### `[wheel]`: the ring gear (an internal pair: `wheel.teeth` is negative)" in text
     assert "### `[wheel.cutter]`" in text
     assert "`outer_diameter_mm`" in text
 

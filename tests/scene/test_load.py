@@ -112,7 +112,10 @@ test_bins_refuse = refusals(
         [{"pinion_torque_Nm": 1.0, "share": 0.5}, {"pinion_torque_Nm": 2.0, "share": 0.4}],
         "load.case: the shares sum to 0.9; allowed 1",
     ),
-    ([*bins([1.0]), {"pinion_torque_Nm": 1.0, "share": 0.5}], "load.case: hours of 1 bins and shares of 1; give the"),
+    (
+        [*bins([1.0]), {"pinion_torque_Nm": 1.0, "share": 0.5}],
+        "load.case: hours of 1 bins and shares of 1; give one of",
+    ),
     (bins([0.0]), "load.case: no bin has a pinion_torque_Nm above 0"),
     ([one | {"reversed": True} for one in bins([1.0])], "load.case: all bins are reversed; change pair.driving"),
 )
@@ -123,7 +126,7 @@ test_loads_refuse = refusals(
         {"load.case": bins([20.0]), "analysis.torques_Nm": (5.0, 10.0)},
         "load: a bin has 20 N m; allowed up to 10, the largest of analysis.torques_Nm",
     ),
-    ({"rating": WANTED}, "rating.life_hours: missing; needed but for load cases with hours"),
+    ({"rating": WANTED}, "rating.life_hours: missing; needed unless load cases have hours"),
     ({"load.spectrum": "nowhere.csv"}, "load.spectrum: nowhere.csv: cannot be read"),
 )
 

@@ -149,7 +149,10 @@ test_refusals = refused_calls(
         r"wheel\.pitch: index_um: found 3 values; allowed 24",
     ),
     (lambda tmp_path: Pitch(file=str(tmp_path / "absent.csv")), "file: .*absent.csv: cannot be read"),
-    (lambda: Pitch(seed=3, runout_um=5.0), "seed: found 3 without tolerance_class; allowed beside it, whose random"),
+    (
+        lambda: Pitch(seed=3, runout_um=5.0),
+        "seed: found 3 without tolerance_class; allowed beside tolerance_class, for its",
+    ),
     (lambda: Pitch(tolerance_class=12), "tolerance_class: found 12; allowed a whole number from 1 to 11"),
 )
 

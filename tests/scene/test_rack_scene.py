@@ -147,8 +147,8 @@ def test_reliefs_of_the_rack_start_below_its_tip_line() -> None:
         ("wheel.profile_shift", 0.1, "wheel.profile_shift: found; a rack has none: give pair.distance_mm"),
         ("wheel.support", {"stiffness": np.eye(6).tolist()}, "wheel.support: found; a rack has none"),
         ("wheel.pitch", {"runout_um": 5.0}, "wheel.pitch: found; a rack has none"),
-        ("pinion.pitch", {"runout_um": 5.0}, "pinion.pitch: found; not allowed beside a rack: it belongs"),
-        ("revolution", {"pitches": 2}, "revolution: found; not allowed beside a rack"),
+        ("pinion.pitch", {"runout_um": 5.0}, "pinion.pitch: found; not allowed with a rack: whole revolutions"),
+        ("revolution", {"pitches": 2}, "revolution: found; not allowed with a rack"),
         ("wheel.flank.form", "bspline", 'wheel.flank.form: found "bspline"; allowed "analytic"'),
         (
             "wheel.modifications.tip_relief_start_length_mm",
@@ -166,7 +166,7 @@ def test_what_a_rack_does_not_have_is_refused_by_its_key(key: str, value: Any, m
 
 
 def test_rating_of_a_rack_needs_its_length() -> None:
-    with pytest.raises(InputError, match=r"^wheel\.length_mm: missing; \[rating\] needs it"):
+    with pytest.raises(InputError, match=r"^wheel\.length_mm: missing; \[rating\] needs this length"):
         SPUR.with_changes(RATED | {"wheel.length_mm": None})
 
 

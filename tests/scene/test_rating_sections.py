@@ -39,7 +39,7 @@ REFUSED = [
     ({"material": "42CrMo4", "proof_stress_MPa": 800.0}, 'material: found "42CrMo4", whose stresses depend on'),
     ({"material": "18CrNiMo7-6", "hardness_HRC": 40.0}, "hardness_HRC: found 392 HV; allowed for kind 'Eh'"),
     ({"material": "18CrNiMo7-6", "hardness_HV": 700.0, "hardness_HRC": 60.0}, "found beside another scale"),
-    ({"material": "18CrNiMo7-6", "sigma_H_lim_MPa": 1500.0}, "one of sigma_H_lim_MPa and sigma_F_lim_MPa alone"),
+    ({"material": "18CrNiMo7-6", "sigma_H_lim_MPa": 1500.0}, "found one of sigma_H_lim_MPa and sigma_F_lim_MPa"),
     ({"kind": "V alloy", "hardness_HV": 300.0}, "proof_stress_MPa: not given; the slip layer"),
     (
         {"material": "EN-GJL-250", "hardness_HBW": 200.0, "proof_stress_MPa": 250.0, "root_stress_ratio": -1.0},

@@ -64,7 +64,7 @@ def test_refused_gear_says_which_shifts_the_centre_distance_asks_for():
 test_shifts_that_no_stage_has_are_refused = refused_calls(
     (
         lambda: stage(sun=0.1, ring=-0.2),
-        "^planet.profile_shift: missing; pair.centre_distance_mm asks for one with sun",
+        "^planet.profile_shift: missing; pair.centre_distance_mm asks for one value with sun",
     ),
     (
         lambda: stage(sun=0.1).with_changes({"pair.centre_distance_mm": 60.0}).meshes,

@@ -269,7 +269,7 @@ test_bad_stages_are_refused = refused_calls(
     (lambda: changed(stage__pin_radial_um=[1.0, 2.0]), "pin_radial_um: found 2 values; allowed 4, one for each planet"),
     (lambda: changed(stage__sun_support_stiffness_N_per_um=-1.0), "sun_support_stiffness_N_per_um: found -1"),
     (lambda: changed(stage__sun_support_stiffness_N_per_um=5.0), "found 5 beside floating_sun = true"),
-    (lambda: changed(stage__planets=1, stage__pin_tangential_um=None), "a sun that floats beside one planet"),
+    (lambda: changed(stage__planets=1, stage__pin_tangential_um=None), "found a floating sun with one planet"),
     (lambda: changed(stage__type="wolfrom"), "stage.type: found"),
     (lambda: changed(stage__driving="ring"), "stage.driving: found"),
     (lambda: changed(planet__hand="left"), "planet.hand: found"),

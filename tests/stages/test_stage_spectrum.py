@@ -119,9 +119,9 @@ def test_fillets_of_planets_are_drawn_by_both_meshes_where_bins_are_reversed():
 
 def test_note_on_reversed_bins_of_a_stage_names_what_stages_have():
     rating = under(bins((480.0, 1.0)) + bins((300.0, 3.0), reversed=True))
-    notes = [note for note in rating.notes() if "damage of the other flanks is not counted" in note]
+    notes = [note for note in rating.notes() if "their damage is not counted" in note]
     assert len(notes) == 1  # of both meshes alike
-    assert "with stage.driving changed, and reversed the other way in every bin, rates them by itself" in notes[0]
+    assert "analyse with stage.driving changed and reversed swapped in every bin" in notes[0]
     assert "--coast" not in rating.summary()
     # the same bins, turned round on the stage whose other flanks are in contact, load these flanks alone
     turned = rating.stage.with_changes(
@@ -197,7 +197,7 @@ def test_many_bins_solve_no_more_torques_than_a_dozen():
 def test_sentences_name_torques_of_the_sun_with_six_digits():
     notes = under(bins((299.913, 1.0), (20.0, 1.0)), **{"rating.life_hours": 12345.6}).notes()
     assert " in 12345.6 h, required 2.4; bin 1 (299.913 N m) does 100 % of the damage" in notes[0]
-    assert sum("1 bin lies below 45 N m at the sun, the smallest torque that was solved" in note for note in notes) == 1
+    assert sum("1 bin lies below 45 N m at the sun, the smallest analysed torque" in note for note in notes) == 1
 
 
 def test_numbers_of_a_spectrum_stand_in_summary_and_files(tmp_path):
@@ -224,7 +224,7 @@ test_bad_spectrum_is_refused = refused_calls(
     (lambda: under(bins((480.0001, 1.0))), "load: a bin has 480.0001 N m; allowed up to 480, the largest of analysis"),
     (
         lambda: under(bins((600.0, 1.0)), **{"analysis.torques_Nm": None}),
-        "load.case: a bin has 600 N m; allowed up to 480, the largest that was solved",
+        "load.case: a bin has 600 N m; allowed up to 480, the largest analysed torque",
     ),
     (
         lambda: under(bins((300.0, 1.0)), operation=None),
@@ -242,7 +242,7 @@ test_bad_spectrum_is_refused = refused_calls(
     (lambda: rated(**{"load.sun_torque_Nm": None}), "load.sun_torque_Nm: missing; give a torque, or the bins"),
     (
         lambda: under([{"sun_torque_Nm": 300.0, "share": 1.0}], **{"rating.life_hours": None}),
-        "rating.life_hours: missing; needed but for load cases with hours",
+        "rating.life_hours: missing; needed unless load cases have hours",
     ),
 )
 
@@ -319,7 +319,7 @@ def test_command_rates_a_stage_again_under_a_spectrum(run, tmp_path, monkeypatch
     assert stored["spectrum"]["ring_root"]["life_h"] == pytest.approx(expected.life_hours[2, 1], rel=1e-6)  # six digits
     code, _, errors = run("rating", str(tmp_path), "--set", "load.sun_torque_Nm=20")
     assert code == 2
-    assert "load.sun_torque_Nm: an analysis depends on it; allowed keys of [sun.strength]" in errors[0]
+    assert "load.sun_torque_Nm: needs another analysis; allowed keys of [sun.strength]" in errors[0]
 
 
 TENSIONS = {"sun_mesh": (5e-3, 4e-3), "ring_mesh": (5.5e-3, 3e-3)}

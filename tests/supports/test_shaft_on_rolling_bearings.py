@@ -180,7 +180,7 @@ def test_thrust_that_no_bearing_takes_is_refused() -> None:
 
 def test_bearing_whose_own_thrust_nothing_takes_is_refused() -> None:
     one = shaft(TAPERED, Bearing(-40.0, np.diag([2e5, 2e5, 0.0, 0.0, 0.0, 0.0])))
-    with pytest.raises(InputError, match=r"finds no balance .* needs another one that takes the thrust it makes"):
+    with pytest.raises(InputError, match=r"no balance .* needs another bearing that takes its thrust"):
         one.solved([0.0], OVERHUNG * np.array([1.0, 1.0, 0.0, 1.0, 1.0, 1.0]))
 
 

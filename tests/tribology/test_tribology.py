@@ -216,9 +216,9 @@ def test_one_tooth_pair_and_one_position_have_no_mean():
     alone = shared("mesh_cycle_spur", analysis__load_sharing=False)
     with pytest.raises(NotAskedError, match=r"analysis\.load_sharing"):
         _ = alone.tribology().loss_factor
-    with pytest.raises(NotAskedError, match=r"friction_power: one tooth pair alone makes no mesh"):
+    with pytest.raises(NotAskedError, match=r"friction_power: needs the load sharing of tooth pairs"):
         _ = known(alone, bulk_temperature_C=90.0, friction=0.05).friction_power
-    with pytest.raises(NotAskedError, match=r"friction_power: one tooth pair alone makes no mesh"):
+    with pytest.raises(NotAskedError, match=r"friction_power: needs the load sharing of tooth pairs"):
         known(alone, bulk_temperature_C=90.0, friction=0.05).over_flank("friction_power")
     assert np.isfinite(known(alone, bulk_temperature_C=90.0, friction=0.05).contact_temperature).any()
 
@@ -475,7 +475,7 @@ def test_what_is_of_the_call_is_not_of_the_oil():
     with pytest.raises(InputError) as caught:
         Lubricant(viscosity_40=220.0, viscosity_100=19.0, oil_temperature=80.0, supply="spray", friction="local")
     assert [problem.split(";")[0] for problem in caught.value.problems] == [
-        f"{name}: not of the oil but of how the pair runs" for name in ("supply", "friction")
+        f"{name}: belongs to the pair, not to the oil" for name in ("supply", "friction")
     ]
     assert "tribology(supply=...)" in caught.value.problems[0]
     assert "supply" not in inspect.signature(Lubricant).parameters
