@@ -30,7 +30,7 @@ from validation.face_milled.duplex_paper import (
     studies,
 )
 from validation.face_milled.pairs import DUPLEX_ASSUMED, MENDED_RADIAL, duplex_paper_gears, error_from_top
-from validation.page import Page, table, write_page
+from validation.page import Page, machine, table, write_page
 
 NAME = "bidirectional_start"
 """Of the page and its picture."""
@@ -43,11 +43,12 @@ PARTS = tuple(np.linspace(-0.5, 0.5, 41))
 TEXT = """\
 # The bidirectional start of duplex spread blade pairs
 
-Written by `python -m validation.face_milled.duplex_document`. Source: the duplex paper and its duplex spread blade pair
-20 x 30. Its machine settings name no reference point, so that the paper constructs a start for the five contact
-equations: *forward* from the gear, *reverse* from the pinion, and the mean of both.
-`loaded_tca.baselines.BidirectionalStart` does what it describes; `loaded_tca.gears.duplex_spread_blade` gives the
-settings that follow from a blank.
+Written by `python -m validation.face_milled.duplex_document`. Machine: {machine}.
+
+Source: the duplex paper and its duplex spread blade pair 20 x 30. Its machine settings name no reference point, so that
+the paper constructs a start for the five contact equations: *forward* from the gear, *reverse* from the pinion, and the
+mean of both. `loaded_tca.baselines.BidirectionalStart` does what it describes; `loaded_tca.gears.duplex_spread_blade`
+gives the settings that follow from a blank.
 
 1. Cradles at the centre of roll: each flank is seen along one line, by the azimuth theta about its cutter. theta of a
    calculation point (X_L, R_L) on the pitch cone at mid-face. The paper asks for two coordinates with one unknown; here
@@ -121,6 +122,7 @@ def document() -> str:
     solvers, five, reduced = _solvers()
     duplex = [_misses(study) for study in studies() if study.name.startswith("duplex")]
     return TEXT.format(
+        machine=machine(numpy=True),
         values=_values(),
         wrong_azimuth=wrong.pinion_azimuth,
         wrong_turn=wrong.pinion_turn,
