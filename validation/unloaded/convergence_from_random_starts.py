@@ -169,7 +169,7 @@ The contact of two flanks at a given pinion angle, from 5000 random starts on th
   vectorised: compare its percentages, not its times; its steps are evaluations).
 
 A start counts as converged only if it ends at the contact on both flanks. Steps are the mean over those. Times are
-for all starts together, the shortest of {runs} runs (SciPy: one), and per start that converged; the machine was shared.
+those of the processor, for all starts together, the shortest of {runs} runs (SciPy: one), and per start that converged.
 
 **Whether the five equations converge depends on how phi2 is drawn.** The source prints 27.32 % in 5.53 steps for the
 spur pair 52/72 and does not say how phi2 was drawn. Drawn within 0.2 rad of the answer, nearly every start converges;
