@@ -22,7 +22,7 @@ def main() -> float:
     """Return the second derivative of the motion curve by differences, over that of the fall asked for."""
     scene = read_scene(SCENE)
     figure = Figure(figsize=(10.0, 4.2), layout="constrained")
-    flank, motion = figure.subplots(1, 2)
+    flank, motion = figure.subplots(1, 2, width_ratios=(1.4, 1.0))
     for angle, colour in PATHS.items():
         pair = scene.with_changes({"pair.settings.path_angle_deg": angle}).pair()
         path = trace_contact(pair, PITCHES * pair.pitch, warn=False)
@@ -33,7 +33,8 @@ def main() -> float:
         for rho, z in zip(*line, strict=True):
             flank.plot(*frame.to_picture(rho, z), color="0.4", linewidth=1.0)
     flank.set(xlabel=frame.labels[0], ylabel=frame.labels[1], title="Paths of contact asked for, from the tooth trace")
-    flank.legend(loc="upper left", fontsize="small")
+    flank.set(aspect="equal", ylim=(None, flank.get_ylim()[1] + 1.5))  # angles as they are
+    flank.legend(loc="upper center", fontsize="small", ncols=len(PATHS))
 
     for fall, colour in FALLS.items():
         pair = scene.with_changes({"pair.settings.motion_fall_arcsec": fall}).pair()
@@ -41,7 +42,7 @@ def main() -> float:
         motion.plot(PITCHES, error, color=colour, label=f"{fall:g} arcsec")
         motion.plot(PITCHES, -fall * (2.0 * PITCHES) ** 2, color=colour, linestyle="--", linewidth=3.0, alpha=0.4)
     motion.set(xlabel="turn of the pinion [pitch]", ylabel="transmission error without load [arcsec]")
-    motion.set_title("Motion curves, and the parabolas asked for (dashed)")
+    motion.set_title("Motion curves; dashed: asked for")
     motion.legend(loc="lower center", fontsize="small")
     figure.savefig("local_synthesis.png", dpi=120)
 

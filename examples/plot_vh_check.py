@@ -29,7 +29,7 @@ def build(offset: float, displacement: float) -> GearPair:
 def main() -> float:
     """Return the shift for H over that for -H, which to first order is -1."""
     check = vh_check(build, OFFSETS, DISPLACEMENTS)
-    names = ("V: offset E [mm]", "H: axial displacement P of the pinion [mm]")
+    names = ("V: offset [mm]", "H: axial displacement of the pinion [mm]")
     save_figure(plot_vh_check(check, names, SCENE.title), "vh_check.png")
     along = check.shift[:, :, 0]
     print(f"towards the heel [mm], V down, H to the right:\n{np.round(along, 2)}")

@@ -220,6 +220,8 @@ def _draw_cell(axes: Axes, pattern: ContactPattern, frame: FlankFrame, levels: A
 
 
 EASE_OFF_LEVELS = 10
+BESIDE_CORNERS = 0.1, 0.085
+"""Parts of the axes that the value of a corner and half a label beside it take, across and upwards."""
 SMALLEST_SPAN_um = 0.01
 """Height of the colour scale below which a map would be rounding."""
 
@@ -247,6 +249,7 @@ def plot_ease_off(ease_off: EaseOffMap, title: str = "") -> Figure:
         lines = axes.contour(x, y, height, levels[1:-1], colors="black", linewidths=0.5)
         for label in axes.clabel(lines, fmt="%.3g", fontsize="x-small"):
             label.set_path_effects([withStroke(linewidth=2.0, foreground="white")])
+            label.set_visible(not _at_a_corner(axes, label.get_position(), (x, y)))
     if not ease_off.covered.all():
         axes.contourf(x, y, ease_off.covered, [-0.5, 0.5], colors="none", hatches=["///"])
     figure.colorbar(filled, ax=axes, label="ease-off, material removed along the normal [µm]", format="%.3g")
@@ -256,6 +259,13 @@ def plot_ease_off(ease_off: EaseOffMap, title: str = "") -> Figure:
     _write_numbers(numbers, ease_off.second_order)
     write_title(figure, title, f"ease-off of the {ease_off.gear} against the conjugate of its mating flank")
     return figure
+
+
+def _at_a_corner(axes: Axes, at: tuple[float, float], place: tuple[Array, Array]) -> bool:
+    """Whether the value of a corner would hide what stands at a place."""
+    shown = axes.transData - axes.transAxes
+    corners = shown.transform(np.stack([part[np.ix_([0, -1], [0, -1])] for part in place], axis=-1).reshape(-1, 2))
+    return bool((np.abs(corners - shown.transform(at)) < BESIDE_CORNERS).all(axis=1).any())
 
 
 def _write_corners(axes: Axes, place: tuple[Array, Array], corners: Array) -> None:

@@ -45,6 +45,17 @@ def test_corner_values_stand_at_their_corners():
         assert note.xy == (found.axial[-i, -j], 2.0 * found.radius[-i, -j])
 
 
+def test_no_label_of_a_contour_stands_under_the_value_of_a_corner():
+    figure = plot_ease_off(ease_off_map(gear_pair(TWISTED, mounting=Mounting(out_of_plane=3e-4))))
+    axes = figure.axes[0]
+    figure.draw_without_rendering()
+    *labels, _, _, _, _ = axes.texts
+    values = [note.get_bbox_patch().get_window_extent() for note in axes.texts[-4:]]
+    shown = [label.get_window_extent() for label in labels if label.get_visible()]
+    assert 0 < len(shown) < len(labels)
+    assert not any(value.overlaps(label) for value in values for label in shown)
+
+
 def test_conjugate_pair_is_drawn_flat_not_as_rounding():
     figure = plot_ease_off(ease_off_map(gear_pair(helix_deg=15.0), "wheel"))
     assert written(figure)[0].startswith("ease-off of the wheel")

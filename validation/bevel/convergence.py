@@ -82,7 +82,7 @@ The contact at phi1 = 0 from {starts} random starts on the flanks, by the same m
 [cylindrical gears](unloaded_convergence.md): **reduced**, two unknowns and safeguarded; **five**, the conventional
 equations and a plain Newton iteration; **SciPy root**, Powell's hybrid method on the same five, {scipy} starts one
 after the other (its steps are evaluations). A start counts only if it ends at the contact on both flanks. Times are
-for all starts together, the shortest of {runs} runs (SciPy: one), and per start that converged; the machine was shared.
+those of the processor, for all starts together, the shortest of {runs} runs (SciPy: one), and per start that converged.
 
 | pair | method | phi2 about the answer | starts | converged % | steps | ms | ms per converged |
 |---|---|---|---|---|---|---|---|

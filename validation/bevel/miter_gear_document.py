@@ -87,7 +87,7 @@ golden-section search find the same contact ({few} positions compared).
 
 ## B-spline flanks
 
-Both flanks as quintic B-splines through 33 x 33 of their points: a path takes {slower:.2f} times as long.
+Both flanks as quintic B-splines through 33 x 33 of their points: a path takes {slower:.1f} times the processor time.
 
 ## All rows
 
@@ -153,14 +153,12 @@ def _draw_paths(axes: Axes) -> None:
         gears = pair(mounting=mounting)
         path = path_of(gears)
         style = {"color": COLOURS[number], "markersize": 3.0, "linewidth": 1.0}
-        axes.plot(*GEARS.path_on_pinion(path), "o-", label=f"{label}: ease-off", **style)
+        axes.plot(*GEARS.path_on_pinion(path), "o-", label=label, **style)
         few = path_of(gears, FEW)
         searched = search_golden_section(gears, few.pinion_angle)
         place = GEARS.place(searched.pinion_radius, searched.pinion_axial)
-        axes.plot(
-            *place, "s", fillstyle="none", markersize=9.0, color=COLOURS[number], label=f"{label}: golden section"
-        )
-    axes.legend(fontsize="small", loc="center left")
+        axes.plot(*place, "s", fillstyle="none", markersize=9.0, color=COLOURS[number])
+    _legend_above(axes, "dots: ease-off; squares: golden section")
     axes.set_title("contact path on the pinion, toe left, heel right", fontsize="medium")
 
 
@@ -190,9 +188,9 @@ def _draw_motion(axes: Axes, mounting: BevelMounting | None, title: str) -> None
     axes.plot(np.degrees(solved.pinion_angle[there]), lag, "+", markersize=8.0, color=COLOURS[2], label=label)
     within = curve[np.abs(turn) <= 0.5 * pitch]
     room = 0.15 * np.ptp(within)
-    axes.set(xlim=(-0.5 * pitch, 0.5 * pitch), ylim=(within.min() - room, within.max() + room))
+    axes.set(xlim=(-0.5 * pitch, 0.5 * pitch), ylim=(within.min() - 3.0 * room, within.max() + room))
     axes.set(xlabel="pinion angle [deg]", ylabel="transmission error [arcsec]")
-    axes.legend(fontsize="small", loc="lower center")
+    axes.legend(fontsize="small", loc="lower center", ncols=2, framealpha=1.0)
     axes.set_title(title, fontsize="medium")
 
 
@@ -201,10 +199,14 @@ def _draw_areas(axes: Axes) -> None:
     for number, (mounting, label) in enumerate(((None, "aligned"), (BESIDE, "E 0.1 mm"), (EDGE, "E 0.2 mm"))):
         for turn in (-0.4, 0.0, 0.4):
             _draw_area(axes, area_at(mounting, turn), COLOURS[number], label if turn == 0.0 else None)
-    axes.legend(
-        fontsize="small", loc="upper left", title="contour; dashed: ellipse of the curvatures", title_fontsize="small"
-    )
+    _legend_above(axes, "contour; dashed: ellipse of the curvatures")
     axes.set_title("contact areas under 6.35 µm of marking compound", fontsize="medium")
+
+
+def _legend_above(axes: Axes, title: str) -> None:
+    """A legend of three columns, in room above the flank."""
+    axes.set_ylim(top=axes.get_ylim()[1] + 1.5)
+    axes.legend(fontsize="small", loc="upper center", ncols=3, title=title, title_fontsize="small")
 
 
 def _draw_area(axes: Axes, area: ContactArea, colour: str, label: str | None) -> None:

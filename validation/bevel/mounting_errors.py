@@ -12,7 +12,7 @@ from validation.bevel.spiral_trends import FULL, SIGNS, STEPS, ErrorMap, error_m
 from validation.bevel.spiral_trends import trends as spiral_trends
 from validation.bevel.straight_trends import LEAD, straight_effect
 from validation.bevel.straight_trends import trends as straight_trends
-from validation.page import Page, lines, write_page
+from validation.page import Page, lines, machine, write_page
 from validation.table import Row
 from validation.unloaded.mounting_error_pairs import ARCSEC, FORMS
 from validation.unloaded.mounting_error_trends import verdicts
@@ -96,10 +96,11 @@ COLUMNS = (
 )
 TEXT = """# Bevel pairs under mounting errors
 
-Written by `python -m validation.bevel.mounting_errors`. Unloaded contact of all teeth over one pitch; pressures after
-Hertz, one tooth pair carrying the whole load. Figures 33 to 53 of the reduced-TCA dissertation show pictures, most of
-them without inputs: each statement of its text is judged here by a number. How many random starts converge is on
-[a page of its own](bevel_convergence.md).
+Written by `python -m validation.bevel.mounting_errors`. Machine: {machine}.
+
+Unloaded contact of all teeth over one pitch; pressures after Hertz, one tooth pair carrying the whole load. Figures 33
+to 53 of the reduced-TCA dissertation show pictures, most of them without inputs: each statement of its text is judged
+here by a number. How many random starts converge is on [a page of its own](bevel_convergence.md).
 
 Read the frame like a drawing of the tooth: R - R_m to the right (toe to heel), height above the pitch cone upwards
 (root to tip), both on the pinion, in mm. The mean of the transmission error is a constant angle without consequence;
@@ -188,6 +189,7 @@ def signs_together(errors: ErrorMap) -> dict[str, str]:
 def document(errors: ErrorMap) -> str:
     """The page, with its tables."""
     return TEXT.format(
+        machine=machine(numpy=True),
         **signs_together(errors),
         assumed=ASSUMED,
         straight_trends="\n".join(verdicts(straight_trends())),

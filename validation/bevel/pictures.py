@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from matplotlib.patheffects import withStroke
 
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import point_contact
@@ -118,7 +119,8 @@ def draw_straight_crowning() -> Figure:
         pair = STRAIGHT.pair(TABLE_6["ΔE"], straight_modifications(lead, relief_um=RELIEF), wheel)
         _draw_path(flank, STRAIGHT, pair, _style(number, f"{lead:g} µm"), edges=True)
     flank.set_title("ΔE 0.1 mm, amounts of parabolic crowning\n(crosses: edge contact)")
-    flank.legend(fontsize="small", loc="lower left")
+    flank.set_ylim(bottom=flank.get_ylim()[0] - 0.8)
+    flank.legend(fontsize="small", loc="lower center", ncols=3)
     _draw_motion(
         motion, [(form, straight_effect("ΔA", LEAD, form, "both")) for form in FORMS], "ΔA 0.1 mm, three forms"
     )
@@ -129,7 +131,7 @@ def draw_straight_crowning() -> Figure:
         xlabel="Δγ [deg]", ylabel="Hertz pressure at $\\varphi_1$ = 0 [MPa]", title=f"Δγ, three forms, {LEAD:g} µm"
     )
     stress.set_xticks((-0.2, -0.1, 0.0, 0.1, 0.2))
-    stress.set_ylim(bottom=0.0)
+    stress.set_ylim(0.0, 1.1 * stress.get_ylim()[1])
     stress.legend(fontsize="small")
     figure.suptitle(f"{STRAIGHT.name}, tip relief {RELIEF:g} µm on both gears (right: none), {STRAIGHT.load:g} N")
     return figure
@@ -178,7 +180,8 @@ def draw_error_map(errors: ErrorMap) -> Figure:
         mesh = axes.pcolormesh(errors.e, errors.h, value.T, cmap=colours, shading="nearest")
         figure.colorbar(mesh, ax=axes, label=text)
         lines = axes.contour(errors.e, errors.h, value.T, colors="white", linewidths=0.8)
-        axes.clabel(lines, fmt=form)
+        for label in axes.clabel(lines, fmt=form):
+            label.set_path_effects([withStroke(linewidth=2.0, foreground="0.2")])
         axes.set(xlabel="ΔE [mm]", xticks=(-0.1, -0.05, 0.0, 0.05, 0.1))
     panels[0].set_ylabel("ΔH [mm]")
     figure.suptitle(f"{SPIRAL.name}, module 1 mm, c1 = 0.005/mm, c_t = 0.08 mm, {SPIRAL.load:.1f} N, over one pitch")

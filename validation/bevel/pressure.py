@@ -19,7 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatter
+from matplotlib.ticker import LogFormatter, MultipleLocator
 from numpy.typing import NDArray
 
 from loaded_tca.flanks import FlankModifications
@@ -31,7 +31,7 @@ from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.unloaded import trace_contact
 from validation.bevel.pairs import SPIRAL, STRAIGHT, BevelGears
 from validation.bevel.pictures import COLOURS, draw_flank
-from validation.page import Page, lines, write_page
+from validation.page import Page, lines, machine, write_page
 from validation.table import Row
 
 Array = NDArray[np.float64]
@@ -127,8 +127,10 @@ def _rows_of(case: Case, one: Pressed) -> list[Row]:
 
 TEXT = """# Pressure of bevel pairs over the rotation
 
-Written by `python -m validation.bevel.pressure`. The pairs are those of the reduced-TCA dissertation, one tooth pair
-carries the whole load: {loads}.
+Written by `python -m validation.bevel.pressure`. Machine: {machine}.
+
+The pairs are those of the reduced-TCA dissertation, one tooth pair carries the whole load:
+{loads}.
 Assumed: {assumed}.
 
 Positions are counted in pitches from the pitch point; R - R_m is positive towards the heel, the height is above the
@@ -149,6 +151,7 @@ def document() -> str:
     deviations = [abs(row.error) for row in rows() if row.tolerance == WITHIN_HERTZ]
     loads = sorted({f"{case.gears.name} {case.gears.load:.4g} N" for case in CASES})
     return TEXT.format(
+        machine=machine(numpy=True),
         loads=", ".join(loads),
         assumed=";\n".join(sorted({f"{case.gears.name}, {case.assumed}" for case in CASES})),
         worst=100.0 * max(deviations),
@@ -232,6 +235,7 @@ def _draw_over(axes: Axes, case: Case) -> None:
     axes.set_yscale("log")
     for one in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
         one(LogFormatter(minor_thresholds=(2.0, 0.5)))
+    axes.xaxis.set_major_locator(MultipleLocator(0.4))
     axes.set(xlabel="position [pitches from the pitch point]", ylabel="contact pressure [MPa]")
     axes.legend(fontsize="small")
 

@@ -30,11 +30,12 @@ from validation.face_milled.duplex_paper import (
     studies,
 )
 from validation.face_milled.pairs import DUPLEX_ASSUMED, MENDED_RADIAL, duplex_paper_gears, error_from_top
-from validation.page import Page, table, write_page
+from validation.page import Page, machine, table, write_page
 
 NAME = "bidirectional_start"
 """Of the page and its picture."""
 COLOURS = {"forward": "#0072b2", "reverse": "#d55e00", "mean": "#009e73"}
+PATTERN = "#cfe3f2"
 MARKERS = {"forward": "^", "reverse": "v", "mean": "D"}
 PARTS = tuple(np.linspace(-0.5, 0.5, 41))
 
@@ -42,11 +43,12 @@ PARTS = tuple(np.linspace(-0.5, 0.5, 41))
 TEXT = """\
 # The bidirectional start of duplex spread blade pairs
 
-Written by `python -m validation.face_milled.duplex_document`. Source: the duplex paper and its duplex spread blade pair
-20 x 30. Its machine settings name no reference point, so that the paper constructs a start for the five contact
-equations: *forward* from the gear, *reverse* from the pinion, and the mean of both.
-`loaded_tca.baselines.BidirectionalStart` does what it describes; `loaded_tca.gears.duplex_spread_blade` gives the
-settings that follow from a blank.
+Written by `python -m validation.face_milled.duplex_document`. Machine: {machine}.
+
+Source: the duplex paper and its duplex spread blade pair 20 x 30. Its machine settings name no reference point, so that
+the paper constructs a start for the five contact equations: *forward* from the gear, *reverse* from the pinion, and the
+mean of both. `loaded_tca.baselines.BidirectionalStart` does what it describes; `loaded_tca.gears.duplex_spread_blade`
+gives the settings that follow from a blank.
 
 1. Cradles at the centre of roll: each flank is seen along one line, by the azimuth theta about its cutter. theta of a
    calculation point (X_L, R_L) on the pitch cone at mid-face. The paper asks for two coordinates with one unknown; here
@@ -120,6 +122,7 @@ def document() -> str:
     solvers, five, reduced = _solvers()
     duplex = [_misses(study) for study in studies() if study.name.startswith("duplex")]
     return TEXT.format(
+        machine=machine(numpy=True),
         values=_values(),
         wrong_azimuth=wrong.pinion_azimuth,
         wrong_turn=wrong.pinion_turn,
@@ -192,14 +195,15 @@ def _range(steps: list[int]) -> str:
 
 def picture() -> Figure:
     """Flanks with starts and paths, and the transmission errors, of the paper's pair and of the mended one."""
-    figure = Figure(figsize=(11.0, 8.0), layout="constrained")
+    figure = Figure(figsize=(11.0, 7.6), layout="constrained")
+    above, below = figure.subplots(2, 2)
     for column, (title, radial) in enumerate(
         (("printed settings", 58.38392), (f"mended pair D: pinion radial {MENDED_RADIAL} mm", MENDED_RADIAL))
     ):
         study = Study(title, duplex_paper_gears(radial))
         pair = study.pair()
-        _draw_flank(figure.add_subplot(2, 2, 1 + column), study, pair)
-        _draw_error(figure.add_subplot(2, 2, 3 + column), pair)
+        _draw_flank(above[column], study, pair)
+        _draw_error(below[column], pair)
     figure.suptitle("Duplex paper, 20 x 30, drive side: bidirectional start, contact of one tooth pair, unloaded")
     return figure
 
@@ -210,7 +214,8 @@ def _draw_flank(axes: Axes, study: Study, pair: GearPair) -> None:
     corners = np.stack(frame.to_picture(*pair.pinion.flank.grid(2, 17)), axis=-1)
     axes.add_patch(Polygon(np.concatenate([corners[0], corners[1][::-1]]), facecolor="0.95", edgecolor="0.5"))
     pattern = contact_pattern(pair)
-    axes.contourf(*frame.to_picture(pattern.radius, pattern.axial), pattern.touched, [0.5, 1.5], colors=["#cfe3f2"])
+    axes.contourf(*frame.to_picture(pattern.radius, pattern.axial), pattern.touched, [0.5, 1.5], colors=[PATTERN])
+    axes.fill([], [], color=PATTERN, label="contact pattern")
     path = trace_contact(pair, error_from_top(pair, PARTS)[0] + 2.0 * np.array(PARTS) * pair.pitch, warn=False)
     place = frame.to_picture(path.pinion_radius, path.pinion_axial)
     axes.plot(*(part[~path.on_edge] for part in place), "k.", markersize=4, label="contact")
@@ -219,7 +224,8 @@ def _draw_flank(axes: Axes, study: Study, pair: GearPair) -> None:
         axes.plot(*_place(pair, guess), MARKERS[name], color=COLOURS[name], markersize=7, label=f"start, {name}")
     axes.set(xlabel=frame.labels[0], ylabel=frame.labels[1], title=study.name)
     axes.legend(loc="upper center", fontsize="small", ncols=2)
-    axes.set_ylim(top=corners[..., 1].max() + 3.0)
+    axes.set_ylim(top=corners[..., 1].max() + 3.5)
+    axes.set_aspect("equal")
 
 
 def _place(pair: GearPair, guess: Guess) -> Sequence[NDArray[np.float64]]:
@@ -234,6 +240,7 @@ def _draw_error(axes: Axes, pair: GearPair) -> None:
     axes.plot(angles, fall, "k-")
     axes.plot(angles[path.on_edge], fall[path.on_edge], "kx", markersize=4)
     axes.set(xlabel="pinion angle [deg], one pitch", ylabel="transmission error from its top [arcsec]")
+    axes.margins(y=0.1)
     axes.annotate(f"{fall[0]:.2f}", (angles[0], fall[0]), textcoords="offset points", xytext=(14, -14))
     axes.annotate(f"{fall[-1]:.2f}", (angles[-1], fall[-1]), textcoords="offset points", xytext=(-54, -4))
 

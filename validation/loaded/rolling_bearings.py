@@ -30,7 +30,7 @@ from loaded_tca.supports import BallBearing, RollerBearing, RollingBearing, Supp
 from loaded_tca.supports.bearing import Seat, balanced
 from loaded_tca.supports.bearing_life import ball_factor, roller_factor
 from validation.loaded.moved_gears import settled
-from validation.page import SCENES, Page, formatted, lines, machine, write_page
+from validation.page import SCENES, Page, formatted, lines, machine, median_ratio, medians, take_times, write_page
 from validation.table import Row
 
 CASE, PROGRAM = "rolling bearings", "MASTA, as minzhun/ISO16281 prints it"
@@ -46,6 +46,8 @@ MANY = {"at": 0.0, "elements": 200, "diameter": 1.0, "pitch_diameter": 100.0}
 TABLES = {0.05: (46.7, 74.1), 0.1: (55.5, 84.2), 0.16: (59.6, 88.5), 0.2: (59.9, 88.7)}
 OF_ERROR, OF_MOTIONS = 3e-5, 2e-4
 CELLS, TORQUES = 24, (40.0, 130.0)
+RUNS = 5
+"""Of analyses whose times are compared."""
 
 
 def rows() -> list[Row]:
@@ -194,20 +196,21 @@ def _times() -> list[list[str]]:
     )
     scenes = {"rigid": plain.with_changes({"pinion.shaft": None, "wheel.shaft": None})}
     scenes |= {"shafts on linear bearings": linear, "shafts on rolling bearings": plain}
-    taken = {}
-    for name, one in scenes.items():
-        _analysed(one)
-        begin = time.process_time()
-        _analysed(one)
-        taken[name] = time.process_time() - begin
-    return [[name, f"{seconds:.2f}", f"{seconds / taken['rigid']:.2f}"] for name, seconds in taken.items()]
+    calls = {name: partial(_analysed, one) for name, one in scenes.items()}
+    take_times(calls, 1)  # makes the models of teeth
+    taken = take_times(calls, RUNS, time.process_time)
+    return [
+        [name, f"{seconds:.2f}", f"{median_ratio(taken[name], taken['rigid']):.1f}"]
+        for name, seconds in medians(taken).items()
+    ]
 
 
 def _text(compared: str, over_the_torque: str, times: str) -> str:
     return f"""# Rolling bearings by their inner geometry
 
-Written by `python -m validation.loaded.rolling_bearings`; {machine()}. The method is in
-[shafts and bearings](../how_it_works/supports.md).
+Written by `python -m validation.loaded.rolling_bearings`; {machine()}.
+
+The method is in [shafts and bearings](../how_it_works/supports.md).
 
 ## Beside numbers of others, and gears really moved
 
@@ -233,7 +236,8 @@ the bearings become stiffer.
 
 ## Time
 
-Nine positions, one torque, teeth that bend, models of teeth kept; one processor.
+Nine positions, one torque, teeth that bend, models of teeth kept; processor time of one thread, medians of {RUNS} runs
+that take turns.
 
 | supports | seconds | over rigid ones |
 | --- | --- | --- |

@@ -23,7 +23,7 @@ from loaded_tca.results import MeshCycle
 from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.load_factors import strip_borders, strip_forces
 from loaded_tca.tribology import Lubricant
-from validation.page import SCENES, Page, table, write_page
+from validation.page import SCENES, Page, machine, table, write_page
 
 MISALIGNMENT, WIDTHS, LOAD = 10.0, (10.0, 20.0, 40.0, 80.0), 10.0  # um, mm, N m of the pinion for each mm
 PAIRS = (("FZG C14", "fzg_c14", 200.0), ("spur 34/57", "mesh_cycle_spur", 200.0), ("helical 34/57", "helical", 400.0))
@@ -212,14 +212,17 @@ def _flash_at_end(result: MeshCycle, torque: int, friction: float) -> float:
 def make() -> Page:
     """Measure, and write the page."""
     values, steps, over_width = faces()
-    return Page("where_methods_part", TEXT.format(values, steps, over_width, temperatures()))
+    return Page(
+        "where_methods_part", TEXT.format(values, steps, over_width, temperatures(), machine=machine(numpy=True))
+    )
 
 
 TEXT = """# Where the standard and the analysis part
 
+Written by `python -m validation.rating.methods_part`. Machine: {machine}.
+
 A rating takes K_Hβ of the analysis; method C of ISO 6336-1 gives another K_Hβ. The two parts of ISO 6336 on scuffing
-give different temperatures. Where these numbers differ by more than a tenth, this page says why, by numbers that
-`python -m validation.rating.methods_part` measures.
+give different temperatures. Where these numbers differ by more than a tenth, this page says why, by measured numbers.
 
 ## Face load factors: narrow faces are stiffer against tilting than in method C
 

@@ -169,15 +169,15 @@ The contact of two flanks at a given pinion angle, from 5000 random starts on th
   vectorised: compare its percentages, not its times; its steps are evaluations).
 
 A start counts as converged only if it ends at the contact on both flanks. Steps are the mean over those. Times are
-for all starts together, the shortest of {runs} runs (SciPy: one), and per start that converged; the machine was shared.
+those of the processor, for all starts together, the shortest of {runs} runs (SciPy: one), and per start that converged.
 
 **Whether the five equations converge depends on how phi2 is drawn.** The source prints 27.32 % in 5.53 steps for the
 spur pair 52/72 and does not say how phi2 was drawn. Drawn within 0.2 rad of the answer, nearly every start converges;
 drawn within pi/2 of it, the percentage of the source appears. It also leaves open which two components of the unit
 normals are set equal: y and z (z along the axes, x from axis to axis) give its number; x and z are the better choice
 for aligned spur pairs. The reduced method needs no guess of phi2 at all. Near the answer the five equations take as
-few steps and as little time as the two: the advantage of the reduction is that it always converges, not its speed. A
-good guess of phi2 is easy: phi1 z1/z2.
+few steps as the two, and two to three times their time. The greater advantage of the reduction is that it always
+converges, although a good guess of phi2 is easy: phi1 z1/z2.
 
 | pair | method | phi2 about the answer | starts | converged % | steps | ms | ms per converged |
 |---|---|---|---|---|---|---|---|

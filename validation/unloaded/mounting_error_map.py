@@ -11,6 +11,7 @@ from math import radians
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
@@ -157,7 +158,8 @@ def draw_map(errors: ErrorMap) -> Figure:
         figure.colorbar(mesh, ax=axes, label=text)
         axes.set_xlabel("in-plane error [deg]")
     lines = panels[1].contour(gamma, delta, errors.shift.T, levels=range(-8, 9, 4), colors="white", linewidths=0.8)
-    panels[1].clabel(lines, fmt="%d mm")
+    for label in panels[1].clabel(lines, fmt="%d mm"):
+        label.set_path_effects([withStroke(linewidth=2.0, foreground="0.2")])
     panels[0].set_ylabel("out-of-plane error [deg]")
     panels[2].plot([], [], "s", color="0.8", label="contact on the side of the tooth")
     panels[2].legend(loc="upper right", fontsize="small")

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.teeth import trace_teeth
-from validation.page import Page, lines, write_page
+from validation.page import Page, lines, machine, write_page
 from validation.table import Row
 from validation.unloaded.helical_trends import trends as helical_trends
 from validation.unloaded.mounting_error_figures import lines as printed_lines
@@ -172,11 +172,12 @@ def _cells(one: Effect) -> str:
 
 TEXT = """# Spur and helical pairs under mounting errors
 
-Written by `python -m validation.unloaded.mounting_errors`. Unloaded contact of all teeth over one pitch; pressures
-after Hertz, one tooth pair carrying the whole load. Figures 10 to 30 of the
-[reduced-TCA dissertation](../reference/sources.md) show pictures, most of them without numbers: each statement of its
-text is judged here by a number. Its bevel pairs have [a page of their own](bevel_studies.md), and so has [the
-convergence from random starts](unloaded_convergence.md).
+Written by `python -m validation.unloaded.mounting_errors`. Machine: {machine}.
+
+Unloaded contact of all teeth over one pitch; pressures after Hertz, one tooth pair carrying the whole load. Figures 10
+to 30 of the [reduced-TCA dissertation](../reference/sources.md) show pictures, most of them without numbers: each
+statement of its text is judged here by a number. Its bevel pairs have [a page of their own](bevel_studies.md), and so
+has [the convergence from random starts](unloaded_convergence.md).
 
 Assumed, where the source says nothing: the pinion drives, and has all modifications; lead crowning of the spur pair
 {spur:g} um at the ends of the face (its a1 = 0.0025/mm), of the helical pair {helical:g} um (the smallest c1 of its
@@ -219,6 +220,7 @@ error of all teeth:
 def document() -> str:
     """The page, with its tables."""
     return TEXT.format(
+        machine=machine(numpy=True),
         spur=1e3 * SPUR.crowning,
         helical=1e3 * HELICAL.crowning,
         angle=degrees(LARGEST[SPUR]["in_plane"]),
