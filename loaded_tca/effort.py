@@ -30,13 +30,13 @@ USUAL_CELLS, OF_ACCURACY = 4400.0, 0.35
 """Cells that take as long as what does not depend on them, and the exponent of 1e-2 over an accuracy."""
 SUPPORT_STATES = 6
 """States of a torque that take as long as the way to where supports let the gears stand; of linear bearings."""
-TEETH_SECONDS, TEETH_EXPONENT, TEETH_BYTES = 7.5e-3, 1.5, 400e6
+TEETH_SECONDS, TEETH_EXPONENT, TEETH_BYTES = 7.0e-3, 1.5, 400e6
 """Of the finite element models of both gears: the time for the layers of elements across both faces."""
-IMPORT_SECONDS, FILES_SECONDS, PICTURE_SECONDS = 1.6, 0.15, 0.18
+IMPORT_SECONDS, FILES_SECONDS, PICTURE_SECONDS = 1.15, 0.15, 0.11
 """Of the command: what it imports, result and tables, and each picture."""
-APART_SECONDS = 0.3
+APART_SECONDS = 1.0
 """Of a helper, before each model of root stress: a process is started and imports what it needs."""
-ROOT_SECONDS, ROOT_BYTES = 0.12, 39e6
+ROOT_SECONDS, ROOT_BYTES = 0.15, 39e6
 """Of a model of root stress for each layer of elements across the face, of which wide faces have more; measured with 6
 to 24 layers: the memory is within a quarter of what the model itself tells, the time within a factor of two."""
 MOST_OF_MEMORY = 0.5

@@ -26,9 +26,9 @@ from loaded_tca.compliance.kept import kept
 from loaded_tca.threads import one_thread
 
 STATES_REFERENCE, MODELS_REFERENCE = 7.7e-3, 6.0e-3
-"""Processor time [s] of the two works on the machine of the constants. On a virtual machine of two cores (AMD EPYC)
-they take 2.1 and 2.3 times as long, as do states, pictures and models of the electric drive of
-``validation.loaded.user_scenes``."""
+"""Processor time [s] of the two works on the machine of the constants. On virtual machines of two cores
+they take 2.1 and 2.3 times as long (AMD EPYC), as do states, pictures and models of the electric drive of
+``validation.loaded.user_scenes``, and 1.3 and 1.4 times (Intel Xeon)."""
 REPEATED = 5
 """Times that each is done, of which the quickest counts: others make a machine slower for a while, nothing quicker."""
 CONTACTS, CELLS = 8, 48

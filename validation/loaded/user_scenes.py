@@ -380,11 +380,12 @@ process and in workers. Models of root stress made at once take their memory at 
 the analysis would need more than half of the machine's.
 
 Helpers have models of root stress, and one mesh of a planetary stage, made by processes of their own: threads waited
-for the interpreter with each other, which took a quarter more processor time. Of the electric drive with root stress
-by two jobs, by processor time: 21 s in the process of the analysis, of which 19 s are states with models of the teeth,
-and 22 s in those of both models of roots, for 45 s by one job; so two idle cores need about 0.55 of the time of one.
-These are of a machine with a load of 11, which makes all of them longer. What does not gain: states in halves, two
-threads of which wait for the interpreter a quarter of their time; other thresholds of the allocator.
+for the interpreter with each other, which took a quarter more processor time. `loaded-tca run` of the electric drive
+with root stress takes 26.5 s of wall by one job and 18.7 s by two, and 11.3 s by either once the models are kept (an
+idle Intel Xeon of two cores, 30 November 2026, medians of two to four runs). By two jobs the processor time is 2 to 3 s
+more, that of starting processes; 6 s are done by one core alone: imports, collecting, files, and 16 pictures. What does
+not gain: states in halves by two threads, which wait for the interpreter a quarter of their time; other thresholds of
+the allocator.
 
 ## Scenes by defaults
 
