@@ -96,7 +96,7 @@ def command(name: str, python: Path, folder: Path, further: Sequence[str]) -> li
     configuration = CONFIGURATIONS[name]
     if configuration.platform:
         cache = folder / f"mypy-{name}"
-        return [str(python), "-m", "mypy", "--platform", configuration.platform, "--cache-dir", str(cache)]
+        return [str(python), "-m", "tests.annotations", "--platform", configuration.platform, "--cache-dir", str(cache)]
     tests = ["-n", str(configuration.workers), "--dist", "worksteal", f"--junit-xml={folder / name}.xml"]
     start = ["sh", "-c", 'trap "" INT; exec "$@"', "sh"] if configuration.background else []
     return [*start, str(python), "-m", "pytest", "-p", "no:cacheprovider", *tests, *further]

@@ -118,8 +118,8 @@ def test_one_torque_has_an_axis_too(scene):
 
 
 def test_positions_cover_one_pitch_with_both_ends(scene):
-    # rad; the middle of a pitch of 0.2
-    assert_allclose(analyse(scene).pinion_angle, np.pi / 34 * np.array([-1.0, 0.0, 1.0]), atol=1e-15)
+    # rad; a pitch of 0.2 less its half
+    assert_allclose(analyse(scene).pinion_angle, np.pi / 34 * np.array([-1.0, 0.0, 1.0]), rtol=0, atol=1e-13)
 
 
 def test_one_position_is_the_pitch_point(scene):

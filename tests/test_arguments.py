@@ -251,7 +251,8 @@ test_unit_of_another_kind_is_refused = refusals(
     ],
 )
 def test_units_as_people_write_them(written, wanted, factor):
-    assert conversion(written, wanted) == (factor if factor is None else pytest.approx(factor, rel=1e-14))
+    # powers of units, and a few products
+    assert conversion(written, wanted) == (factor if factor is None else pytest.approx(factor, rel=1e-12))
 
 
 def test_number_with_a_unit_is_none_where_no_unit_is_known():

@@ -77,7 +77,8 @@ def test_errors_of_types_are_failures(runs, tmp_path, capsys):
     assert first.split()[:4] == ["win32", "0", "1", "0"]
     assert second.split()[:4] == ["darwin", "1", "0", "0"]
     assert name == f"win32: {error}"
-    assert [line[2:5] for line, _ in started] == [["mypy", "--platform", "win32"], ["mypy", "--platform", "darwin"]]
+    assert [line[1:3] for line, _ in started] == [["-m", "tests.annotations"]] * 2
+    assert [line[3:5] for line, _ in started] == [["--platform", "win32"], ["--platform", "darwin"]]
 
 
 def test_environments_are_made_once_and_again_for_other_requirements(runs, tmp_path, monkeypatch):

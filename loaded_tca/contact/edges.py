@@ -138,20 +138,12 @@ def quarter_space_factor(poisson_ratio: float, share: float = 1.0) -> float:
 
     Parameters
     ----------
-    poisson_ratio : float
-        Of the body that ends, between 0 and 0.5.
-    share : float
-        Share s of the bodies that end there in the compliance, between 0 and 1: E* (1 - nu1^2)/E1 where body 1 alone
-        ends; 1 where both do.
+    poisson_ratio, share
+        As for :func:`wedge_factor`.
 
     Returns
     -------
     float
-
-    Raises
-    ------
-    InputError
-        With every problem of the arguments.
 
     Examples
     --------
@@ -181,7 +173,8 @@ def wedge_factor(angle: float, poisson_ratio: float, share: float = 1.0) -> floa
     poisson_ratio : float
         Of the body that ends, between 0 and 0.5.
     share : float
-        As for :func:`quarter_space_factor`; where both bodies end their factors add up.
+        Share s of the bodies that end there in the compliance, between 0 and 1: E* (1 - nu1^2)/E1 where body 1 alone
+        ends. Where both end at one angle, s is 1; at angles of their own their factors add up.
 
     Returns
     -------
@@ -234,11 +227,6 @@ def factors_across(angle: float, poisson_ratio: float, share: float = 1.0) -> tu
     Returns
     -------
     (float, float)
-
-    Raises
-    ------
-    InputError
-        With every problem of the arguments.
 
     Examples
     --------

@@ -29,6 +29,15 @@ LEAST_PART = 0.1
 """Of the pressure-viscosity coefficient at 38 C, and of the density at 15 C, at high temperatures: the formula of the
 coefficient has it at 400 C, and none at 510 C; that of the density at 1160 C, and none at 1290 C."""
 
+FACTORS = ("application_factor", "dynamic_factor")
+RANGES: dict[str, tuple[tuple[float, float], str]] = {
+    "bulk_temperature_C": ((-50.0, 500.0), "C"),
+    "permissible_film_ratio": ((1e-9, 100.0), ""),
+    "scuffing_load_stage": (LOAD_STAGES, ""),
+    **dict.fromkeys(FACTORS, ((1.0, 100.0), "")),
+}
+"""Numbers that a call may give instead of the scene: their ranges, and their units in words."""
+
 
 @dataclass(frozen=True)
 class Base:
@@ -290,20 +299,14 @@ def conditions_of(
     speed = operation.pinion_speed_rpm if pinion_speed_rpm is None and operation else pinion_speed_rpm
     gears = scene.pinion.roughness_Ra_um, scene.wheel.roughness_Ra_um
     roughness: Any = gears if roughness_um is None else roughness_um
-    given: dict[str, tuple[Any, Any, tuple[float, float], str]] = {
-        "bulk_temperature_C": (bulk_temperature_C, oil and oil.bulk_temperature_C, (-50.0, 500.0), "C"),
-        "permissible_film_ratio": (permissible_film_ratio, oil and oil.permissible_film_ratio, (1e-9, 100.0), ""),
-        "scuffing_load_stage": (scuffing_load_stage, oil and oil.scuffing_load_stage, LOAD_STAGES, ""),
-        "application_factor": (application_factor, operation.application_factor if operation else 1.0, (1, 100), ""),
-        "dynamic_factor": (dynamic_factor, operation.dynamic_factor if operation else 1.0, (1, 100), ""),
-    }
-    values = {name: of_scene if argument is None else argument for name, (argument, of_scene, _, _) in given.items()}
-    problems = [
-        f"{name}: {values[name]!r:.60}{f' {unit}' if unit else ''}; allowed a number from {plain(low, 6)} to "
-        f"{plain(high, 6)}"
-        for name, (_, _, (low, high), unit) in given.items()
-        if values[name] is not None and not low <= real(values[name]) <= high
-    ]
+    values, problems = _within_ranges(
+        scene,
+        bulk_temperature_C=bulk_temperature_C,
+        permissible_film_ratio=permissible_film_ratio,
+        scuffing_load_stage=scuffing_load_stage,
+        application_factor=application_factor,
+        dynamic_factor=dynamic_factor,
+    )
     speeds, several = _speeds(speed, problems)
     roughness = _roughness(roughness, problems)
     friction = _friction(friction, oil, cylindrical, problems)
@@ -325,6 +328,25 @@ def conditions_of(
         permissible_film_ratio=values["permissible_film_ratio"],
         supply_factor=supply_factor,
     )
+
+
+def _within_ranges(scene: Scene, **given: float | None) -> tuple[dict[str, Any], list[str]]:
+    """Arguments, those not given from the scene, and a problem for each that is outside its range."""
+    values = {name: _of_scene(scene, name) if argument is None else argument for name, argument in given.items()}
+    problems = [
+        f"{name}: {values[name]!r:.60}{f' {unit}' if unit else ''}; allowed a number from {plain(low, 6)} to "
+        f"{plain(high, 6)}"
+        for name, ((low, high), unit) in RANGES.items()
+        if values[name] is not None and not low <= real(values[name]) <= high
+    ]
+    return values, problems
+
+
+def _of_scene(scene: Scene, name: str) -> float | None:
+    """A number of the lubricant or of the operation; without an operation its factors are one."""
+    if name in FACTORS:
+        return getattr(scene.operation, name) if scene.operation else 1.0
+    return getattr(scene.lubricant, name) if scene.lubricant else None
 
 
 def lubricant_of(section: LubricantSection) -> Lubricant:

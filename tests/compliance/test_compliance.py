@@ -28,7 +28,7 @@ SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 PITCH = 2.0 * math.pi / 25
 STANDARD = 0.1
 """The standard's stiffness is an average of measurements."""
-ROUNDING = 1e-9
+ROUNDING = 1e-9  # solutions with stiffness matrices of finite elements, in another order
 MET = 1e-7
 """Lengths [mm], to which flanks are met."""
 CONVERGED = 0.02

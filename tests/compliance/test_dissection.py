@@ -11,7 +11,7 @@ from loaded_tca.compliance.finite_elements import discretise
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.material import Material
 
-ROUNDING = 1e-9
+ROUNDING = 1e-9  # solutions with stiffness matrices of finite elements, in another order
 
 
 def ring(columns=12, rows=4, turns=None):

@@ -17,7 +17,7 @@ from loaded_tca.pairs.bevel import bevel_pair
 from tests.samples.bodies import WIDTH, pinion
 
 STEEL = Material()
-ROUNDING = 1e-10
+ROUNDING = 1e-10  # energies, sums over some thousand nodes of which parts cancel
 COARSE_OUTLINE = 5e-3
 """The outline through the nodes, straight in between, against the curved one of the elements."""
 DENSITY = MeshDensity(2, 2, 1, 1, 2, 1, 0)

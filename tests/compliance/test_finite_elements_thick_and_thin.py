@@ -13,7 +13,7 @@ from loaded_tca.material import Material
 from tests.samples.bodies import COARSE, between, line, pinion, within
 
 STEEL = Material()
-ROUNDING = 1e-10
+ROUNDING = 1e-10  # energies and forces, sums over some thousand nodes of which parts cancel
 OFFSETS = np.rint(2.0 * np.asarray(ElementHexS2().doflocs)).astype(int)
 LOWEST = np.array([[0, 0, 0], [2, 0, 0], [2, 0, 2], [4, 0, 0]])
 SPANS = np.array([2, 1, 1, 2])

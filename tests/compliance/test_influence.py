@@ -30,7 +30,7 @@ CLOSED_FORM = 0.15
 """Weber and Banaschek take the body for a half-plane."""
 RING = 5e-3
 """One quadratic element to a pitch."""
-ROUNDING = 1e-9
+ROUNDING = 1e-9  # solutions with stiffness matrices of finite elements, in another order
 
 
 def whole(gear, height, part=1.0):

@@ -7,7 +7,7 @@ from loaded_tca.material import Material
 from tests.samples.bodies import pinion
 
 HEIGHT, STEEL = local_flexibility(pinion())
-ROUNDING = 1e-9
+ROUNDING = 1e-9  # solutions with stiffness matrices of finite elements
 CONVERGED = 0.015
 """Change on a mesh twice as fine; the fillet's end bends most."""
 

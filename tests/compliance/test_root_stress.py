@@ -35,7 +35,7 @@ SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 LAYERS = 8
 SMALL = replace(DENSITY, lengthwise=LAYERS, thin_ends=True)
 TINY = MeshDensity(2, 2, 1, 2, 3, 6, 1, 2.0, 0.02, True)
-ROUNDING = 1e-9
+ROUNDING = 1e-9  # MPa of some MPa: derivatives of solutions with stiffness matrices of finite elements
 SINGLE = 3e-4
 """Of the largest stress: what fronts of single precision may change (``validation.loaded.root_stress_precision``)."""
 HPSTC = 37.97813365

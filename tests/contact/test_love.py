@@ -35,8 +35,8 @@ def test_coefficients_agree_with_quadrature(aspect):
 
 def test_coefficient_of_a_square_on_itself_is_the_closed_form():
     own = love.influence_coefficients((1, 1), 1.0)[0, 0]
-    # one square: a few operations, the same number was seen
-    assert_allclose(own, 4.0 * math.log(1.0 + math.sqrt(2.0)) / math.pi, rtol=1e-14)
+    # one square: some dozen operations without cancellation
+    assert_allclose(own, 4.0 * math.log(1.0 + math.sqrt(2.0)) / math.pi, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("shape", "aspect"), [((90, 90), 1.0), ((200, 70), 2.0), ((70, 200), 0.5)])

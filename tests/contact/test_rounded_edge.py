@@ -399,8 +399,8 @@ def test_error_at_an_edge_is_no_less_than_what_finer_cells_leave_of_the_coarser_
     """Two solutions agree by chance, of which the coarser one was far from one coarser still."""
     coarser = EdgePressure(100.0, (0.0, 0.0), 0.064, False, 0.01, 5.0, 9, None)
     finer = replace(coarser, pressure=100.1, error=0.002, cells_on_arc=8.0)
-    assert finer.compared_with(coarser).error == pytest.approx(0.064 * (5.0 / 8.0) ** 2, rel=1e-12)
-    assert replace(finer, pressure=110.0).compared_with(coarser).error == pytest.approx(1.0 / 11.0, rel=1e-12)
+    assert finer.compared_with(coarser).error == pytest.approx(0.064 * (5.0 / 8.0) ** 2, rel=ROUNDING)
+    assert replace(finer, pressure=110.0).compared_with(coarser).error == pytest.approx(1.0 / 11.0, rel=ROUNDING)
     assert finer.compared_with(replace(coarser, error=math.inf)).error == 0.002
 
 

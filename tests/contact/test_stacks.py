@@ -185,5 +185,5 @@ def test_coefficients_of_many_aspects_are_those_of_each():
     for shape in ((9, 12), (130, 4)):
         for aspect, found in zip(aspects.tolist(), influence_coefficients(shape, aspects), strict=True):
             assert_allclose(found, influence_coefficients(shape, aspect), rtol=ROUNDING)
-    # the same terms: the same numbers were seen
-    assert_allclose(own_coefficient(aspects), influence_coefficients((1, 1), aspects)[:, 0, 0], rtol=1e-13)
+    # the same terms, by loops of another length
+    assert_allclose(own_coefficient(aspects), influence_coefficients((1, 1), aspects)[:, 0, 0], rtol=ROUNDING)

@@ -75,6 +75,7 @@ def test_eccentric_halves_of_opposite_phases_shuttle_by_their_closed_form(wobbli
 def test_alike_halves_do_not_shuttle_and_are_one_half():
     scene = scene_with(**{"revolution.pitches": 1, "pinion.pitch.index_um": [3.0, *(TEETH - 1) * [0.0]]})
     revolution = analyse_double_helical_revolution(scene)
+    # mm; deflections of both halves cancel, and are added by halves below
     assert_allclose(revolution.axial_motion, 0.0, atol=1e-12)
     assert_allclose(revolution.transmission_error, revolution.half_a.transmission_error, rtol=1e-12)
     assert_allclose(revolution.rigid_transmission_error, revolution.half_b.rigid_transmission_error, rtol=1e-12)

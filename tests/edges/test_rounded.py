@@ -213,7 +213,8 @@ def test_share_of_a_gear_in_the_compliance_is_that_of_its_material(materials):
     pair, one = loaded(materials=materials, load=100.0)
     compliances = [(1.0 - material.poisson_ratio**2) / material.youngs_modulus for material in materials]
     for edge in reached_arcs(pair, one):
-        assert_allclose([line.share for line in edge.lines], np.array(compliances) / sum(compliances), rtol=1e-12)
+        shares = [line.share for line in edge.lines]
+        assert_allclose(shares, np.array(compliances) / sum(compliances), rtol=1e-12)  # a quotient
 
 
 @pytest.mark.thorough
@@ -238,7 +239,7 @@ def test_edges_of_bent_flanks_are_where_the_gap_begins_to_open():
         gaps = [NormalGap(pair, contact, one.separation.axes) for pair in (both, both.sharp)]
         opened, sharp = (gap.at(x[None], y[None])[0][0] for gap in gaps)
         before, beyond = (opened - sharp).tolist()
-        assert abs(before) < 1e-12
+        assert abs(before) < 1e-12  # mm; rounding of coordinates of 100 mm
         assert_allclose(beyond, 1e-6 / 0.2, rtol=0.15)  # along a slant of up to 20 deg
 
 

@@ -273,7 +273,7 @@ def test_units_of_files_give_the_same_scene(path: str, value: tuple[str, str]) -
     expected = import_stage(example(), "10")
     found = import_stage(changed(attributes={path: value}), "10")
     for key, one in _numbers(expected.table).items():
-        assert _numbers(found.table)[key] == pytest.approx(one, rel=1e-12, abs=1e-9), key
+        assert _numbers(found.table)[key] == pytest.approx(one, rel=1e-12, abs=1e-9), key  # a factor
 
 
 def _numbers(table, path=""):

@@ -13,6 +13,8 @@ from loaded_tca.exchange import import_stage
 from loaded_tca.loaded.shaft_lines import shaft_lines
 from tests.samples.rexs import changed, example, part, relation
 
+ROUNDING = 1e-12  # of factors of units, sums of eight lengths, and turns
+
 
 def bearings(model, gear="pinion", stage="10"):
     return getattr(import_stage(model, stage).scene, gear).shaft.bearings
@@ -36,8 +38,8 @@ def test_cones_become_cylinders_of_the_same_length() -> None:
     imported = import_stage(example(), "10")
     sections = imported.scene.wheel.shaft.sections
     cone = sections[2:10]
-    assert_allclose(sum(one.length_mm for one in cone), 10.0, rtol=1e-12)
-    assert_allclose([cone[0].outer_diameter_mm, cone[-1].outer_diameter_mm], [50.25, 53.75], rtol=1e-12)
+    assert_allclose(sum(one.length_mm for one in cone), 10.0, rtol=ROUNDING)
+    assert_allclose([cone[0].outer_diameter_mm, cone[-1].outer_diameter_mm], [50.25, 53.75], rtol=ROUNDING)
     assert "shaft 4: its cones are 8 cylinders each, of the diameters at their middles" in imported.read_as
     backwards = import_stage(changed(attributes={"89.outer_diameter_end": ("64", "mm")}), "11").scene.wheel.shaft
     assert backwards.sections[0].outer_diameter_mm > backwards.sections[-1].outer_diameter_mm
@@ -102,14 +104,14 @@ def test_operating_points_are_turned_into_the_frame_of_the_gear(old: bool) -> No
     expected = np.diag([2e5, 1e5, 3e5, 5e7, 4e7])  # x, y, z, about x = w, about y = -v
     expected[1, 3] = expected[3, 1] = -6e5  # F_y = -F_v by the rotation about x = w
     expected[0, 4] = expected[4, 0] = 7e5  # F_x = F_w by that about y = -v
-    assert_allclose(rows, expected, rtol=1e-12)
+    assert_allclose(rows, expected, rtol=ROUNDING)
 
 
 def test_operating_points_are_turned_the_way_of_the_axes() -> None:
     """The wheel of stage 11 is at +v of its pinion: x = v, y = w, z = u, a turn that is not its own inverse."""
     stiffness = operating_point(np.diag([3e8, 1e8, 2e8, 4e7, 5e7]), bearing=93)
     rows = np.array(bearings(changed(attributes=stiffness), stage="11")[0].stiffness)
-    assert_allclose(rows, np.diag([1e5, 2e5, 3e5, 4e7, 5e7]), rtol=1e-12, atol=1e-6)
+    assert_allclose(rows, np.diag([1e5, 2e5, 3e5, 4e7, 5e7]), rtol=ROUNDING, atol=1e-6)
 
 
 def test_half_an_operating_point_is_none() -> None:

@@ -14,6 +14,8 @@ from loaded_tca.exchange import import_stage
 from loaded_tca.scene import parse_scene, read_scene
 from tests.samples.rexs import changed, example, part, planetary, relation
 
+ROUNDING = 1e-12  # of a few products and sums of lengths of 100 mm
+
 
 def scene_of(attributes=None, stage="10", **more):
     return import_stage(changed(attributes=attributes, **more), stage).scene
@@ -42,7 +44,7 @@ def test_geometry_of_the_example_is_that_of_closed_forms() -> None:
 
 
 def test_tip_diameters_of_files_are_taken() -> None:
-    assert_allclose(2.0 * scene_of(stage="11").mesh().wheel.tip_radius, 224.0, rtol=1e-12)
+    assert_allclose(2.0 * scene_of(stage="11").mesh().wheel.tip_radius, 224.0, rtol=ROUNDING)
 
 
 def test_addendum_of_the_basic_profile_lengthens_the_teeth() -> None:
@@ -339,5 +341,5 @@ def test_dedendum_of_a_ring(attributes, dedendum, notes) -> None:
     imported = import_stage(changed(planetary(), attributes), "220")
     ring = imported.scene.mesh().wheel
     expected = 255.0 if dedendum is None else 4.0 * (61 + 2.0 * (dedendum - ring.profile_shift))
-    assert_allclose(2.0 * ring.root_radius, expected, rtol=1e-12)
+    assert_allclose(2.0 * ring.root_radius, expected, rtol=ROUNDING)
     assert [one for one in imported.read_as if "tool" in one] == notes

@@ -202,4 +202,4 @@ def test_spiral_angle_along_a_circle_is_that_of_the_standard(distance):
     along = distance * math.sin(PITCH) * (theta.rho * math.sin(PITCH) + theta.z * math.cos(PITCH))
     sine = (2.0 * MEAN * 90.0 * 0.5 - MEAN**2 + distance**2) / (2.0 * distance * 90.0)
     assert_allclose(math.sin(math.atan(along)), sine, rtol=1e-9)
-    assert_allclose(circular(1).theta(*place(PITCH, MEAN)).value, 0.0, atol=1e-15)
+    assert_allclose(circular(1).theta(*place(PITCH, MEAN)).value, 0.0, atol=OF_ANGLES)

@@ -13,7 +13,7 @@ from loaded_tca.flanks.bevel import DistanceCurve, ToothRegion, chebyshev_nodes,
 
 DISTANCES, PITCH, FACE_CONE = (95.0, 132.0), math.radians(17.4), (math.radians(19.3), -2.2)
 STEP = 1e-4  # mm
-ROUNDING = 1e-11
+ROUNDING = 1e-11  # relative, or mm: coordinates of 100 mm, searched to rounding
 OF_ANGLES = 1e-14  # rad; of angles of order one, beside rtol: none seen
 
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.gears import BevelBlank, BlankGear, CylindricalGear
 from loaded_tca.gears.blank_gear import virtual_curvature
 
-ROUNDING = 1e-11
+ROUNDING = 1e-11  # of some dozen functions and products, of which parts cancel
 CROWN = 1e-6  # a crown gear against one of 90 deg +- 1e-7 rad
 
 

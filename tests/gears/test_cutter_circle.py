@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears.bevel import CutterCircle
 
+ROUNDING = 1e-12  # of a few functions and products
 CIRCLE = CutterCircle(81.273, math.radians(35.0), 114.3)
 DISTANCES = np.array([68.6, 75.0, 81.273, 88.0, 93.9])
 STEP = 1e-4
@@ -23,14 +24,14 @@ def test_points_of_the_curve_lie_on_one_circle():
     assert_allclose(radius, 114.3, rtol=1e-9)
     # the centre, from the ray of R_m: r cos(beta) across, R_m - r sin(beta) along
     centre = 81.273 - 114.3 * math.sin(math.radians(35.0)) + 1j * 114.3 * math.cos(math.radians(35.0))
-    assert_allclose(abs(points - centre), 114.3, rtol=1e-12)
+    assert_allclose(abs(points - centre), 114.3, rtol=ROUNDING)
 
 
 def test_turn_is_zero_at_the_mean_point_and_grows_with_the_spiral_angle():
     assert CIRCLE.turn(81.273) == 0.0
     slope = (CIRCLE.turn(DISTANCES + STEP) - CIRCLE.turn(DISTANCES - STEP)) / (2.0 * STEP)
     assert_allclose(slope * DISTANCES, CIRCLE.tangent(DISTANCES)[0], rtol=1e-8)
-    assert_allclose(CIRCLE.sine(81.273)[0], math.sin(math.radians(35.0)), rtol=1e-12)
+    assert_allclose(CIRCLE.sine(81.273)[0], math.sin(math.radians(35.0)), rtol=ROUNDING)
 
 
 @pytest.mark.parametrize("name", ["sine", "tangent"])

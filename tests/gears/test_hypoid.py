@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import GeometryError
 from loaded_tca.gears import HypoidCones, pitch_cones_by_method_1
@@ -19,6 +19,7 @@ from tests.refusals import refused_calls
 
 RIGHT = 0.5 * math.pi
 CLOSED = 1e-12  # relative: a few roundings
+OF_UNIT_VECTORS = 1e-12  # of some dozen products of parts up to one
 
 
 def deg(*angles):
@@ -120,27 +121,27 @@ cones = st.builds(
 @given(cones, st.sampled_from([1, -1]))
 def test_pitch_cones_touch_in_the_pitch_plane_at_p(pair, hand):
     frame = pair.frame(hand)
-    assert_allclose(frame.axes @ frame.axes.T, np.eye(3), atol=1e-14)
+    assert_allclose(frame.axes @ frame.axes.T, np.eye(3), rtol=0, atol=OF_UNIT_VECTORS)
     assert_allclose(np.linalg.det(frame.axes), 1.0)
     (first, second), (own, other) = pair.pitch_angles, pair.mean_cone_distances
     point = own * np.array([math.sin(first), 0.0, math.cos(first)])
     on_wheel = frame.axes @ (point - frame.origin)
     assert_allclose(on_wheel, [other * math.sin(second), 0.0, other * math.cos(second)], atol=1e-11 * other)
     normal = np.array([math.cos(first), 0.0, -math.sin(first)])
-    assert_allclose(-(frame.axes @ normal), [math.cos(second), 0.0, -math.sin(second)], atol=1e-12)
+    assert_allclose(-(frame.axes @ normal), [math.cos(second), 0.0, -math.sin(second)], atol=OF_UNIT_VECTORS)
     # a tooth of the pinion's hand and one of the wheel's lie on each other there
     spiral = 0.3
     around = np.array([0.0, 1.0, 0.0])
     tooth = math.cos(spiral + pair.offset_angle) * point / own + hand * math.sin(spiral + pair.offset_angle) * around
     on_cone = np.array([math.sin(second), 0.0, math.cos(second)])
     mating = math.cos(spiral) * on_cone - hand * math.sin(spiral) * around
-    assert_allclose(frame.axes @ tooth, mating, atol=1e-12)
+    assert_allclose(frame.axes @ tooth, mating, atol=OF_UNIT_VECTORS)
 
 
 @given(cones)
 def test_common_normal_stands_across_both_axes_at_the_offset(pair):
     frame = pair.frame(1)
-    assert_allclose(frame.axes[2] @ frame.common_normal, 0.0, atol=1e-13)
+    assert_allclose(frame.axes[2] @ frame.common_normal, 0.0, atol=OF_UNIT_VECTORS)
     assert frame.common_normal[2] == 0.0
     pinion, wheel = frame.crossing_points
     assert_allclose(wheel - pinion, -pair.offset * frame.common_normal, atol=1e-9)
@@ -167,16 +168,18 @@ def test_without_an_offset_the_frame_is_that_of_axes_that_meet():
     angles = pitch_angles((13, 42), math.radians(80.0))
     frame = HypoidCones(angles, (75.0, 75.0), 0.0).frame(1)
     sine, cosine = math.sin(math.radians(80.0)), math.cos(math.radians(80.0))
-    assert_allclose(frame.axes, [[-cosine, 0.0, sine], [0.0, -1.0, 0.0], [sine, 0.0, cosine]], atol=1e-15)
-    assert_allclose(frame.origin, 0.0, atol=1e-13)
-    assert_allclose(frame.common_normal, [0.0, 1.0, 0.0], atol=1e-15)
+    expected = [[-cosine, 0.0, sine], [0.0, -1.0, 0.0], [sine, 0.0, cosine]]
+    assert_allclose(frame.axes, expected, rtol=0, atol=OF_UNIT_VECTORS)
+    assert_allclose(frame.origin, 0.0, atol=75.0 * OF_UNIT_VECTORS)
+    assert_allclose(frame.common_normal, [0.0, 1.0, 0.0], rtol=0, atol=OF_UNIT_VECTORS)
 
 
 def test_opposite_hands_are_mirror_images():
     right, left = (annex_d().frame(hand) for hand in (1, -1))
     mirror = np.array([1.0, -1.0, 1.0])
-    assert_allclose(left.origin, right.origin * mirror)
-    assert_allclose(left.axes[[0, 2]], right.axes[[0, 2]] * mirror, atol=1e-16)
+    # the same operations with the signs turned, to the bit
+    assert_array_equal(left.origin, right.origin * mirror)
+    assert_array_equal(left.axes[[0, 2]], right.axes[[0, 2]] * mirror)
 
 
 test_cones_refuse = refused_calls(

@@ -15,7 +15,7 @@ from loaded_tca.gears.internal_mesh import internal_interferences
 from tests.refusals import refused_calls
 from tests.samples.internal_pairs import internal_mesh
 
-ROUNDING = 1e-11
+ROUNDING = 1e-11  # of involutes that are inverted, and of lengths of 100 mm that are subtracted
 
 
 def spur(teeth, height=1.0, distance=None):

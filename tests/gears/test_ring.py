@@ -12,7 +12,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears import CylindricalGear, PinionCutter, RingGear
 from tests.refusals import refused_calls
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # of some dozen functions and products
 CUTTER = PinionCutter(25, 0.1, 0.25)
 
 

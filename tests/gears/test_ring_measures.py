@@ -11,7 +11,7 @@ from loaded_tca.gears import CylindricalGear, InternalMesh, PinionCutter, RingGe
 from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
 from tests.refusals import refused_calls
 
-ROUNDING = 1e-10
+ROUNDING = 1e-10  # of involutes that are inverted, and of lengths of 100 mm of which an allowance of 0.1 mm is left
 
 
 def ring(teeth=60, helix=0.0, **given):

@@ -12,6 +12,7 @@ from loaded_tca.gears.cylindrical_mesh import interferences
 from loaded_tca.gears.undercut import fillet_room, undercut_sentences, undercuts
 from validation.cylindrical.undercut import ROLLED, rolled_form_radius
 
+ROUNDING = 1e-12  # of lengths of a path up to ten times as long, which are subtracted
 ANGLE = radians(20.0)
 SHARP = {"root_radius_coefficient": 0.0}
 
@@ -83,8 +84,8 @@ def test_undercuts_of_both_gears_cut_both_ends_of_the_path():
     pinion, wheel = undercuts(pair)
     assert pinion == wheel
     path, start = pair.path_of_contact, pair.pinion.roll_length(pair.pinion.form_radius)
-    assert_allclose([path.A, path.T2 - path.E], start, rtol=1e-12)
-    assert_allclose(pinion.ratio / pinion.whole_ratio, 1.0 - 2.0 * pinion.lost_share, rtol=1e-12)
+    assert_allclose([path.A, path.T2 - path.E], start, rtol=ROUNDING)
+    assert_allclose(pinion.ratio / pinion.whole_ratio, 1.0 - 2.0 * pinion.lost_share, rtol=ROUNDING)
 
 
 def test_undercut_takes_nothing_where_the_mating_tip_ends_above_it():
@@ -130,7 +131,7 @@ def test_planet_without_shift_loses_what_the_ring_would_use():
     pair = InternalMesh(pinion, RingGear(-60, 3.0, 10.0, tip_diameter=176.5))
     cut, none = undercuts(pair)
     assert none is None
-    assert_allclose(pair.path_of_contact.A, pinion.roll_length(pinion.form_radius), rtol=1e-12)
+    assert_allclose(pair.path_of_contact.A, pinion.roll_length(pinion.form_radius), rtol=ROUNDING)
     tip = sqrt(88.25**2 - (90.0 * cos(ANGLE)) ** 2) - 72.0 * sin(ANGLE)
     assert_allclose(cut.lost_length, pinion.roll_length(pinion.form_radius) - tip, rtol=1e-9)
     assert pair.room.in_fillet[0] > 0.0

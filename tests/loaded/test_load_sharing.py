@@ -446,7 +446,7 @@ def test_paths_of_all_pairs_are_told_in_the_angles_of_the_gears():
     touching = [path for path in paths.values() if not path.on_edge.any()]
     assert len(touching) > 1
     for path in (leading, *touching):
-        assert_allclose(path.pinion_angle, angles, rtol=1e-12)
+        assert_allclose(path.pinion_angle, angles, rtol=1e-12)  # pitches are taken off and added
         assert_allclose(path.wheel_angle, pair.ratio * angles, atol=1e-9)
 
 

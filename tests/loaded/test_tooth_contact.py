@@ -27,7 +27,7 @@ from loaded_tca.unloaded import trace_teeth
 from tests.samples.gear_pairs import SAM_PAPER_TORQUE, cylindrical_mesh, gear_pair, sam_paper
 from tests.samples.tangents import stiffness
 
-BALANCE = 1e-10
+BALANCE = 1e-10  # pressures are scaled to the load and added up over some thousand cells
 HERTZ = 5e-3  # the flanks are no paraboloids over an ellipse as long as the face
 GRID = GridChoice(cells=(32, 32))
 SETTLED = 1e-3  # the accuracy of defaults

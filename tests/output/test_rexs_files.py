@@ -16,6 +16,7 @@ from loaded_tca.output import write_rexs
 from loaded_tca.output.rexs import rexs_results
 from tests.samples.rexs import EXAMPLE, as_json, changed, example, planetary
 
+ROUNDING = 1e-12  # of factors of units, and of turns by right angles
 QUICK = {
     "analysis.positions": 3,
     "analysis.cells": [12, 16],
@@ -57,7 +58,7 @@ def test_face_load_factor_is_largest_over_mean_load(result) -> None:
     load = np.array(attributes["load_distribution_along_face_width"].value)
     assert_allclose(attributes["face_load_factor_flank"].value, load.max() / load.mean(), rtol=1e-9)
     smaller = rexs_results(result, example(), "10", torque=0)["10"]
-    assert_allclose(smaller["face_load_factor_flank"].value, result.face_load_factor[0], rtol=1e-12)
+    assert_allclose(smaller["face_load_factor_flank"].value, result.face_load_factor[0], rtol=ROUNDING)
 
 
 def test_mesh_stiffness_is_that_of_the_whole_face(result) -> None:
@@ -90,7 +91,7 @@ def test_deflection_of_a_shaft_is_along_its_own_axes(result) -> None:
     for axis, expected in (("u", line.motions[:, 2]), ("v", -line.motions[:, 1]), ("w", line.motions[:, 0])):
         assert attributes[f"displacement_{axis}_of_nodes"].unit == "mum"
         assert_allclose(attributes[f"displacement_{axis}_of_nodes"].value, 1e3 * expected, atol=1e-9)
-    assert_allclose(attributes["torsion_u"].value, np.degrees(line.motions[:, 5]), atol=1e-12)
+    assert_allclose(attributes["torsion_u"].value, np.degrees(line.motions[:, 5]), atol=ROUNDING)
 
 
 @pytest.mark.thorough
@@ -117,7 +118,7 @@ def test_bearings_hold_the_forces_of_their_shaft(result) -> None:
             np.array([own[f"force_acting_on_{side}_component_{axis}"].value for axis in "uvw"])
             for side in ("inner", "outer")
         )
-        assert_allclose(inner, -outer, rtol=1e-12)
+        assert_allclose(inner, -outer, rtol=ROUNDING)
         on_casing += outer
     # the pinion's teeth are pressed back (-y = +v) and away from the wheel (-x = -w)
     assert_allclose(on_casing, [axial, tangential, -radial], rtol=5e-3)

@@ -19,7 +19,8 @@ def bending(name="mesh_cycle_finite_elements", **bores):
 
 
 def test_bores_are_those_given_or_a_part_of_the_root():
-    assert_allclose(bending().rigid_bores, [0.55 * root for root in ROOTS], rtol=1e-12)  # also below: the same product
+    # also below: a product
+    assert_allclose(bending().rigid_bores, [0.55 * root for root in ROOTS], rtol=1e-12)
     assert bending(pinion=30.0, wheel=40.0).rigid_bores == (30.0, 40.0)
 
 

@@ -134,7 +134,7 @@ def test_tooth_is_as_thick_as_asked_for():
         assert_allclose(tooth_angle(gear, np.array([rho]), np.array([z])), wanted, rtol=1e-9)
     wider = with_tooth_angle(basic, wanted).cutter
     mean = 0.5 * (wider.concave.point_radius + wider.convex.point_radius)
-    assert_allclose(mean, 114.3, rtol=1e-12)
+    assert_allclose(mean, 114.3, rtol=1e-12)  # half a sum
 
 
 @pytest.mark.thorough

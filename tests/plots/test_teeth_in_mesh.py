@@ -12,6 +12,7 @@ from loaded_tca.plots import plot_teeth_in_mesh
 from loaded_tca.plots.style import note_of
 from loaded_tca.scene import read_scene
 
+ROUNDING = 1e-12  # relative, or mm: points of lengths of 100 mm by a few operations
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 SPUR, RING = SCENES / "spur.toml", SCENES / "ground_planet_ring.toml"
 UNDERCUT = {"pinion.teeth": 10, "wheel.teeth": 40}
@@ -92,12 +93,12 @@ def test_path_of_contact_lies_between_the_circles_that_end_it():
     mesh, figure = drawn(SPUR, UNDERCUT)
     ends = line(figure, "path of contact A to E")
     first, second = (np.hypot(ends[:, 0], ends[:, 1] - height) for height in (-mesh.pinion_working_radius, 60.0))
-    assert_allclose(first, [mesh.pinion.form_radius, mesh.pinion.tip_radius], rtol=1e-12)
+    assert_allclose(first, [mesh.pinion.form_radius, mesh.pinion.tip_radius], rtol=ROUNDING)
     whole = line(figure, "line of action T1 T2")
     assert_allclose(
-        np.hypot(whole[0, 0], whole[0, 1] + mesh.pinion_working_radius), mesh.pinion.base_radius, rtol=1e-12
+        np.hypot(whole[0, 0], whole[0, 1] + mesh.pinion_working_radius), mesh.pinion.base_radius, rtol=ROUNDING
     )
-    assert_allclose(np.hypot(whole[1, 0], whole[1, 1] - 60.0), mesh.wheel.base_radius, rtol=1e-12)
+    assert_allclose(np.hypot(whole[1, 0], whole[1, 1] - 60.0), mesh.wheel.base_radius, rtol=ROUNDING)
     assert (second < mesh.wheel.tip_radius).all()  # the undercut ends the path before the tip of the wheel
     assert figure.axes[0].get_aspect() == 1.0
 
@@ -108,7 +109,7 @@ def test_points_that_touch_are_base_pitches_apart_on_the_path():
     assert len(points) == 1 + int(mesh.path_of_contact.AC // mesh.pinion.base_pitch) + int(
         (mesh.path_of_contact.AE - mesh.path_of_contact.AC) // mesh.pinion.base_pitch
     )
-    assert_allclose(np.hypot(*points.T).min(), 0.0, atol=1e-12)
+    assert_allclose(np.hypot(*points.T).min(), 0.0, atol=ROUNDING)
 
 
 def test_picture_has_its_numbers_with_units():

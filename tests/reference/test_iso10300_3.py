@@ -11,6 +11,7 @@ from loaded_tca.reference import iso6336_3, iso10300_3
 from tests.refusals import refused_calls
 from validation.rating.iso_tr_10300_30 import BEVEL, FOUR_DIGITS, SAMPLES, obtained
 
+ROUNDING = 1e-12  # of some dozen products and roots
 PARTS = ("Y_Fa", "Y_Sa", "q_s", "s_Fn", "rho_F", "h_Fa", "Y_eps", "Y_BS", "Y_LS", "sigma_F0", "sigma_FG")
 TOOL = {"tool_depth": 1.25, "edge_radius": 0.25, "profile_shift": 0.1, "thickness_shift": 0.02}
 ANGLE = math.radians(20.0)
@@ -33,7 +34,7 @@ def test_section_is_that_of_iso_6336_3_under_a_load_at_the_tip():
     here = section(thickness_shift=0.0)
     there = iso6336_3.root_section(24, 0.1, 26.2, 1.0, dedendum_coefficient=1.25, root_radius_coefficient=0.25)
     for name in ("thickness", "lever", "radius", "load_angle"):
-        assert_allclose(getattr(here, name), getattr(there, name), rtol=1e-12)
+        assert_allclose(getattr(here, name), getattr(there, name), rtol=ROUNDING)
 
 
 def test_teeth_become_straight_as_their_number_grows():
@@ -50,7 +51,7 @@ def test_both_sides_of_a_tooth_share_its_chord():
     steep = math.radians(22.0)
     alone = [section(pressure_angle=each).thickness for each in (ANGLE, steep)]
     both = section(coast=(24.0, steep))
-    assert_allclose(both.thickness, sum(alone) / 2.0, rtol=1e-12)
+    assert_allclose(both.thickness, sum(alone) / 2.0, rtol=ROUNDING)
     assert (both.lever, both.radius) == (section().lever, section().radius)  # those of the loaded side
 
 
@@ -62,7 +63,7 @@ def test_straight_teeth_have_no_spiral_factor():
     pair = replace(BEVEL.pair, spiral_angles=(0.0, 0.0))
     assert iso10300_3.bevel_spiral_angle_factor(pair, BEVEL.depths) == 1.0
     profile, _ = pair.contact_ratios
-    assert_allclose(iso10300_3.contact_ratio_factor(pair), 0.25 + 0.75 / profile, rtol=1e-12)
+    assert_allclose(iso10300_3.contact_ratio_factor(pair), 0.25 + 0.75 / profile, rtol=ROUNDING)
 
 
 test_root_refuses = refused_calls(

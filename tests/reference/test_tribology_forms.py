@@ -15,7 +15,7 @@ from loaded_tca.reference.friction import schlenk, xu_kahraman
 from tests.refusals import refused_calls
 from tests.samples.tribology import OIL
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # of powers and a few products
 MODULUS, STEEL = 226374.0, 13784.0
 HOT = (0.05, 1000.0, 20.0, MODULUS)
 

@@ -10,6 +10,7 @@ from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.results.extremes import changes_to_another, warn_of_positions
 from loaded_tca.warning_kinds import ANOTHER_POSITION
 
+ROUNDING = 1e-12  # of a difference of two slopes of order one
 KEY = "mounting.offset_mm"
 
 
@@ -43,7 +44,7 @@ def test_beyond_the_change_another_value_is_the_largest():
         within, beyond = (values + part * change * slopes[:, key] for part in (0.999, 1.001))
         assert within.argmax() == top
         assert beyond.argmax() != top
-        assert_allclose(slopes[beyond.argmax(), key] - slopes[top, key], kinks[side, key], rtol=1e-12)
+        assert_allclose(slopes[beyond.argmax(), key] - slopes[top, key], kinks[side, key], rtol=ROUNDING)
 
 
 def test_peak_to_peak_that_turns_within_the_tolerance_is_told():

@@ -38,7 +38,7 @@ DIFFERENCES = 1e-8
 """Error of central differences of that step by rounding, of the sum of the sizes of what is added up."""
 ROUNDED = 4.0 * np.finfo(float).eps / STEP
 """The same of the figure: it is known to some last digits on either side."""
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # sums over some hundred cells
 SPACING = (0.013, 0.21)  # mm
 
 

@@ -15,6 +15,7 @@ from loaded_tca.studies import Study, run_study, study_summary
 from loaded_tca.warning_kinds import kind_of
 from tests.samples.results import SCENES
 
+ROUNDING = 1e-12  # mm; lengths of 100 mm are subtracted
 QUICK = {
     "analysis.positions": 1,
     "analysis.accuracy": None,
@@ -179,7 +180,7 @@ def test_tip_that_comes_near_to_a_root_is_warned_of(clearance):
     scene = spur(**PLAIN)
     height = 2.0 * (scene.mesh().wheel.tip_radius + 0.75 - clearance)
     near = scene.with_changes({"wheel.tip_diameter_mm": height})
-    assert near.tip_clearances[0] == pytest.approx(clearance, abs=1e-12)
+    assert near.tip_clearances[0] == pytest.approx(clearance, abs=ROUNDING)
     found = [sentence for sentence in sentences(near) if "of the root of the pinion" in sentence]
     least = f"{max(clearance, 0.0):g}"
     assert found == [

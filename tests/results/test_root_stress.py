@@ -14,7 +14,7 @@ from loaded_tca.results.root_stress import root_stress_arrays
 from tests.samples.results import assert_same
 from tests.samples.root_stress import analysed, models, result, scene
 
-ROUNDING = 1e-9
+ROUNDING = 1e-9  # sums over some hundred slices, times stresses of finite elements
 SINGLE = 3e-4
 """Of the largest stress: what fronts of single precision may change (``validation.loaded.root_stress_precision``)."""
 SHARED = 5e-4

@@ -261,7 +261,7 @@ def test_derivatives_of_one_strip_are_told_beside_those_through_three(monkeypatc
     assert [strip for strip, _ in rows] == [[9], [10], [11]]
     slopes = (strips - 0.3) / 25.0
     through = sum(part * slope for (_, part), slope in zip(rows, slopes, strict=True))
-    assert_allclose(through, 0.0, atol=1e-12)
+    assert_allclose(through, 0.0, atol=1e-12)  # three products of slopes of 0.1
     words = r"by -0\.012 per mm, while .* derivative is \S+ \(second_mm; 1 of 2 keys\)"
     with pytest.warns(AccuracyWarning, match=words):
         warn_of_strips_beside(

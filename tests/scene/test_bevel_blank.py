@@ -17,6 +17,7 @@ from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.curvature import relative_curvature
 from tests.samples.results import SCENES
 
+ROUNDING = 1e-12  # relative, rad or mm: some dozen operations on angles of order one and lengths of 100 mm
 F2 = """
 title = "annex F.2"
 [pair]
@@ -102,7 +103,7 @@ def test_flank_ends_on_the_cones_of_the_blank(taper):
     for gear, blank in ((pair.pinion, blanks.pinion), (pair.wheel, blanks.wheel)):
         rho, z = gear.flank.grid(7, 5)
         tip = rho[-1] * math.cos(blank.face_angle) - (z[-1] + blank.face_apex) * math.sin(blank.face_angle)
-        assert_allclose(tip, 0.0, atol=1e-12 * blank.cone_distances[2])
+        assert_allclose(tip, 0.0, atol=ROUNDING * blank.cone_distances[2])
         edges = np.stack([np.broadcast_to(edge.value, rho.shape) for edge in gear.flank.edges(rho, z)])
         assert edges.min() > -1e-9
         root = rho[0] * math.cos(blank.root_angle) - (z[0] + blank.root_apex) * math.sin(blank.root_angle)
@@ -114,7 +115,7 @@ def test_clearance_is_the_same_along_the_face(taper):
     """Face cones run parallel to the mating gear's root cones; seen from the common apex of the axes."""
     blanks = annex_f2(**{"pair.blank.taper": taper}).blanks()
     for gear, mating in ((blanks.pinion, blanks.wheel), (blanks.wheel, blanks.pinion)):
-        assert_allclose(gear.root_angle + mating.face_angle, math.radians(90.0), atol=1e-12)
+        assert_allclose(gear.root_angle + mating.face_angle, math.radians(90.0), atol=ROUNDING)
         gap = -gear.root_apex * math.sin(gear.root_angle) - mating.face_apex * math.sin(mating.face_angle)
         assert_allclose(gap, blanks.clearance, rtol=1e-9)
 
@@ -159,7 +160,7 @@ def test_flanks_of_a_blank_are_conjugate():
     pair = annex_f2().pair()
     path = trace_contact(pair, np.linspace(-0.4, 0.4, 5) * pair.pitch)
     assert path.in_contact.all()
-    assert_allclose(path.transmission_error, 0.0, atol=1e-12)
+    assert_allclose(path.transmission_error, 0.0, atol=ROUNDING)
 
 
 def test_whole_teeth_of_a_blank_can_be_built():
@@ -171,7 +172,7 @@ def test_whole_teeth_of_a_blank_can_be_built():
 def test_constant_slots_of_the_duplex_taper():
     blanks = annex_f2().blanks()
     for gear in (blanks.pinion, blanks.wheel):
-        assert_allclose(gear.slot_widths, gear.mean_slot_width, rtol=1e-12)
+        assert_allclose(gear.slot_widths, gear.mean_slot_width, rtol=ROUNDING)
     assert not annex_f2(**{"pair.blank.taper": "standard"}).blanks().has_constant_slots
 
 
@@ -183,7 +184,7 @@ def test_sizes_are_the_same_by_module_and_diameter():
     }
     for name, value in sizes.items():
         scene = annex_f2(**(dict.fromkeys(sizes) | {name: value}))
-        assert_allclose(scene.outer_module, 176.893 / 39, rtol=1e-12)
+        assert_allclose(scene.outer_module, 176.893 / 39, rtol=ROUNDING)
 
 
 @pytest.mark.parametrize(
@@ -208,7 +209,7 @@ def test_backlash_of_every_kind_takes_as_much_from_both_teeth(kind, formula):
     ]
     assert_allclose(taken[0], taken[1], rtol=1e-9)
     if formula is not None:
-        assert_allclose(narrow.outer_normal_backlash, formula(0.2, plain), rtol=1e-12)
+        assert_allclose(narrow.outer_normal_backlash, formula(0.2, plain), rtol=ROUNDING)
     elif kind == "mean_normal":
         assert_allclose(sum(taken) * math.cos(plain.pressure_angle), 0.2, rtol=1e-9)
     else:
@@ -217,7 +218,7 @@ def test_backlash_of_every_kind_takes_as_much_from_both_teeth(kind, formula):
 
 def test_equivalent_ratio_of_other_shaft_angles_is_that_of_the_pitch_cones():
     """A miter pair is one at any shaft angle."""
-    assert_allclose(usual_factors((20, 20), math.radians(60.0))["addendum_share"], 0.5, rtol=1e-12)
+    assert_allclose(usual_factors((20, 20), math.radians(60.0))["addendum_share"], 0.5, rtol=ROUNDING)
 
 
 KINDS = {
@@ -292,7 +293,7 @@ def test_factors_and_slot_widths_that_are_given_do_not_meet_the_usual_ones():
     module, dedendum, pressure = by_factor.mean_normal_module, by_factor.dedendum_factor, by_factor.pressure_angle
     width = 2.0 * module * (0.05 + 0.25 * math.pi - dedendum * math.tan(pressure))  # of the wheel, at R_m
     by_slot = crown("straight_bevel", WIDE, 120.0, **{"pair.blank.wheel_slot_width_mm": width}).blanks()
-    assert_allclose(by_slot.thickness_modification, 0.05, rtol=1e-12)
+    assert_allclose(by_slot.thickness_modification, 0.05, rtol=ROUNDING)
     assert (
         crown("straight_bevel", WIDE, 120.0, **{"pair.blank.profile_shift": 0.3}).blanks().thickness_modification == 0.0
     )
@@ -428,7 +429,7 @@ def test_cones_of_a_drawing_are_those_of_the_blank():
     drawn = annex_f2(**changes)
     for first, second in ((drawn.pair().pinion, plain.pair().pinion), (drawn.pair().wheel, plain.pair().wheel)):
         for one, other in zip(first.flank.grid(5, 5), second.flank.grid(5, 5), strict=True):
-            assert_allclose(one, other, rtol=1e-12)
+            assert_allclose(one, other, rtol=ROUNDING)
     assert_allclose(row(drawn, "addendum h_a, mean point [mm]"), row(plain, "addendum h_a, mean point [mm]"), atol=6e-3)
 
 
@@ -448,19 +449,19 @@ def test_unequal_faces_meet_at_one_calculation_point():
     blanks, mesh = scene.blanks(), scene.mesh()
     outer = 0.5 * 176.893 / math.sin(blanks.pitch_angles[1])
     mean = outer - 0.45 * 25.4
-    assert_allclose(blanks.wheel.cone_distances, (outer - 25.4, mean, outer), rtol=1e-12)
-    assert_allclose(blanks.pinion.cone_distances, (mean - 0.55 * 27.4, mean, mean + 0.45 * 27.4), rtol=1e-12)
-    assert_allclose(mesh.pinion.mean_normal_module, blanks.mean_normal_module, rtol=1e-12)
+    assert_allclose(blanks.wheel.cone_distances, (outer - 25.4, mean, outer), rtol=ROUNDING)
+    assert_allclose(blanks.pinion.cone_distances, (mean - 0.55 * 27.4, mean, mean + 0.45 * 27.4), rtol=ROUNDING)
+    assert_allclose(mesh.pinion.mean_normal_module, blanks.mean_normal_module, rtol=ROUNDING)
     assert_allclose(mesh.wheel.mean_normal_module, 3.9227 / 81.273 * mean * math.cos(math.radians(35.0)), rtol=1e-4)
     for gear, blank in ((mesh.pinion, blanks.pinion), (mesh.wheel, blanks.wheel)):
-        assert_allclose((gear.inner_cone_distance, gear.outer_cone_distance), blank.cone_distances[::2], rtol=1e-12)
+        assert_allclose((gear.inner_cone_distance, gear.outer_cone_distance), blank.cone_distances[::2], rtol=ROUNDING)
 
 
 def test_flanks_of_unequal_faces_are_conjugate_and_touch_at_the_calculation_point():
     pair = annex_f2(**UNEQUAL).pair()
     path = trace_contact(pair, np.linspace(-0.4, 0.4, 5) * pair.pitch)
     assert path.in_contact.all()
-    assert_allclose(path.transmission_error, 0.0, atol=1e-12)
+    assert_allclose(path.transmission_error, 0.0, atol=ROUNDING)
     crowned = annex_f2(**UNEQUAL, **{"wheel.modifications.lead_crowning_um": 20.0}).pair()
     middle = trace_contact(crowned, [0.0])
     distance = np.hypot(middle.wheel_radius, middle.wheel_axial)
@@ -536,8 +537,8 @@ def test_largest_edge_radii_are_those_of_slot_and_clearance():
     gear = annex_f2().blanks().pinion
     radius, alpha = gear.edge_radius_of_slot, math.radians(20.0)
     # from the corner of bottom and flank to the foot of the circle: r (1 - sin alpha)/cos alpha
-    assert_allclose(2.0 * radius * (1.0 - math.sin(alpha)) / math.cos(alpha), gear.slot_widths.min(), rtol=1e-12)
-    assert_allclose(gear.edge_radius_of_clearance(0.8) * (1.0 - math.sin(alpha)), 0.8, rtol=1e-12)
+    assert_allclose(2.0 * radius * (1.0 - math.sin(alpha)) / math.cos(alpha), gear.slot_widths.min(), rtol=ROUNDING)
+    assert_allclose(gear.edge_radius_of_clearance(0.8) * (1.0 - math.sin(alpha)), 0.8, rtol=ROUNDING)
 
 
 def test_radius_of_relative_curvature_of_annex_f2_is_that_of_iso_tr_10300_30():
@@ -552,7 +553,7 @@ def test_flanks_along_the_circle_of_the_cutter_are_conjugate_and_have_its_spiral
     scene = annex_f2(**{"pair.blank.lengthwise_curve": "cutter_circle"})
     pair = scene.pair()
     path = trace_contact(pair, np.linspace(-0.4, 0.4, 5) * pair.pitch)
-    assert_allclose(path.transmission_error, 0.0, atol=1e-12)
+    assert_allclose(path.transmission_error, 0.0, atol=ROUNDING)
     for gear, delta in ((pair.pinion, 19.7468), (pair.wheel, 70.2532)):
         sine, cosine = math.sin(math.radians(delta)), math.cos(math.radians(delta))
         for distance, printed in ((93.9726, 36.846), (81.273, 35.0), (68.5726, 33.946)):

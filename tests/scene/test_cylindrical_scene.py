@@ -12,7 +12,7 @@ WIDER = 138.0
 """Centre distance [mm] of a spur pair 34/57 of module 3, whose sum of shifts is 0.52 without backlash: by hand,
 cos(alpha_w) = 136.5 cos(20 deg)/138, (34 + 57)(inv alpha_w - inv 20 deg)/(2 tan 20 deg)."""
 SUM = 0.519985
-ROUNDING = 1e-9
+ROUNDING = 1e-9  # mm; decimals of angles and distances in scenes
 
 
 def shifts(**given):

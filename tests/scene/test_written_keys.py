@@ -74,6 +74,7 @@ METRIC_KEYS = {  # by the inch, 25.4 mm, and the factors of NIST SP 811, appendi
     "analysis.torques_Nm": (600.0 * 0.1129848, 1200.0 * 0.1129848),
 }
 SEVEN_DIGITS = 1e-6
+ROUNDING = 1e-12  # of a few functions and products, and of a module written with 16 digits
 """Of the factors of NIST SP 811; a unit of the last one of 1.355818 is 7e-7."""
 
 
@@ -160,13 +161,13 @@ def test_transverse_section_is_that_of_the_published_gear():
     text = HELICAL.replace("_mm = 25", "_in = 1")
     of_pitch = parse_scene(text.format(pair="helix_angle_deg = 25\ntransverse_diametral_pitch_per_inch = 6"))
     gear = of_pitch.mesh().pinion
-    assert 2.0 * gear.reference_radius / 25.4 == pytest.approx(3.0, rel=1e-14)
+    assert 2.0 * gear.reference_radius / 25.4 == pytest.approx(3.0, rel=ROUNDING)
     assert 25.4 / of_pitch.geometry.normal_module_mm == pytest.approx(6.620, abs=5e-4)
     assert math.degrees(gear.transverse_pressure_angle) == pytest.approx(21.88, abs=5e-3)
     transverse = "helix_angle_deg = 25\ntransverse_module_mm = 4.233333333333333\ntransverse_pressure_angle_deg = 21.88"
     both = parse_scene(HELICAL.format(pair=transverse))
     assert both.geometry.pressure_angle_deg == pytest.approx(20.0, abs=5e-3)
-    assert both.mesh().pinion.reference_radius == pytest.approx(gear.reference_radius, rel=1e-14)
+    assert both.mesh().pinion.reference_radius == pytest.approx(gear.reference_radius, rel=ROUNDING)
     assert both.pinion.profile_shift == 0.3  # of the normal section, in normal modules: tips lie at d/2 + m_n (1 + x)
     assert both.mesh().pinion.tip_radius == pytest.approx(0.5 * 76.2 + 1.3 * 25.4 / 6.0 * math.cos(math.radians(25.0)))
 
@@ -377,9 +378,9 @@ def test_changes_may_be_in_inches():
     assert wider.pinion.tooth[0].modifications.lead_crowning_um == 5.08
     assert scene.with_changes({"material.max_pressure_psi": None}).material.max_pressure_MPa is None
     steeper = scene.with_changes({"pair.transverse_module_mm": 4.0, "pair.helix_angle_deg": 30.0})
-    assert steeper.geometry.normal_module_mm == pytest.approx(4.0 * math.sqrt(0.75), rel=1e-14)
+    assert steeper.geometry.normal_module_mm == pytest.approx(4.0 * math.sqrt(0.75), rel=ROUNDING)
     again = steeper.with_changes({"pair.transverse_diametral_pitch_per_inch": 5.08})  # by the helix that it has
-    assert again.geometry.normal_module_mm == pytest.approx(5.0 * math.sqrt(0.75), rel=1e-14)
+    assert again.geometry.normal_module_mm == pytest.approx(5.0 * math.sqrt(0.75), rel=ROUNDING)
 
 
 test_changes_that_are_refused = refusals(

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
 from loaded_tca.stages.kinematics import mesh_phases, nearest_angle, neutralised, possible_angles, spacing_problems
 
+ROUNDING = 1e-12  # rad; a whole number of steps of a turn, and places of several turns
 THREE = tuple(2.0 * math.pi * np.arange(3) / 3)
 
 
@@ -81,7 +82,7 @@ def test_places_of_planets_that_stand_opposite_are_opposite(turned, order):
     wanted = [turned + 0.5 * math.pi * n for n in order]
     places = np.array(possible_angles(wanted, (18, 37, 92)))
     assert_allclose(
-        np.abs(places - wanted), [0.0 if n % 2 == order[0] % 2 else math.pi / 110 for n in order], atol=1e-12
+        np.abs(places - wanted), [0.0 if n % 2 == order[0] % 2 else math.pi / 110 for n in order], atol=ROUNDING
     )
     assert_allclose(np.exp(1j * places).sum(), 0.0, atol=1e-12)  # a turn of 1e-15 a planet
     (problem,) = spacing_problems(wanted, (18, 37, 92), 584.0, 100.0)

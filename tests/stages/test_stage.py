@@ -122,7 +122,7 @@ def test_factor_falls_with_torque_and_rises_with_the_pin_error(result):
     small, large = (rebalanced(result, {"stage.pin_tangential_um": [amount, 0.0, 0.0, 0.0]}) for amount in (2.0, 5.0))
     assert small.mesh_load_factor[1] < small.mesh_load_factor[0]
     assert (small.mesh_load_factor < large.mesh_load_factor).all()
-    assert_allclose(rebalanced(result, {}).planet_share, result.planet_share, rtol=1e-12)
+    assert_array_equal(rebalanced(result, {}).planet_share, result.planet_share)  # the same balance
 
 
 def test_planet_whose_pin_is_far_off_is_slack(result):

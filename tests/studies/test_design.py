@@ -213,7 +213,7 @@ def test_gears_of_a_tolerance_class_deviate_from_the_slopes_of_the_design():
     assert max(abs(each[pinion]) for each in one.deviations) < 9.0
     design = dict(zip(one.keys, one.start.tolist(), strict=True))
     slopes = [value_at(scene, wheel) for scene in one.scenes(design)]
-    assert_allclose(slopes, [4.0 + each[wheel] for each in one.deviations], rtol=1e-12)
+    assert_allclose(slopes, [4.0 + each[wheel] for each in one.deviations], rtol=1e-12)  # a sum, in mm and um
 
 
 @pytest.mark.thorough
@@ -520,6 +520,7 @@ def test_means_over_squares_keep_the_sum_and_are_their_own_transpose():
     one, two = np.zeros((2, 40, 12))
     one[15:25, 4:8], two[15:25, 4:8] = rng.random((2, 10, 4))
     means = averaged(one, spacing, 0.1)
-    assert_allclose(means.sum(), one.sum(), rtol=1e-12)  # within the grid nothing is lost
+    # within the grid nothing is lost; also below: sums of 480 products
+    assert_allclose(means.sum(), one.sum(), rtol=1e-12)
     assert_allclose((two * means).sum(), (averaged(two, spacing, 0.1) * one).sum(), rtol=1e-12)
     assert averaged(one, (1.0, 1.0), 0.5) is one, "cells that are wider stay as they are"

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import analyse, read_scene
 from loaded_tca.studies import DesignModel, Study, optimise, run_study
@@ -115,7 +115,7 @@ def test_stiffness_of_a_bearing_is_varied_in_a_study() -> None:
     rows = run_study(Study(scene_of("spur"), table={key: values}))
     by_study = np.ravel(rows["face_load_factor"].values)
     alone = [analyse(scene_of("spur").with_changes({key: value})).face_load_factor[0] for value in values]
-    assert_allclose(by_study, alone, rtol=1e-12)
+    assert_array_equal(by_study, alone)  # the same analyses
     assert by_study[0] != by_study[1]
 
 

@@ -95,7 +95,7 @@ def test_force_and_tangent_are_derivatives_of_the_energy(name: str, motion: Arra
     scale = np.sqrt(np.outer(*[np.maximum(reaction.tangent.diagonal(), 1.0)] * 2))
     assert (np.abs(tangent - reaction.tangent) < 1e-4 * scale).all()  # slices at the end of the load come and go
     assert_allclose(reaction.tangent, reaction.tangent.T, rtol=0.0, atol=0.0)
-    assert np.linalg.eigvalsh(reaction.tangent / scale).min() > -1e-12
+    assert np.linalg.eigvalsh(reaction.tangent / scale).min() > -1e-12  # of numbers up to one: rounding
 
 
 @pytest.mark.parametrize("name", BEARINGS)
@@ -104,6 +104,7 @@ def test_mirrored_bearing_has_mirrored_forces(name: str) -> None:
     other = replace(bearing, side=-bearing.side)
     force = other.reaction(mirror * MOTIONS[0]).force
     expected = mirror * bearing.reaction(MOTIONS[0]).force
+    # atol: sums over elements of which parts cancel
     assert_allclose(force, expected, rtol=1e-9, atol=1e-12 * np.abs(expected).max())
 
 

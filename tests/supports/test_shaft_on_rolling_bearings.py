@@ -116,7 +116,7 @@ def test_nodes_added_change_nothing() -> None:
     one = shaft(BALL, ROLLER)
     more = one.solved([0.0, -100.0, -77.0, 10.0], np.append(OVERHUNG, np.zeros(18)))
     there = more.at_places[0][:, [*range(6), -1]] @ np.append(OVERHUNG, 1.0)
-    assert_allclose(there, motion(one, OVERHUNG), rtol=1e-7, atol=1e-12)
+    assert_allclose(there, motion(one, OVERHUNG), rtol=1e-7, atol=1e-12)  # atol: mm and rad, where nothing moves
 
 
 def test_gear_in_the_middle_of_equal_bearings_sinks_as_they_do() -> None:

@@ -17,7 +17,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.supports import Support, SupportCompliance, moved_pair
 from loaded_tca.supports.support import rotation
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # sums of forces, turns and products of order one
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ def test_stations_on_a_rigid_body_do_the_work_of_its_middle() -> None:
     points, force, motion = rng.uniform(-10.0, 10.0, (6, 3)), rng.normal(size=3), rng.normal(size=6)
     alone = Support(3.0, np.zeros((6, 6)))
     moved = support.loads(points, force) @ support.with_middle(motion)
-    assert_allclose(moved, alone.loads(points, force) @ motion, atol=1e-12)
+    assert_allclose(moved, alone.loads(points, force) @ motion, atol=ROUNDING)
     assert_allclose(support.at_middle(support.with_middle(motion)), motion, atol=ROUNDING)
 
 

@@ -12,6 +12,7 @@ from loaded_tca.tooth import Resolution, build_tooth
 from loaded_tca.tooth.fillet import ArcFillet
 from tests.samples.internal_pairs import ring_pair
 
+ROUNDING = 1e-12  # of the root of two squares
 FINE = Resolution(flank=33, fillet=33, land=5, lengthwise=5)
 CUTTER = PinionCutter(25, 0.1, 0.25)
 
@@ -42,7 +43,7 @@ def test_lands_lie_on_their_circles():
     gear = pair.wheel.geometry.gear
     for name, radius in (("tip land", gear.tip_radius), ("root land +", gear.root_radius)):
         patch = tooth.patch(name)
-        assert_allclose(np.hypot(patch[..., 0], patch[..., 1]), radius, rtol=1e-12)
+        assert_allclose(np.hypot(patch[..., 0], patch[..., 1]), radius, rtol=ROUNDING)
 
 
 @pytest.mark.parametrize("cutter", [None, CUTTER])

@@ -235,7 +235,7 @@ def test_without_friction_nothing_is_lost_and_nothing_heats():
     found = known(shared("mesh_cycle_spur"), friction=0.0)
     assert (found.efficiency, found.mean_friction, found.mean_friction_power) == (1.0, 0.0, 0.0)
     assert found.bulk_temperature == OIL.oil_temperature
-    assert_allclose(found.film_thickness, found.isothermal_film_thickness, rtol=1e-12)
+    assert_allclose(found.film_thickness, found.isothermal_film_thickness, rtol=ROUNDING)
 
 
 def test_the_hottest_films_are_thin_and_known():

@@ -119,7 +119,7 @@ def test_edge_gradients_agree_with_differences(pair, share, turn):
     values, slopes = field.edges(field.station(phi1, rho, z))
     differences = (values[[1, 3]] - values[[2, 4]]) / (2.0 * STEP)
     assert_allclose(slopes[0], differences.T, atol=1e-7)
-    assert_allclose(values, field.heights(phi1, rho, z)[1], atol=1e-12)
+    assert_allclose(values, field.heights(phi1, rho, z)[1], atol=1e-12)  # mm; coordinates of 100 mm
 
 
 @pytest.mark.thorough

@@ -12,7 +12,7 @@ from validation.calculix.ring_solved import CORNERS, slopes
 from validation.calculix.tables import read_table
 
 TINY = HelicalMeshing(across=0.4, along=2.0)
-ROUNDING = 1e-9
+ROUNDING = 1e-9  # of coordinates of 100 mm and their differences within an element
 BASE_RADIUS = (
     37.5
     / math.cos(math.radians(27.0))

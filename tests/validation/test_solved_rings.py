@@ -8,7 +8,7 @@ import pytest
 from validation.calculix import plane_ring, ring_solved
 from validation.calculix.tables import RINGS_FILE, read_table
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # relative, or of slopes: shape functions and sums over some hundred nodes
 COARSE = 0.32
 # The largest stresses on elements sixteen times as wide as the kept ones: 1.5 % at the tip's load, 0.9 % and less else.
 OF_COARSE = 0.02
