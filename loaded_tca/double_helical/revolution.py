@@ -50,9 +50,7 @@ ON_RIGID_AXES = (
     "found a section; not allowed in whole revolutions of double helical pairs, whose gears stand on rigid axes; "
     "analyse a pitch with shafts by 'loaded-tca run' or loaded_tca.double_helical.analyse_double_helical"
 )
-HALVES_REVOLUTION_FILE = "double_helical_revolution.nc"
-"""Name of the file of both halves together."""
-_LEFT_OUT = "line_load", "face_load_factor", "face_load", "face_border"
+_LEFT_OUT = "line_load", "face_load_factor", "face_load", "face_border", "place"
 HALVES_REVOLUTION_NUMBERS: dict[str, Number] = {
     **{name: number for name, number in NUMBERS.items() if name not in _LEFT_OUT},
     "pinion_angle": NUMBERS["pinion_angle"].changed(text="angle of the pinion phi1, from 0 at the first position"),
@@ -96,7 +94,8 @@ class DoubleHelicalRevolution(OverTurns, OfHalves):
     dataset : xarray.Dataset
         Numbers of ``HALVES_REVOLUTION_NUMBERS`` with their units, over torque [N mm], position and half.
     half_a, half_b : Revolution
-        Of each half, under the torques between which its shares lie.
+        Of each half, under the torques between which its shares lie; where a floating gear stands apart under several
+        torques, those under the largest.
     """
 
     KIND: ClassVar = HALVES_OVER_TURNS
@@ -105,7 +104,7 @@ class DoubleHelicalRevolution(OverTurns, OfHalves):
     NUMBERS: ClassVar = HALVES_REVOLUTION_NUMBERS
     COORDINATES: ClassVar = ("torque", "pinion_angle")
     FIGURES: ClassVar = HALVES_REVOLUTION_FIGURES
-    FILE: ClassVar = HALVES_REVOLUTION_FILE
+    FILE: ClassVar = "double_helical_revolution.nc"
     JSON: ClassVar = "double_helical_revolution.json"
     TABLES: ClassVar = {"double_helical_revolution.csv": "positions", "double_helical_orders.csv": "orders"}
     PARTS: ClassVar = {"half_a": "half_a_revolution.nc", "half_b": "half_b_revolution.nc"}
