@@ -3841,6 +3841,13 @@ FAULTS = (
         "alone = 0.0 * forces[0]",
         "double_helical/test_balance.py::test_approach_of_a_half_that_carries_all_is_as_uncertain_as_its_deflection",
     ),
+    Fault(
+        "orders of the shuttling that a revolution does not resolve have the amplitude 0",
+        "double_helical/revolution.py",
+        "amplitudes.get(kind, math.nan)",
+        "amplitudes.get(kind, 0.0)",
+        "double_helical/test_revolution.py::test_orders_that_the_positions_do_not_resolve_have_no_amplitude",
+    ),
 )
 
 

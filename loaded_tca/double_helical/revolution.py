@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -65,8 +66,10 @@ HALVES_REVOLUTION_NUMBERS: dict[str, Number] = {
 
 
 def _order(kind: str, under: UnderTorque) -> float:
+    """Amplitude of an order of the axial motion; NaN where the pitches and positions have no order of this name."""
     spectrum = under.result.axial_spectrum(under.row)
-    return float(spectrum.amplitude[spectrum.kind == kind].sum())
+    amplitudes = dict(zip(spectrum.kind.tolist(), spectrum.amplitude.tolist(), strict=True))
+    return float(amplitudes.get(kind, math.nan))
 
 
 HALVES_REVOLUTION_FIGURES: dict[str, Figure] = {
