@@ -309,6 +309,14 @@ BACKLASH = Kind(
     "a smaller sum of profile shifts, or a larger centre distance: `check` shows the sum at which the backlash is "
     "zero; for bevel gears thinner teeth",
 )
+LARGE_BACKLASH = Kind(
+    "large backlash: tooth spaces are wider than the teeth of the mating gear by more than {most:g} modules, as if the "
+    "profile shifts for this centre distance were missing",
+    "the contact of one flank of each gear does not depend on the backlash, but its flanks do depend on the profile "
+    "shifts: with a `centre_distance_mm` and no profile shift, all shifts are 0",
+    "the profile shifts of the drawing: `check` shows the sum at which the backlash is zero; or a thickness allowance "
+    "nearer to 0",
+)
 NO_TOOTH = Kind(
     "{gear}: {fault}; the flank in contact is analysed nevertheless",
     "half-spaces have a pressure even without a tooth behind the flank; a real gear would not have this tooth",
@@ -476,6 +484,13 @@ SHARES_OF_HALVES = Kind(
     "the shares of the halves are off by up to {error:.1%} of the torque, since they lie between the torques for "
     "which the halves were analysed",
     "the curve of the deflection over the torque bends where contacts come to edges, reliefs and further tooth pairs."
+    " The error is estimated from how much compliances and deflections of neighbouring torques disagree",
+    "a gear that floats, two halves that are alike, or more crowning and relief, so that contacts stay off the edges",
+)
+DEFLECTION_OF_HALVES = Kind(
+    "the deflection of both halves together is off by up to {error:.1%}, since it lies between the torques for which "
+    "the halves were analysed",
+    "the transmission error is off by this part of the deflection under load, which is much of its span over the pitch."
     " The error is estimated from how much compliances and deflections of neighbouring torques disagree",
     "a gear that floats, two halves that are alike, or more crowning and relief, so that contacts stay off the edges",
 )

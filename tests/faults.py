@@ -3827,6 +3827,27 @@ FAULTS = (
         "    moved = (np.nan_to_num(slopes)[errors > 9.0] != 0.0).any(axis=0)",
         "results/test_sensitivities_at_edges.py::test_derivatives_of_the_strip_beside_a_rounded_end_are_warned_of",
     ),
+    Fault(
+        "load factors of a half of a double helical pair are interpolated between torques far from what it carries",
+        "double_helical/analyse.py",
+        "for torque in (high, mean):",
+        "for torque in ():",
+        "double_helical/test_analyse.py::test_mean_and_largest_torque_of_a_half_are_analysed_where_its_share_is_certain",
+    ),
+    Fault(
+        "the deflection of a half that carries all is certain between far torques, since its share is",
+        "double_helical/balance.py",
+        "alone = np.where(forces[0] > 0.0, error_a, error_b)",
+        "alone = 0.0 * forces[0]",
+        "double_helical/test_balance.py::test_approach_of_a_half_that_carries_all_is_as_uncertain_as_its_deflection",
+    ),
+    Fault(
+        "orders of the shuttling that a revolution does not resolve have the amplitude 0",
+        "double_helical/revolution.py",
+        "amplitudes.get(kind, math.nan)",
+        "amplitudes.get(kind, 0.0)",
+        "double_helical/test_revolution.py::test_orders_that_the_positions_do_not_resolve_have_no_amplitude",
+    ),
 )
 
 

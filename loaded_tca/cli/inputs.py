@@ -172,7 +172,7 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
 
 def require_result(directory: Path, path: Path, command: str) -> None:
     """Refuse a directory without a result that holds something else, in words that say what to give instead."""
-    from loaded_tca.double_helical.revolution import HALVES_REVOLUTION_FILE
+    from loaded_tca.double_helical import DoubleHelicalRevolution
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.output.tables import COMPARISON, COMPARISON_DATA
     from loaded_tca.results import Revolution
@@ -181,11 +181,12 @@ def require_result(directory: Path, path: Path, command: str) -> None:
     if path.exists():
         return
     parts = [one.name for one in sorted(directory.iterdir()) if (one / RESULT).is_file()]
-    if (directory / Revolution.FILE).is_file() or (directory / HALVES_REVOLUTION_FILE).is_file():
-        raise InputError(
-            f"{directory}: holds a whole revolution, which '{command}' does not take: the numbers are in "
-            "revolution.json and the tables; give the directory of 'loaded-tca run'"
-        )
+    for kind in (Revolution, DoubleHelicalRevolution):
+        if (directory / kind.FILE).is_file():
+            raise InputError(
+                f"{directory}: holds a whole revolution, which '{command}' does not take: the numbers are in "
+                f"{kind.JSON} and the tables; give the directory of 'loaded-tca run'"
+            )
     if parts:
         these = " or ".join(f"'{command} {directory / name}'" for name in parts)
         raise InputError(f"{directory}: holds results in {', '.join(parts)}; give one of them: {these}")

@@ -41,9 +41,11 @@ if TYPE_CHECKING:
     from loaded_tca.results.result import AnalysisResult
 
 ACCURATE, WARNED = 1e-4, 1e-3
-"""Estimated error of a share with which no more torques are analysed, and above which a warning says so."""
+"""Estimated errors of a share and of the approach with which no more torques are analysed, and above which a warning
+says so."""
 NEAR = 0.02
-"""Difference of two torques, over an even share, of which one is enough where shares are uncertain."""
+"""Difference of two torques of which one is enough: over an even share where shares are uncertain, and over the torque
+itself for the mean and the largest torque that a half carries, near which pressures and load factors are analysed."""
 OUTSIDE, BEYOND = 1e-3, 0.01
 """By how much of an even share a half may carry more or less than at the torques that were analysed, and by how much
 torques at the ends lie outside its shares where it does."""
@@ -295,30 +297,37 @@ def _under(scene: DoubleHelicalScene, rows: Indices) -> DoubleHelicalScene:
 
 
 def _wanted(scene: DoubleHelicalScene, state: Shares, torques: Sequence[Sequence[float]]) -> list[list[float]]:
-    """Torques of both halves [N mm] between which the shares lie, with more where these are uncertain."""
+    """Torques of both halves [N mm] between which the shares lie, with more where these are uncertain.
+
+    The mean and the largest torque of a half under each torque of both lie near one of them, so that its pressures and
+    load factors are those of an analysis, and hardly interpolated.
+    """
     radius = scene.mesh().pinion.base_radius
+    uncertain = np.maximum(state.error, state.approach_error)
     wanted = []
     for half in range(len(HALVES)):
         own = [*torques[half]]
-        for whole, forces, errors in zip(scene.torques, state.force[..., half], state.error, strict=True):
+        for whole, forces, errors in zip(scene.torques, state.force[..., half], uncertain, strict=True):
             carried, even = radius * forces, 0.5 * whole
-            low, high = float(carried.min()), float(carried.max())
+            low, mean, high = float(carried.min()), float(carried.mean()), float(carried.max())
             if high > max(own) + OUTSIDE * even:
-                own.append(high * (1.0 + BEYOND))
+                own.append(min(high * (1.0 + BEYOND), whole))
             if LEAST * even < low < min(own) - OUTSIDE * even:
                 own.append(low * (1.0 - BEYOND))
-            if errors.max() > ACCURATE:
-                _add(own, (low, high, float(carried[errors.argmax()])), even)
+            for torque in (high, mean):
+                if torque > OUTSIDE * even:
+                    _add(own, torque, NEAR * torque)
+            if high > 0.0 and errors.max() > ACCURATE:
+                for torque in (low, high, float(carried[errors.argmax()])):
+                    _add(own, max(torque, LEAST * even), NEAR * even)
         wanted.append(sorted(own))
     return wanted
 
 
-def _add(torques: list[float], more: Sequence[float], even: float) -> None:
-    """Add torques [N mm] that are not near others, over an even share."""
-    for torque in more:
-        asked = max(torque, LEAST * even)
-        if all(abs(asked - other) > NEAR * even for other in torques):
-            torques.append(asked)
+def _add(torques: list[float], asked: float, near: float) -> None:
+    """Add a torque [N mm] that is not near others."""
+    if all(abs(asked - other) > near for other in torques):
+        torques.append(asked)
 
 
 def largest_place(places: Sequence[Place]) -> Place:
@@ -333,6 +342,8 @@ def joined(
     with noted_accuracy_warnings(given=False) as own:
         if (worst := max(float(place.state.error.max()) for place in places)) > WARNED:
             give_accuracy_warning(kinds.SHARES_OF_HALVES.sentence(error=worst))
+        if (worst := max(float(place.state.approach_error.max()) for place in places)) > WARNED:
+            give_accuracy_warning(kinds.DEFLECTION_OF_HALVES.sentence(error=worst))
         if (way := max(map(_shuttle, places))) > FACES * scene.narrow_half:
             give_accuracy_warning(kinds.SHUTTLES.sentence(gear=scene.geometry.floating, way=MICROMETRES * way))
         if not scene.floats_freely:
@@ -404,16 +415,15 @@ def _arrays(place: Place) -> dict[str, Array]:
     """Arrays of the result at one place."""
     scene, cycles = place.scene, place.cycles
     arrays, carried = balance_arrays(place), carried_by(place)
-    arrays["face_border"], arrays["face_load"] = _over_the_face(place, carried.mean(axis=1))
+    arrays["face_border"], load = _over_the_face(place, carried.mean(axis=1))
+    mean = load.mean(axis=-1)
+    factors = np.divide(load.max(axis=-1), mean, out=np.full_like(mean, math.nan), where=mean > 0.0)
+    arrays |= {"face_load": load, "face_load_factor": factors}
     of_positions = {
         name: [largest_of_pairs(cycle, name) for cycle in cycles] for name in ("peak_pressure", "line_load")
     }
     for name, values in of_positions.items():
         arrays[name] = of_halves(cycles, values, carried)
-    mean = carried.mean(axis=1)[:, None]
-    factors = [cycle.face_load_factor[:, None] for cycle in cycles]
-    known = of_halves(cycles, factors, mean, known_at_zero=False)
-    arrays["face_load_factor"] = np.where(mean > 0.0, known, math.nan)[:, 0]
     if scene.analysis.root_stress:
         tensions = [
             of_halves(cycles, [np.nan_to_num(cycle.root_tension[..., gear]) for cycle in cycles], carried).max(axis=1)
@@ -426,20 +436,19 @@ def _arrays(place: Place) -> dict[str, Array]:
 def _over_the_face(place: Place, carried: Array) -> tuple[Array, Array]:
     """Borders [mm] and loads [N/mm] of strips of the face (t, half, ...), under mean torques (t, half) of the halves.
 
-    Those of the torque of each half that is nearest, scaled.
+    Straight between those of the torques of each half, over the torque.
     """
     scene, borders, loads = place.scene, [], []
     middle = 0.25 * (scene.pinion.face_width_mm + scene.geometry.gap_mm)
-    for half, cycle in enumerate(place.cycles):
+    for cycle, torques in zip(place.cycles, carried.T, strict=True):
+        of_torques = [face_forces(cycle.gear_pair, cycle.path, positions) for positions in cycle.maps]
+        strips = middle + of_torques[0][0]
         count = max(1, len(cycle.path) - 1)
-        for torque in carried[:, half].tolist():
-            row = int(np.abs(cycle.torque - torque).argmin())
-            places, forces = face_forces(cycle.gear_pair, cycle.path, cycle.maps[row])
-            borders.append(middle + places)
-            loads.append(torque / cycle.torque[row] * forces / count / np.diff(places))
-    by_half = (np.array(rows).reshape(len(HALVES), len(carried), -1).swapaxes(0, 1) for rows in (borders, loads))
-    of_borders, of_loads = by_half
-    return of_borders, of_loads
+        units = np.array([forces for _, forces in of_torques]) / (count * cycle.torque[:, None] * np.diff(strips))
+        between = [np.interp(torques, cycle.torque, of_strip) for of_strip in units.T]
+        borders.append(np.broadcast_to(strips, (len(torques), len(strips))))
+        loads.append(torques[:, None] * np.stack(between, axis=-1))
+    return np.stack(borders, axis=1), np.stack(loads, axis=1)
 
 
 def largest_of_pairs(cycle: MeshCycle | Revolution, name: str) -> Array:
@@ -447,13 +456,11 @@ def largest_of_pairs(cycle: MeshCycle | Revolution, name: str) -> Array:
     return np.asarray(np.nan_to_num(cycle.values(name)).max(axis=-1))
 
 
-def of_halves(
-    cycles: Sequence[MeshCycle | Revolution], values: Sequence[Array], torques: Array, known_at_zero: bool = True
-) -> Array:
-    """Numbers (t, n, half) between those (k, n) under the torques of the mesh cycles, at torques (t, n, half)."""
+def of_halves(cycles: Sequence[MeshCycle | Revolution], values: Sequence[Array], torques: Array) -> Array:
+    """Numbers between those (k, n) under the torques of the mesh cycles, 0 without load, at torques (t, n, half)."""
     return np.stack(
         [
-            between_torques(cycle.torque, of_half, torques[..., half], known_at_zero)
+            between_torques(cycle.torque, of_half, torques[..., half], known_at_zero=True)
             for half, (cycle, of_half) in enumerate(zip(cycles, values, strict=True))
         ],
         axis=-1,

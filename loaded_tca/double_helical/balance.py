@@ -154,6 +154,8 @@ class Shares(NamedTuple):
         r: of the wheel towards half a, against the pinion.
     error : (torques, positions) array
         Estimated error of a share of the force, by the deflections between forces that were analysed.
+    approach_error : (torques, positions) array
+        The same of the approach, over the force times the compliance.
     """
 
     force: Array
@@ -161,6 +163,7 @@ class Shares(NamedTuple):
     compliance: Array
     motion: Array
     error: Array
+    approach_error: Array
 
 
 def shared(halves: Halves, total: Array) -> Shares:
@@ -215,14 +218,12 @@ def shared(halves: Halves, total: Array) -> Shares:
         for (deflection, _, _), part, other in zip(at, parted, forces[::-1], strict=True)
     ]
     approach = np.where(forces[0] > 0.0, ways[0] + rate * motion, ways[1] - rate * motion)
+    compliance = _compliance([slope for _, slope, _ in at], forces, coupling, rate, stiffness)
+    errors = _errors(at, forces, yields, stiffness)
+    of_share, of_approach = errors[0] / whole, errors[1] / (compliance * whole)
     shape = len(total), count
-    return Shares(
-        np.moveaxis(forces, 0, -1).reshape(*shape, 2),
-        approach.reshape(shape),
-        _compliance([slope for _, slope, _ in at], forces, coupling, rate, stiffness).reshape(shape),
-        motion.reshape(shape),
-        _error(at, yields, stiffness, whole).reshape(shape),
-    )
+    by_position = (each.reshape(shape) for each in (approach, compliance, motion, of_share, of_approach))
+    return Shares(np.moveaxis(forces, 0, -1).reshape(*shape, 2), *by_position)
 
 
 def _root(difference: Callable[[Array, Indices], Array], whole: Array) -> Array:
@@ -252,9 +253,17 @@ def _compliance(slopes: list[Array], forces: Array, coupling: Array, rate: float
     return np.where((forces > 0.0).all(axis=0), both, alone)
 
 
-def _error(at: list[tuple[Array, Array, Array]], yields: Array, stiffness: float, whole: Array) -> Array:
-    """Error of a share by those of both deflections; none where forces do not depend on these."""
-    if stiffness == 0.0:
-        return np.zeros_like(whole)
+def _errors(
+    at: list[tuple[Array, Array, Array]], forces: Array, yields: Array, stiffness: float
+) -> tuple[Array, Array]:
+    """Errors of the force of a half [N] and of the approach [mm] by those of both deflections.
+
+    Forces of a gear that floats freely have none; the approach follows the deflection of a half that carries all.
+    """
     (_, slope_a, error_a), (_, slope_b, error_b) = at
-    return np.asarray((error_a + error_b) / (slope_a + slope_b + 2.0 * yields) / whole)
+    if stiffness == 0.0:
+        return np.zeros_like(error_a), 0.5 * (error_a + error_b)
+    a, b = slope_a + yields, slope_b + yields
+    both = (error_a * b + error_b * a) / (a + b)
+    alone = np.where(forces[0] > 0.0, error_a, error_b)
+    return (error_a + error_b) / (a + b), np.where((forces > 0.0).all(axis=0), both, alone)

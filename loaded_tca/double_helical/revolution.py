@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -50,9 +51,7 @@ ON_RIGID_AXES = (
     "found a section; not allowed in whole revolutions of double helical pairs, whose gears stand on rigid axes; "
     "analyse a pitch with shafts by 'loaded-tca run' or loaded_tca.double_helical.analyse_double_helical"
 )
-HALVES_REVOLUTION_FILE = "double_helical_revolution.nc"
-"""Name of the file of both halves together."""
-_LEFT_OUT = "line_load", "face_load_factor", "face_load", "face_border"
+_LEFT_OUT = "line_load", "face_load_factor", "face_load", "face_border", "place"
 HALVES_REVOLUTION_NUMBERS: dict[str, Number] = {
     **{name: number for name, number in NUMBERS.items() if name not in _LEFT_OUT},
     "pinion_angle": NUMBERS["pinion_angle"].changed(text="angle of the pinion phi1, from 0 at the first position"),
@@ -67,8 +66,10 @@ HALVES_REVOLUTION_NUMBERS: dict[str, Number] = {
 
 
 def _order(kind: str, under: UnderTorque) -> float:
+    """Amplitude of an order of the axial motion; NaN where the pitches and positions have no order of this name."""
     spectrum = under.result.axial_spectrum(under.row)
-    return float(spectrum.amplitude[spectrum.kind == kind].sum())
+    amplitudes = dict(zip(spectrum.kind.tolist(), spectrum.amplitude.tolist(), strict=True))
+    return float(amplitudes.get(kind, math.nan))
 
 
 HALVES_REVOLUTION_FIGURES: dict[str, Figure] = {
@@ -96,7 +97,8 @@ class DoubleHelicalRevolution(OverTurns, OfHalves):
     dataset : xarray.Dataset
         Numbers of ``HALVES_REVOLUTION_NUMBERS`` with their units, over torque [N mm], position and half.
     half_a, half_b : Revolution
-        Of each half, under the torques between which its shares lie.
+        Of each half, under the torques between which its shares lie; where a floating gear stands apart under several
+        torques, those under the largest.
     """
 
     KIND: ClassVar = HALVES_OVER_TURNS
@@ -105,7 +107,7 @@ class DoubleHelicalRevolution(OverTurns, OfHalves):
     NUMBERS: ClassVar = HALVES_REVOLUTION_NUMBERS
     COORDINATES: ClassVar = ("torque", "pinion_angle")
     FIGURES: ClassVar = HALVES_REVOLUTION_FIGURES
-    FILE: ClassVar = HALVES_REVOLUTION_FILE
+    FILE: ClassVar = "double_helical_revolution.nc"
     JSON: ClassVar = "double_helical_revolution.json"
     TABLES: ClassVar = {"double_helical_revolution.csv": "positions", "double_helical_orders.csv": "orders"}
     PARTS: ClassVar = {"half_a": "half_a_revolution.nc", "half_b": "half_b_revolution.nc"}

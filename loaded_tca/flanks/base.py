@@ -54,6 +54,10 @@ class Jet:
     def __init__(self, value: Any, rho: Any = 0.0, z: Any = 0.0, bends: Bends | Callable[[], Bends] = FLAT) -> None:
         self.value, self.rho, self.z, self._bends = value, rho, z, bends
 
+    def __reduce__(self) -> tuple[type[Jet], tuple[Any, ...]]:
+        """Pickle the numbers: second derivatives as such, since the function that returns them cannot be pickled."""
+        return Jet, (self.value, self.rho, self.z, self.bends)
+
     @property
     def bends(self) -> Bends:
         """Second derivatives by rho rho, rho z, z z."""

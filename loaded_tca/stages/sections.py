@@ -201,7 +201,8 @@ class StageGeometry(Section):
     )
     centre_distance_mm: float | None = key(
         DIAMETER_mm,
-        "centre distance of both meshes; profile shifts that are left out then follow, without backlash",
+        "centre distance of both meshes; profile shifts that are left out then follow, without backlash, from those "
+        "that are given; where none is given, all are 0 and the backlash is what the centre distance leaves",
         None,
         "follows from the profile shifts, without backlash",
     )
@@ -402,7 +403,8 @@ class Stage(InNotebooks, Section):
     def profile_shifts(self) -> tuple[float, float, float]:
         """Profile shift coefficients of sun, planet and ring: one planet in both meshes.
 
-        Those that are not given leave no backlash at a centre distance that is; where none is given, all are 0.
+        Those that are not given leave no backlash at a centre distance that is; where none is given, all are 0, since
+        two meshes do not determine three shifts.
 
         Raises
         ------

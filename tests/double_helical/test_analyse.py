@@ -9,9 +9,10 @@ from numpy.testing import assert_allclose
 from loaded_tca import ConvergenceError, InputError, analyse
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
+from loaded_tca.double_helical.balance import Shares
 from loaded_tca.results import load_result
 from loaded_tca.results.warnings import at_places
-from loaded_tca.warning_kinds import MEASURED_HALF, SHARES_OF_HALVES, SHUTTLES, kind_of
+from loaded_tca.warning_kinds import DEFLECTION_OF_HALVES, MEASURED_HALF, SHARES_OF_HALVES, SHUTTLES, kind_of
 from tests.samples import double_helical as samples
 from tests.samples.root_stress import coarsely
 
@@ -180,6 +181,36 @@ def test_a_torque_in_a_list_has_the_numbers_that_it_has_alone(equal_halves, one_
     assert both.elsewhere[0][0].scene.mounting == alone[0].half_a.scene.mounting
 
 
+def test_a_half_that_carries_all_has_the_numbers_that_it_has_alone_beside_a_larger_torque(equal_halves):
+    scene = equal_halves.with_changes({**HELD, "pair.apex_offset_mm": 0.02})
+    both = analyse(scene.with_changes({"analysis.torques_Nm": [150.0, 1600.0]}))
+    assert both.torque_share[0].tolist() == [[1.0, 0.0]] * 2
+    assert 0.5 < both.torque_share[1, 0, 0] < 0.9  # half b is reached there: shares of both torques differ
+    half = analyse(scene.half_scenes(0.0, [[150.0], [150.0]])[0])
+    apart = scene.parted[0] / (-half.gear_pair.driving * half.gear_pair.base_radii[1])  # by the apex
+    for number, alone in (
+        (both.transmission_error[0] - apart, half.transmission_error[0]),
+        (both.peak_pressure[0, :, 0], np.nanmax(half.peak_pressure[0], axis=-1)),
+        (both.line_load[0, :, 0], np.nanmax(half.line_load[0], axis=-1)),
+        (both.face_load_factor[0, 0], half.face_load_factor[0]),
+        (both.face_load[0, 0].max() / both.face_load[0, 0].mean(), half.face_load_factor[0]),
+    ):
+        assert_allclose(number, alone, rtol=1e-6)  # each state is solved by itself, to the tolerance of its balance
+
+
+def test_mean_and_largest_torque_of_a_half_are_analysed_where_its_share_is_certain(equal_halves):
+    scene = equal_halves.with_changes({**HELD, "analysis.torques_Nm": [100.0, 1000.0]})
+    force, certain = np.zeros((2, 2, 2)), np.zeros((2, 2))
+    whole = np.array([1e5, 1e6]) / scene.mesh().pinion.base_radius
+    force[..., 0] = whole[:, None] * [[0.7, 0.8], [0.6, 0.61]]
+    force[..., 1] = whole[:, None] - force[..., 0]
+    state = Shares(force, certain, certain, certain, certain, certain)
+    of_halves = analyses._wanted(scene, state, 2 * [[5e4, 5e5]])
+    for wanted, asked in zip(of_halves, ([7.5e4, 8e4, 6.05e5, 6.1e5], [2.5e4, 3e4, 3.95e5, 4e5]), strict=True):
+        assert np.abs(np.subtract.outer(asked, wanted) / np.array(asked)[:, None]).min(axis=1).max() <= 0.02
+    assert analyses._wanted(scene, state, of_halves) == of_halves
+
+
 def test_results_come_back_from_their_files(unlike, tmp_path, equal_halves):
     unlike.save(tmp_path)
     again = DoubleHelicalResult.load(tmp_path)
@@ -216,7 +247,7 @@ def test_halves_out_of_reach_of_each_other_are_told_and_analysed_under_what_they
     scene = equal_halves.with_changes({**HELD, "pair.apex_offset_mm": 1.0})
     result = analyse_double_helical(scene)
     assert result.torque_share.tolist() == [[[1.0, 0.0]] * 2]
-    assert min(asked[-1]) == asked[0][0] < equal_halves.torques[0] < max(asked[-1])
+    assert asked[-1] == (asked[0][0], equal_halves.torques[0])  # half a under the whole torque, to the last digit
     assert result.notes() == (
         "under 1600 N m half b carries no load at any position: the gap between its flanks is larger than "
         "the deflection of the other half",
@@ -246,9 +277,10 @@ def test_warnings_say_whose_they_are(unlike):
 def test_uncertain_shares_are_told(equal_halves, one_half, monkeypatch):
     monkeypatch.setattr(analyses, "_analysed", lambda *_: 2 * (analyses._Half(one_half, []),))
     result = analyse_double_helical(equal_halves.with_changes({**HELD, "pair.apex_offset_mm": 0.03}))
-    (sentence,) = result.warnings
-    assert sentence.startswith("the shares of the halves are off by up to")  # far beyond the torques of one half
-    assert kind_of(sentence) is SHARES_OF_HALVES
+    of_shares, of_deflection = result.warnings  # far beyond the torques of one half
+    assert of_shares.startswith("the shares of the halves are off by up to")
+    assert of_deflection.startswith("the deflection of both halves together is off by up to")
+    assert [*map(kind_of, result.warnings)] == [SHARES_OF_HALVES, DEFLECTION_OF_HALVES]
 
 
 @pytest.mark.parametrize(

@@ -91,6 +91,26 @@ def test_deflections_between_forces_have_the_fourth_order_and_their_error_is_tol
     assert all(error <= estimate[0] for error, (_, _, estimate) in zip(errors, off, strict=True))
 
 
+@pytest.mark.parametrize("stiffness", [0.0, 3e3, np.inf])
+def test_error_of_the_approach_between_forces_is_told(stiffness):
+    def balanced(nodes):
+        halves = Halves((power_law(2e-5, nodes), power_law(3e-5, nodes)), (0.002, -0.001), RATE, stiffness)
+        return shared(halves, np.array([2000.0]))
+
+    exact, coarse = balanced(tuple(np.linspace(300.0, 1700.0, 57))), balanced((300.0, 1700.0))
+    off = abs(coarse.approach - exact.approach) / (exact.compliance * 2000.0)
+    assert 1e-6 < off < coarse.approach_error < 20.0 * off  # of laws that bend the same way, and less than both do
+
+
+def test_approach_of_a_half_that_carries_all_is_as_uncertain_as_its_deflection():
+    nodes, force = (300.0, 1700.0), np.array([1000.0])
+    law = power_law(2e-5, nodes)
+    state = shared(Halves((law, power_law(2e-5, nodes)), (0.0, 1.0), RATE, np.inf), force)
+    _, slope, error = law.at(force, np.array([0]))
+    assert state.force[0, 0].tolist() == [1000.0, 0.0]
+    assert_allclose(state.approach_error[0], error / (slope * force), rtol=CLOSE)
+
+
 test_refused = refusals(
     lambda force, deflection, compliance: HalfLaw(
         np.array(force), np.array(deflection)[:, None], np.array(compliance)[:, None], np.zeros(1)

@@ -99,7 +99,18 @@ def test_command_writes_both_halves_with_orders_of_the_shuttling(wobbling, tmp_p
     with pytest.raises(InputError, match="a whole revolution of a double helical pair, not the result of a mesh cycle"):
         load_result(tmp_path / "out" / "double_helical_revolution.nc")
     assert main(["report", str(tmp_path / "out")]) == 2
-    assert "holds a whole revolution" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "holds a whole revolution" in told
+    assert "the numbers are in double_helical_revolution.json and the tables" in told
+
+
+def test_a_revolution_under_several_torques_comes_back_from_its_files(tmp_path):
+    changes = {"revolution.pitches": 1, "analysis.torques_Nm": [400.0, 1600.0]}
+    revolution = analyse_revolution(scene_with(**OPPOSED, **changes))
+    revolution.save(tmp_path)
+    again = DoubleHelicalRevolution.load(tmp_path)
+    assert again.dataset.identical(revolution.dataset)
+    assert again.summary() == revolution.summary()
 
 
 def test_orders_of_the_shuttling_are_those_of_its_curve(wobbling):
@@ -116,7 +127,15 @@ def test_orders_of_the_shuttling_are_those_of_its_curve(wobbling):
     spectrum = whole.axial_spectrum(0)
     assert_allclose(spectrum.amplitude[spectrum.order == 1.0], 10.0)
     figures = whole.key_figures()[0]
-    assert figures["axial_motion_pinion_1_um"] + figures["axial_motion_wheel_1_um"] == pytest.approx(10.0)
+    amplitudes = np.array([figures[f"axial_motion_{gear}_1_um"] for gear in ("pinion", "wheel")])
+    assert amplitudes[np.isfinite(amplitudes)] == pytest.approx(10.0)  # gears of equal teeth turn with one order
+    assert np.isfinite(amplitudes).sum() == 1
+
+
+def test_orders_that_the_positions_do_not_resolve_have_no_amplitude(wobbling):
+    figures = wobbling.key_figures()[0]  # of two positions over two pitches
+    for kind in ("pinion_1", "wheel_1", "mesh_1"):
+        assert np.isnan(figures[f"axial_motion_{kind}_um"])
 
 
 @pytest.mark.parametrize(
