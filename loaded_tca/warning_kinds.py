@@ -348,6 +348,15 @@ ODD_INPUT = Kind(
     "the program takes the number as it is, in the unit of its key",
     "check the unit: moduli of steel are 2.06e5 MPa, those of plastics some 1e3 MPa; torques are in N m",
 )
+THICKNESS = Kind(
+    "tooth thickness of the {gear}: the allowance A_sn is {allowance:+.4g} um beside profile_shift = {shift:.4f}, "
+    "{source}; with profile_shift = {generating:.4f} the same teeth have no allowance",
+    "allowances of real teeth are small, and negative, since they make the backlash. A measure over teeth, balls or "
+    "pins without a profile shift counts as an allowance on teeth of `profile_shift = 0`. Flanks and roots are those "
+    "of the measured teeth; tip diameters that are not given, and c' of ISO 6336-1, are those of the profile shift",
+    "give the `profile_shift` of the drawing; where the drawing has none, give the value that leaves no allowance, and"
+    " `tip_diameter_mm`; an allowance of thinner teeth is negative",
+)
 CONTACT_RATIO = Kind(
     "the contact ratio is {ratio:.3g}, below 1: over a part of each pitch the gears touch at a tip or a face end only",
     "the path of contact is shorter than a pitch: one pair leaves it before the next pair enters it, and meanwhile a "

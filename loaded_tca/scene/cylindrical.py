@@ -30,7 +30,7 @@ from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, AMOUNT_um, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
-from loaded_tca.scene.thickness import as_measured, thickness_rows
+from loaded_tca.scene.thickness import as_measured, odd_thickness, thickness_rows
 from loaded_tca.scene.tools import (
     ADDENDUM,
     DEDENDUM,
@@ -315,6 +315,13 @@ class CylindricalScene(BlankScene):
         )
         return pinion, wheel
 
+    def odd_thicknesses(self) -> Sequence[str]:
+        """Return sentences on teeth whose thickness is far from that of their profile shift."""
+        mesh, shifts = self.mesh(), (self.pinion.profile_shift, self.wheel.profile_shift)
+        follows = self.geometry.centre_distance_mm is not None and shifts.count(None) == 1
+        gears = zip((mesh.pinion, mesh.wheel), shifts, strict=True)
+        return [sentence for gear, shift in gears for sentence in odd_thickness(gear, shift, follows=follows)]
+
     @property
     def pairs_in_contact(self) -> float:
         """The total contact ratio."""
@@ -415,7 +422,7 @@ class CylindricalScene(BlankScene):
             *rack_rows(mesh),
             *_diameter_rows(mesh),
             *chamfer_rows(mesh),
-            *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
+            *thickness_rows(mesh, (self.pinion, self.wheel)),
             ("tip clearance of the mating gear c [mm]", *(fixed(clearance, 4) for clearance in mesh.tip_clearances)),
         ]
 

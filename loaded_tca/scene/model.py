@@ -428,6 +428,10 @@ class Scene(InNotebooks, WithStandards, ABC):
         """Depths of the notches that grinding leaves at the roots of both gears, and roundings of the tools [mm]."""
         return ()
 
+    def odd_thicknesses(self) -> Sequence[str]:
+        """Return sentences on teeth whose thickness is far from that of their profile shift."""
+        return ()
+
     @abstractmethod
     def interferences(self) -> Sequence[str]:
         """Return sentences on what jams the whole gears, which the contact of one flank of each does not notice.

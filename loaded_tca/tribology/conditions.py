@@ -327,8 +327,10 @@ def conditions_of(
     )
 
 
-def lubricant_of(section: LubricantSection) -> Lubricant:
-    """The oil of a scene."""
+def lubricant_of(section: LubricantSection) -> Lubricant | None:
+    """The oil of a scene; None where the section has no more of it than ratings take."""
+    if section.viscosity_100_mm2_s is None or section.oil_temperature_C is None:
+        return None
     return Lubricant(
         viscosity_40=section.viscosity_40_mm2_s,
         viscosity_100=section.viscosity_100_mm2_s,
