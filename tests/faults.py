@@ -2347,7 +2347,7 @@ FAULTS = (
     Fault(
         "spectra: below the smallest torque solved stresses grow as at it",
         "rating/solved.py",
-        "logarithms + slope * (wanted - inside).reshape(shape)",
+        "logarithms + slope * np.minimum(wanted - nodes[0], 0.0).reshape(shape)",
         "logarithms",
         "rating/test_spectrum.py::test_powers_of_the_torque_are_interpolated_without_error",
     ),
@@ -3826,6 +3826,41 @@ FAULTS = (
         "    moved = (np.nan_to_num(slopes)[errors > TOLD] != 0.0).any(axis=0)",
         "    moved = (np.nan_to_num(slopes)[errors > 9.0] != 0.0).any(axis=0)",
         "results/test_sensitivities_at_edges.py::test_derivatives_of_the_strip_beside_a_rounded_end_are_warned_of",
+    ),
+    Fault(
+        "thickness: pins over an odd number of helical teeth measure as balls do",
+        "gears/tooth_measures.py",
+        "if gear.teeth % 2 == 1:",
+        "if gear.teeth < 0:",
+        "gears/test_tooth_measures.py::test_pins_over_47_helical_teeth_measure_more_than_balls",
+    ),
+    Fault(
+        "thickness: a measure beside no profile shift is an allowance of any size, and nothing is asked",
+        "scene/thickness.py",
+        "MOST_THICKER, MOST_THINNER = 0.01, 0.1",
+        "MOST_THICKER, MOST_THINNER = 9.0, 9.0",
+        "scene/test_tooth_thickness.py::test_thickness_far_from_the_profile_shift_is_asked_about_with_the_shift_that_fits",
+    ),
+    Fault(
+        "measured flanks: lines of a scene count as points all over the flank",
+        "scene/build.py",
+        'if values["two_lines"] else {}',
+        "if False else {}",
+        "flank_maps/test_measured_modifications.py::test_lines_of_a_scene_and_of_a_file_have_the_same_standard_deviations",
+    ),
+    Fault(
+        "measured flanks: a comment makes lines of points all over the flank",
+        "flanks/topography.py",
+        "notes.pop(LINES_NOTE, None)",
+        "notes.get(LINES_NOTE)",
+        "flank_maps/test_measured_modifications.py::test_lines_of_a_scene_and_of_a_file_have_the_same_standard_deviations",
+    ),
+    Fault(
+        "rack: alpha_t is that of the gear that stands for the rack",
+        "scene/rack.py",
+        "math.degrees(pinion.transverse_pressure_angle)",
+        "math.degrees(mesh.working_pressure_angle)",
+        "scene/test_rack_scene.py::test_check_has_the_pressure_angle_of_the_basic_rack_at_any_distance",
     ),
 )
 
