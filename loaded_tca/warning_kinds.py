@@ -357,6 +357,14 @@ THICKNESS = Kind(
     "give the `profile_shift` of the drawing; where the drawing has none, give the value that leaves no allowance, and"
     " `tip_diameter_mm`; an allowance of thinner teeth is negative",
 )
+WIDE_BACKLASH = Kind(
+    "wide backlash: {backlash:.3g} mm along the normal of the flanks, {modules:.2g} modules: at the centre distance of "
+    "{distance:.4f} mm the sum of the profile shifts is {given:.4f}, and a sum of {wanted:.4f} leaves no backlash",
+    "gears have a backlash of some hundredths of a module. With a centre distance and no profile shifts teeth are too "
+    "thin by the shifts that are missing: bending and root stress are those of such teeth",
+    "give the `profile_shift` of one gear: that of the other one follows from the centre distance; or give the tooth "
+    "thickness of both; nothing, if the backlash is meant",
+)
 CONTACT_RATIO = Kind(
     "the contact ratio is {ratio:.3g}, below 1: over a part of each pitch the gears touch at a tip or a face end only",
     "the path of contact is shorter than a pitch: one pair leaves it before the next pair enters it, and meanwhile a "

@@ -3842,6 +3842,13 @@ FAULTS = (
         "scene/test_tooth_thickness.py::test_thickness_far_from_the_profile_shift_is_asked_about_with_the_shift_that_fits",
     ),
     Fault(
+        "thickness: a centre distance without profile shifts leaves any backlash, and nothing is asked",
+        "scene/thickness.py",
+        "MOST_BACKLASH = 0.2",
+        "MOST_BACKLASH = 9.0",
+        "scene/test_tooth_thickness.py::test_backlash_that_looks_like_missing_profile_shifts_is_asked_about",
+    ),
+    Fault(
         "measured flanks: lines of a scene count as points all over the flank",
         "scene/build.py",
         'if values["two_lines"] else {}',

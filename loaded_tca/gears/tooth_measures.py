@@ -119,6 +119,31 @@ def _side(gear: MeasuredGear) -> int:
     return 1 if gear.teeth > 0 else -1
 
 
+def allowance_of_thickness(gear: MeasuredGear, thickness: float) -> float:
+    """Allowance A_sn of a gear whose normal tooth thickness s_n is given [mm]; that of ``gear`` itself does not count.
+
+    Parameters
+    ----------
+    gear : CylindricalGear or RingGear
+    thickness : float [mm]
+        In the normal section at the reference cylinder, an arc.
+
+    Raises
+    ------
+    InputError
+        If the allowance is above half a module.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear
+    >>> gear = CylindricalGear(teeth=25, normal_module=2.0, face_width=20.0)
+    >>> round(1e3 * allowance_of_thickness(gear, 3.1016), 1)  # um
+    -40.0
+    """
+    nominal = gear.normal_module * (0.5 * pi + 2.0 * gear.profile_shift * tan(gear.pressure_angle))
+    return _allowance(gear, thickness - nominal, f"normal_tooth_thickness: {plain(thickness, 6)} mm", nominal)
+
+
 def span_teeth(gear: MeasuredGear) -> int:
     r"""Number of teeth k over which a span touches the flanks nearest to the diameter d + 2 x m_n.
 

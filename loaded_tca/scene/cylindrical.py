@@ -30,7 +30,7 @@ from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, AMOUNT_um, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
-from loaded_tca.scene.thickness import as_measured, odd_thickness, thickness_rows
+from loaded_tca.scene.thickness import as_measured, odd_backlash, odd_thickness, thickness_rows
 from loaded_tca.scene.tools import (
     ADDENDUM,
     DEDENDUM,
@@ -316,11 +316,12 @@ class CylindricalScene(BlankScene):
         return pinion, wheel
 
     def odd_thicknesses(self) -> Sequence[str]:
-        """Return sentences on teeth whose thickness is far from that of their profile shift."""
+        """Return sentences on teeth whose thickness is far from that of their profile shift, or of their spaces."""
         mesh, shifts = self.mesh(), (self.pinion.profile_shift, self.wheel.profile_shift)
         follows = self.geometry.centre_distance_mm is not None and shifts.count(None) == 1
         gears = zip((mesh.pinion, mesh.wheel), shifts, strict=True)
-        return [sentence for gear, shift in gears for sentence in odd_thickness(gear, shift, follows=follows)]
+        thicknesses = [each for gear, shift in gears for each in odd_thickness(gear, shift, follows=follows)]
+        return [*thicknesses, *odd_backlash(mesh)]
 
     @property
     def pairs_in_contact(self) -> float:

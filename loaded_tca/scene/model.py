@@ -429,7 +429,7 @@ class Scene(InNotebooks, WithStandards, ABC):
         return ()
 
     def odd_thicknesses(self) -> Sequence[str]:
-        """Return sentences on teeth whose thickness is far from that of their profile shift."""
+        """Return sentences on teeth whose thickness is far from that of their profile shift, or of their spaces."""
         return ()
 
     @abstractmethod

@@ -12,7 +12,12 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
-from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_pins, allowance_of_span
+from loaded_tca.gears.tooth_measures import (
+    allowance_of_balls,
+    allowance_of_pins,
+    allowance_of_span,
+    allowance_of_thickness,
+)
 from loaded_tca.plain import plain
 from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.keys import Whole, key
@@ -31,7 +36,13 @@ def _one_of(other: str, value: float | None, beside: float | None) -> str | None
     return f"found {plain(value, 6)} beside {other} = {plain(beside, 6)}; give one of them"
 
 
-THICKNESS = "thickness_allowance_um", "span_measurement_mm", "ball_measurement_mm", "pin_measurement_mm"
+THICKNESS = (
+    "thickness_allowance_um",
+    "normal_tooth_thickness_mm",
+    "span_measurement_mm",
+    "ball_measurement_mm",
+    "pin_measurement_mm",
+)
 """Keys of which one gives the tooth thickness."""
 
 
@@ -58,6 +69,12 @@ class MeasuredSection(BlankGearSection):
         "teeth, up to half a module: flanks and root are cut with x_E",
         None,
         "0",
+    )
+    normal_tooth_thickness_mm: float | None = key(
+        DIAMETER_mm,
+        "or the thickness s_n itself in the normal section at the reference circle, an arc",
+        None,
+        "m_n (pi/2 + 2 x tan(alpha_n))",
     )
     span_measurement_mm: float | None = key(
         DIAMETER_mm,
@@ -97,7 +114,9 @@ GearType = TypeVar("GearType", CylindricalGear, RingGear)
 
 
 def as_measured(gear: GearType, own: MeasuredSection) -> GearType:
-    """Gear with the thickness of its teeth that a span, balls or pins tell, if they do."""
+    """Gear with the thickness of its teeth that is given, or that a span, balls or pins tell, if they do."""
+    if own.normal_tooth_thickness_mm is not None:
+        return replace(gear, thickness_allowance=allowance_of_thickness(gear, own.normal_tooth_thickness_mm))
     if own.span_measurement_mm is not None:
         teeth = own.span_teeth or gear.span_teeth
         measured = replace(gear, thickness_allowance=allowance_of_span(gear, own.span_measurement_mm, teeth))
@@ -119,6 +138,26 @@ def as_measured(gear: GearType, own: MeasuredSection) -> GearType:
 MOST_THICKER, MOST_THINNER = 0.01, 0.1
 """Allowances over the module above and below which a question is asked. x of a drawing is rounded to 0.01 at the most,
 0.004 modules of thickness; backlash takes some hundredths of a module."""
+
+
+MOST_BACKLASH = 0.2
+"""Normal backlash over the module above which a question is asked: gears have some hundredths, and at a pressure angle
+of 20 degrees so much is a sum of profile shifts that is off by 0.3."""
+
+
+def odd_backlash(mesh: CylindricalMesh | InternalMesh) -> list[str]:
+    """A sentence on gears with a backlash that looks like profile shifts that are not given."""
+    if mesh.normal_backlash <= MOST_BACKLASH * mesh.pinion.normal_module:
+        return []
+    return [
+        kinds.WIDE_BACKLASH.sentence(
+            backlash=mesh.normal_backlash,
+            modules=mesh.normal_backlash / mesh.pinion.normal_module,
+            distance=mesh.working_centre_distance,
+            given=mesh.pinion.profile_shift + mesh.wheel.profile_shift,
+            wanted=mesh.profile_shift_sum_without_backlash,
+        )
+    ]
 
 
 def odd_thickness(gear: CylindricalGear | RingGear, shift: float | None, *, follows: bool) -> list[str]:

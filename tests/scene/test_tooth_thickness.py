@@ -1,6 +1,6 @@
 """Tooth thickness and tips of scenes as engineers give them: by allowance, span, balls, pins or tip alteration."""
 
-from math import asin, cos, radians, sin, tan
+from math import asin, cos, pi, radians, sin, tan
 
 import pytest
 from numpy.testing import assert_allclose
@@ -32,7 +32,8 @@ def test_allowance_span_balls_and_pins_make_the_same_gear():
     by_balls = scene(pinion__ball_measurement_mm=balls, pinion__ball_diameter_mm=5.25)
     pins = by_allowance.pin_measurement(5.25)
     by_pins = scene(pinion__pin_measurement_mm=pins, pinion__pin_diameter_mm=5.25)
-    for other in (by_span, by_span_of_six, by_balls, by_pins):
+    by_thickness = scene(pinion__normal_tooth_thickness_mm=3.0 * 0.5 * pi + THIN)  # m_n pi/2, without a shift
+    for other in (by_span, by_span_of_six, by_balls, by_pins, by_thickness):
         assert_allclose(other.mesh().pinion.thickness_allowance, THIN, atol=1e-9)
         assert_allclose(other.mesh().pinion.root_radius, by_allowance.root_radius, rtol=1e-10)
         assert parse_scene(other.to_toml()) == other
@@ -139,6 +140,21 @@ def test_thickness_is_asked_about_from_a_hundredth_of_the_module_on_or_a_tenth_b
     assert all(words in sentence for sentence in found)
 
 
+def test_backlash_that_looks_like_missing_profile_shifts_is_asked_about():
+    """Far apart by little more, da: j_bn = 2 da sin(alpha_wt), within a hundredth while the angle hardly changes."""
+    close = scene().mesh()
+    limit = 0.2 * 3.0 / (2.0 * sin(close.working_pressure_angle))
+    for part, asked in ((0.9, False), (1.1, True)):
+        far = scene(pair__centre_distance_mm=close.working_centre_distance + part * limit)
+        sentences = far.odd_thicknesses()
+        assert len(sentences) == asked
+        for sentence in sentences:
+            assert f"wide backlash: {far.mesh().normal_backlash:.3g} mm along the normal" in sentence
+            assert "the sum of the profile shifts is 0.0000" in sentence
+            assert f"a sum of {far.mesh().profile_shift_sum_without_backlash:.4f} leaves no backlash" in sentence
+        assert far.with_changes({"pinion.profile_shift": 0.0}).odd_thicknesses() == []  # the other follows
+
+
 def test_tip_alteration_is_told_and_shortens():
     short = scene(pinion__tip_alteration_coefficient=-0.1)
     assert_allclose(scene().mesh().pinion.tip_radius - short.mesh().pinion.tip_radius, 0.3)
@@ -177,6 +193,10 @@ test_thickness_keys_refuse = refused_calls(
     (
         lambda: scene(pinion__pin_measurement_mm=113.0, pinion__pin_diameter_mm=9.0).mesh(),
         "^pinion: pin_measurement_mm: 113 mm over pins of 9 mm",
+    ),
+    (
+        lambda: scene(pinion__normal_tooth_thickness_mm=0.5).mesh(),
+        "^pinion: normal_tooth_thickness_mm: 0.5 mm makes the teeth 4.212 mm thinner than nominal, where it is 4.71239",
     ),
     (lambda: scene(pinion__span_teeth=5), "^pinion.span_teeth: found 5; it needs span_measurement_mm"),
     (lambda: scene(pinion__ball_diameter_mm=5.0), "^pinion.ball_diameter_mm: found 5; it needs ball_measurement_mm"),
