@@ -357,6 +357,13 @@ THICKNESS = Kind(
     "give the `profile_shift` of the drawing; where the drawing has none, give the value that leaves no allowance, and"
     " `tip_diameter_mm`; an allowance of thinner teeth is negative",
 )
+LONG_TIP = Kind(
+    "tip of the {gear}: tip_diameter_mm is that of a tip alteration of {alteration:+.3g} modules beside profile_shift "
+    "= 0, the default, since none is given; with profile_shift = {shift:.4f} the tip has no alteration",
+    "a basic rack of ISO 53 leaves no longer tip. On gears with a long and a short addendum the tip diameter has the "
+    "profile shift in it; without it flanks, thickness and root are those of other teeth",
+    "give the `profile_shift` of the drawing; `profile_shift = 0` says that the teeth are only longer",
+)
 WIDE_BACKLASH = Kind(
     "wide backlash: {backlash:.3g} mm along the normal of the flanks, {modules:.2g} modules: at the centre distance of "
     "{distance:.4f} mm the sum of the profile shifts is {given:.4f}, and a sum of {wanted:.4f} leaves no backlash",

@@ -3849,6 +3849,13 @@ FAULTS = (
         "scene/test_tooth_thickness.py::test_backlash_that_looks_like_missing_profile_shifts_is_asked_about",
     ),
     Fault(
+        "tips: a tip diameter of a profile shift that is not given makes longer teeth, and nothing is asked",
+        "scene/tools.py",
+        "LONGEST_TIP = 0.1",
+        "LONGEST_TIP = 9.0",
+        "scene/test_tooth_thickness.py::test_tip_diameter_of_a_long_addendum_asks_for_the_profile_shift",
+    ),
+    Fault(
         "measured flanks: lines of a scene count as points all over the flank",
         "scene/build.py",
         'if values["two_lines"] else {}',

@@ -42,6 +42,7 @@ from loaded_tca.scene.tools import (
     cut_parameters,
     needs_protuberance,
     needs_stock,
+    odd_tip,
     rack_rows,
     shortening,
     tip_alteration,
@@ -315,13 +316,16 @@ class CylindricalScene(BlankScene):
         )
         return pinion, wheel
 
-    def odd_thicknesses(self) -> Sequence[str]:
-        """Return sentences on teeth whose thickness is far from that of their profile shift, or of their spaces."""
-        mesh, shifts = self.mesh(), (self.pinion.profile_shift, self.wheel.profile_shift)
-        follows = self.geometry.centre_distance_mm is not None and shifts.count(None) == 1
-        gears = zip((mesh.pinion, mesh.wheel), shifts, strict=True)
-        thicknesses = [each for gear, shift in gears for each in odd_thickness(gear, shift, follows=follows)]
-        return [*thicknesses, *odd_backlash(mesh)]
+    def missing_shifts(self) -> Sequence[str]:
+        """Return sentences on teeth that look as if a profile shift of theirs were not given."""
+        mesh, sections = self.mesh(), (self.pinion, self.wheel)
+        absent = [own.profile_shift is None for own in sections]
+        follows = self.geometry.centre_distance_mm is not None and sum(absent) == 1
+        sentences = []
+        for gear, own, default in zip((mesh.pinion, mesh.wheel), sections, absent, strict=True):
+            thick = odd_thickness(gear, own.profile_shift, follows=follows)
+            sentences += thick or (odd_tip(gear, own) if default and not follows else [])
+        return [*sentences, *odd_backlash(mesh)]
 
     @property
     def pairs_in_contact(self) -> float:

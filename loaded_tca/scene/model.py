@@ -428,8 +428,8 @@ class Scene(InNotebooks, WithStandards, ABC):
         """Depths of the notches that grinding leaves at the roots of both gears, and roundings of the tools [mm]."""
         return ()
 
-    def odd_thicknesses(self) -> Sequence[str]:
-        """Return sentences on teeth whose thickness is far from that of their profile shift, or of their spaces."""
+    def missing_shifts(self) -> Sequence[str]:
+        """Return sentences on teeth that look as if a profile shift of theirs were not given."""
         return ()
 
     @abstractmethod

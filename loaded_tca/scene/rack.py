@@ -27,6 +27,7 @@ from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, refusal, rule, subsection
 from loaded_tca.scene.sections import SLOPE_um
 from loaded_tca.scene.thickness import as_measured, odd_thickness
+from loaded_tca.scene.tools import odd_tip
 
 LENGTH_mm = above_zero(100000.0)
 
@@ -310,9 +311,11 @@ class RackScene(CylindricalScene):
         forces = (fixed(torque / radius, 1) for torque in torques)
         return [*super().force_rows(torques), ("force along the rack, without friction [N]", *forces)]
 
-    def odd_thicknesses(self) -> Sequence[str]:
-        """Return a sentence where the teeth of the pinion are far from the thickness of their profile shift."""
-        return odd_thickness(self._gear, self.pinion.profile_shift, follows=self.geometry.distance_mm is not None)
+    def missing_shifts(self) -> Sequence[str]:
+        """Return a sentence where the teeth of the pinion look as if their profile shift were not given."""
+        follows = self.geometry.distance_mm is not None
+        thick = odd_thickness(self._gear, self.pinion.profile_shift, follows=follows)
+        return thick or (odd_tip(self._gear, self.pinion) if self.pinion.profile_shift is None and not follows else [])
 
     def interferences(self) -> Sequence[str]:
         """Return how pinion and rack interfere at their distance, its error included."""

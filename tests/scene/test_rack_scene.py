@@ -137,8 +137,8 @@ def test_check_has_the_pressure_angle_of_the_basic_rack_at_any_distance() -> Non
 
 def test_thickness_of_the_pinion_is_asked_about_where_it_looks_like_a_shift() -> None:
     """Of module 3: a hundredth of it is 30 um."""
-    assert SPUR.odd_thicknesses() == []
-    (sentence,) = SPUR.with_changes({"pinion.thickness_allowance_um": 200.0}).odd_thicknesses()
+    assert SPUR.missing_shifts() == []
+    (sentence,) = SPUR.with_changes({"pinion.thickness_allowance_um": 200.0}).missing_shifts()
     shift = 0.2 / (2.0 * 3.0 * tan(radians(20.0)))
     assert f"with profile_shift = {shift:.4f} the same teeth have no allowance" in sentence
 

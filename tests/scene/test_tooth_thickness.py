@@ -99,16 +99,16 @@ def test_check_has_no_measure_over_pins_of_a_face_too_narrow_for_them():
 def test_thickness_far_from_the_profile_shift_is_asked_about_with_the_shift_that_fits():
     """x = 0.2 and A_sn = -30 um, measured, on a drawing that has no x: s_n = m_n (pi/2 + 2 x_E tan(alpha_n))."""
     drawn = scene(pinion__profile_shift=0.2, pinion__thickness_allowance_um=-30.0)
-    assert drawn.odd_thicknesses() == []
+    assert drawn.missing_shifts() == []
     span = drawn.mesh().pinion.span_measurement(5)
     measured = scene(pinion__profile_shift=None, pinion__span_measurement_mm=span, pinion__span_teeth=5)
     generating = 0.2 - 0.03 / (2.0 * 3.0 * tan(radians(20.0)))
-    (sentence,) = measured.odd_thicknesses()
+    (sentence,) = measured.missing_shifts()
     assert f"of the pinion: the allowance A_sn is {2e3 * 3.0 * generating * tan(radians(20.0)):+.4g} um" in sentence
     assert "profile_shift = 0.0000, the default, since none is given" in sentence
     assert f"with profile_shift = {generating:.4f} the same teeth have no allowance" in sentence
     fitting = measured.with_changes({"pinion.profile_shift": generating})
-    assert fitting.odd_thicknesses() == []
+    assert fitting.missing_shifts() == []
     assert abs(fitting.mesh().pinion.thickness_allowance) < 1e-9
     assert_allclose(fitting.mesh().pinion.root_radius, drawn.mesh().pinion.root_radius, rtol=1e-10)
 
@@ -135,9 +135,22 @@ def test_thickness_is_asked_about_from_a_hundredth_of_the_module_on_or_a_tenth_b
         wheel__profile_shift=shift,
         wheel__thickness_allowance_um=allowance,
     )
-    found = one.odd_thicknesses()
+    found = one.missing_shifts()
     assert len(found) == (words is not None)
     assert all(words in sentence for sentence in found)
+
+
+def test_tip_diameter_of_a_long_addendum_asks_for_the_profile_shift():
+    """d_a = d + 2 m_n (1 + x): a tip of x = 0.15 beside x = 0 is 0.15 modules too long."""
+    tip = 2.0 * scene(pinion__profile_shift=0.15).mesh().pinion.tip_radius
+    drawn = scene(pinion__tip_diameter_mm=tip)
+    (sentence,) = drawn.missing_shifts()
+    assert sentence.startswith("tip of the pinion: tip_diameter_mm is that of a tip alteration of +0.15 modules")
+    assert "with profile_shift = 0.1500 the tip has no alteration" in sentence
+    assert drawn.with_changes({"pinion.profile_shift": 0.15}).missing_shifts() == []
+    assert drawn.with_changes({"pinion.profile_shift": 0.0}).missing_shifts() == []  # which is said, and meant
+    assert scene(pinion__tip_diameter_mm=tip - 0.4).missing_shifts() == []  # 0.2/3 modules less: below a tenth
+    assert scene(pinion__tip_diameter_mm=tip - 2.0).missing_shifts() == []  # a shortened tip
 
 
 def test_backlash_that_looks_like_missing_profile_shifts_is_asked_about():
@@ -146,13 +159,13 @@ def test_backlash_that_looks_like_missing_profile_shifts_is_asked_about():
     limit = 0.2 * 3.0 / (2.0 * sin(close.working_pressure_angle))
     for part, asked in ((0.9, False), (1.1, True)):
         far = scene(pair__centre_distance_mm=close.working_centre_distance + part * limit)
-        sentences = far.odd_thicknesses()
+        sentences = far.missing_shifts()
         assert len(sentences) == asked
         for sentence in sentences:
             assert f"wide backlash: {far.mesh().normal_backlash:.3g} mm along the normal" in sentence
             assert "the sum of the profile shifts is 0.0000" in sentence
             assert f"a sum of {far.mesh().profile_shift_sum_without_backlash:.4f} leaves no backlash" in sentence
-        assert far.with_changes({"pinion.profile_shift": 0.0}).odd_thicknesses() == []  # the other follows
+        assert far.with_changes({"pinion.profile_shift": 0.0}).missing_shifts() == []  # the other follows
 
 
 def test_tip_alteration_is_told_and_shortens():
